@@ -1,0 +1,1 @@
+//! Reads a case folder, checks it and resolves it into plain data.

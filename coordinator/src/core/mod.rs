@@ -1,0 +1,1 @@
+//! The sans-I/O state machine that leases jobs to workers.

@@ -1,0 +1,11 @@
+//! Decides what to evaluate and remembers everything.
+//!
+//! Data flows one way: a case folder is read and checked ([`case`]), a search strategy proposes
+//! individuals, the sans-I/O [`core`] leases them to workers, the [`journal`] records what came
+//! back, and the [`report`] shows it. [`runtime`] is the only asynchronous glue. Nothing here
+//! links the dynamics.
+pub mod case;
+pub mod core;
+pub mod journal;
+pub mod report;
+pub mod runtime;

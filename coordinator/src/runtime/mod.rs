@@ -1,0 +1,1 @@
+//! The asynchronous glue between link, core and journal.

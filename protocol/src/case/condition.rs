@@ -1,0 +1,62 @@
+//! Working conditions: speed, load card and the gauge record that belongs to them.
+use serde::{Deserialize, Serialize};
+
+/// One working condition.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Condition {
+    /// Short name, as `5rpm`.
+    pub name: String,
+    /// Crank speed [revolutions per minute].
+    pub speed_rpm: f64,
+    /// Counterweight moment at the crank [N m].
+    pub counterweight_moment_n_m: f64,
+    /// Load at the suspension point.
+    pub card: LoadCard,
+    /// Measured stress; absent where a condition is only simulated.
+    pub record: Option<GaugeRecord>,
+}
+
+/// Load at the suspension point over one turn, periodic.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadCard {
+    /// Crank angle from bottom dead centre, equally spaced from 0, without 360 [deg].
+    pub turn_deg: Vec<f64>,
+    /// Load, positive downwards [N]; same length.
+    pub load_n: Vec<f64>,
+    /// What is done to the card before it is applied.
+    pub smoothing: Smoothing,
+}
+
+/// Smoothing of a load card.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Smoothing {
+    /// None: the card as delivered.
+    None,
+    /// Only this many harmonics of the crank are kept.
+    Harmonics(u32),
+    /// Centred moving average over this many degrees.
+    MovingAverageDeg(f64),
+}
+
+/// Measured stress on the output grid, averaged over cycles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GaugeRecord {
+    /// Crank angle from bottom dead centre: the output grid [deg].
+    pub turn_deg: Vec<f64>,
+    /// Number of whole cycles that were averaged.
+    pub cycles: usize,
+    /// One entry per gauge of the record.
+    pub gauges: Vec<GaugeTrace>,
+}
+
+/// The averaged record of one gauge.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GaugeTrace {
+    /// Gauge number, 1 to 4.
+    pub gauge: u8,
+    /// Mean over cycles [MPa].
+    pub mean_mpa: Vec<f64>,
+    /// Standard deviation between cycles [MPa]; zeros where there is one cycle only.
+    pub spread_mpa: Vec<f64>,
+}

@@ -1,0 +1,85 @@
+//! A case, resolved: everything a worker needs to simulate a machine and to score it against its
+//! records, as plain data with the unit in every name.
+//!
+//! The coordinator reads and validates case *files* and builds this; its encoded bytes travel as
+//! one blob, named by their content hash. Nothing here knows of files, of TOML or of dynamics.
+mod condition;
+mod gene;
+mod head;
+mod machine;
+mod objective;
+
+pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
+pub use gene::{Gene, GeneName};
+pub use head::{Influence, ModalHead};
+pub use machine::{
+    BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
+};
+pub use objective::{Objective, Offset};
+
+use serde::{Deserialize, Serialize};
+
+/// A machine, its records and what is asked of them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Case {
+    /// Name of the machine.
+    pub name: String,
+    /// Acceleration of gravity, downwards [m/s2].
+    pub gravity_m_s2: f64,
+    /// Walking beam with everything rigid on it.
+    pub beam: Beam,
+    /// Prescribed crank.
+    pub crank: Crank,
+    /// Connecting rods and crossbeam.
+    pub rod: Rod,
+    /// Carrier bar with clamp and load cell.
+    pub suspension: Suspension,
+    /// Both ropes.
+    pub ropes: Ropes,
+    /// Contact between rope and heads.
+    pub contact: Contact,
+    /// Front head: an arc about the beam pivot.
+    pub front_head: FrontHead,
+    /// Back head: an arc about its own centre, flexible.
+    pub back_head: BackHead,
+    /// Modes and influence lines of the back head.
+    pub modal_head: ModalHead,
+    /// The unknown numbers, in the order of every gene vector.
+    pub genes: Vec<Gene>,
+    /// Working conditions with their records.
+    pub conditions: Vec<Condition>,
+    /// What a calibration minimises.
+    pub objective: Objective,
+    /// How a run is started, sampled and integrated.
+    pub run: RunSettings,
+}
+
+/// How a run is started, sampled and integrated.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunSettings {
+    /// Spacing of the output on crank angle [deg]; divides 360.
+    pub output_step_deg: f64,
+    /// Crank angle that is run before the recorded revolution [deg].
+    pub lead_in_deg: f64,
+    /// Time in which the crank is brought from rest to full speed [s].
+    pub ramp_s: f64,
+    /// Tolerance of the integrator, relative to its built-in error scales.
+    pub tolerance: f64,
+    /// Number of head modes that are simulated.
+    pub modes: usize,
+}
+
+impl Case {
+    /// Position of a condition by its name.
+    pub fn condition(&self, name: &str) -> Option<usize> {
+        self.conditions
+            .iter()
+            .position(|condition| condition.name == name)
+    }
+
+    /// The recommended gene vector, in declared units.
+    pub fn recommended(&self) -> Vec<f64> {
+        self.genes.iter().map(|gene| gene.recommended).collect()
+    }
+}

@@ -1,0 +1,98 @@
+//! What a worker can be asked to do, and what it answers: one kind per file.
+//!
+//! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
+//! retried. [`Failure`] is infrastructure: the job could not be done.
+mod score;
+mod simulate;
+mod verdict;
+
+pub use score::{ChannelScore, Evaluation, ScoreSpec};
+pub use simulate::{Energy, Motion, SimulateSpec, Simulation};
+pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
+
+use serde::{Deserialize, Serialize};
+
+/// One unit of work; a pure function of itself and the case it names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Job {
+    /// Simulate and compare with the records: fitness, and the residual on demand.
+    Score(ScoreSpec),
+    /// Simulate and return the curves.
+    Simulate(SimulateSpec),
+    /// Do nothing, return at once: measures the bus.
+    Nothing {
+        /// Bytes that travel to the worker.
+        #[serde(with = "serde_bytes_vec")]
+        payload: Vec<u8>,
+        /// Bytes that travel back.
+        reply_bytes: u32,
+    },
+}
+
+/// The answer to a [`Job`] that was done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Outcome {
+    /// Of [`Job::Score`].
+    Scored(Evaluation),
+    /// Of [`Job::Simulate`].
+    Simulated(Box<Simulation>),
+    /// Of [`Job::Nothing`].
+    Nothing(#[serde(with = "serde_bytes_vec")] Vec<u8>),
+    /// The job could not be done.
+    Failed(Failure),
+}
+
+/// Why a job could not be done.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Failure {
+    /// It ran longer than its deadline and was ended.
+    Deadline {
+        /// The deadline [ms].
+        limit_ms: u64,
+    },
+    /// The process that computed it ended by itself.
+    Crashed {
+        /// Exit status or signal, in words.
+        how: String,
+    },
+    /// The worker that computed it was lost, as often as the retry limit allows.
+    Lost {
+        /// How many workers were lost over it.
+        workers: u32,
+    },
+    /// The worker will not do this kind of job.
+    Refused {
+        /// Why.
+        reason: String,
+    },
+    /// The case cannot be built into a model.
+    Misconfigured {
+        /// Which field of the case.
+        field: String,
+        /// What is wrong with it and what to do.
+        problem: String,
+    },
+}
+
+impl Failure {
+    /// Whether another attempt, on another worker, may succeed.
+    pub const fn is_retryable(&self) -> bool {
+        match self {
+            Self::Deadline { .. } | Self::Crashed { .. } | Self::Lost { .. } => true,
+            Self::Refused { .. } | Self::Misconfigured { .. } => false,
+        }
+    }
+}
+
+/// `Vec<u8>` as a byte string rather than a sequence of numbers.
+mod serde_bytes_vec {
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub(super) fn serialize<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_bytes(bytes)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {
+        Vec::<u8>::deserialize(from)
+    }
+}

@@ -1,0 +1,75 @@
+//! How a simulation ended, and what it cost.
+use serde::{Deserialize, Serialize};
+
+/// How a simulation ended.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Verdict {
+    /// The whole revolution was simulated.
+    Complete,
+    /// The machine failed on the way; data for the search, never retried.
+    Failed {
+        /// What happened.
+        kind: PhysicsFailure,
+        /// How far it got.
+        reached: Reached,
+    },
+}
+
+/// What ended a simulation early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PhysicsFailure {
+    /// A rope joint stretched beyond its limit.
+    OverstretchedRope,
+    /// The rope sank through the surface of a head.
+    RopeThroughHead,
+    /// The beam left its working range.
+    BeamOvertravel,
+    /// The load stayed below its lowest design position.
+    LoadNotLifted,
+    /// A cylinder turned over, out of its chain.
+    TumbledCylinder,
+    /// The step size fell below its limit.
+    StepUnderflow,
+    /// The iteration budget was used up.
+    Budget,
+}
+
+impl PhysicsFailure {
+    /// As written in tables and JSON.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::OverstretchedRope => "overstretched_rope",
+            Self::RopeThroughHead => "rope_through_head",
+            Self::BeamOvertravel => "beam_overtravel",
+            Self::LoadNotLifted => "load_not_lifted",
+            Self::TumbledCylinder => "tumbled_cylinder",
+            Self::StepUnderflow => "step_underflow",
+            Self::Budget => "budget",
+        }
+    }
+}
+
+/// How far a failed simulation got.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Reached {
+    /// It failed while the static load was applied.
+    LoadFraction(f64),
+    /// It failed in motion, after this share of the simulated time.
+    TimeFraction(f64),
+}
+
+/// Work counters of one simulation; deterministic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Counters {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Rejected steps.
+    pub rejected_steps: u64,
+    /// Newton iterations, settle included.
+    pub newton_iterations: u64,
+    /// Tangent evaluations.
+    pub jacobians: u64,
+    /// Factorisations.
+    pub factorizations: u64,
+}

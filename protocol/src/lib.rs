@@ -1,0 +1,7 @@
+//! What may be said on the wire: plain data and its encoding.
+//!
+//! The arrows of the workspace end here: this crate knows nothing of sockets, files, clocks or
+//! dynamics. At this edge every number carries its unit in its name.
+pub mod case;
+pub mod job;
+pub mod unit;

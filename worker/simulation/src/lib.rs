@@ -1,0 +1,2 @@
+//! Rigid-flexible multibody dynamics.
+pub mod math;
