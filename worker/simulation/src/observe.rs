@@ -49,12 +49,13 @@ pub fn gauge_stress(system: &System<'_>, state: &State) -> [f64; 4] {
         *modal += pull[0] * shape[0] + pull[1] * shape[1];
     }
 
-    // gravity is a base acceleration upwards, seen from the beam
+    // gravity acts like a base acceleration upwards, seen from the beam
     let g = machine.description.gravity;
     let base = [g * s, g * c, state.a[beam]];
+    let base_stress = [&head.weight_stress[0], &head.weight_stress[1], &head.turning_stress];
     for (k, acceleration) in base.iter().enumerate() {
-        for (gauge, stress) in stress.iter_mut().enumerate() {
-            *stress += acceleration * head.inertia_stress[k][gauge];
+        for (stress, unit) in stress.iter_mut().zip(base_stress[k]) {
+            *stress += acceleration * unit;
         }
         for (m, modal) in modal_force[..modes].iter_mut().enumerate() {
             *modal -= acceleration * head.participation[m][k];
@@ -128,11 +129,27 @@ pub struct Shape {
 pub struct Recorder {
     /// What was recorded.
     pub curves: Curves,
-    /// Whether only the gauges are recorded.
-    pub gauges_only: bool,
-    /// Spacing of recorded shapes in samples; 0 for none.
-    pub shape_every: usize,
+    gauges_only: bool,
+    shape_every: usize,
     force: Vec<f64>,
+}
+
+impl Recorder {
+    /// Records gauge stress alone: what a score needs.
+    pub fn gauges_only() -> Self {
+        Self {
+            gauges_only: true,
+            ..Self::default()
+        }
+    }
+
+    /// Records everything, and the machine's shape at every `shape_every`-th sample.
+    pub fn everything(shape_every: usize) -> Self {
+        Self {
+            shape_every,
+            ..Self::default()
+        }
+    }
 }
 
 impl Observe for Recorder {

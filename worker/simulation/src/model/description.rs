@@ -113,8 +113,11 @@ pub struct Head {
     pub gauge_stress: Vec<[f64; 4]>,
     /// Coupling with base acceleration in x, y and about the pivot; n x 3.
     pub participation: Vec<[f64; 3]>,
-    /// Static gauge stress per unit base acceleration [Pa s2/m], [Pa s2/rad]; 3 x 4.
-    pub inertia_stress: [[f64; 4]; 3],
+    /// Gauge stress under the head's own weight per unit gravity along -x and -y of the beam frame
+    /// [Pa s2/m]; 2 x 4.
+    pub weight_stress: [[f64; 4]; 2],
+    /// Static gauge stress per unit angular acceleration about the pivot [Pa s2/rad].
+    pub turning_stress: [f64; 4],
     /// First station of the influence lines [rad].
     pub influence_start: f64,
     /// Spacing of the influence lines [rad].
