@@ -5,7 +5,7 @@ use super::{
     error::CaseError,
     genes,
     geometry::Envelope,
-    head, machine,
+    head, machine, mesh,
     note::Note,
     record::{self, Expected, RecordFacts},
     schema::{CaseFile, ConditionEntry, ObjectiveEntry},
@@ -57,12 +57,25 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
         &folder.join(&file.flexible_head.influence_file),
     )?;
     machine::check_arc(&document, &file, &modal_head.arc_deg, &envelope)?;
-    document.within(
-        "run.modes",
-        file.run.modes as f64,
-        0.0..=modal_head.frequencies_hz.len() as f64,
-        "modes of the modes file",
-    )?;
+    if let Some(name) = &file.flexible_head.mesh_file {
+        let path = folder.join(name);
+        let modes = folder.join(&file.flexible_head.modes_file);
+        let density = file.flexible_head.density_kg_m3;
+        let mesh = mesh::read(&path)?;
+        mesh::check_mass(&path, &mesh, density, (&modes, modal_head.mass_kg))?;
+    }
+    let available = modal_head.frequencies_hz.len();
+    if file.run.modes > available {
+        return Err(document.field(
+            &[Step::Key("run"), Step::Key("modes")],
+            file.run.modes,
+            format!(
+                "0 to {available}, the modes of {}",
+                file.flexible_head.modes_file.display()
+            ),
+            "take fewer modes, or reduce the head with more",
+        ));
+    }
     let mut notes = Vec::new();
     let mut records = Vec::new();
     let mut conditions = Vec::new();

@@ -176,7 +176,7 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
             &[Step::Key("run"), Step::Key("output_step_deg")],
             run.output_step_deg,
             "a step that divides 360 deg",
-            &format!("take {} deg, for example", 360.0 / count.round().max(1.0)),
+            &format!("take {} deg, for example", plain_step(run.output_step_deg)),
         ));
     }
     for (index, condition) in case.conditions.iter().enumerate() {
@@ -200,6 +200,19 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// The divisor of 360 with few decimals that is nearest to a step [deg].
+fn plain_step(step: f64) -> f64 {
+    let plain = [
+        0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,
+    ];
+    let more = [
+        4.0, 5.0, 6.0, 7.5, 8.0, 9.0, 10.0, 12.0, 15.0, 18.0, 20.0, 24.0, 30.0,
+    ];
+    let all = plain.into_iter().chain(more);
+    all.min_by(|a, b| (a - step).abs().total_cmp(&(b - step).abs()))
+        .unwrap_or(0.5)
+}
+
 /// The ropes reach over the whole turn and stay on their arcs.
 fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
     let ropes = &case.ropes;
@@ -209,7 +222,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     let envelope = geometry::envelope(case).map_err(|pin| {
         document.field(
             &cylinders("back_cylinders"),
-            format!("{} ({back} m of rope)", ropes.back_cylinders),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
             format!(
                 "enough that rope and rod ({} m) reach from the crank pin to the back head at every \
                  crank angle; they do not at a pin angle of {pin:.0} deg",
@@ -223,7 +236,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     if free < pitch {
         return Err(document.field(
             &cylinders("back_cylinders"),
-            format!("{} ({back} m of rope)", ropes.back_cylinders),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
             format!(
                 "at least {:.3} m: at one end of the stroke all of it lies on the head",
                 back - free + pitch
@@ -235,12 +248,15 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     let [contact, _] = envelope.contact_deg;
     if contact <= case.back_head.rope_anchor_deg {
         return Err(document.field(
-            &[Step::Key("back_head"), Step::Key("rope_anchor_deg")],
-            case.back_head.rope_anchor_deg,
+            &cylinders("back_cylinders"),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
             format!(
-                "below {contact:.1} deg, where the rope leaves the head at one end of the stroke"
+                "more: at one end of the stroke the rope would leave the head at {contact:.1} deg, \
+                 beyond its anchor at {} deg",
+                case.back_head.rope_anchor_deg
             ),
-            "move the anchor up, or lengthen rod or rope",
+            "rope and rod are shorter than the path they have to cover: add cylinders, lengthen \
+             rod.length_m, or move back_head.rope_anchor_deg",
         ));
     }
     let [low, _] = envelope.beam_deg;
@@ -259,7 +275,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     if hang < pitch {
         return Err(document.field(
             &cylinders("front_cylinders"),
-            format!("{} ({front} m of rope)", ropes.front_cylinders),
+            format!("{} ({front:.3} m of rope)", ropes.front_cylinders),
             format!(
                 "at least {:.3} m: at the top of the stroke all of it lies on the head",
                 front - hang + pitch
