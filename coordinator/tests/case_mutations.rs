@@ -12,11 +12,13 @@ fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb")
 }
 
+/// The one that is compressed.
+const PACKED: &str = "measured/test_5rpm.csv.gz";
 const FILES: [&str; 7] = [
     "case.toml",
     "measured/card_5rpm.csv",
     "measured/test_5rpm.toml",
-    "measured/test_5rpm.csv.gz",
+    PACKED,
     "back_head/back_head_modes.json",
     "back_head/back_head_influence.csv",
     "back_head/back_head.msh",
@@ -25,11 +27,11 @@ const FILES: [&str; 7] = [
 /// One way to change a run of bytes.
 #[derive(Clone, Debug)]
 enum Mutation {
-    Flip { at: f64, mask: u8 },
-    Cut { at: f64 },
-    Remove { at: f64, length: usize },
-    Repeat { at: f64, length: usize },
-    Insert { at: f64, text: &'static str },
+    Flip { at: usize, mask: u8 },
+    Cut { at: usize },
+    Remove { at: usize, length: usize },
+    Repeat { at: usize, length: usize },
+    Insert { at: usize, text: &'static str },
 }
 
 fn mutation() -> impl Strategy<Value = Mutation> {
@@ -55,17 +57,17 @@ fn mutation() -> impl Strategy<Value = Mutation> {
         "18446744073709551615 ",
     ]);
     prop_oneof![
-        (0.0..1.0, 1..=255_u8).prop_map(|(at, mask)| Mutation::Flip { at, mask }),
-        (0.0..1.0).prop_map(|at| Mutation::Cut { at }),
-        (0.0..1.0, 1..60_usize).prop_map(|(at, length)| Mutation::Remove { at, length }),
-        (0.0..1.0, 1..60_usize).prop_map(|(at, length)| Mutation::Repeat { at, length }),
-        (0.0..1.0, words).prop_map(|(at, text)| Mutation::Insert { at, text }),
+        (0..1_000_000_usize, 1..=255_u8).prop_map(|(at, mask)| Mutation::Flip { at, mask }),
+        (0..1_000_000_usize).prop_map(|at| Mutation::Cut { at }),
+        (0..1_000_000_usize, 1..60_usize).prop_map(|(at, length)| Mutation::Remove { at, length }),
+        (0..1_000_000_usize, 1..60_usize).prop_map(|(at, length)| Mutation::Repeat { at, length }),
+        (0..1_000_000_usize, words).prop_map(|(at, text)| Mutation::Insert { at, text }),
     ]
 }
 
 fn apply(bytes: &mut Vec<u8>, mutation: &Mutation) {
-    let place =
-        |at: f64, length: usize| ((at * length as f64) as usize).min(length.saturating_sub(1));
+    // places are given per million of the file
+    let place = |at: usize, length: usize| at * length / 1_000_000;
     if bytes.is_empty() {
         return;
     }
@@ -114,7 +116,7 @@ proptest! {
 
         let path = scratch.path().join(FILES[file]);
         let mut bytes = fs::read(&path).unwrap();
-        let packed = FILES[file].ends_with(".gz") && unpack;
+        let packed = FILES[file] == PACKED && unpack;
         if packed {
             let mut plain = Vec::new();
             std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(bytes.as_slice()), &mut plain).unwrap();

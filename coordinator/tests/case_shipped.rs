@@ -121,7 +121,8 @@ fn the_envelope_is_that_of_the_design_kinematics() {
 }
 
 /// Resampling and averaging change nothing that a gauge could show: a plain mean of all samples
-/// in bins of one degree, computed here from the file, is the same curve.
+/// in bins of one degree, computed here from the file, is the same curve within its noise. A shift
+/// by one grid step would show as 0.11 MPa.
 #[test]
 fn the_averaged_record_is_the_record() {
     let case = case::load(&shipped(), &Overrides::default()).unwrap();
@@ -131,8 +132,9 @@ fn the_averaged_record_is_the_record() {
     for row in reader.records() {
         let row = row.unwrap();
         let [angle, stress] = [1, 4].map(|column| row[column].parse::<f64>().unwrap());
-        // bins centred on whole degrees
-        let bin = &mut bins[(angle + 0.5) as usize % 360];
+        // bins centred on whole degrees; the last half degree belongs to bin 0
+        let at = (0..360).rfind(|&bin| f64::from(bin) - 0.5 <= angle && angle < 359.5);
+        let bin = &mut bins[usize::try_from(at.unwrap_or(0)).unwrap()];
         bin.0 += stress;
         bin.1 += 1.0;
     }
@@ -145,7 +147,7 @@ fn the_averaged_record_is_the_record() {
         })
         .sum();
     let difference = (squares / 360.0).sqrt();
-    assert!(difference < 0.03, "{difference} MPa");
+    assert!(difference < 0.05, "{difference} MPa");
 }
 
 #[test]
@@ -255,7 +257,7 @@ fn the_summary_tells_what_a_user_asks_first() {
         "3.600 m in 72 cylinders",
         "5.700 m in 114 cylinders",
         "881.0 kg, modes at 116.0, 121.3",
-        "kb4     1.100e2 (1.10e-2 .. 1.10e6) N.m/deg",
+        "kb4       1.100e2 (1.10e-2 .. 1.10e6) N.m/deg",
         "condition   5rpm: 5 /min, load 34.4 to 78.3 kN",
         "record 5 cycles, 5972 samples at 100 Hz, 28 lost, measured speed 4.999 /min",
         "gauge 1: half-range 13.",
@@ -293,10 +295,16 @@ fn the_template_loads_beside_its_data() {
     assert_eq!(case.conditions.len(), 1);
     assert_eq!(case.genes.len(), 10);
     for line in case::template().lines().filter(|line| line.contains(" = ")) {
-        let described = line.contains('#')
-            || ["center_y", "gravity_m", "mass_kg", "density", "smoothing"]
-                .iter()
-                .any(|key| line.contains(key));
+        let plain = [
+            "gauges",
+            "center_y_m",
+            "gravity_m_s2",
+            "mass_kg",
+            "density_kg_m3",
+            "diameter_m",
+            "radius_m",
+        ];
+        let described = line.contains('#') || plain.iter().any(|key| line.starts_with(key));
         assert!(described, "no comment on `{line}`");
     }
 }

@@ -132,6 +132,26 @@ fn range(values: &[f64]) -> [f64; 2] {
 
 impl fmt::Display for Summary {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write_machine(to)?;
+        for condition in &self.conditions {
+            write!(to, "{condition}")?;
+        }
+        let (condition, gauges) = &self.objective;
+        let gauges = gauges
+            .iter()
+            .map(|(gauge, weight)| format!("{gauge} (weight {weight})"));
+        let gauges: Vec<String> = gauges.collect();
+        write!(to, "objective   {condition}: gauges {}", gauges.join(", "))?;
+        for note in &self.notes {
+            write!(to, "\nnote: {note}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Summary {
+    /// Machine, ropes, head and genes.
+    fn write_machine(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Envelope {
             beam_deg: [low, high],
             contact_deg: [from, until],
@@ -174,47 +194,35 @@ impl fmt::Display for Summary {
                 gene.unit.symbol()
             )?;
         }
-        for condition in &self.conditions {
-            let [least, greatest] = condition.load_n.map(|load| load / 1000.0);
-            writeln!(
-                to,
-                "condition   {}: {} /min, load {least:.1} to {greatest:.1} kN",
-                condition.name, condition.speed_rpm
-            )?;
-            let Some(record) = &condition.record else {
-                writeln!(to, "  no record: simulated only")?;
-                continue;
-            };
-            writeln!(
-                to,
-                "  record {} cycles, {} samples at {:.0} Hz, {} lost, measured speed {:.3} /min",
-                record.cycles,
-                record.facts.samples,
-                record.facts.rate_hz,
-                record.facts.lost,
-                record.facts.speed_rpm
-            )?;
-            for (gauge, half_range, noise) in &record.gauges {
-                writeln!(
-                    to,
-                    "  gauge {gauge}: half-range {half_range:.2} MPa, noise of the mean {noise:.3} MPa"
-                )?;
-            }
-        }
-        let gauges: Vec<String> = self
-            .objective
-            .1
-            .iter()
-            .map(|(gauge, weight)| format!("{gauge} (weight {weight})"))
-            .collect();
-        write!(
+        Ok(())
+    }
+}
+
+impl fmt::Display for ConditionSummary {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [least, greatest] = self.load_n.map(|load| load / 1000.0);
+        writeln!(
             to,
-            "objective   {}: gauges {}",
-            self.objective.0,
-            gauges.join(", ")
+            "condition   {}: {} /min, load {least:.1} to {greatest:.1} kN",
+            self.name, self.speed_rpm
         )?;
-        for note in &self.notes {
-            write!(to, "\nnote: {note}")?;
+        let Some(record) = &self.record else {
+            return writeln!(to, "  no record: simulated only");
+        };
+        writeln!(
+            to,
+            "  record {} cycles, {} samples at {:.0} Hz, {} lost, measured speed {:.3} /min",
+            record.cycles,
+            record.facts.samples,
+            record.facts.rate_hz,
+            record.facts.lost,
+            record.facts.speed_rpm
+        )?;
+        for (gauge, half_range, noise) in &record.gauges {
+            writeln!(
+                to,
+                "  gauge {gauge}: half-range {half_range:.2} MPa, noise of the mean {noise:.3} MPa"
+            )?;
         }
         Ok(())
     }

@@ -16,137 +16,8 @@ pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, Ca
 
 /// Each number in the range of a machine that can be built.
 fn check_ranges(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
-    let length = 1.0e-3..=100.0;
-    let place = -100.0..=100.0;
-    let mass = 1.0e-3..=1.0e6;
-    let inertia = 1.0e-6..=1.0e8;
-    let checks = [
-        ("gravity_m_s2", case.gravity_m_s2, 0.0..=100.0, "m/s2"),
-        (
-            "beam.inertia_kg_m2",
-            case.beam.inertia_kg_m2,
-            inertia.clone(),
-            "kg m2",
-        ),
-        (
-            "beam.gravity_moment_n_m",
-            case.beam.gravity_moment_n_m,
-            -1.0e6..=1.0e6,
-            "N m",
-        ),
-        (
-            "crank.center_x_m",
-            case.crank.center_x_m,
-            place.clone(),
-            "m",
-        ),
-        (
-            "crank.center_y_m",
-            case.crank.center_y_m,
-            place.clone(),
-            "m",
-        ),
-        ("crank.radius_m", case.crank.radius_m, length.clone(), "m"),
-        (
-            "crank.counterweight_phase_deg",
-            case.crank.counterweight_phase_deg,
-            -360.0..=360.0,
-            "deg",
-        ),
-        ("rod.length_m", case.rod.length_m, length.clone(), "m"),
-        ("rod.mass_kg", case.rod.mass_kg, mass.clone(), "kg"),
-        (
-            "rod.center_of_mass_m",
-            case.rod.center_of_mass_m,
-            place.clone(),
-            "m",
-        ),
-        (
-            "rod.inertia_kg_m2",
-            case.rod.inertia_kg_m2,
-            inertia,
-            "kg m2",
-        ),
-        ("suspension.mass_kg", case.suspension.mass_kg, mass, "kg"),
-        ("ropes.diameter_m", case.ropes.diameter_m, 1.0e-3..=0.2, "m"),
-        (
-            "ropes.cylinder_length_m",
-            case.ropes.cylinder_length_m,
-            1.0e-3..=1.0,
-            "m",
-        ),
-        (
-            "ropes.density_kg_m3",
-            case.ropes.density_kg_m3,
-            100.0..=3.0e4,
-            "kg/m3",
-        ),
-        (
-            "ropes.reference_length_m",
-            case.ropes.reference_length_m,
-            1.0e-3..=1.0,
-            "m",
-        ),
-        (
-            "ropes.back_cylinders",
-            case.ropes.back_cylinders as f64,
-            2.0..=5000.0,
-            "cylinders",
-        ),
-        (
-            "ropes.front_cylinders",
-            case.ropes.front_cylinders as f64,
-            2.0..=5000.0,
-            "cylinders",
-        ),
-        ("contact.exponent", case.contact.exponent, 1.0..=3.0, ""),
-        (
-            "contact.full_damping_penetration_m",
-            case.contact.full_damping_penetration_m,
-            1.0e-7..=0.01,
-            "m",
-        ),
-        (
-            "front_head.radius_m",
-            case.front_head.radius_m,
-            length.clone(),
-            "m",
-        ),
-        (
-            "front_head.rope_anchor_deg",
-            case.front_head.rope_anchor_deg,
-            0.0..=180.0,
-            "deg",
-        ),
-        ("back_head.radius_m", case.back_head.radius_m, length, "m"),
-        (
-            "back_head.center_x_m",
-            case.back_head.center_x_m,
-            place.clone(),
-            "m",
-        ),
-        (
-            "back_head.center_y_m",
-            case.back_head.center_y_m,
-            place,
-            "m",
-        ),
-        (
-            "back_head.rope_anchor_deg",
-            case.back_head.rope_anchor_deg,
-            0.0..=360.0,
-            "deg",
-        ),
-        (
-            "flexible_head.density_kg_m3",
-            case.flexible_head.density_kg_m3,
-            100.0..=3.0e4,
-            "kg/m3",
-        ),
-    ];
-    for (field, value, range, unit) in checks {
-        document.within(field, value, range, unit)?;
-    }
+    check_bodies(document, case)?;
+    check_rope_numbers(document, case)?;
     if case.name.trim().is_empty() {
         return Err(document.field(
             &[Step::Key("name")],
@@ -156,6 +27,81 @@ fn check_ranges(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
         ));
     }
     Ok(())
+}
+
+/// Lengths, places, masses and inertias of the bodies.
+fn check_bodies(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
+    let (beam, crank, rod) = (&case.beam, &case.crank, &case.rod);
+    let (front, back) = (&case.front_head, &case.back_head);
+    let lengths = [
+        ("crank.radius_m", crank.radius_m),
+        ("rod.length_m", rod.length_m),
+        ("front_head.radius_m", front.radius_m),
+        ("back_head.radius_m", back.radius_m),
+    ];
+    let places = [
+        ("crank.center_x_m", crank.center_x_m),
+        ("crank.center_y_m", crank.center_y_m),
+        ("rod.center_of_mass_m", rod.center_of_mass_m),
+        ("back_head.center_x_m", back.center_x_m),
+        ("back_head.center_y_m", back.center_y_m),
+    ];
+    let masses = [
+        ("rod.mass_kg", rod.mass_kg),
+        ("suspension.mass_kg", case.suspension.mass_kg),
+    ];
+    let inertias = [
+        ("beam.inertia_kg_m2", beam.inertia_kg_m2),
+        ("rod.inertia_kg_m2", rod.inertia_kg_m2),
+    ];
+    let angles = [
+        (
+            "crank.counterweight_phase_deg",
+            crank.counterweight_phase_deg,
+        ),
+        ("front_head.rope_anchor_deg", front.rope_anchor_deg),
+        ("back_head.rope_anchor_deg", back.rope_anchor_deg),
+    ];
+    document.all_within(&lengths, 1.0e-3..=100.0, "m")?;
+    document.all_within(&places, -100.0..=100.0, "m")?;
+    document.all_within(&masses, 1.0e-3..=1.0e6, "kg")?;
+    document.all_within(&inertias, 1.0e-6..=1.0e8, "kg m2")?;
+    document.all_within(&angles, -360.0..=360.0, "deg")?;
+    document.within("gravity_m_s2", case.gravity_m_s2, 0.0..=100.0, "m/s2")?;
+    let moment = beam.gravity_moment_n_m;
+    document.within("beam.gravity_moment_n_m", moment, -1.0e6..=1.0e6, "N m")
+}
+
+/// Ropes, contact and the density of the mesh.
+fn check_rope_numbers(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
+    let (ropes, contact) = (&case.ropes, &case.contact);
+    let pitches = [
+        ("ropes.cylinder_length_m", ropes.cylinder_length_m),
+        ("ropes.reference_length_m", ropes.reference_length_m),
+    ];
+    let counts = [
+        ("ropes.back_cylinders", ropes.back_cylinders as f64),
+        ("ropes.front_cylinders", ropes.front_cylinders as f64),
+    ];
+    let densities = [
+        ("ropes.density_kg_m3", ropes.density_kg_m3),
+        (
+            "flexible_head.density_kg_m3",
+            case.flexible_head.density_kg_m3,
+        ),
+    ];
+    document.within("ropes.diameter_m", ropes.diameter_m, 1.0e-3..=0.2, "m")?;
+    document.all_within(&pitches, 1.0e-3..=1.0, "m")?;
+    document.all_within(&counts, 2.0..=5000.0, "cylinders")?;
+    document.all_within(&densities, 100.0..=3.0e4, "kg/m3")?;
+    document.within("contact.exponent", contact.exponent, 1.0..=3.0, "(no unit)")?;
+    let depth = contact.full_damping_penetration_m;
+    document.within(
+        "contact.full_damping_penetration_m",
+        depth,
+        1.0e-7..=0.01,
+        "m",
+    )
 }
 
 /// Settings of a run, and the smoothing of the cards.
@@ -169,7 +115,7 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     )?;
     document.within("run.lead_in_deg", run.lead_in_deg, 0.0..=3600.0, "deg")?;
     document.within("run.ramp_s", run.ramp_s, 0.0..=600.0, "s")?;
-    document.within("run.tolerance", run.tolerance, 1.0e-6..=1.0e3, "")?;
+    document.within("run.tolerance", run.tolerance, 1.0e-6..=1.0e3, "(no unit)")?;
     let count = 360.0 / run.output_step_deg;
     if (count - count.round()).abs() > 1e-9 * count {
         return Err(document.field(

@@ -117,7 +117,7 @@ pub fn read(path: &Path) -> Result<Mesh, CaseError> {
     )?;
     let mesh = sections.mesh;
     for (group, elements) in &mesh.volumes {
-        let inverted = |element: &[usize; 8]| !(mesh.element_volume_m3(element) > 0.0);
+        let inverted = |element: &[usize; 8]| mesh.element_volume_m3(element) <= 0.0;
         if let Some(at) = elements.iter().position(inverted) {
             return Err(damaged(
                 path,
@@ -219,7 +219,7 @@ fn require(path: &Path, sections: &Sections, wanted: &str, count: usize) -> Resu
 /// Lines of the file, counted.
 struct Lines<'a> {
     path: &'a Path,
-    lines: std::str::Lines<'a>,
+    rest: std::str::Lines<'a>,
     number: usize,
 }
 
@@ -227,14 +227,14 @@ impl<'a> Lines<'a> {
     fn new(path: &'a Path, text: &'a str) -> Self {
         Self {
             path,
-            lines: text.lines(),
+            rest: text.lines(),
             number: 0,
         }
     }
 
     fn next(&mut self) -> Option<&'a str> {
         self.number += 1;
-        self.lines.next()
+        self.rest.next()
     }
 
     /// An error at the line that was read last.
@@ -364,7 +364,7 @@ fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError
             let Some(position) = position.first_chunk::<3>() else {
                 return Err(lines.wrong("a position is expected here"));
             };
-            if position.iter().any(|x| !(x.abs() < 100.0)) {
+            if position.iter().any(|x| x.is_nan() || x.abs() >= 100.0) {
                 return Err(
                     lines.wrong("a position outside -100 to 100 m: the mesh is not in metres")
                 );

@@ -18,7 +18,7 @@ pub struct ModalHead {
     pub tangential: Vec<Vec<f64>>,
     /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; n x 4.
     pub gauge_stress_mpa: Vec<[f64; 4]>,
-    /// Integrals of density times (phi_x, phi_y, x phi_y - y phi_x) per mode; n x 3.
+    /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)` per mode; n x 3.
     pub participation: Vec<[f64; 3]>,
     /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.

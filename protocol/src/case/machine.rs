@@ -100,7 +100,7 @@ pub enum RopeEnds {
 pub struct Contact {
     /// Exponent n of the penetration.
     pub exponent: f64,
-    /// Penetration at which the damping reaches its full value, d_max [m].
+    /// Penetration at which the damping reaches its full value, `d_max` [m].
     pub full_damping_penetration_m: f64,
 }
 

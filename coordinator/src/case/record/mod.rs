@@ -5,6 +5,8 @@
 mod resample;
 mod samples;
 mod sheet;
+#[cfg(test)]
+mod tests;
 
 use super::{
     error::{CaseError, contradiction, damaged},
