@@ -10,13 +10,13 @@ pub struct Summary {
     pub name: String,
     /// Where beam and ropes move, by rigid kinematics.
     pub envelope: Envelope,
-    /// Length of the back rope [m] and its number of cylinders.
+    /// Length of the back rope \[m\] and its number of cylinders.
     pub back_rope: (f64, usize),
-    /// Length of the front rope [m] and its number of cylinders.
+    /// Length of the front rope \[m\] and its number of cylinders.
     pub front_rope: (f64, usize),
-    /// Frequencies of the head modes that are simulated [Hz].
+    /// Frequencies of the head modes that are simulated \[Hz\].
     pub modes_hz: Vec<f64>,
-    /// Mass of the meshed head [kg].
+    /// Mass of the meshed head \[kg\].
     pub head_mass_kg: f64,
     /// The unknown numbers.
     pub genes: Vec<Gene>,
@@ -35,7 +35,7 @@ pub struct ConditionSummary {
     pub name: String,
     /// Crank speed [1/min].
     pub speed_rpm: f64,
-    /// Smallest and largest load of the card [N].
+    /// Smallest and largest load of the card \[N\].
     pub load_n: [f64; 2],
     /// The record, where there is one.
     pub record: Option<RecordSummary>,
@@ -48,7 +48,7 @@ pub struct RecordSummary {
     pub facts: RecordFacts,
     /// Whole cycles that were averaged.
     pub cycles: usize,
-    /// Per gauge: number, half of the measured range [MPa], noise of the mean curve [MPa] (root
+    /// Per gauge: number, half of the measured range \[MPa\], noise of the mean curve \[MPa\] (root
     /// mean square of spread / sqrt(cycles)).
     pub gauges: Vec<(u8, f64, f64)>,
 }

@@ -13,7 +13,7 @@ use std::{collections::BTreeMap, path::Path};
 /// A mesh of hexahedra with named groups.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
-    /// Node positions in the beam frame [m].
+    /// Node positions in the beam frame \[m\].
     pub nodes_m: Vec<[f64; 3]>,
     /// Hexahedra per volume group: indices of nodes, in Gmsh's order.
     pub volumes: BTreeMap<String, Vec<[usize; 8]>>,
@@ -27,7 +27,7 @@ pub const VOLUME: &str = "steel";
 pub const SURFACES: [&str; 3] = ["pin_a", "pin_b", "rope_surface"];
 
 impl Mesh {
-    /// Volume of all hexahedra [m3].
+    /// Volume of all hexahedra \[m3\].
     pub fn volume_m3(&self) -> f64 {
         let elements = self.volumes.values().flatten();
         elements
@@ -35,7 +35,7 @@ impl Mesh {
             .sum()
     }
 
-    /// Volume of one hexahedron [m3], exact by 2 x 2 x 2 Gauss points; negative if inside out.
+    /// Volume of one hexahedron \[m3\], exact by 2 x 2 x 2 Gauss points; negative if inside out.
     fn element_volume_m3(&self, element: &[usize; 8]) -> f64 {
         let corner = |&node: &usize| self.nodes_m.get(node).copied().unwrap_or_default();
         let corners: Vec<[f64; 3]> = element.iter().map(corner).collect();
