@@ -3,7 +3,7 @@
 use protocol::{
     case::{
         BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
-        Suspension,
+        Suspension, WeightAxes,
     },
     unit::Unit,
 };
@@ -43,6 +43,9 @@ pub(super) struct FlexibleHead {
     pub(super) mesh_file: Option<PathBuf>,
     /// Density of the mesh [kg/m3].
     pub(super) density_kg_m3: f64,
+    /// How the gauge records hold the head's own weight.
+    #[serde(default)]
+    pub(super) weight_axes: WeightAxes,
 }
 
 /// One entry per gene; all are required.

@@ -1,0 +1,178 @@
+//! Scores an individual: simulates a condition and compares the gauges with the record.
+//!
+//! A run that fails is graded: every complete run beats a failure in motion (the later the
+//! better), which beats a failure under static load (the more load carried the better).
+use crate::convert;
+use crate::handler::Prepared;
+use protocol::case::{GaugeTrace, Objective, Offset};
+use protocol::job::{ChannelScore, Evaluation, Failure, Reached, ScoreSpec, Verdict};
+use simulation::observe::Recorder;
+use simulation::run::simulate;
+
+/// Fitness of a failure in motion just before the end, and under load just before full load
+/// \[MPa^2\]; far above the error of any run that completes.
+const FAILED_IN_MOTION: f64 = 1e6;
+const FAILED_UNDER_LOAD: f64 = 1e7;
+
+/// Runs a score job.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] when genes, condition or record do not fit the case.
+pub(super) fn run(prepared: &Prepared, spec: &ScoreSpec) -> Result<Evaluation, Failure> {
+    let law = convert::rope_law(&prepared.case, &spec.genes)?;
+    let settings = convert::run_settings(&prepared.case);
+    let machine = prepared.machine(spec.condition)?;
+    let mut recorder = Recorder::gauges_only();
+    let result = simulate(machine, &law, &settings, &mut recorder);
+    let verdict = convert::verdict(&result.verdict);
+    let counters = convert::counters(&result.statistics);
+    if let Verdict::Failed { reached, .. } = verdict {
+        return Ok(Evaluation {
+            verdict,
+            fitness: graded(reached),
+            channels: Vec::new(),
+            residual_mpa: Vec::new(),
+            counters,
+        });
+    }
+    let case = &prepared.case;
+    let record = case
+        .conditions
+        .get(spec.condition)
+        .and_then(|condition| condition.record.as_ref())
+        .ok_or_else(|| Failure::Misconfigured {
+            field: "conditions.record".to_owned(),
+            problem: "there is no gauge record to score against".to_owned(),
+        })?;
+    let compared: Vec<Compared> = record
+        .gauges
+        .iter()
+        .map(|trace| Compared::new(trace, &recorder.curves.gauge[usize::from(trace.gauge) - 1], case.objective.offset))
+        .collect();
+    Ok(Evaluation {
+        verdict,
+        fitness: weighted(&case.objective, &compared)?,
+        residual_mpa: if spec.with_residual {
+            residual(&case.objective, &compared)
+        } else {
+            Vec::new()
+        },
+        channels: compared.into_iter().map(|c| c.score).collect(),
+        counters,
+    })
+}
+
+fn graded(reached: Reached) -> f64 {
+    match reached {
+        Reached::TimeFraction(share) => FAILED_IN_MOTION * (2.0 - share),
+        Reached::LoadFraction(share) => FAILED_UNDER_LOAD * (2.0 - share),
+    }
+}
+
+/// One gauge compared with its record.
+struct Compared {
+    score: ChannelScore,
+    /// Measured minus simulated after offset removal [MPa].
+    residual: Vec<f64>,
+}
+
+impl Compared {
+    fn new(trace: &GaugeTrace, simulated_pa: &[f64], treatment: Offset) -> Self {
+        let measured = &trace.mean_mpa;
+        let n = measured.len() as f64;
+        let difference: Vec<f64> = measured
+            .iter()
+            .zip(simulated_pa)
+            .map(|(measured, simulated)| measured - simulated * 1e-6)
+            .collect();
+        let offset = difference.iter().sum::<f64>() / n;
+        let removed = match treatment {
+            Offset::Free => offset,
+            Offset::Fixed => 0.0,
+        };
+        let residual: Vec<f64> = difference.iter().map(|d| d - removed).collect();
+        let mean_square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>() / n;
+        let mse = mean_square(&residual);
+        let measured_mean = measured.iter().sum::<f64>() / n;
+        let deviation = measured.iter().map(|x| (x - measured_mean).abs()).sum::<f64>() / n;
+        let range = peak_to_peak(measured);
+        let simulated_range = peak_to_peak(simulated_pa) * 1e-6;
+        Self {
+            score: ChannelScore {
+                gauge: trace.gauge,
+                mse_mpa2: mse,
+                mse_fixed_offset_mpa2: mean_square(&difference),
+                offset_mpa: offset,
+                rmse_over_half_range: mse.sqrt() / (0.5 * range),
+                relative_error: residual.iter().map(|x| x.abs()).sum::<f64>() / n / deviation,
+                peak_to_peak_error: (simulated_range - range) / range,
+            },
+            residual,
+        }
+    }
+}
+
+fn peak_to_peak(values: &[f64]) -> f64 {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    highest - lowest
+}
+
+fn weighted(objective: &Objective, compared: &[Compared]) -> Result<f64, Failure> {
+    let mut sum = 0.0;
+    for &(gauge, weight) in &objective.gauges {
+        let found = compared.iter().find(|c| c.score.gauge == gauge);
+        let found = found.ok_or_else(|| Failure::Misconfigured {
+            field: "objective.gauges".to_owned(),
+            problem: format!("the record has no gauge {gauge}"),
+        })?;
+        sum += weight * found.score.mse_mpa2;
+    }
+    Ok(sum)
+}
+
+/// Residuals of the objective's gauges, one after the other.
+fn residual(objective: &Objective, compared: &[Compared]) -> Vec<f64> {
+    objective
+        .gauges
+        .iter()
+        .filter_map(|(gauge, _)| compared.iter().find(|c| c.score.gauge == *gauge))
+        .flat_map(|c| c.residual.iter().copied())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scores_follow_their_definitions() {
+        let trace = GaugeTrace {
+            gauge: 3,
+            mean_mpa: vec![1.0, 3.0, 5.0, 3.0],
+            spread_mpa: vec![0.0; 4],
+        };
+        let simulated = [0.0, 1e6, 6e6, 1e6];
+        let free = Compared::new(&trace, &simulated, Offset::Free).score;
+        // differences 1, 2, -1, 2: mean 1
+        assert!((free.offset_mpa - 1.0).abs() < 1e-15);
+        assert!((free.mse_mpa2 - 1.5).abs() < 1e-15);
+        assert!((free.mse_fixed_offset_mpa2 - 2.5).abs() < 1e-15);
+        assert!((free.rmse_over_half_range - 1.5_f64.sqrt() / 2.0).abs() < 1e-15);
+        assert!((free.relative_error - 1.0).abs() < 1e-15);
+        assert!((free.peak_to_peak_error - 0.5).abs() < 1e-15);
+        let fixed = Compared::new(&trace, &simulated, Offset::Fixed).score;
+        assert!((fixed.mse_mpa2 - 2.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn failures_are_graded_by_how_far_they_got() {
+        let grades = [
+            graded(Reached::TimeFraction(0.9)),
+            graded(Reached::TimeFraction(0.1)),
+            graded(Reached::LoadFraction(0.9)),
+            graded(Reached::LoadFraction(0.0)),
+        ];
+        assert!(grades.is_sorted() && grades[0] > 1e5, "{grades:?}");
+    }
+}
