@@ -35,7 +35,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "upper = 3.14e12, unit = \"N/m\"",
                 "upper = 3.14e12, unit = \"N/mm\"",
-            )
+            );
         },
         &["case.toml", "unknown variant `N/mm`", "did you mean `N/m`?"],
     ),
@@ -46,7 +46,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "upper = 1.10e6,  unit = \"N.m/deg\"",
                 "upper = 1.10e6, unit = \"N/m\"",
-            )
+            );
         },
         &[
             "case.toml",
@@ -120,7 +120,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "lower = 3.14e4, upper = 3.14e12",
                 "lower = 3.14e12, upper = 3.14e4",
-            )
+            );
         },
         &["case.toml", "`genes.kb1.lower`", "below upper"],
     ),
