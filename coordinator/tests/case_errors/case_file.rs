@@ -190,6 +190,52 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "`run.output_step_deg` = 0.7", "divides 360"],
     ),
     (
+        "smoothing of nothing",
+        |c| {
+            c.replace(
+                TOML,
+                "smoothing = \"none\"",
+                "smoothing = { harmonics = 0 }",
+            )
+        },
+        &[
+            "case.toml",
+            "`conditions[0].smoothing`",
+            "at least 1 harmonic",
+            "moving_average_deg",
+        ],
+    ),
+    (
+        "smoothing unknown",
+        |c| {
+            c.replace(
+                TOML,
+                "smoothing = \"none\"",
+                "smoothing = { harmonic = 14 }",
+            )
+        },
+        &[
+            "case.toml",
+            "unknown variant `harmonic`",
+            "did you mean `harmonics`?",
+        ],
+    ),
+    (
+        "speed of the motor",
+        |c| c.replace(TOML, "speed_rpm = 5.0", "speed_rpm = 730.0"),
+        &[
+            "case.toml",
+            "`conditions[0].speed_rpm` = 730",
+            "0.1 to 60",
+            "not the motor's",
+        ],
+    ),
+    (
+        "negative weight",
+        |c| c.replace(TOML, "gauge = 3, weight = 1.0", "gauge = 3, weight = -1.0"),
+        &["case.toml", "`objective.gauges[1].weight` = -1", "above 0"],
+    ),
+    (
         "more modes than there are",
         |c| c.replace(TOML, "modes = 6", "modes = 13"),
         &["case.toml", "`run.modes` = 13", "0 to 12"],
