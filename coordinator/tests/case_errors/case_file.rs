@@ -196,7 +196,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "smoothing = \"none\"",
                 "smoothing = { harmonics = 0 }",
-            )
+            );
         },
         &[
             "case.toml",
@@ -212,7 +212,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "smoothing = \"none\"",
                 "smoothing = { harmonic = 14 }",
-            )
+            );
         },
         &[
             "case.toml",
