@@ -7,7 +7,7 @@ use super::{
     file,
     table::Table,
 };
-use protocol::case::{Influence, ModalHead};
+use protocol::case::{Influence, ModalHead, WeightAxes};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -47,6 +47,7 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<ModalHead, CaseErro
         gauge_stress_mpa: read.gauge_stress_mpa,
         participation: read.participation,
         inertia_stress_mpa: read.inertia_stress_mpa,
+        weight_axes: WeightAxes::default(),
         mass_kg: read.mass_kg,
         influence,
     })

@@ -105,7 +105,8 @@ fn flexible_head(
 ) -> Result<ModalHead, CaseError> {
     let flexible = &file.flexible_head;
     let modes_file = folder.join(&flexible.modes_file);
-    let head = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
+    let mut head = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
+    head.weight_axes = flexible.weight_axes;
     if let Some(name) = &flexible.mesh_file {
         let path = folder.join(name);
         let mesh = mesh::read(&path)?;

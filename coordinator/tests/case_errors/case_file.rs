@@ -236,6 +236,15 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "`objective.gauges[1].weight` = -1", "above 0"],
     ),
     (
+        "weight axes unknown",
+        |c| c.replace(TOML, "modes_file", "weight_axes = \"swapped\"\nmodes_file"),
+        &[
+            "case.toml",
+            "unknown variant `swapped`",
+            "physical, exchanged",
+        ],
+    ),
+    (
         "more modes than there are",
         |c| c.replace(TOML, "modes = 6", "modes = 13"),
         &["case.toml", "`run.modes` = 13", "0 to 12"],

@@ -10,7 +10,8 @@ mod record;
 mod spoilt;
 
 use coordinator::case::{self, Overrides};
-use spoilt::{Copy, RECORD, SHEET, assert_each_is_named, scaled};
+use protocol::case::WeightAxes;
+use spoilt::{Copy, RECORD, SHEET, TOML, assert_each_is_named, scaled};
 use std::fs;
 
 #[test]
@@ -130,4 +131,20 @@ fn one_cycle_has_no_spread() {
     );
     let text = format!("{:?}", loaded.notes);
     assert!(text.contains("one whole cycle only"), "{text}");
+}
+
+#[test]
+fn the_weight_is_physical_unless_stated() {
+    let copy = Copy::new();
+    let axes = || {
+        let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
+        case.modal_head.weight_axes
+    };
+    assert_eq!(axes(), WeightAxes::Physical);
+    copy.replace(
+        TOML,
+        "modes_file",
+        "weight_axes = \"exchanged\"\nmodes_file",
+    );
+    assert_eq!(axes(), WeightAxes::Exchanged);
 }

@@ -1,2 +1,26 @@
-//! Rigid-flexible multibody dynamics.
+//! Rigid-flexible multibody dynamics of a double-horse-head pumping unit.
+//!
+//! Pure `f64`, SI units, radians; no clock, no files, no threads. The crank's motion is prescribed
+//! and every rope joint is a force, so there are no constraints left and the equations of motion
+//! are a stiff ordinary differential equation
+//!
+//! `M(q) a = Q(q, v, t)`
+//!
+//! in the rod angle, the suspension height, the beam angle, the modal coordinates of the back head
+//! and six coordinates per rope cylinder.
+#![expect(
+    non_snake_case,
+    reason = "notation of mechanics: R_WB is a rotation, r_wb would be another thing"
+)]
+pub mod drive;
+pub mod element;
+pub mod linear;
 pub mod math;
+pub mod integrator;
+pub mod model;
+pub mod observe;
+pub mod run;
+pub mod settle;
+pub mod statistics;
+pub mod system;
+pub mod verdict;

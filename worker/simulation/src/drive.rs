@@ -1,0 +1,105 @@
+//! Prescribed motion of the crank and load at the suspension point.
+use crate::math::elementary::sin_cos;
+use crate::model::Machine;
+use nalgebra::Vector2;
+
+type V2 = Vector2<f64>;
+
+/// How the crank is brought from rest to full speed and from where.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Turn angle at rest [rad]; bottom dead centre is 0.
+    pub start: f64,
+    /// Time to full speed [s].
+    pub ramp: f64,
+    /// Full speed [rad/s].
+    pub speed: f64,
+}
+
+/// Crank and load at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DriveState {
+    /// Turn angle from bottom dead centre [rad].
+    pub turn: f64,
+    /// Crank pin in W [m], its velocity and acceleration.
+    pub pin: [V2; 3],
+    /// Angle of the pin [rad].
+    pub pin_angle: f64,
+    /// Rate of the pin angle, signed [rad/s].
+    pub pin_rate: f64,
+    /// Load at the suspension point, positive downwards [N].
+    pub load: f64,
+}
+
+impl Drive {
+    /// Turn angle, rate and acceleration at time `t`; the ramp has no jump in acceleration.
+    pub fn turn(&self, t: f64) -> [f64; 3] {
+        if t >= self.ramp {
+            return [
+                self.start + self.speed * (t - 0.5 * self.ramp),
+                self.speed,
+                0.0,
+            ];
+        }
+        let u = (t / self.ramp).max(0.0);
+        let travelled = u * u * u * u * (2.5 + u * (u - 3.0));
+        let rate = u * u * u * (10.0 + u * (6.0 * u - 15.0));
+        let slope = 30.0 * u * u * (1.0 - u) * (1.0 - u);
+        [
+            self.start + self.speed * self.ramp * travelled,
+            self.speed * rate,
+            self.speed * slope / self.ramp,
+        ]
+    }
+
+    /// Time at which a turn angle beyond the ramp is reached [s].
+    pub fn time_at(&self, turn: f64) -> f64 {
+        (turn - self.start) / self.speed + 0.5 * self.ramp
+    }
+
+    /// Crank and load at time `t`.
+    pub fn state(&self, machine: &Machine, t: f64) -> DriveState {
+        let [turn, rate, acceleration] = self.turn(t);
+        let crank = &machine.description.crank;
+        let angle = machine.bottom.pin + crank.sense * turn;
+        let (w, dw) = (crank.sense * rate, crank.sense * acceleration);
+        let (s, c) = sin_cos(angle);
+        let arm = V2::new(c, s) * crank.radius;
+        let across = V2::new(-arm.y, arm.x);
+        DriveState {
+            turn,
+            pin: [
+                V2::new(crank.center[0], crank.center[1]) + arm,
+                across * w,
+                across * dw - arm * (w * w),
+            ],
+            pin_angle: angle,
+            pin_rate: w,
+            load: machine.card.value(turn, 0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ramp_is_smooth_and_meets_full_speed() {
+        let drive = Drive {
+            start: -1.0,
+            ramp: 1.5,
+            speed: 0.5,
+        };
+        let h = 1e-5;
+        for t in [0.2, 0.9, 1.4999, 1.5, 1.6, 4.0] {
+            let [_, rate, acceleration] = drive.turn(t);
+            let by_turn = (drive.turn(t + h)[0] - drive.turn(t - h)[0]) / (2.0 * h);
+            let by_rate = (drive.turn(t + h)[1] - drive.turn(t - h)[1]) / (2.0 * h);
+            assert!((by_turn - rate).abs() < 1e-8 && (by_rate - acceleration).abs() < 1e-6, "{t}");
+        }
+        let [turn, rate, _] = drive.turn(0.0);
+        assert!(turn == -1.0 && rate == 0.0);
+        assert!((drive.turn(drive.time_at(3.0))[0] - 3.0).abs() < 1e-14);
+    }
+}

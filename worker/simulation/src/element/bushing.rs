@@ -1,0 +1,339 @@
+//! Six-component bushing between marker I and marker J (paper, Eqs. 1-3).
+//!
+//! In the frame of J with x along its axis `e`, the force and torque on I are
+//! `F = -K R - C V`, `T = -K Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. That isotropy
+//! across the axis means that only `e` is needed of J's frame, and the law can be written in
+//! world axes:
+//!
+//! `F_I = -[k2 d + c2 V + e ((k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`,
+//! `V = v_I - v_J - w_J x d`, and the same for the torque with the rotation vector `Theta` and
+//! `w = w_I - w_J`. On J acts `F_J = -F_I`, `T_J = -T_I - d x F_I` (Eq. 2).
+use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
+use nalgebra::{Matrix3, Vector3};
+
+type V3 = Vector3<f64>;
+type M3 = Matrix3<f64>;
+
+/// Coefficients of a transversely isotropic bushing, SI, angles in radians.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bushing {
+    /// Axial and shear stiffness K_11, K_22 = K_33 [N/m].
+    pub stiffness: [f64; 2],
+    /// Axial and shear damping C_11, C_22 = C_33 [N s/m].
+    pub damping: [f64; 2],
+    /// Torsional and bending stiffness K_44, K_55 = K_66 [N m/rad].
+    pub rotational_stiffness: [f64; 2],
+    /// Torsional and bending damping C_44, C_55 = C_66 [N m s/rad].
+    pub rotational_damping: [f64; 2],
+}
+
+/// A marker: a frame fixed on a body, and the motion of that body.
+#[derive(Clone, Copy, Debug)]
+pub struct Marker {
+    /// Reference point of the body in W [m].
+    pub p: V3,
+    /// From there to the marker, in W [m].
+    pub rho: V3,
+    /// Velocity of the reference point [m/s].
+    pub v: V3,
+    /// Angular velocity of the body, in W [rad/s].
+    pub w: V3,
+    /// Orientation of the marker.
+    pub R: M3,
+}
+
+impl Marker {
+    fn position(&self) -> V3 {
+        self.p + self.rho
+    }
+
+    fn velocity(&self) -> V3 {
+        self.v + self.w.cross(&self.rho)
+    }
+}
+
+/// Force and torque of a link on both bodies, torques about the bodies' reference points, in W.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkLoad {
+    /// Force on body I [N]; body J feels the opposite.
+    pub force: V3,
+    /// Torque on body I [N m].
+    pub torque_i: V3,
+    /// Torque on body J [N m].
+    pub torque_j: V3,
+    /// Component of the force along J's axis; negative where the link pulls [N].
+    pub axial: f64,
+    /// Power that the damping takes [W].
+    pub dissipated: f64,
+}
+
+/// Derivatives of a [`LinkLoad`] by the motion of one body.
+///
+/// Rows: force, torque on I, torque on J. Columns: displacement `p`, velocity `v`, rotation `a`,
+/// angular velocity `w` of the body, all in W.
+#[derive(Clone, Copy, Debug)]
+pub struct LinkTangent {
+    /// By displacement of the reference point.
+    pub p: [M3; 3],
+    /// By its velocity.
+    pub v: [M3; 3],
+    /// By a further rotation of the body.
+    pub a: [M3; 3],
+    /// By its angular velocity.
+    pub w: [M3; 3],
+}
+
+/// What load and tangent share.
+struct Deformation {
+    e: V3,
+    d: V3,
+    V: V3,
+    theta: V3,
+    w: V3,
+}
+
+impl Bushing {
+    /// The same bushing with every coefficient multiplied.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            stiffness: self.stiffness.map(|x| x * factor),
+            damping: self.damping.map(|x| x * factor),
+            rotational_stiffness: self.rotational_stiffness.map(|x| x * factor),
+            rotational_damping: self.rotational_damping.map(|x| x * factor),
+        }
+    }
+
+    /// A revolute joint of the same axial coefficients: equally stiff in every direction, free to
+    /// turn.
+    #[must_use]
+    pub fn revolute(&self) -> Self {
+        Self {
+            stiffness: [self.stiffness[0]; 2],
+            damping: [self.damping[0]; 2],
+            rotational_stiffness: [0.0; 2],
+            rotational_damping: [0.0; 2],
+        }
+    }
+
+    fn turns(&self) -> bool {
+        self.rotational_stiffness != [0.0; 2] || self.rotational_damping != [0.0; 2]
+    }
+
+    fn deformation(&self, i: &Marker, j: &Marker) -> Deformation {
+        let d = i.position() - j.position();
+        Deformation {
+            e: j.R.column(0).into_owned(),
+            d,
+            V: i.velocity() - j.velocity() - j.w.cross(&d),
+            theta: if self.turns() {
+                rotation_vector(&i.R, &j.R)
+            } else {
+                V3::zeros()
+            },
+            w: i.w - j.w,
+        }
+    }
+
+    /// Force and torques at a motion.
+    pub fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
+        let [k1, k2] = self.stiffness;
+        let [c1, c2] = self.damping;
+        let [k4, k5] = self.rotational_stiffness;
+        let [c4, c5] = self.rotational_damping;
+        let Deformation { e, d, V, theta, w } = self.deformation(i, j);
+        let damping = V * c2 + e * ((c1 - c2) * e.dot(&V));
+        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d)) + damping);
+        let bending_damping = w * c5 + e * ((c4 - c5) * e.dot(&w));
+        let torque = -(theta * k5 + e * ((k4 - k5) * e.dot(&theta)) + bending_damping);
+        LinkLoad {
+            force,
+            torque_i: torque + i.rho.cross(&force),
+            torque_j: -torque - (d + j.rho).cross(&force),
+            axial: e.dot(&force),
+            dissipated: damping.dot(&V) + bending_damping.dot(&w),
+        }
+    }
+
+    /// Stored energy [J]. Exact while torsion and bending do not mix (planar motion).
+    pub fn energy(&self, i: &Marker, j: &Marker) -> f64 {
+        let [k1, k2] = self.stiffness;
+        let [k4, k5] = self.rotational_stiffness;
+        let Deformation { e, d, theta, .. } = self.deformation(i, j);
+        let (axial, twist) = (e.dot(&d), e.dot(&theta));
+        0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
+            + 0.5 * (k5 * theta.norm_squared() + (k4 - k5) * twist * twist)
+    }
+
+    /// Derivatives of [`Self::load`] by the motion of I and of J.
+    pub fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
+        let [k1, k2] = self.stiffness;
+        let [c1, c2] = self.damping;
+        let [k4, k5] = self.rotational_stiffness;
+        let [c4, c5] = self.rotational_damping;
+        let Deformation { e, d, V, theta, w } = self.deformation(i, j);
+        let ee = e * e.transpose();
+        let K = M3::from_diagonal_element(k2) + ee * (k1 - k2);
+        let C = M3::from_diagonal_element(c2) + ee * (c1 - c2);
+        let pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
+        let G = M3::from_diagonal_element(pull) + e * (d * (k1 - k2) + V * (c1 - c2)).transpose();
+        let (skew_e, rho_i, rho_j) = (skew(&e), skew(&i.rho), skew(&j.rho));
+        let relative = skew(&i.w) - skew(&j.w);
+        let by_position = C * skew(&j.w) - K;
+        let force_i = [by_position, -C, K * rho_i + C * relative * rho_i, C * rho_i];
+        let arm = skew(&(d + j.rho));
+        let force_j = [
+            -by_position,
+            C,
+            G * skew_e - K * rho_j,
+            -(C * arm),
+        ];
+
+        let (torque_a_i, torque_w, torque_a_j) = if self.turns() {
+            let Kr = M3::from_diagonal_element(k5) + ee * (k4 - k5);
+            let Cr = M3::from_diagonal_element(c5) + ee * (c4 - c5);
+            let twist = (k4 - k5) * e.dot(&theta) + (c4 - c5) * e.dot(&w);
+            let Gr = M3::from_diagonal_element(twist)
+                + e * (theta * (k4 - k5) + w * (c4 - c5)).transpose();
+            let J = inverse_left_jacobian(&theta);
+            (-(Kr * J), Cr, Kr * J.transpose() + Gr * skew_e)
+        } else {
+            (M3::zeros(), M3::zeros(), M3::zeros())
+        };
+
+        let F = skew(&load.force);
+        let F_rho = F * rho_i;
+        // torque on I = T + rho_I x F; torque on J = -T - (r_I - p_J) x F
+        let tangent_i = LinkTangent {
+            p: [force_i[0], rho_i * force_i[0], F - arm * force_i[0]],
+            v: [force_i[1], rho_i * force_i[1], -(arm * force_i[1])],
+            a: [
+                force_i[2],
+                torque_a_i + F_rho + rho_i * force_i[2],
+                -torque_a_i - F_rho - arm * force_i[2],
+            ],
+            w: [
+                force_i[3],
+                rho_i * force_i[3] - torque_w,
+                torque_w - arm * force_i[3],
+            ],
+        };
+        let tangent_j = LinkTangent {
+            p: [force_j[0], rho_i * force_j[0], -F - arm * force_j[0]],
+            v: [force_j[1], rho_i * force_j[1], -(arm * force_j[1])],
+            a: [
+                force_j[2],
+                torque_a_j + rho_i * force_j[2],
+                -torque_a_j - arm * force_j[2],
+            ],
+            w: [
+                force_j[3],
+                rho_i * force_j[3] + torque_w,
+                -torque_w - arm * force_j[3],
+            ],
+        };
+        [tangent_i, tangent_j]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn example() -> Bushing {
+        Bushing {
+            stiffness: [7.0, 3.0],
+            damping: [0.9, 0.4],
+            rotational_stiffness: [1.7, 2.3],
+            rotational_damping: [0.6, 0.8],
+        }
+    }
+
+    fn rotation(theta: &V3) -> M3 {
+        nalgebra::Rotation3::new(*theta).into_inner()
+    }
+
+    fn markers() -> [Marker; 2] {
+        let marker = |s: f64| Marker {
+            p: V3::new(0.3 + s, -0.2 * s, 0.5),
+            rho: V3::new(0.21, 0.1 * s, -0.15 * s),
+            v: V3::new(0.3, 0.5 * s, -0.2),
+            w: V3::new(-0.7 * s, 0.4, 0.9),
+            R: rotation(&V3::new(0.4 * s, -0.3, 0.6 + 0.2 * s)),
+        };
+        [marker(1.0), marker(1.4)]
+    }
+
+    /// Moves a marker's body: the marker is fixed on it, so arm and frame turn along.
+    fn moved(m: &Marker, kind: usize, k: usize, h: f64) -> Marker {
+        let mut d = V3::zeros();
+        d[k] = h;
+        let mut m = *m;
+        match kind {
+            0 => m.p += d,
+            1 => m.v += d,
+            2 => {
+                let R = rotation(&d);
+                m.rho = R * m.rho;
+                m.R = R * m.R;
+            }
+            _ => m.w += d,
+        }
+        m
+    }
+
+    #[test]
+    fn tangent_is_the_derivative_of_the_load() {
+        let element = example();
+        let at = markers();
+        let load = element.load(&at[0], &at[1]);
+        let tangents = element.tangent(&at[0], &at[1], &load);
+        let h = 1e-6;
+        for (body, tangent) in tangents.iter().enumerate() {
+            for (kind, analytic) in [tangent.p, tangent.v, tangent.a, tangent.w].iter().enumerate() {
+                for k in 0..3 {
+                    let at_step = |h: f64| {
+                        let mut m = at;
+                        m[body] = moved(&m[body], kind, k, h);
+                        let l = element.load(&m[0], &m[1]);
+                        [l.force, l.torque_i, l.torque_j]
+                    };
+                    let (plus, minus) = (at_step(h), at_step(-h));
+                    for row in 0..3 {
+                        let difference = (plus[row] - minus[row]) / (2.0 * h);
+                        let error = (difference - analytic[row].column(k)).norm();
+                        assert!(error < 1e-7, "body {body} kind {kind} column {k} row {row}: {error}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn action_equals_reaction_and_power_balances() {
+        let element = example();
+        let [i, j] = markers();
+        let load = element.load(&i, &j);
+        // moments about the origin vanish: T_J = -T_I - d x F_I
+        let moment = load.torque_i + load.torque_j + (i.p - j.p).cross(&load.force);
+        assert!(moment.norm() < 1e-14, "{moment}");
+
+        // with k4 = k5 the law derives from its energy: dE/dt = -(power) - dissipation
+        let element = Bushing {
+            rotational_stiffness: [2.3, 2.3],
+            ..element
+        };
+        let load = element.load(&i, &j);
+        let power = load.force.dot(&(i.v - j.v)) + load.torque_i.dot(&i.w) + load.torque_j.dot(&j.w);
+        let advance = |m: &Marker, h: f64| Marker {
+            p: m.p + m.v * h,
+            rho: rotation(&(m.w * h)) * m.rho,
+            R: rotation(&(m.w * h)) * m.R,
+            ..*m
+        };
+        let energy = |h: f64| element.energy(&advance(&i, h), &advance(&j, h));
+        let rate = (energy(1e-6) - energy(-1e-6)) / 2e-6;
+        assert!((rate + power + load.dissipated).abs() < 1e-7, "{rate} {power}");
+        assert!(load.dissipated > 0.0);
+    }
+}

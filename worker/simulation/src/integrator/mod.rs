@@ -1,0 +1,42 @@
+//! Integration of `M(q) a = Q(q, v, t)` in time.
+//!
+//! A method advances a [`State`] by one step and knows nothing of what is recorded. Step size
+//! control and Newton's method with its refactorisation policy are small objects of their own.
+pub mod dense;
+pub mod newton;
+pub mod step_control;
+pub mod tr_bdf2;
+
+/// Coordinates, rates and accelerations at a time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Time [s].
+    pub t: f64,
+    /// Coordinates.
+    pub q: Vec<f64>,
+    /// Rates.
+    pub v: Vec<f64>,
+    /// Accelerations.
+    pub a: Vec<f64>,
+}
+
+impl State {
+    /// At rest.
+    pub fn at_rest(t: f64, q: Vec<f64>) -> Self {
+        let n = q.len();
+        Self {
+            t,
+            q,
+            v: vec![0.0; n],
+            a: vec![0.0; n],
+        }
+    }
+
+    /// Overwrites this state without allocating.
+    pub fn copy_from(&mut self, other: &Self) {
+        self.t = other.t;
+        self.q.copy_from_slice(&other.q);
+        self.v.copy_from_slice(&other.v);
+        self.a.copy_from_slice(&other.a);
+    }
+}

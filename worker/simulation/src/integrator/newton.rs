@@ -1,0 +1,178 @@
+//! Newton's method for one implicit stage, with a factorisation that is kept while it serves.
+use crate::system::System;
+
+/// When a factorisation is made anew: a small state machine without numerics of its own.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RefactorPolicy {
+    /// Coefficient (gamma) of the factorisation at hand.
+    made_for: Option<f64>,
+    slow: bool,
+}
+
+impl RefactorPolicy {
+    /// Convergence rate above which the next stage starts with a new factorisation.
+    pub const SLOW: f64 = 0.35;
+    /// Relative change of the coefficient that a factorisation survives.
+    pub const DRIFT: f64 = 0.25;
+
+    /// Whether a stage with coefficient `gamma` needs a new factorisation.
+    pub fn wants(&self, gamma: f64) -> bool {
+        self.slow
+            || self
+                .made_for
+                .is_none_or(|made| (gamma / made - 1.0).abs() > Self::DRIFT)
+    }
+
+    /// A factorisation was made.
+    pub const fn made(&mut self, gamma: f64) {
+        self.made_for = Some(gamma);
+        self.slow = false;
+    }
+
+    /// A stage converged at this rate.
+    pub fn observed(&mut self, rate: f64) {
+        self.slow = rate > Self::SLOW;
+    }
+
+    /// The factorisation failed or misled.
+    pub const fn spoiled(&mut self) {
+        self.made_for = None;
+    }
+
+    /// Scaling of a correction solved with a factorisation for another coefficient.
+    pub fn relaxation(&self, gamma: f64) -> f64 {
+        self.made_for.map_or(1.0, |made| 2.0 / (1.0 + (gamma / made) * (gamma / made)).max(1e-3))
+    }
+}
+
+/// One stage `q = base_q + c v`, `v = base_v + c a`, `M a = Q`, at time `t`.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// Time of the stage [s].
+    pub t: f64,
+    /// Coefficient c [s].
+    pub c: f64,
+    /// What the coordinates are without this stage's rate.
+    pub base_q: &'a [f64],
+    /// What the rates are without this stage's acceleration.
+    pub base_v: &'a [f64],
+}
+
+/// The stage equations could not be solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotConverged;
+
+/// Newton's method with its buffers and its policy.
+#[derive(Clone, Debug)]
+pub struct Newton {
+    policy: RefactorPolicy,
+    change: Vec<f64>,
+}
+
+/// Accuracy of a stage in units of the Newton norm.
+const ACCURACY: f64 = 0.3;
+const ITERATIONS: u32 = 10;
+
+impl Newton {
+    /// For `n` coordinates.
+    pub fn new(n: usize) -> Self {
+        Self {
+            policy: RefactorPolicy::default(),
+            change: vec![0.0; n],
+        }
+    }
+
+    /// Solves a stage from the rates predicted in `v`; coordinates and accelerations follow.
+    ///
+    /// # Errors
+    /// [`NotConverged`] after a fresh factorisation did not help either.
+    pub fn solve(
+        &mut self,
+        system: &mut System<'_>,
+        stage: &Stage<'_>,
+        (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
+    ) -> Result<(), NotConverged> {
+        let gamma = 1.0 / stage.c;
+        let mut fresh = false;
+        predict(stage, q, v, a);
+        system.residual(stage.t, q, v, a, &mut self.change);
+        if self.policy.wants(gamma) {
+            self.factorize(system, stage, q, v)?;
+            fresh = true;
+        }
+        let mut last: Option<f64> = None;
+        let mut rate: f64 = 0.0;
+        for iteration in 0..ITERATIONS {
+            system.statistics.newton_iterations += 1;
+            system.solve(&mut self.change);
+            let relax = self.policy.relaxation(gamma);
+            for i in 0..q.len() {
+                let change = relax * self.change[i];
+                q[i] += change;
+                v[i] += gamma * change;
+                a[i] += gamma * gamma * change;
+                self.change[i] = change;
+            }
+            let norm = system.newton_norm(&self.change);
+            if let Some(last) = last {
+                rate = (0.3 * rate).max(norm / last);
+            }
+            let converged = if iteration == 0 {
+                norm < 0.1 * ACCURACY
+            } else {
+                rate < 1.0 && norm * rate / (1.0 - rate) < ACCURACY
+            };
+            if converged {
+                self.policy.observed(rate);
+                return Ok(());
+            }
+            let hopeless = !norm.is_finite()
+                || rate > 2.0
+                || (rate > 0.9 && iteration > 2)
+                || iteration + 1 == ITERATIONS;
+            if hopeless {
+                if fresh {
+                    break;
+                }
+                fresh = true;
+                last = None;
+                rate = 0.0;
+                v.copy_from_slice(stage.base_v);
+                predict(stage, q, v, a);
+                system.residual(stage.t, q, v, a, &mut self.change);
+                self.factorize(system, stage, q, v)?;
+                continue;
+            }
+            last = Some(norm);
+            system.residual(stage.t, q, v, a, &mut self.change);
+        }
+        self.policy.spoiled();
+        Err(NotConverged)
+    }
+
+    fn factorize(
+        &mut self,
+        system: &mut System<'_>,
+        stage: &Stage<'_>,
+        q: &[f64],
+        v: &[f64],
+    ) -> Result<(), NotConverged> {
+        let gamma = 1.0 / stage.c;
+        let drive = system.drive_state(stage.t);
+        let made = system.factorize(&drive, (q, v), (gamma * gamma, gamma));
+        if made.is_err() {
+            self.policy.spoiled();
+            return Err(NotConverged);
+        }
+        self.policy.made(gamma);
+        Ok(())
+    }
+}
+
+/// Coordinates and accelerations that belong to the predicted rates.
+fn predict(stage: &Stage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
+    for i in 0..q.len() {
+        q[i] = stage.base_q[i] + stage.c * v[i];
+        a[i] = (v[i] - stage.base_v[i]) / stage.c;
+    }
+}

@@ -1,0 +1,230 @@
+//! Contact of a rope cylinder with an arc on the beam: geometry, and where the law is evaluated.
+//!
+//! Penetration of the point `g` on the cylinder's axis:
+//! `d = R + sum_k q_k phi_k(s) - |g - C(theta)|`, `s = arg(g - C) - theta`; the rope's radius is
+//! part of `R`. The generalised force is `-f grad d`. A cylinder touches along its length: the law
+//! is integrated by three Gauss points, whose weights share the cylinder's coefficients.
+use crate::math::elementary::{atan2, sin_cos};
+use crate::math::spline::Splines;
+use crate::model::description::Arc;
+use nalgebra::{Matrix2, Vector2};
+
+type V2 = Vector2<f64>;
+
+/// Places along a cylinder in half lengths, and their shares of its coefficients.
+pub const GAUSS: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 5.0 / 18.0),
+    (0.0, 8.0 / 18.0),
+    (0.774_596_669_241_483_4, 5.0 / 18.0),
+];
+
+/// An arc at an instant: rigid placement and deflection.
+#[derive(Clone, Debug)]
+pub struct Surface<'a> {
+    /// Centre [m].
+    pub center: V2,
+    /// Derivative of the centre by the beam angle [m].
+    pub center_by_beam: V2,
+    /// Radius of the rope's centre line [m].
+    pub radius: f64,
+    /// Beam angle [rad] and rate [rad/s].
+    pub beam: [f64; 2],
+    /// Modal coordinates.
+    pub modal: &'a [f64],
+    /// Their rates.
+    pub modal_rate: &'a [f64],
+    /// Radial shapes over the arc angle [rad].
+    pub shapes: Option<&'a Splines>,
+}
+
+/// Penetration of one point with its first derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Touch {
+    /// Penetration, positive inside [m].
+    pub depth: f64,
+    /// Its rate [m/s].
+    pub rate: f64,
+    /// Arc angle in the beam frame [rad].
+    pub angle: f64,
+    /// Outward normal and tangent (growing angle).
+    pub normal: V2,
+    /// Tangent.
+    pub tangent: V2,
+    /// Distance from the centre [m].
+    pub distance: f64,
+    /// Derivative by the point.
+    pub by_point: V2,
+    /// Derivative by the beam angle.
+    pub by_beam: f64,
+    /// Slope and curvature of the deflected surface over the arc angle [m/rad], [m/rad^2].
+    pub slope: [f64; 2],
+}
+
+/// Second derivatives of a penetration.
+#[derive(Clone, Copy, Debug)]
+pub struct Curvature {
+    /// By the point twice.
+    pub point: Matrix2<f64>,
+    /// By the point and the beam angle.
+    pub mixed: V2,
+    /// By the beam angle twice.
+    pub beam: f64,
+    /// Derivatives of the arc angle by the point and by the beam angle: with the slope of a mode
+    /// they give its mixed derivatives.
+    pub angle_by: (V2, f64),
+}
+
+impl<'a> Surface<'a> {
+    /// Places an arc.
+    pub fn new(
+        arc: &Arc,
+        beam: [f64; 2],
+        modal: (&'a [f64], &'a [f64]),
+        shapes: Option<&'a Splines>,
+    ) -> Self {
+        let (s, c) = sin_cos(beam[0]);
+        let [x, y] = arc.center;
+        let center = V2::new(c * x - s * y, s * x + c * y);
+        Self {
+            center,
+            center_by_beam: V2::new(-center.y, center.x),
+            radius: arc.radius,
+            beam,
+            modal: modal.0,
+            modal_rate: modal.1,
+            shapes,
+        }
+    }
+
+    /// Whether a cylinder of half length `half` centred at `g` may touch at all.
+    pub fn near(&self, g: &V2, half: f64) -> bool {
+        let reach = self.radius + half + 0.01;
+        (g - self.center).norm_squared() < reach * reach
+    }
+
+    /// Penetration of the point `g` that moves with `velocity`; `shape` receives the modes' radial
+    /// shapes there.
+    pub fn touch(&self, g: &V2, velocity: &V2, shape: &mut [f64]) -> Touch {
+        let w = g - self.center;
+        let distance = w.norm();
+        let normal = w / distance;
+        let tangent = V2::new(-normal.y, normal.x);
+        let angle = self.arc_angle(&normal);
+        let (mut bulge, mut rate, mut slope) = (0.0, 0.0, [0.0; 2]);
+        if let Some(shapes) = self.shapes {
+            let place = shapes.place(angle);
+            for (k, value) in shape.iter_mut().enumerate() {
+                let jet = shapes.jet(&place, k);
+                *value = jet.value;
+                bulge += self.modal[k] * jet.value;
+                rate += self.modal_rate[k] * jet.value;
+                slope[0] += self.modal[k] * jet.first;
+                slope[1] += self.modal[k] * jet.second;
+            }
+        }
+        let by_point = tangent * (slope[0] / distance) - normal;
+        let by_beam = -by_point.dot(&self.center_by_beam) - slope[0];
+        Touch {
+            depth: self.radius + bulge - distance,
+            rate: rate + by_point.dot(velocity) + by_beam * self.beam[1],
+            angle,
+            normal,
+            tangent,
+            distance,
+            by_point,
+            by_beam,
+            slope,
+        }
+    }
+
+    /// Arc angle in the beam frame, in [0, 2 pi).
+    fn arc_angle(&self, normal: &V2) -> f64 {
+        let turn = std::f64::consts::TAU;
+        let angle = atan2(normal.y, normal.x) - self.beam[0];
+        angle - turn * (angle / turn).floor()
+    }
+
+    /// Second derivatives at a touch.
+    pub fn curvature(&self, touch: &Touch) -> Curvature {
+        let (n, t, r) = (touch.normal, touch.tangent, touch.distance);
+        let [s1, s2] = touch.slope;
+        let c = self.center_by_beam;
+        // C - O turned by the beam: d2C/dtheta2 = -(C - O)
+        let arm = self.center;
+        let tt = t * t.transpose();
+        let nt = n * t.transpose();
+        let angle_by_point = t / r;
+        let angle_by_beam = -1.0 - t.dot(&c) / r;
+        let point = tt * (s2 / (r * r) - 1.0 / r) - (nt + nt.transpose()) * (s1 / (r * r));
+        // the point's distance and angle depend on g - C(theta) only, s also on theta itself
+        let rigid = tt * (-1.0 / r) - (nt + nt.transpose()) * (s1 / (r * r));
+        let mixed = -(rigid * c) + angle_by_point * (s2 * angle_by_beam);
+        let beam = c.dot(&(rigid * c)) + s2 * angle_by_beam * angle_by_beam
+            - n.dot(&arm)
+            + s1 * t.dot(&arm) / r;
+        Curvature {
+            point,
+            mixed,
+            beam,
+            angle_by: (angle_by_point, angle_by_beam),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_match_differences() {
+        let arc = Arc {
+            center: [-0.15, -0.58],
+            radius: 1.9,
+            anchor: 2.2,
+            sense: -1.0,
+        };
+        let shapes = Splines::natural(
+            2.0,
+            0.1,
+            &[
+                (0..20).map(|i| 0.02 * f64::from(i * i % 7)).collect(),
+                (0..20).map(|i| 0.03 * f64::from(i * 3 % 5) - 0.05).collect(),
+            ],
+        );
+        let (modal, rate) = ([0.3, -0.2], [0.5, 0.7]);
+        let velocity = V2::new(0.4, -0.9);
+        let at = |g: V2, theta: f64| {
+            let surface = Surface::new(&arc, [theta, 0.6], (&modal, &rate), Some(&shapes));
+            let mut shape = [0.0; 2];
+            let touch = surface.touch(&g, &velocity, &mut shape);
+            (touch, surface.curvature(&touch))
+        };
+        let (g, theta) = (V2::new(-1.93, -0.4), 0.2);
+        let (touch, curvature) = at(g, theta);
+        let h = 1e-6;
+        for k in 0..3 {
+            let step = |h: f64| {
+                let mut g = g;
+                let mut theta = theta;
+                if k < 2 { g[k] += h } else { theta += h }
+                at(g, theta).0
+            };
+            let (plus, minus) = (step(h), step(-h));
+            let first = (plus.depth - minus.depth) / (2.0 * h);
+            let point = (plus.by_point - minus.by_point) / (2.0 * h);
+            let beam = (plus.by_beam - minus.by_beam) / (2.0 * h);
+            let angle = (plus.angle - minus.angle) / (2.0 * h);
+            if k < 2 {
+                assert!((first - touch.by_point[k]).abs() < 1e-8);
+                assert!((point - curvature.point.column(k)).norm() < 1e-7, "{k} {point} {}", curvature.point);
+                assert!((beam - curvature.mixed[k]).abs() < 1e-7);
+                assert!((angle - curvature.angle_by.0[k]).abs() < 1e-8);
+            } else {
+                assert!((first - touch.by_beam).abs() < 1e-8);
+                assert!((point - curvature.mixed).norm() < 1e-7, "{point} {}", curvature.mixed);
+                assert!((beam - curvature.beam).abs() < 1e-7, "{beam} {}", curvature.beam);
+                assert!((angle - curvature.angle_by.1).abs() < 1e-8);
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! A small lopsided machine for tests: few cylinders, two made-up head modes, no zeros.
+use crate::element::{bushing::Bushing, impact::Impact};
+use crate::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
+
+/// A machine of the real unit's shape with 24 + 38 longer cylinders.
+pub fn description() -> Description {
+    let stations = 27;
+    let wave = |k: usize, scale: f64| -> Vec<f64> {
+        (0..stations)
+            .map(|i| scale * libm::sin(0.3 + 0.21 * (k + 1) as f64 * i as f64))
+            .collect()
+    };
+    Description {
+        gravity: 9.81,
+        beam_inertia: 2.4e4,
+        beam_gravity_moment: 700.0,
+        crank: Crank {
+            center: [-2.6, -5.1],
+            radius: 1.0973,
+            sense: -1.0,
+            speed: 5.0 * std::f64::consts::TAU / 60.0,
+            counterweight_moment: 1.06e5,
+            counterweight_phase: 0.02,
+        },
+        rod: Rod {
+            length: 2.876,
+            mass: 450.0,
+            center_of_mass: 2.04,
+            inertia: 385.0,
+        },
+        suspension_mass: 175.0,
+        rope: Rope {
+            diameter: 0.01,
+            pitch: 0.15,
+            density: 7850.0,
+            reference_pitch: 0.05,
+            end_pitches: 0.5,
+            back: 24,
+            front: 38,
+        },
+        front_arc: Arc {
+            center: [0.0, 0.0],
+            radius: 3.6,
+            anchor: 36.6_f64.to_radians(),
+            sense: 1.0,
+        },
+        back_arc: Arc {
+            center: [-0.15, -0.58],
+            radius: 1.9,
+            anchor: 125_f64.to_radians(),
+            sense: -1.0,
+        },
+        head: Head {
+            frequencies: vec![700.0, 900.0],
+            damping_ratio: 0.01,
+            start: 118_f64.to_radians(),
+            step: 4_f64.to_radians(),
+            radial: vec![wave(0, 0.004), wave(1, 0.007)],
+            tangential: vec![wave(2, 0.003), wave(3, 0.002)],
+            gauge_stress: vec![[2e9, -1e9, 3e9, 1e9], [1e9, 2e9, -4e9, 2e9]],
+            participation: vec![[1.3, -3.6, 11.0], [8.0, -15.0, 45.0]],
+            weight_stress: [[1e4, 2e4, 3e4, 4e4], [5e4, -2e4, 1e4, -3e4]],
+            turning_stress: [4e5, -2e5, -5e5, 2e5],
+            influence_start: 118_f64.to_radians(),
+            influence_step: 4_f64.to_radians(),
+            normal_influence: vec![wave(4, 100.0); 4],
+            tangential_influence: vec![wave(5, 200.0); 4],
+        },
+        card: (0..72)
+            .map(|i| 57e3 + 15e3 * libm::sin(0.0873 * f64::from(i)))
+            .collect(),
+    }
+}
+
+/// Table 3's optimised coefficients, SI.
+pub fn law() -> RopeLaw {
+    let deg = 180.0 / std::f64::consts::PI;
+    RopeLaw {
+        bushing: Bushing {
+            stiffness: [7.81e8, 2.26e8],
+            damping: [5201.0, 4287.0],
+            rotational_stiffness: [204.0 * deg, 308.0 * deg],
+            rotational_damping: [45.0 * deg, 56.0 * deg],
+        },
+        contact: Impact {
+            stiffness: 4.01e8,
+            exponent: 1.5,
+            damping: 1020.0,
+            full_damping_penetration: 1e-4,
+        },
+    }
+}

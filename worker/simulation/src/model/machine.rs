@@ -1,0 +1,236 @@
+//! A machine ready to be simulated: constants derived once from a description.
+use crate::element::{bushing::Bushing, impact::Impact};
+use crate::math::{elementary::sin_cos, spline::Splines};
+use crate::model::description::{Arc, Description, RopeLaw};
+use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
+use crate::model::{layout::Layout, links::ChainLoads, pose::Pose};
+
+/// A machine under one working condition; immutable and shared by every individual.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    /// What it was made from.
+    pub description: Description,
+    /// Where its coordinates live.
+    pub layout: Layout,
+    /// Bottom dead centre of the inextensible mechanism: where the turn angle is zero.
+    pub bottom: Position,
+    /// Horizontal place of the guided suspension point [m].
+    pub suspension_x: f64,
+    pub(crate) radial: Splines,
+    pub(crate) card: Splines,
+    /// Shapes at the back anchor in the beam frame, mode by mode.
+    pub(crate) anchor_shape: Vec<[f64; 2]>,
+    pub(crate) cylinder_mass: f64,
+    /// Moments of inertia of a cylinder along and across its axis [kg m2].
+    pub(crate) cylinder_inertia: [f64; 2],
+    pub(crate) normal_influence: Splines,
+    pub(crate) tangential_influence: Splines,
+}
+
+/// The ropes of one individual: coefficients scaled to the pitch of the chain.
+#[derive(Clone, Copy, Debug)]
+pub struct Ropes {
+    /// Between two cylinders.
+    pub joint: Bushing,
+    /// Between crossbeam or suspension and the first cylinder.
+    pub base: Bushing,
+    /// Between the last cylinder and the head.
+    pub anchor: Bushing,
+    /// Between a cylinder and a head.
+    pub contact: Impact,
+}
+
+/// A description that cannot be a machine.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum InvalidDescription {
+    /// A number that must be positive and finite is not.
+    #[error("{what} is {value}; it must be a positive number")]
+    NotPositive {
+        /// Which number.
+        what: &'static str,
+        /// Its value, SI.
+        value: f64,
+    },
+    /// A table has the wrong size.
+    #[error("{what} has {found} entries; expected {expected}")]
+    Shape {
+        /// Which table.
+        what: &'static str,
+        /// Entries found.
+        found: usize,
+        /// Entries expected.
+        expected: usize,
+    },
+    /// The mechanism does not turn through.
+    #[error("the crank cannot turn through: {0}")]
+    Mechanism(#[from] DoesNotClose),
+}
+
+impl Machine {
+    /// Checks a description and derives the constants.
+    ///
+    /// `modes` is the number of head modes to keep.
+    ///
+    /// # Errors
+    /// [`InvalidDescription`] naming the number or table that is wrong.
+    pub fn new(description: Description, modes: usize) -> Result<Self, InvalidDescription> {
+        check(&description, modes)?;
+        let d = &description;
+        let layout = Layout {
+            back: d.rope.back,
+            front: d.rope.front,
+            modes,
+        };
+        let mechanism = Mechanism {
+            crank: d.crank,
+            arc: d.back_arc,
+            length: d.rope.back as f64 * d.rope.pitch + d.rod.length,
+        };
+        let bottom = mechanism.bottom_dead_centre()?;
+        let radius = 0.5 * d.rope.diameter;
+        let mass = d.rope.density * std::f64::consts::PI * radius * radius * d.rope.pitch;
+        let radial = Splines::natural(d.head.start, d.head.step, &d.head.radial[..modes]);
+        let tangential = Splines::natural(d.head.start, d.head.step, &d.head.tangential[..modes]);
+        let (s, c) = sin_cos(d.back_arc.anchor);
+        let anchor_shape = (0..modes)
+            .map(|k| {
+                let r = radial.value(d.back_arc.anchor, k);
+                let t = tangential.value(d.back_arc.anchor, k);
+                [r * c - t * s, r * s + t * c]
+            })
+            .collect();
+        let influence = |curves: &[Vec<f64>]| {
+            Splines::natural(d.head.influence_start, d.head.influence_step, curves)
+        };
+        Ok(Self {
+            layout,
+            bottom,
+            suspension_x: d.front_arc.center[0] + d.front_arc.radius,
+            card: Splines::periodic(
+                0.0,
+                std::f64::consts::TAU / d.card.len() as f64,
+                std::slice::from_ref(&d.card),
+            ),
+            anchor_shape,
+            cylinder_mass: mass,
+            cylinder_inertia: [
+                0.5 * mass * radius * radius,
+                mass * (3.0 * radius * radius + d.rope.pitch * d.rope.pitch) / 12.0,
+            ],
+            normal_influence: influence(&d.head.normal_influence),
+            tangential_influence: influence(&d.head.tangential_influence),
+            radial,
+            description,
+        })
+    }
+
+    /// The inextensible mechanism with another effective radius and length.
+    pub fn mechanism(&self, radius: f64, length: f64) -> Mechanism {
+        Mechanism {
+            crank: self.description.crank,
+            arc: Arc {
+                radius,
+                ..self.description.back_arc
+            },
+            length,
+        }
+    }
+
+    /// Length from crank pin to back anchor along rod and unstretched rope [m].
+    pub fn back_length(&self) -> f64 {
+        self.description.rope.back as f64 * self.description.rope.pitch + self.description.rod.length
+    }
+
+    /// Scales an individual's coefficients to this chain's pitch, so that the rope stays the same.
+    pub fn ropes(&self, law: &RopeLaw) -> Ropes {
+        let rope = &self.description.rope;
+        let per_length = rope.reference_pitch / rope.pitch;
+        let joint = law.bushing.scaled(per_length);
+        let end = joint.scaled(1.0 / rope.end_pitches);
+        Ropes {
+            joint,
+            base: end.revolute(),
+            anchor: end,
+            contact: Impact {
+                stiffness: law.contact.stiffness / per_length,
+                damping: law.contact.damping / per_length,
+                ..law.contact
+            },
+        }
+    }
+}
+
+/// Buffers of a simulation, allocated once per machine size.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) loads: ChainLoads,
+}
+
+impl Scratch {
+    /// Buffers for a layout.
+    pub fn new(layout: &Layout) -> Self {
+        let still = Pose::new(&[0.0; 6], &[0.0; 6]);
+        Self {
+            poses: vec![still; layout.back + layout.front],
+            loads: ChainLoads::new(layout),
+        }
+    }
+}
+
+fn check(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
+    let positive: [(&'static str, f64); 14] = [
+        ("gravity", d.gravity),
+        ("beam inertia", d.beam_inertia),
+        ("crank radius", d.crank.radius),
+        ("crank speed", d.crank.speed),
+        ("rod length", d.rod.length),
+        ("rod mass", d.rod.mass),
+        ("rod inertia", d.rod.inertia),
+        ("suspension mass", d.suspension_mass),
+        ("rope diameter", d.rope.diameter),
+        ("cylinder length", d.rope.pitch),
+        ("rope density", d.rope.density),
+        ("reference length", d.rope.reference_pitch),
+        ("front radius", d.front_arc.radius),
+        ("back radius", d.back_arc.radius),
+    ];
+    for (what, value) in positive {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(InvalidDescription::NotPositive { what, value });
+        }
+    }
+    let stations = d.head.radial.first().map_or(0, Vec::len);
+    let sizes = [
+        ("radial shapes", d.head.radial.len().min(modes), modes),
+        ("tangential shapes", d.head.tangential.len().min(modes), modes),
+        ("head frequencies", d.head.frequencies.len().min(modes), modes),
+        ("gauge stresses", d.head.gauge_stress.len().min(modes), modes),
+        ("participations", d.head.participation.len().min(modes), modes),
+        ("normal influence lines", d.head.normal_influence.len(), 4),
+        ("tangential influence lines", d.head.tangential_influence.len(), 4),
+        ("back rope", d.rope.back.min(3), 3),
+        ("front rope", d.rope.front.min(3), 3),
+        ("load card", d.card.len().min(8), 8),
+    ];
+    for (what, found, expected) in sizes {
+        if found != expected {
+            return Err(InvalidDescription::Shape {
+                what,
+                found,
+                expected,
+            });
+        }
+    }
+    for table in d.head.radial.iter().chain(&d.head.tangential) {
+        if table.len() != stations {
+            return Err(InvalidDescription::Shape {
+                what: "mode shape",
+                found: table.len(),
+                expected: stations,
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,147 @@
+//! Kinematics of one cylinder from its six coordinates `(x, y, z, phi, theta, psi)`.
+//!
+//! `R_WB = Rz(psi) Ry(theta) Rx(phi)`, axis `e = R_WB e_x`. Angular velocity
+//! `w = phi' e + theta' c + psi' z = E eta'` with `c = Rz e_y`. The angles are singular only where
+//! the axis points out of the machine's plane (|theta| = 90 deg), which is a verdict of its own.
+use crate::math::elementary::sin_cos;
+use nalgebra::{Matrix3, Vector3};
+
+type V3 = Vector3<f64>;
+type M3 = Matrix3<f64>;
+
+/// Everything about a cylinder that several forces need.
+#[derive(Clone, Copy, Debug)]
+pub struct Pose {
+    /// Centre [m].
+    pub p: V3,
+    /// Velocity of the centre [m/s].
+    pub v: V3,
+    /// Orientation; column 0 is the axis.
+    pub R: M3,
+    /// Angular velocity in W [rad/s].
+    pub w: V3,
+    /// Rates of the angles [rad/s].
+    pub rate: V3,
+    /// Derivatives of the axis by theta and psi.
+    pub axis_by: [V3; 2],
+    /// Second angular direction `c`.
+    pub c: V3,
+    /// Derivative of `c` by psi.
+    pub c_by_psi: V3,
+    /// Sine and cosine of theta.
+    pub tilt: [f64; 2],
+}
+
+impl Pose {
+    /// From the six coordinates and their rates.
+    pub fn new(q: &[f64], v: &[f64]) -> Self {
+        let (s1, c1) = sin_cos(q[3]);
+        let (s2, c2) = sin_cos(q[4]);
+        let (s3, c3) = sin_cos(q[5]);
+        let e = V3::new(c3 * c2, s3 * c2, -s2);
+        let c = V3::new(-s3, c3, 0.0);
+        let n = V3::new(c3 * s2, s3 * s2, c2);
+        let rate = V3::new(v[3], v[4], v[5]);
+        Self {
+            p: V3::new(q[0], q[1], q[2]),
+            v: V3::new(v[0], v[1], v[2]),
+            R: M3::from_columns(&[e, c * c1 + n * s1, n * c1 - c * s1]),
+            w: e * rate.x + c * rate.y + V3::new(0.0, 0.0, rate.z),
+            rate,
+            axis_by: [-n, V3::new(-s3 * c2, c3 * c2, 0.0)],
+            c,
+            c_by_psi: V3::new(-c3, -s3, 0.0),
+            tilt: [s2, c2],
+        }
+    }
+
+    /// Axis of the cylinder.
+    pub fn axis(&self) -> V3 {
+        self.R.column(0).into_owned()
+    }
+
+    /// `E`: angular velocity per rate of the angles; also rotation per change of the angles.
+    pub fn angular(&self) -> M3 {
+        M3::from_columns(&[self.axis(), self.c, V3::z()])
+    }
+
+    /// Derivative of the angular velocity by the angles at constant rates.
+    pub fn angular_rate(&self) -> M3 {
+        M3::from_columns(&[
+            V3::zeros(),
+            self.axis_by[0] * self.rate.x,
+            self.axis_by[1] * self.rate.x + self.c_by_psi * self.rate.y,
+        ])
+    }
+
+    /// Derivative by the angles of the generalised torque `E^T tau` at constant `tau`.
+    pub fn torque_by_angles(&self, tau: &V3) -> M3 {
+        M3::new(
+            0.0,
+            self.axis_by[0].dot(tau),
+            self.axis_by[1].dot(tau),
+            0.0,
+            0.0,
+            self.c_by_psi.dot(tau),
+            0.0,
+            0.0,
+            0.0,
+        )
+    }
+
+    /// Second derivatives of the axis: by theta twice, theta and psi, psi twice.
+    pub fn axis_by_twice(&self) -> [V3; 3] {
+        let e = self.axis();
+        let n = -self.axis_by[0];
+        [-e, V3::new(n.y, -n.x, 0.0), V3::new(-e.x, -e.y, 0.0)]
+    }
+
+    /// Derivatives of the axis' velocity by theta and psi.
+    pub fn axis_velocity_by(&self) -> [V3; 2] {
+        let [tt, tp, pp] = self.axis_by_twice();
+        [
+            tt * self.rate.y + tp * self.rate.z,
+            tp * self.rate.y + pp * self.rate.z,
+        ]
+    }
+
+    /// Velocity of the axis.
+    pub fn axis_velocity(&self) -> V3 {
+        self.axis_by[0] * self.rate.y + self.axis_by[1] * self.rate.z
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn derivatives_match_differences() {
+        let q = [0.3, -0.2, 0.1, 0.7, -0.4, 1.9];
+        let v = [0.1, 0.2, -0.3, 0.9, -1.1, 0.6];
+        let at = Pose::new(&q, &v);
+        let h = 1e-6;
+        let tau = V3::new(0.3, -0.7, 0.5);
+        for k in 0..3 {
+            let step = |h: f64| {
+                let mut q = q;
+                q[3 + k] += h;
+                Pose::new(&q, &v)
+            };
+            let (plus, minus) = (step(h), step(-h));
+            let w = (plus.w - minus.w) / (2.0 * h);
+            assert!((w - at.angular_rate().column(k)).norm() < 1e-9);
+            let torque = (plus.angular().transpose() * tau - minus.angular().transpose() * tau) / (2.0 * h);
+            assert!((torque - at.torque_by_angles(&tau).column(k)).norm() < 1e-9);
+            // a change of the angles is a rotation E d eta
+            let spin = (plus.R - minus.R) / (2.0 * h);
+            let expected = crate::math::rotation::skew(&at.angular().column(k).into_owned()) * at.R;
+            assert!((spin - expected).norm() < 1e-9);
+            if k > 0 {
+                let velocity = (plus.axis_velocity() - minus.axis_velocity()) / (2.0 * h);
+                assert!((velocity - at.axis_velocity_by()[k - 1]).norm() < 1e-9);
+            }
+        }
+        assert!((at.w.cross(&at.axis()) - at.axis_velocity()).norm() < 1e-12);
+    }
+}

@@ -1,0 +1,222 @@
+//! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
+use crate::drive::DriveState;
+use crate::integrator::State;
+use crate::linear::BLOCK;
+use crate::math::elementary::sin_cos;
+use crate::model::Machine;
+use crate::run::Observe;
+use crate::system::System;
+
+/// Stress at the four gauges [Pa] of a state whose joint loads are in the system.
+///
+/// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
+/// the base acceleration, plus what the modes move beyond their own static answer,
+/// `sum_k s_k (q_k - f_k / w_k^2)`. So a truncated set of modes costs no static accuracy.
+pub fn gauge_stress(system: &System<'_>, state: &State) -> [f64; 4] {
+    let machine = system.machine;
+    let head = &machine.description.head;
+    let layout = machine.layout;
+    let modes = layout.modes;
+    let mut stress = [0.0; 4];
+    let mut modal_force = [0.0; crate::model::MAX_MODES];
+    machine.each_touch(0, (&state.q, &state.v), &system.scratch.poses, |share, touch, shape| {
+        let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
+        let place = machine.normal_influence.place(touch.angle);
+        for (gauge, stress) in stress.iter_mut().enumerate() {
+            *stress += force * machine.normal_influence.jet(&place, gauge).value;
+        }
+        for (modal, shape) in modal_force.iter_mut().zip(shape) {
+            *modal -= force * shape;
+        }
+    });
+
+    // the rope's end pulls at the anchor; in the beam frame
+    let beam = layout.beam();
+    let (s, c) = sin_cos(state.q[beam]);
+    let load = system.scratch.loads.joints[0][layout.back].force;
+    let pull = [c * load.x + s * load.y, c * load.y - s * load.x];
+    let anchor = machine.description.back_arc.anchor;
+    let (sa, ca) = sin_cos(anchor);
+    let inward = -(pull[0] * ca + pull[1] * sa);
+    let along = pull[1] * ca - pull[0] * sa;
+    let place = machine.normal_influence.place(anchor);
+    let place_t = machine.tangential_influence.place(anchor);
+    for (gauge, stress) in stress.iter_mut().enumerate() {
+        *stress += inward * machine.normal_influence.jet(&place, gauge).value
+            + along * machine.tangential_influence.jet(&place_t, gauge).value;
+    }
+    for (modal, shape) in modal_force.iter_mut().zip(&machine.anchor_shape) {
+        *modal += pull[0] * shape[0] + pull[1] * shape[1];
+    }
+
+    // gravity acts like a base acceleration upwards, seen from the beam
+    let g = machine.description.gravity;
+    let base = [g * s, g * c, state.a[beam]];
+    let base_stress = [&head.weight_stress[0], &head.weight_stress[1], &head.turning_stress];
+    for (k, acceleration) in base.iter().enumerate() {
+        for (stress, unit) in stress.iter_mut().zip(base_stress[k]) {
+            *stress += acceleration * unit;
+        }
+        for (m, modal) in modal_force[..modes].iter_mut().enumerate() {
+            *modal -= acceleration * head.participation[m][k];
+        }
+    }
+    for m in 0..modes {
+        let w = head.frequencies[m];
+        let beyond = state.q[layout.mode(m)] - modal_force[m] / (w * w);
+        for (gauge, stress) in stress.iter_mut().enumerate() {
+            *stress += beyond * head.gauge_stress[m][gauge];
+        }
+    }
+    stress
+}
+
+/// Net torque that the reducer must give in the sense of rotation, counterweight included [N m].
+pub fn crank_torque(machine: &Machine, drive: &DriveState, pin: &nalgebra::Vector2<f64>) -> f64 {
+    let crank = &machine.description.crank;
+    let (s, c) = sin_cos(drive.pin_angle);
+    let rope = crank.radius * crank.sense * (pin.y * c - pin.x * s);
+    // the counterweight hangs opposite the pin and falls while the rope is pulled
+    let weight = crank.counterweight_moment
+        * sin_cos(drive.pin_angle + crank.sense * crank.counterweight_phase).1;
+    rope - crank.sense * weight
+}
+
+/// Curves of one revolution, one entry per sample reached.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Curves {
+    /// Stress at gauges 1 to 4 [Pa].
+    pub gauge: [Vec<f64>; 4],
+    /// Tension of the back rope at the crossbeam [N].
+    pub back_tension: Vec<f64>,
+    /// Tension of the front rope at the suspension point [N].
+    pub front_tension: Vec<f64>,
+    /// Beam angle [rad].
+    pub beam: Vec<f64>,
+    /// Height of the suspension point in W [m], its velocity and acceleration.
+    pub suspension: [Vec<f64>; 3],
+    /// Net crank torque [N m].
+    pub torque: Vec<f64>,
+    /// Modal coordinates, mode by mode.
+    pub modal: Vec<Vec<f64>>,
+    /// Shapes at every `shape_every`-th sample.
+    pub shapes: Vec<Shape>,
+}
+
+/// The machine at one sample, in W.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shape {
+    /// Index of the sample.
+    pub sample: usize,
+    /// Crank pin [m].
+    pub pin: [f64; 2],
+    /// Rope end of the rod [m].
+    pub crossbeam: [f64; 2],
+    /// Beam angle [rad].
+    pub beam: f64,
+    /// Suspension point [m].
+    pub suspension: [f64; 2],
+    /// Cylinder centres of both chains from the free end on [m].
+    pub centers: [Vec<[f64; 2]>; 2],
+    /// Tension in the joint before each cylinder [N].
+    pub tension: [Vec<f64>; 2],
+    /// Contact force on each cylinder [N].
+    pub contact: [Vec<f64>; 2],
+}
+
+/// Records the gauges alone (for scoring), or everything.
+#[derive(Clone, Debug, Default)]
+pub struct Recorder {
+    /// What was recorded.
+    pub curves: Curves,
+    gauges_only: bool,
+    shape_every: usize,
+    force: Vec<f64>,
+}
+
+impl Recorder {
+    /// Records gauge stress alone: what a score needs.
+    pub fn gauges_only() -> Self {
+        Self {
+            gauges_only: true,
+            ..Self::default()
+        }
+    }
+
+    /// Records everything, and the machine's shape at every `shape_every`-th sample.
+    pub fn everything(shape_every: usize) -> Self {
+        Self {
+            shape_every,
+            ..Self::default()
+        }
+    }
+}
+
+impl Observe for Recorder {
+    fn sample(&mut self, index: usize, system: &mut System<'_>, state: &State) {
+        self.force.resize(state.q.len(), 0.0);
+        system.forces(state.t, &state.q, &state.v, &mut self.force);
+        let stress = gauge_stress(system, state);
+        for (curve, stress) in self.curves.gauge.iter_mut().zip(stress) {
+            curve.push(stress);
+        }
+        if self.gauges_only {
+            return;
+        }
+        let drive = system.drive_state(state.t);
+        let machine = system.machine;
+        let layout = machine.layout;
+        let c = &mut self.curves;
+        c.back_tension.push(system.scratch.loads.joints[0][0].force.norm());
+        c.front_tension.push(system.scratch.loads.joints[1][0].force.norm());
+        c.beam.push(state.q[layout.beam()]);
+        let at = layout.suspension();
+        for (curve, value) in c.suspension.iter_mut().zip([state.q[at], state.v[at], state.a[at]]) {
+            curve.push(value);
+        }
+        let pin = machine.pin_force(&drive, &state.q, &state.v, &state.a, &system.scratch);
+        c.torque.push(crank_torque(machine, &drive, &pin));
+        c.modal.resize(layout.modes, Vec::new());
+        for (k, curve) in c.modal.iter_mut().enumerate() {
+            curve.push(state.q[layout.mode(k)]);
+        }
+        if self.shape_every > 0 && index.is_multiple_of(self.shape_every) {
+            c.shapes.push(shape(index, system, &drive, state));
+        }
+    }
+}
+
+fn shape(sample: usize, system: &System<'_>, drive: &DriveState, state: &State) -> Shape {
+    let machine = system.machine;
+    let layout = machine.layout;
+    let (s, c) = sin_cos(state.q[layout.rod()]);
+    let length = machine.description.rod.length;
+    let [pin, ..] = drive.pin;
+    let centers = [0, 1].map(|chain| {
+        let first = layout.base_block(chain) + 1;
+        (0..machine.cylinders(chain))
+            .map(|j| [state.q[(first + j) * BLOCK], state.q[(first + j) * BLOCK + 1]])
+            .collect()
+    });
+    let loads = &system.scratch.loads;
+    Shape {
+        sample,
+        pin: pin.into(),
+        crossbeam: [pin.x + length * c, pin.y + length * s],
+        beam: state.q[layout.beam()],
+        suspension: [machine.suspension_x, state.q[layout.suspension()]],
+        centers,
+        tension: [0, 1].map(|chain| {
+            (0..machine.cylinders(chain))
+                .map(|joint| {
+                    if joint == 0 {
+                        loads.joints[chain][0].force.norm()
+                    } else {
+                        loads.tension(chain, joint)
+                    }
+                })
+                .collect()
+        }),
+        contact: loads.contact.clone(),
+    }
+}

@@ -1,0 +1,266 @@
+//! One simulation: settle, lead in, one recorded revolution.
+use crate::drive::Drive;
+use crate::integrator::{State, dense::interpolate, step_control::StepControl, tr_bdf2::TrBdf2};
+use crate::model::description::RopeLaw;
+use crate::model::{Machine, Powers};
+use crate::settle::{Settled, equilibrium, guess};
+use crate::statistics::Statistics;
+use crate::system::System;
+use crate::verdict::{Failure, Limits, Reached, Verdict};
+use std::f64::consts::TAU;
+
+/// How a run is started, integrated and sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunSettings {
+    /// Turn angle before bottom dead centre at which the crank starts [rad].
+    pub lead_in: f64,
+    /// Time to full speed [s].
+    pub ramp: f64,
+    /// Number of samples over the recorded revolution.
+    pub samples: usize,
+    /// Local error per step, in units of the built-in scales.
+    pub tolerance: f64,
+    /// Newton iterations that one run may take.
+    pub budget: u64,
+    /// When a run is no longer one of this machine.
+    pub limits: Limits,
+}
+
+impl Default for RunSettings {
+    fn default() -> Self {
+        Self {
+            lead_in: TAU / 6.0,
+            ramp: 1.5,
+            samples: 720,
+            tolerance: 1.0,
+            budget: 60_000,
+            limits: Limits::default(),
+        }
+    }
+}
+
+/// Receives what happens at each sample of the recorded revolution.
+pub trait Observe {
+    /// `state` is the interpolated state at sample `index`; the loads of `system` belong to it.
+    fn sample(&mut self, index: usize, system: &mut System<'_>, state: &State);
+}
+
+/// What a run gives besides its samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RunResult {
+    /// How it ended.
+    pub verdict: Verdict,
+    /// What it cost.
+    pub statistics: Statistics,
+    /// Work over the recorded revolution [J].
+    pub work: Powers,
+    /// Gain of kinetic and potential energy over the recorded revolution [J].
+    pub stored: f64,
+}
+
+/// Longest and shortest step [s].
+const LONGEST_STEP: f64 = 0.05;
+const SHORTEST_STEP: f64 = 1e-9;
+
+/// Simulates one individual; never panics and never hangs.
+pub fn simulate(
+    machine: &Machine,
+    law: &RopeLaw,
+    settings: &RunSettings,
+    observer: &mut dyn Observe,
+) -> RunResult {
+    let drive = Drive {
+        start: -settings.lead_in,
+        ramp: settings.ramp,
+        speed: machine.description.crank.speed,
+    };
+    let mut system = System::new(machine, machine.ropes(law), drive);
+    let swing = swing(machine);
+    let start = match settle(&mut system, settings, swing) {
+        Ok(q) => q,
+        Err((kind, fraction)) => {
+            return RunResult {
+                verdict: Verdict::Failed {
+                    kind,
+                    reached: Reached::LoadFraction(fraction),
+                },
+                statistics: system.statistics,
+                work: Powers::default(),
+                stored: 0.0,
+            };
+        }
+    };
+    revolve(&mut system, settings, swing, start, observer)
+}
+
+/// Range of the beam on the inextensible mechanism [rad].
+fn swing(machine: &Machine) -> [f64; 2] {
+    let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
+    let mut at = machine.bottom;
+    let mut highest = at.beam;
+    for k in 1..=90 {
+        if let Ok(next) = mechanism.position(
+            machine.bottom.pin + TAU * f64::from(k) / 90.0,
+            at.beam,
+            at.tangent,
+        ) {
+            at = next;
+            highest = highest.max(at.beam);
+        }
+    }
+    [machine.bottom.beam, highest]
+}
+
+/// Static equilibrium at the start; on failure, the reason at full load and the share of the load
+/// that the machine carries.
+fn settle(
+    system: &mut System<'_>,
+    settings: &RunSettings,
+    swing: [f64; 2],
+) -> Result<Vec<f64>, (Failure, f64)> {
+    let full = system.drive_state(0.0);
+    let mut attempt = |share: f64| {
+        let mut drive = full;
+        drive.load *= share;
+        let Ok(mut q) = guess(system.machine, &system.ropes, &drive) else {
+            return Err(Failure::OverstretchedRope);
+        };
+        match equilibrium(system, &drive, &settings.limits, swing, &mut q) {
+            Settled::Equilibrium => Ok(q),
+            Settled::Failed(kind) => Err(kind),
+        }
+    };
+    let kind = match attempt(1.0) {
+        Ok(q) => return Ok(q),
+        Err(kind) => kind,
+    };
+    let (mut carried, mut too_much) = (0.0, 1.0);
+    for _ in 0..6 {
+        let middle = 0.5 * (carried + too_much);
+        if attempt(middle).is_ok() {
+            carried = middle;
+        } else {
+            too_much = middle;
+        }
+    }
+    Err((kind, carried))
+}
+
+fn revolve(
+    system: &mut System<'_>,
+    settings: &RunSettings,
+    swing: [f64; 2],
+    start: Vec<f64>,
+    observer: &mut dyn Observe,
+) -> RunResult {
+    let n = start.len();
+    let control = StepControl {
+        order: 3.0,
+        tolerance: settings.tolerance,
+        longest: LONGEST_STEP,
+        shortest: SHORTEST_STEP,
+    };
+    let mut method = TrBdf2::new(n);
+    let mut from = State::at_rest(0.0, start);
+    let mut to = from.clone();
+    let mut between = from.clone();
+    let mut power = Powers::default();
+    let (begin, end) = (system.drive.time_at(0.0), system.drive.time_at(TAU));
+    let (mut h, mut sample) = (1e-3, 0);
+    let mut ledger = Ledger::default();
+    let verdict = loop {
+        if from.t >= end - 1e-9 {
+            break Verdict::Complete;
+        }
+        let reached = Reached::TimeFraction(from.t / end);
+        let failed = |kind| Verdict::Failed { kind, reached };
+        if system.statistics.newton_iterations > settings.budget {
+            break failed(Failure::Budget);
+        }
+        // stop exactly where the recorded revolution begins and ends
+        let stop = if from.t < begin - 1e-9 { begin } else { end };
+        let left = stop - from.t;
+        let step = if h >= left { left } else if h > 0.5 * left { 0.5 * left } else { h };
+        let mut next_power = power;
+        match method.step(system, &from, step, &mut to, &mut next_power) {
+            Err(_) => {
+                system.statistics.newton_rejections += 1;
+                h = 0.3 * step;
+            }
+            Ok(done) if done.error > settings.tolerance || !done.error.is_finite() => {
+                system.statistics.error_rejections += 1;
+                h = step * control.factor(done.error).min(0.7);
+            }
+            Ok(done) => {
+                system.statistics.steps += 1;
+                power = next_power;
+                if let Some(kind) = settings.limits.broken(
+                    system.machine,
+                    system.ropes.joint.stiffness[0],
+                    &to.q,
+                    swing,
+                    &system.scratch,
+                ) {
+                    break failed(kind);
+                }
+                ledger.add(system, &from, &to, &done.work, begin, end);
+                while sample < settings.samples {
+                    let turn = TAU * sample as f64 / settings.samples as f64;
+                    let t = system.drive.time_at(turn);
+                    if t > to.t + 1e-9 {
+                        break;
+                    }
+                    interpolate(&from, &to, t, &mut between);
+                    observer.sample(sample, system, &between);
+                    sample += 1;
+                }
+                std::mem::swap(&mut from, &mut to);
+                let next = control.next(step, done.error);
+                h = if step < h { h.min(next.max(h)) } else { next };
+            }
+        }
+        if h < control.shortest {
+            break failed(Failure::StepUnderflow);
+        }
+    };
+    RunResult {
+        verdict,
+        statistics: system.statistics,
+        work: ledger.work,
+        stored: ledger.stored(),
+    }
+}
+
+/// Work and stored energy over the recorded revolution.
+#[derive(Clone, Copy, Debug, Default)]
+struct Ledger {
+    work: Powers,
+    first: Option<f64>,
+    last: f64,
+}
+
+impl Ledger {
+    fn add(&mut self, system: &mut System<'_>, from: &State, to: &State, work: &Powers, begin: f64, end: f64) {
+        let mut energy = |state: &State| {
+            let drive = system.drive_state(state.t);
+            let machine = system.machine;
+            machine.pose(&state.q, &state.v, &mut system.scratch.poses);
+            machine.energy(&system.ropes, &drive, (&state.q, &state.v), &system.scratch)
+        };
+        if from.t >= begin - 1e-9 {
+            if self.first.is_none() {
+                self.first = Some(energy(from));
+            }
+            self.work.input += work.input;
+            self.work.output += work.output;
+            self.work.dissipated += work.dissipated;
+            if to.t >= end - 1e-9 {
+                self.last = energy(to);
+            }
+        }
+    }
+
+    fn stored(&self) -> f64 {
+        self.first.map_or(0.0, |first| self.last - first)
+    }
+}

@@ -1,0 +1,113 @@
+//! How a simulation ended; every run ends in one of these, none hangs or panics.
+use crate::linear::BLOCK;
+use crate::model::{Machine, Scratch};
+
+/// What ended a simulation early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Failure {
+    /// A rope joint stretched beyond [`Limits::extension`].
+    OverstretchedRope,
+    /// The rope sank into a head beyond [`Limits::penetration`].
+    RopeThroughHead,
+    /// The beam rose beyond its swing by [`Limits::beam_margin`].
+    BeamOvertravel,
+    /// The beam stayed below its swing by [`Limits::beam_margin`].
+    LoadNotLifted,
+    /// A cylinder turned out of the machine's plane.
+    TumbledCylinder,
+    /// The step size fell below its limit.
+    StepUnderflow,
+    /// The iteration budget was used up.
+    Budget,
+}
+
+/// How far a failed simulation got.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reached {
+    /// Share of the static load that the machine still carried.
+    LoadFraction(f64),
+    /// Share of the simulated time.
+    TimeFraction(f64),
+}
+
+/// How a simulation ended.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Verdict {
+    /// To the end of the revolution.
+    Complete,
+    /// Early.
+    Failed {
+        /// Why.
+        kind: Failure,
+        /// How far.
+        reached: Reached,
+    },
+}
+
+/// Where a simulation stops being one of this machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Largest extension of a joint, in pitches.
+    pub extension: f64,
+    /// Deepest penetration of the rope into a head [m].
+    pub penetration: f64,
+    /// How far the beam may leave the swing of the inextensible mechanism [rad].
+    pub beam_margin: f64,
+    /// Largest sine of a cylinder's angle out of the machine's plane.
+    pub tilt: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            extension: 0.5,
+            penetration: 0.1,
+            beam_margin: 0.2,
+            tilt: 0.9,
+        }
+    }
+}
+
+impl Limits {
+    /// The first limit that a state with loads in `scratch` breaks.
+    ///
+    /// `swing` is the beam's range on the inextensible mechanism [rad].
+    pub fn broken(
+        &self,
+        machine: &Machine,
+        joint_stiffness: f64,
+        q: &[f64],
+        swing: [f64; 2],
+        scratch: &Scratch,
+    ) -> Option<Failure> {
+        let longest = self.extension * machine.description.rope.pitch;
+        for chain in 0..2 {
+            for joint in 0..=machine.cylinders(chain) {
+                if scratch.loads.tension(chain, joint) > longest * joint_stiffness {
+                    return Some(Failure::OverstretchedRope);
+                }
+            }
+        }
+        if scratch.loads.deepest > self.penetration {
+            return Some(Failure::RopeThroughHead);
+        }
+        let beam = q[machine.layout.beam()];
+        if beam > swing[1] + self.beam_margin {
+            return Some(Failure::BeamOvertravel);
+        }
+        // written so that a state that is not a number fails here too
+        if !(beam >= swing[0] - self.beam_margin) {
+            return Some(Failure::LoadNotLifted);
+        }
+        for chain in 0..2 {
+            let first = machine.layout.base_block(chain) + 1;
+            for j in 0..machine.cylinders(chain) {
+                let tilt = q[(first + j) * BLOCK + 4];
+                if !(crate::math::elementary::sin_cos(tilt).0.abs() < self.tilt) {
+                    return Some(Failure::TumbledCylinder);
+                }
+            }
+        }
+        None
+    }
+}

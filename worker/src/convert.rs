@@ -1,0 +1,259 @@
+//! From a case, as it travels, to a machine as the dynamics take it, and back: the only file that
+//! names both vocabularies. Degrees become radians and megapascals pascals here.
+use protocol::case::{Case, Condition, GeneName, RopeEnds, Smoothing, TurnSense, WeightAxes};
+use protocol::job::{self, Counters, Failure};
+use simulation::element::{bushing::Bushing, impact::Impact};
+use simulation::model::Machine;
+use simulation::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
+use simulation::run::RunSettings;
+use simulation::statistics::Statistics;
+use simulation::verdict;
+
+const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
+
+/// The machine of a case under one of its conditions.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the field that cannot be built.
+pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
+    let condition = case
+        .conditions
+        .get(condition)
+        .ok_or_else(|| misconfigured("conditions", format!("has no entry {condition}")))?;
+    let modes = case.run.modes;
+    Machine::new(description(case, condition)?, modes)
+        .map_err(|error| misconfigured("machine", error.to_string()))
+}
+
+fn misconfigured(field: &str, problem: String) -> Failure {
+    Failure::Misconfigured {
+        field: field.to_owned(),
+        problem,
+    }
+}
+
+fn description(case: &Case, condition: &Condition) -> Result<Description, Failure> {
+    let back = &case.back_head;
+    Ok(Description {
+        gravity: case.gravity_m_s2,
+        beam_inertia: case.beam.inertia_kg_m2,
+        beam_gravity_moment: case.beam.gravity_moment_n_m,
+        crank: Crank {
+            center: [case.crank.center_x_m, case.crank.center_y_m],
+            radius: case.crank.radius_m,
+            sense: match case.crank.sense {
+                TurnSense::Clockwise => -1.0,
+                TurnSense::CounterClockwise => 1.0,
+            },
+            speed: condition.speed_rpm * std::f64::consts::TAU / 60.0,
+            counterweight_moment: condition.counterweight_moment_n_m,
+            counterweight_phase: case.crank.counterweight_phase_deg.to_radians(),
+        },
+        rod: Rod {
+            length: case.rod.length_m,
+            mass: case.rod.mass_kg,
+            center_of_mass: case.rod.center_of_mass_m,
+            inertia: case.rod.inertia_kg_m2,
+        },
+        suspension_mass: case.suspension.mass_kg,
+        rope: Rope {
+            diameter: case.ropes.diameter_m,
+            pitch: case.ropes.cylinder_length_m,
+            density: case.ropes.density_kg_m3,
+            reference_pitch: case.ropes.reference_length_m,
+            end_pitches: match case.ropes.ends {
+                RopeEnds::HalfPitch => 0.5,
+                RopeEnds::WholePitch => 1.0,
+            },
+            back: case.ropes.back_cylinders,
+            front: case.ropes.front_cylinders,
+        },
+        front_arc: Arc {
+            center: [0.0, 0.0],
+            radius: case.front_head.radius_m,
+            anchor: case.front_head.rope_anchor_deg.to_radians(),
+            sense: 1.0,
+        },
+        back_arc: Arc {
+            center: [back.center_x_m, back.center_y_m],
+            radius: back.radius_m,
+            anchor: back.rope_anchor_deg.to_radians(),
+            sense: -1.0,
+        },
+        head: head(case)?,
+        card: card(condition),
+    })
+}
+
+fn head(case: &Case) -> Result<Head, Failure> {
+    let head = &case.modal_head;
+    let (start, step) = grid("modal_head.arc_deg", &head.arc_deg)?;
+    let (influence_start, influence_step) = grid("influence.psi_deg", &head.influence.psi_deg)?;
+    let curves = |rows: &[[f64; 4]]| -> Vec<Vec<f64>> {
+        (0..4)
+            .map(|gauge| rows.iter().map(|row| row[gauge] * PASCAL_PER_MEGAPASCAL).collect())
+            .collect()
+    };
+    let base_stress = head
+        .inertia_stress_mpa
+        .map(|row| row.map(|s| s * PASCAL_PER_MEGAPASCAL));
+    Ok(Head {
+        frequencies: head
+            .frequencies_hz
+            .iter()
+            .map(|f| f * std::f64::consts::TAU)
+            .collect(),
+        damping_ratio: head.damping_ratio,
+        start,
+        step,
+        radial: head.radial.clone(),
+        tangential: head.tangential.clone(),
+        gauge_stress: head
+            .gauge_stress_mpa
+            .iter()
+            .map(|row| row.map(|s| s * PASCAL_PER_MEGAPASCAL))
+            .collect(),
+        participation: head.participation.clone(),
+        weight_stress: match head.weight_axes {
+            WeightAxes::Physical => [base_stress[0], base_stress[1]],
+            WeightAxes::Exchanged => [base_stress[1], base_stress[0]],
+        },
+        turning_stress: base_stress[2],
+        influence_start,
+        influence_step,
+        normal_influence: curves(&head.influence.normal_mpa_per_n),
+        tangential_influence: curves(&head.influence.tangential_mpa_per_n),
+    })
+}
+
+/// Start and spacing [rad] of a table that must be equally spaced.
+fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
+    let [first, second, ..] = degrees else {
+        return Err(misconfigured(field, "needs at least two stations".to_owned()));
+    };
+    let step = second - first;
+    let even = degrees
+        .iter()
+        .enumerate()
+        .all(|(i, x)| (x - first - step * i as f64).abs() < 1e-6 * step.abs());
+    if !(even && step > 0.0) {
+        return Err(misconfigured(
+            field,
+            "must ascend in equal steps; resample the table".to_owned(),
+        ));
+    }
+    Ok((first.to_radians(), step.to_radians()))
+}
+
+/// The load card after smoothing [N].
+fn card(condition: &Condition) -> Vec<f64> {
+    let load = &condition.card.load_n;
+    let n = load.len();
+    match condition.card.smoothing {
+        Smoothing::None => load.clone(),
+        Smoothing::Harmonics(kept) => simulation::math::harmonics::low_pass(load, kept),
+        Smoothing::MovingAverageDeg(width) => {
+            let reach = (0.5 * width / 360.0 * n as f64).round();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a width between 0 and 360 degrees was checked with the case"
+            )]
+            let reach = (reach as usize).min(n / 2);
+            (0..n)
+                .map(|i| {
+                    let window = (0..=2 * reach).map(|k| load[(i + n + k - reach) % n]);
+                    window.sum::<f64>() / (2 * reach + 1) as f64
+                })
+                .collect()
+        }
+    }
+}
+
+/// The rope law of a gene vector in declared units.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] when a gene is missing, surplus or not a positive number.
+pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
+    if genes.len() != case.genes.len() {
+        return Err(misconfigured(
+            "genes",
+            format!("{} values for {} genes", genes.len(), case.genes.len()),
+        ));
+    }
+    let value = |name: GeneName| -> Result<f64, Failure> {
+        let found = case.genes.iter().zip(genes).find(|(gene, _)| gene.name == name);
+        match found {
+            Some((gene, &value)) if value > 0.0 && value.is_finite() => Ok(gene.unit.to_si(value)),
+            Some((_, value)) => Err(misconfigured(
+                name.as_str(),
+                format!("is {value}; it must be a positive number"),
+            )),
+            None => Err(misconfigured(name.as_str(), "is missing".to_owned())),
+        }
+    };
+    Ok(RopeLaw {
+        bushing: Bushing {
+            stiffness: [value(GeneName::Kb1)?, value(GeneName::Kb23)?],
+            damping: [value(GeneName::Cb1)?, value(GeneName::Cb23)?],
+            rotational_stiffness: [value(GeneName::Kb4)?, value(GeneName::Kb56)?],
+            rotational_damping: [value(GeneName::Cb4)?, value(GeneName::Cb56)?],
+        },
+        contact: Impact {
+            stiffness: value(GeneName::Kc)?,
+            exponent: case.contact.exponent,
+            damping: value(GeneName::Cc)?,
+            full_damping_penetration: case.contact.full_damping_penetration_m,
+        },
+    })
+}
+
+/// How a case wants its runs.
+pub fn run_settings(case: &Case) -> RunSettings {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the case check lets only steps through that divide 360"
+    )]
+    let samples = (360.0 / case.run.output_step_deg).round() as usize;
+    RunSettings {
+        lead_in: case.run.lead_in_deg.to_radians(),
+        ramp: case.run.ramp_s,
+        samples,
+        tolerance: case.run.tolerance,
+        ..RunSettings::default()
+    }
+}
+
+/// A verdict as it travels.
+pub const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
+    match verdict {
+        verdict::Verdict::Complete => job::Verdict::Complete,
+        verdict::Verdict::Failed { kind, reached } => job::Verdict::Failed {
+            kind: match kind {
+                verdict::Failure::OverstretchedRope => job::PhysicsFailure::OverstretchedRope,
+                verdict::Failure::RopeThroughHead => job::PhysicsFailure::RopeThroughHead,
+                verdict::Failure::BeamOvertravel => job::PhysicsFailure::BeamOvertravel,
+                verdict::Failure::LoadNotLifted => job::PhysicsFailure::LoadNotLifted,
+                verdict::Failure::TumbledCylinder => job::PhysicsFailure::TumbledCylinder,
+                verdict::Failure::StepUnderflow => job::PhysicsFailure::StepUnderflow,
+                verdict::Failure::Budget => job::PhysicsFailure::Budget,
+            },
+            reached: match reached {
+                verdict::Reached::LoadFraction(x) => job::Reached::LoadFraction(*x),
+                verdict::Reached::TimeFraction(x) => job::Reached::TimeFraction(*x),
+            },
+        },
+    }
+}
+
+/// Counters as they travel.
+pub const fn counters(statistics: &Statistics) -> Counters {
+    Counters {
+        steps: statistics.steps,
+        rejected_steps: statistics.error_rejections + statistics.newton_rejections,
+        newton_iterations: statistics.newton_iterations,
+        jacobians: statistics.jacobians,
+        factorizations: statistics.factorizations,
+    }
+}
