@@ -1,8 +1,4 @@
 //! The case that is shipped loads, and its figures are those its README states.
-#![expect(
-    clippy::unwrap_used,
-    reason = "a test that cannot prepare its case has failed"
-)]
 use coordinator::case::{self, Overrides, mesh};
 use protocol::{
     case::{GaugeTrace, GeneName, Offset},

@@ -41,6 +41,9 @@ pub(super) struct FlexibleHead {
     pub(super) influence_file: PathBuf,
     /// Mesh as MSH 4.1; absent where only the reduction is at hand.
     pub(super) mesh_file: Option<PathBuf>,
+    /// How the records hold the head's own weight; physical unless stated.
+    #[serde(default)]
+    pub(super) weight_axes: WeightAxes,
     /// Density of the mesh [kg/m3].
     pub(super) density_kg_m3: f64,
     /// How the gauge records hold the head's own weight.

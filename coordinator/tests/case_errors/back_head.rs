@@ -33,7 +33,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 MODES,
                 "\"frequencies_hz\": [116.0122, ",
                 "\"frequencies_hz\": [",
-            )
+            );
         },
         &[
             "back_head_modes.json",
@@ -75,7 +75,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &["back_head_influence.csv", "row 9", "`psi_deg`", "ascending"],
     ),
@@ -116,8 +116,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "mesh cut off",
         |c| {
-            let text = fs::read_to_string(c.path(MESH)).unwrap();
-            fs::write(c.path(MESH), &text[..text.len() / 2]).unwrap();
+            let bytes = fs::read(c.path(MESH)).unwrap();
+            fs::write(c.path(MESH), &bytes[..bytes.len() / 2]).unwrap();
         },
         &["back_head.msh", "line ", "MSH 4.1"],
     ),
@@ -149,7 +149,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "density_kg_m3 = 7850.0                                 #",
                 "density_kg_m3 = 7000.0 #",
-            )
+            );
         },
         &[
             "back_head.msh",

@@ -27,7 +27,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &[
             "card_5rpm.csv",
@@ -55,7 +55,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &[
             "card_5rpm.csv",
@@ -104,7 +104,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &[
             "card_5rpm.csv",
@@ -123,7 +123,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &["card_5rpm.csv", "row 9", "-5", "cannot push"],
     ),
@@ -132,7 +132,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
         |c| {
             c.lines(CARD, |at, line| {
                 Some(if at == 9 { "3.5".into() } else { line.into() })
-            })
+            });
         },
         &["card_5rpm.csv", "row 9", "1 cells", "2 cells"],
     ),

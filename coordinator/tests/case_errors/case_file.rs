@@ -35,7 +35,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "upper = 3.14e12, unit = \"N/m\"",
                 "upper = 3.14e12, unit = \"N/mm\"",
-            )
+            );
         },
         &["case.toml", "unknown variant `N/mm`", "did you mean `N/m`?"],
     ),
@@ -46,7 +46,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "upper = 1.10e6,  unit = \"N.m/deg\"",
                 "upper = 1.10e6, unit = \"N/m\"",
-            )
+            );
         },
         &[
             "case.toml",
@@ -120,7 +120,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "lower = 3.14e4, upper = 3.14e12",
                 "lower = 3.14e12, upper = 3.14e4",
-            )
+            );
         },
         &["case.toml", "`genes.kb1.lower`", "below upper"],
     ),
@@ -188,6 +188,61 @@ pub(super) const FAULTS: &[Spoilt] = &[
         "step that does not divide 360",
         |c| c.replace(TOML, "output_step_deg = 0.5", "output_step_deg = 0.7"),
         &["case.toml", "`run.output_step_deg` = 0.7", "divides 360"],
+    ),
+    (
+        "smoothing of nothing",
+        |c| {
+            c.replace(
+                TOML,
+                "smoothing = \"none\"",
+                "smoothing = { harmonics = 0 }",
+            );
+        },
+        &[
+            "case.toml",
+            "`conditions[0].smoothing`",
+            "at least 1 harmonic",
+            "moving_average_deg",
+        ],
+    ),
+    (
+        "smoothing unknown",
+        |c| {
+            c.replace(
+                TOML,
+                "smoothing = \"none\"",
+                "smoothing = { harmonic = 14 }",
+            );
+        },
+        &[
+            "case.toml",
+            "unknown variant `harmonic`",
+            "did you mean `harmonics`?",
+        ],
+    ),
+    (
+        "speed of the motor",
+        |c| c.replace(TOML, "speed_rpm = 5.0", "speed_rpm = 730.0"),
+        &[
+            "case.toml",
+            "`conditions[0].speed_rpm` = 730",
+            "0.1 to 60",
+            "not the motor's",
+        ],
+    ),
+    (
+        "negative weight",
+        |c| c.replace(TOML, "gauge = 3, weight = 1.0", "gauge = 3, weight = -1.0"),
+        &["case.toml", "`objective.gauges[1].weight` = -1", "above 0"],
+    ),
+    (
+        "weight axes unknown",
+        |c| c.replace(TOML, "modes_file", "weight_axes = \"swapped\"\nmodes_file"),
+        &[
+            "case.toml",
+            "unknown variant `swapped`",
+            "physical, exchanged",
+        ],
     ),
     (
         "more modes than there are",

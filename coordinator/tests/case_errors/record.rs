@@ -67,7 +67,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &["test_5rpm.csv.gz", "row 77", "`stress_3_mpa`", "overload"],
     ),
@@ -80,7 +80,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &[
             "test_5rpm.csv.gz",
@@ -99,7 +99,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &[
             "test_5rpm.csv.gz",
@@ -117,7 +117,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &["test_5rpm.csv.gz", "row 501", "`time_s`", "same time again"],
     ),
@@ -130,7 +130,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &["test_5rpm.csv.gz", "row 501", "`time_s`", "backwards"],
     ),
@@ -184,7 +184,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 SHEET,
                 "strokes_per_minute = 5.0",
                 "strokes_per_minute = 4.0",
-            )
+            );
         },
         &[
             "test_5rpm.toml",
@@ -251,7 +251,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 } else {
                     line.into()
                 })
-            })
+            });
         },
         &["test_5rpm.csv.gz", "row 60", "`stress_2_mpa`", "spike"],
     ),

@@ -1,12 +1,13 @@
 //! From samples to the output grid: local regression on each cycle, then mean and spread.
 //!
-//! A grid value is the value at 0 of the parabola that fits the samples near the grid angle best,
-//! with weights 1 - (u/h)^2. Unlike linear interpolation it averages the noise of several samples;
-//! unlike bins and triangles it does not smear: with h = 0.75 deg it keeps 99.7 % of a ripple of
-//! order 80 of the crank, where a bin of 0.5 deg keeps 98 % and a triangle 96 %. Because it fits a
-//! curve instead of averaging, uneven and lost samples do not bias it. Everything above the grid's
-//! Nyquist order (360 at 0.5 deg) is damped, so nothing aliases. Where a cycle has no samples on
-//! one side, or fewer than three, it has no value there and the other cycles stand for it.
+//! A grid value is the value at the grid angle of the parabola that fits the samples around it best,
+//! with weights 1 - (u/h)^2 within the half-width h. Unlike linear interpolation it averages the
+//! noise of several samples; unlike bins and triangles it does not smear: with h = 0.75 deg it
+//! keeps 99.8 % of a ripple of order 80 of the crank, where a bin of 0.5 deg keeps 98 % and a
+//! triangle 96 %. Because it fits a curve instead of averaging, uneven and lost samples do not bias
+//! it. At the grid's Nyquist order (360 at 0.5 deg) half is kept, above it less, and a gauge
+//! amplifier leaves nothing there: nothing aliases that matters. Where a cycle has samples on one
+//! side only, or fewer than three, it has no value, and the other cycles stand for it.
 use super::samples::Samples;
 
 /// Resampled cycles.
