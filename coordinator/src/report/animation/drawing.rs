@@ -102,9 +102,9 @@ pub(super) fn drawing(case: &Case, film: &Film) -> Markup {
             title { "Side view of the pumping unit, in scale" }
             (hatch())
             (ground(case, &frame))
-            (rod(case, film))
+            (post(&frame))
             (crank(case, film))
-            (post(case, &frame))
+            (rod(case, film))
             g id="machine-beam" transform=(format!("rotate({:.3})", -beam)) {
                 (beam_and_heads(case, &frame))
             }
@@ -164,7 +164,7 @@ fn ground(case: &Case, frame: &Frame) -> Markup {
 }
 
 /// Post from the pivot to the ground: schematic.
-fn post(_case: &Case, frame: &Frame) -> Markup {
+fn post(frame: &Frame) -> Markup {
     let foot = frame.ground;
     let (front, back) = (0.2 * -foot, -0.13 * -foot);
     let brace = |share: f64| {
@@ -409,8 +409,8 @@ pub(super) fn legend(film: &Film) -> Markup {
             div.ramp style=(gradient) {}
             div.ramp-ends { span { (format!("{low:.0}")) } span { (format!("{high:.0}")) } }
             p {
-                span.swatch {} " contact force per length, outwards: 0.25 m in the drawing is "
-                (format!("{quarter:.0}")) " kN/m"
+                span.swatch {} " contact force per length, drawn outwards: "
+                (format!("{quarter:.0}")) " kN/m is 0.25 m on the scale of the machine"
             }
             p.note {
                 "Arcs, anchors, crank, rod and ropes are in scale from the case, ropes drawn \

@@ -100,7 +100,8 @@ impl RopeFrame {
             path.extend([x - before[0], y - before[1]]);
             before = [x, y];
         }
-        let force = |newtons: f32| mm(1e-3 * f64::from(newtons) * 1e-2);
+        // hundreds of newtons, through the same rounding as lengths
+        let force = |newtons: f32| mm(1e-5 * f64::from(newtons));
         let contact = |newtons: f32| mm(1e-3 * mm_per_newton * f64::from(newtons)).clamp(0, 1500);
         let count = points.len();
         Self {
@@ -157,8 +158,8 @@ impl Film {
         );
         let end = |share| quantile(&tensions, share).map_or(0.0, |newtons| 1e-2 * newtons);
         let (low, high) = (
-            (end(0.02) / 50.0).floor() * 5.0,
-            (end(0.98) / 50.0).ceil() * 5.0,
+            (end(0.02) / 50.0).floor() * 50.0,
+            (end(0.98) / 50.0).ceil() * 50.0,
         );
         // the strong contacts of ordinary running are drawn about 0.35 m high
         let strong_n = quantile(&contacts, 0.9).unwrap_or(1.0).max(1.0);
@@ -201,7 +202,7 @@ impl Film {
                 f64::from(mm(case.crank.center_y_m)),
                 phase,
             ],
-            tension_range: [low, if high > low { high } else { low + 5.0 }],
+            tension_range: [low, if high > low { high } else { low + 50.0 }],
             stops: crate::report::color::tension_stops(),
             pressure_kn_per_m: 1e-3 * strong_n / case.ropes.cylinder_length_m / 0.35,
             readouts: readouts(case, simulation, &frames),

@@ -18,7 +18,7 @@ const PLAYER: &str = include_str!("player.js");
 ///
 /// # Errors
 /// [`ChartError`] when the curves beside it cannot be drawn.
-pub fn machine(
+pub(super) fn machine(
     case: &Case,
     condition: usize,
     simulation: &Simulation,

@@ -7,7 +7,7 @@ mod single;
 pub use compare::{table_3, table_4, workers};
 pub use single::{genes, simulation};
 
-use comfy_table::{Attribute, Cell, CellAlignment, presets};
+use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};
 use protocol::case::GeneName;
 
@@ -91,7 +91,8 @@ pub fn text(table: &Table, styled: bool) -> String {
         }
     };
     let mut grid = comfy_table::Table::new();
-    grid.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    // rules above, below and under the head only, as in print
+    grid.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
     if styled {
         grid.enforce_styling();
     } else {

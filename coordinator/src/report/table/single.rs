@@ -1,7 +1,7 @@
 //! One simulation in numbers.
 use super::{Label, Row, Table};
 use crate::report::data::SingleRun;
-use crate::report::number::{NONE, count, duration, figure, fixed, percent, range};
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, unit};
 use crate::report::words::{self, condition_name};
 use protocol::job::{Energy, Simulation};
 
@@ -151,7 +151,7 @@ pub fn genes(run: &SingleRun) -> Table {
                 Row::Values(
                     Label::Gene(gene.name),
                     vec![
-                        gene.unit.symbol().to_owned(),
+                        unit(gene.unit).to_owned(),
                         figure(value),
                         figure(gene.recommended),
                     ],
