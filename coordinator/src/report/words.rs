@@ -77,7 +77,7 @@ pub(super) fn complete_objective(result: &ConditionResult) -> Option<f64> {
 }
 
 /// Headline of a calibration: whether the error fell, and by how much.
-pub(super) fn headline(calibration: &Calibration) -> String {
+pub fn headline(calibration: &Calibration) -> String {
     let Some(result) = calibration.calibrated() else {
         return "The calibrated condition has no result.".to_owned();
     };
@@ -140,7 +140,7 @@ fn capitalised(sentence: &str) -> String {
 }
 
 /// One sentence per gauge of a condition; gauges that got worse are said to be worse.
-pub(super) fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
+pub fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
     let before = &result.recommended.evaluation.channels;
     let after = &result.optimised.evaluation.channels;
     let calibrated = result.condition == case.objective.condition;
@@ -180,7 +180,7 @@ pub(super) fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
 }
 
 /// Warnings that follow from the data of a calibration.
-pub(super) fn warnings(calibration: &Calibration) -> Vec<String> {
+pub fn warnings(calibration: &Calibration) -> Vec<String> {
     let case = &calibration.case;
     let mut warnings = Vec::new();
     for result in &calibration.conditions {

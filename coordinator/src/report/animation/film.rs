@@ -7,6 +7,8 @@ use protocol::case::Case;
 use protocol::job::{Motion, Simulation};
 use serde::Serialize;
 
+/// Millimetres per unit of the drawing, a centimetre.
+pub(super) const MM: f64 = 10.0;
 /// Snapshots kept at most: one every two degrees.
 const FRAMES: usize = 181;
 

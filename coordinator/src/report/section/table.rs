@@ -25,6 +25,7 @@ fn render(subject: Subject<'_>) -> Rendered {
         }
         Subject::Single(run) => html! {
             (table::markup(&table::simulation(run)))
+            (table::markup(&table::balance(run)))
             (table::markup(&table::genes(run)))
         },
     }))

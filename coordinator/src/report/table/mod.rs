@@ -1,11 +1,11 @@
 //! Tables from one description: for the terminal and for HTML.
 //!
-//! What stands in them is in [`compare`] and [`single`]; here is only how it is set.
+//! Here is only how a table is set; `compare` and `single` fill it.
 mod compare;
 mod single;
 
 pub use compare::{table_3, table_4, workers};
-pub use single::{genes, simulation};
+pub use single::{balance, genes, simulation};
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};
@@ -98,7 +98,14 @@ pub fn text(table: &Table, styled: bool) -> String {
     } else {
         grid.force_no_tty();
     }
-    grid.set_header(table.head.iter().map(|head| bold(Cell::new(head))));
+    grid.set_header(table.head.iter().enumerate().map(|(column, head)| {
+        let alignment = if column == 0 {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        };
+        bold(Cell::new(head).set_alignment(alignment))
+    }));
     for row in &table.rows {
         match row {
             Row::Group(name) => {
