@@ -73,6 +73,19 @@ pub(super) struct Film {
     pub readouts: Vec<Readout>,
 }
 
+/// Whether every place in a snapshot is a number; others cannot be drawn.
+fn is_finite(motion: &Motion) -> bool {
+    let single = [
+        motion.crank_pin_m,
+        motion.crossbeam_m,
+        motion.suspension_m,
+        [motion.beam_deg, 0.0],
+    ];
+    let ropes = motion.back_rope_m.iter().chain(&motion.front_rope_m);
+    let mut places = ropes.chain(&single).flatten();
+    motion.turn_deg.is_finite() && places.all(|place| place.is_finite())
+}
+
 /// Metres to whole millimetres; zero where there is no number.
 #[expect(
     clippy::cast_possible_truncation,
@@ -136,7 +149,7 @@ impl Film {
         let usable: Vec<&Motion> = simulation
             .motion
             .iter()
-            .filter(|motion| motion.turn_deg.is_finite() && motion.beam_deg.is_finite())
+            .filter(|motion| is_finite(motion))
             .collect();
         let every = usable.len().div_ceil(FRAMES).max(1);
         let frames: Vec<&Motion> = usable.iter().copied().step_by(every).collect();

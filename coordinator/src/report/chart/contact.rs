@@ -57,10 +57,11 @@ fn cells(case: &Case, simulation: &Simulation) -> Vec<Cell> {
         }
         for (&point, &force) in motion.back_rope_m.iter().zip(&motion.back_contact_n) {
             let force = f64::from(force);
-            if force.is_finite() && force > 0.0 {
+            let psi_deg = arc_deg(case, motion, point);
+            if psi_deg.is_finite() && force.is_finite() && force > 0.0 {
                 cells.push(Cell {
                     turn_deg: (from, to),
-                    psi_deg: arc_deg(case, motion, point),
+                    psi_deg,
                     force: 1e-3 * force / case.ropes.cylinder_length_m,
                 });
             }

@@ -73,7 +73,9 @@ impl Side {
             .iter()
             .find(|channel| channel.gauge == trace.gauge);
         let remark = match (run.simulation.verdict, channel) {
-            (verdict @ Verdict::Failed { .. }, _) => words::verdict(&verdict),
+            (verdict @ Verdict::Failed { .. }, _) => {
+                format!("{}; not shifted", words::verdict(&verdict))
+            }
             (Verdict::Complete, Some(channel)) => format!(
                 "rms error {} MPa, {} of half the range; shifted by {} MPa",
                 fixed(channel.rmse_over_half_range * half_range(trace), 2),
@@ -152,8 +154,8 @@ pub fn overlay(
     })?;
     let free = match case.objective.offset {
         Offset::Free => {
-            " The simulated curve is shifted to the measured mean, because a strain bridge has no \
-             absolute zero."
+            " Complete simulated curves are shifted to the measured mean, because a strain bridge \
+             has no absolute zero."
         }
         Offset::Fixed => "",
     };
