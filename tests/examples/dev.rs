@@ -30,7 +30,8 @@ fn main() {
     let cond = case.condition(&std::env::var("COND").unwrap_or("5rpm".into())).unwrap();
     let machine = worker::convert::machine(&case, cond).unwrap();
     let law = worker::convert::rope_law(&case, &genes).unwrap();
-    let settings = worker::convert::run_settings(&case);
+    let mut settings = worker::convert::run_settings(&case); if let Ok(m) = std::env::var("METHOD") { settings.method = simulation::integrator::tableau::CATALOGUE.iter().find(|t| t.name == m).unwrap(); }
+    if let Ok(x) = std::env::var("HMAX") { settings.longest_step = x.parse().unwrap(); }
     let reps: usize = std::env::var("REPS").ok().and_then(|x| x.parse().ok()).unwrap_or(1);
     let mut rec = Recorder::default();
     let mut walls = vec![];

@@ -1,8 +1,9 @@
 //! From a case, as it travels, to a machine as the dynamics take it, and back: the only file that
 //! names both vocabularies. Degrees become radians and megapascals pascals here.
-use protocol::case::{Case, Condition, GeneName, RopeEnds, Smoothing, TurnSense, WeightAxes};
+use protocol::case::{Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, TurnSense, WeightAxes};
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
+use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
 use simulation::model::Machine;
 use simulation::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
 use simulation::run::RunSettings;
@@ -221,6 +222,11 @@ pub fn run_settings(case: &Case) -> RunSettings {
         ramp: case.run.ramp_s,
         samples,
         tolerance: case.run.tolerance,
+        method: match case.run.integrator {
+            Integrator::TrBdf2 => &TR_BDF2,
+            Integrator::Esdirk4 => &ESDIRK4,
+        },
+        longest_step: case.run.longest_step_s,
         ..RunSettings::default()
     }
 }

@@ -46,9 +46,6 @@ pub(super) struct FlexibleHead {
     pub(super) weight_axes: WeightAxes,
     /// Density of the mesh [kg/m3].
     pub(super) density_kg_m3: f64,
-    /// How the gauge records hold the head's own weight.
-    #[serde(default)]
-    pub(super) weight_axes: WeightAxes,
 }
 
 /// One entry per gene; all are required.

@@ -147,6 +147,7 @@ pub(crate) fn case() -> Case {
             tangential: Vec::new(),
             gauge_stress_mpa: Vec::new(),
             participation: Vec::new(),
+            weight_axes: protocol::case::WeightAxes::Physical,
             inertia_stress_mpa: [[0.0; 4]; 3],
             mass_kg: 881.0,
             influence: Influence {
@@ -166,6 +167,8 @@ pub(crate) fn case() -> Case {
             output_step_deg: 0.5,
             lead_in_deg: 30.0,
             ramp_s: 2.0,
+            integrator: protocol::case::Integrator::Esdirk4,
+            longest_step_s: 0.03,
             tolerance: 1.0,
             modes: 6,
         },

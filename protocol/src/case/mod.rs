@@ -64,10 +64,24 @@ pub struct RunSettings {
     pub lead_in_deg: f64,
     /// Time in which the crank is brought from rest to full speed \[s\].
     pub ramp_s: f64,
+    /// Method of integration.
+    pub integrator: Integrator,
+    /// Longest step \[s\]; it bounds how coarsely the rope's own modes are resolved.
+    pub longest_step_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,
     /// Number of head modes that are simulated.
     pub modes: usize,
+}
+
+/// Methods of integration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Second order, two implicit stages a step.
+    TrBdf2,
+    /// Fourth order, five implicit stages a step.
+    Esdirk4,
 }
 
 impl Case {

@@ -1,6 +1,7 @@
 //! One simulation: settle, lead in, one recorded revolution.
 use crate::drive::Drive;
-use crate::integrator::{State, dense::interpolate, step_control::StepControl, tr_bdf2::TrBdf2};
+use crate::integrator::tableau::{ESDIRK4, Tableau};
+use crate::integrator::{State, dense::interpolate, esdirk::Esdirk, step_control::StepControl};
 use crate::model::description::RopeLaw;
 use crate::model::{Machine, Powers};
 use crate::settle::{Settled, equilibrium, guess};
@@ -10,8 +11,10 @@ use crate::verdict::{Failure, Limits, Reached, Verdict};
 use std::f64::consts::TAU;
 
 /// How a run is started, integrated and sampled.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct RunSettings {
+    /// Method of integration.
+    pub method: &'static Tableau,
     /// Turn angle before bottom dead centre at which the crank starts [rad].
     pub lead_in: f64,
     /// Time to full speed [s].
@@ -20,6 +23,8 @@ pub struct RunSettings {
     pub samples: usize,
     /// Local error per step, in units of the built-in scales.
     pub tolerance: f64,
+    /// Longest step \[s\]; it bounds how coarsely the rope modes (5 to 7 Hz) are resolved.
+    pub longest_step: f64,
     /// Newton iterations that one run may take.
     pub budget: u64,
     /// When a run is no longer one of this machine.
@@ -29,10 +34,12 @@ pub struct RunSettings {
 impl Default for RunSettings {
     fn default() -> Self {
         Self {
+            method: &ESDIRK4,
             lead_in: TAU / 6.0,
             ramp: 1.5,
             samples: 720,
             tolerance: 1.0,
+            longest_step: 0.05,
             budget: 60_000,
             limits: Limits::default(),
         }
@@ -58,8 +65,7 @@ pub struct RunResult {
     pub stored: f64,
 }
 
-/// Longest and shortest step [s].
-const LONGEST_STEP: f64 = 0.05;
+/// Shortest step; a run that needs shorter ones ends \[s\].
 const SHORTEST_STEP: f64 = 1e-9;
 
 /// Simulates one individual; never panics and never hangs.
@@ -155,16 +161,15 @@ fn revolve(
 ) -> RunResult {
     let n = start.len();
     let control = StepControl {
-        order: 3.0,
+        order: settings.method.error_order,
         tolerance: settings.tolerance,
-        longest: LONGEST_STEP,
+        longest: settings.longest_step,
         shortest: SHORTEST_STEP,
     };
-    let mut method = TrBdf2::new(n);
+    let mut method = Esdirk::new(settings.method, n);
     let mut from = State::at_rest(0.0, start);
     let mut to = from.clone();
     let mut between = from.clone();
-    let mut power = Powers::default();
     let (begin, end) = (system.drive.time_at(0.0), system.drive.time_at(TAU));
     let (mut h, mut sample) = (1e-3, 0);
     let mut ledger = Ledger::default();
@@ -181,8 +186,7 @@ fn revolve(
         let stop = if from.t < begin - 1e-9 { begin } else { end };
         let left = stop - from.t;
         let step = if h >= left { left } else if h > 0.5 * left { 0.5 * left } else { h };
-        let mut next_power = power;
-        match method.step(system, &from, step, &mut to, &mut next_power) {
+        match method.step(system, &from, step, &mut to) {
             Err(_) => {
                 system.statistics.newton_rejections += 1;
                 h = 0.3 * step;
@@ -193,7 +197,7 @@ fn revolve(
             }
             Ok(done) => {
                 system.statistics.steps += 1;
-                power = next_power;
+                method.accept();
                 if let Some(kind) = settings.limits.broken(
                     system.machine,
                     system.ropes.joint.stiffness[0],

@@ -3,9 +3,10 @@
 //! A method advances a [`State`] by one step and knows nothing of what is recorded. Step size
 //! control and Newton's method with its refactorisation policy are small objects of their own.
 pub mod dense;
+pub mod esdirk;
 pub mod newton;
 pub mod step_control;
-pub mod tr_bdf2;
+pub mod tableau;
 
 /// Coordinates, rates and accelerations at a time.
 #[derive(Clone, Debug, PartialEq)]

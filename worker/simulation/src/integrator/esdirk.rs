@@ -1,0 +1,149 @@
+//! Singly diagonally implicit Runge-Kutta methods with an explicit first stage, for second-order
+//! systems.
+//!
+//! Every implicit stage is `q = base_q + c v`, `v = base_v + c a`, `M a = Q(q, v, t)` with the same
+//! `c`, so one factorisation of `M / c^2 - D / c - K` serves all of them.
+use super::newton::{Newton, NotConverged, Stage};
+use super::{State, tableau::Tableau};
+use crate::model::Powers;
+use crate::system::System;
+
+/// Result of one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Local error in units of the error norm.
+    pub error: f64,
+    /// Work done during the step: input, output, dissipated \[J\].
+    pub work: Powers,
+}
+
+/// A method with its buffers.
+#[derive(Clone, Debug)]
+pub struct Esdirk {
+    tableau: &'static Tableau,
+    newton: Newton,
+    /// Rates and accelerations of the stages but the last.
+    stages: Vec<(Vec<f64>, Vec<f64>)>,
+    powers: Vec<Powers>,
+    base_q: Vec<f64>,
+    base_v: Vec<f64>,
+    error: Vec<f64>,
+}
+
+impl Esdirk {
+    /// For `n` coordinates.
+    pub fn new(tableau: &'static Tableau, n: usize) -> Self {
+        Self {
+            tableau,
+            newton: Newton::new(n),
+            stages: vec![(vec![0.0; n], vec![0.0; n]); tableau.stages() - 1],
+            powers: vec![Powers::default(); tableau.stages()],
+            base_q: vec![0.0; n],
+            base_v: vec![0.0; n],
+            error: vec![0.0; n],
+        }
+    }
+
+    /// One step of size `h` from `from` into `to`.
+    ///
+    /// # Errors
+    /// [`NotConverged`] when a stage could not be solved; `to` is then meaningless.
+    pub fn step(
+        &mut self,
+        system: &mut System<'_>,
+        from: &State,
+        h: f64,
+        to: &mut State,
+    ) -> Result<Step, NotConverged> {
+        let tableau = self.tableau;
+        let last = tableau.stages() - 1;
+        let c = tableau.diagonal * h;
+        self.stages[0].0.copy_from_slice(&from.v);
+        self.stages[0].1.copy_from_slice(&from.a);
+        for i in 1..=last {
+            self.bases(i, h, from);
+            self.predict(i, c, to);
+            let stage = Stage {
+                t: from.t + tableau.nodes[i] * h,
+                c,
+                base_q: &self.base_q,
+                base_v: &self.base_v,
+            };
+            self.newton
+                .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
+            self.powers[i] = system.powers(stage.t, &to.q, &to.v, &to.a);
+            if i < last {
+                self.stages[i].0.copy_from_slice(&to.v);
+                self.stages[i].1.copy_from_slice(&to.a);
+            }
+        }
+        to.t = from.t + h;
+        self.estimate(h, to);
+        let error = system.error_norm(&self.error);
+        let work = self.work(h);
+        Ok(Step { error, work })
+    }
+
+    /// Takes the powers of the accepted step's end as those of the next one's start.
+    pub fn accept(&mut self) {
+        self.powers[0] = self.powers[self.tableau.stages() - 1];
+    }
+
+    /// What coordinates and rates of stage `i` are without its own rate and acceleration.
+    fn bases(&mut self, i: usize, h: f64, from: &State) {
+        self.base_q.copy_from_slice(&from.q);
+        self.base_v.copy_from_slice(&from.v);
+        for (weight, (v, a)) in self.tableau.rows[i].iter().zip(&self.stages) {
+            let weight = h * weight;
+            for k in 0..v.len() {
+                self.base_q[k] += weight * v[k];
+                self.base_v[k] += weight * a[k];
+            }
+        }
+    }
+
+    /// Predicts the rates of stage `i` by extrapolating the accelerations of earlier stages.
+    fn predict(&self, i: usize, c: f64, to: &mut State) {
+        let node = self.tableau.nodes[i];
+        let (_, first) = &self.stages[0];
+        if i == 1 {
+            for k in 0..first.len() {
+                to.v[k] = self.base_v[k] + c * first[k];
+            }
+            return;
+        }
+        // linear through the first stage and the latest one
+        let (_, latest) = &self.stages[i - 1];
+        let ratio = node / self.tableau.nodes[i - 1];
+        for k in 0..first.len() {
+            let a = first[k] + ratio * (latest[k] - first[k]);
+            to.v[k] = self.base_v[k] + c * a;
+        }
+    }
+
+    fn estimate(&mut self, h: f64, to: &State) {
+        let tableau = self.tableau;
+        let last = tableau.stages() - 1;
+        let weight = |i: usize| h * (tableau.weight(i) - tableau.embedded[i]);
+        for (k, error) in self.error.iter_mut().enumerate() {
+            *error = weight(last) * to.v[k];
+        }
+        for (i, (v, _)) in self.stages.iter().enumerate() {
+            let weight = weight(i);
+            for (error, v) in self.error.iter_mut().zip(v) {
+                *error += weight * v;
+            }
+        }
+    }
+
+    fn work(&self, h: f64) -> Powers {
+        let mut work = Powers::default();
+        for (i, power) in self.powers.iter().enumerate() {
+            let weight = h * self.tableau.weight(i);
+            work.input += weight * power.input;
+            work.output += weight * power.output;
+            work.dissipated += weight * power.dissipated;
+        }
+        work
+    }
+}
