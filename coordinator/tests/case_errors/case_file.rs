@@ -237,7 +237,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
     ),
     (
         "weight axes unknown",
-        |c| c.replace(TOML, "modes_file", "weight_axes = \"swapped\"\nmodes_file"),
+        |c| c.replace(TOML, "\"exchanged\"", "\"swapped\""),
         &[
             "case.toml",
             "unknown variant `swapped`",

@@ -140,11 +140,7 @@ fn the_weight_is_physical_unless_stated() {
         let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
         case.modal_head.weight_axes
     };
-    assert_eq!(axes(), WeightAxes::Physical);
-    copy.replace(
-        TOML,
-        "modes_file",
-        "weight_axes = \"exchanged\"\nmodes_file",
-    );
     assert_eq!(axes(), WeightAxes::Exchanged);
+    copy.replace(TOML, "weight_axes = \"exchanged\"", "");
+    assert_eq!(axes(), WeightAxes::Physical);
 }
