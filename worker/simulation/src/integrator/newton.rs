@@ -11,7 +11,7 @@ pub struct RefactorPolicy {
 
 impl RefactorPolicy {
     /// Convergence rate above which the next stage starts with a new factorisation.
-    pub const SLOW: f64 = 0.35;
+    pub const SLOW: f64 = 0.15;
     /// Relative change of the coefficient that a factorisation survives.
     pub const DRIFT: f64 = 0.25;
 

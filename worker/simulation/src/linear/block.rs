@@ -1,4 +1,7 @@
-//! Dense 6 x 6 blocks: LU with partial pivoting, products.
+//! Dense 6 x 6 blocks: inversion by elimination with partial pivoting, products.
+//!
+//! A factorisation is used for some twenty solutions, and a product with an explicit inverse is six
+//! independent columns where a triangular solution is a chain: it is worth its making.
 use nalgebra::{SMatrix, SVector};
 
 /// Width of a block: the six coordinates of a rigid body.
@@ -7,16 +10,15 @@ pub const BLOCK: usize = 6;
 /// One block, column-major.
 pub type Block = SMatrix<f64, BLOCK, BLOCK>;
 
-/// Row exchanges of a factorised block.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Pivots([u8; BLOCK]);
+/// Six entries of a vector of unknowns.
+pub(super) type Column = SVector<f64, BLOCK>;
 
-/// Factorises in place: unit lower and upper triangle.
+/// Replaces a block by its inverse (Gauss-Jordan with row exchanges).
 ///
 /// # Errors
 /// The column whose pivot vanished or is not finite.
-pub(super) fn factorize(a: &mut Block) -> Result<Pivots, usize> {
-    let mut pivots = [0_u8; BLOCK];
+pub(super) fn invert(a: &mut Block) -> Result<(), usize> {
+    let mut exchanged = [0; BLOCK];
     for k in 0..BLOCK {
         let mut best = k;
         let mut size = a[(k, k)].abs();
@@ -31,55 +33,67 @@ pub(super) fn factorize(a: &mut Block) -> Result<Pivots, usize> {
         if !(size > 0.0 && size.is_finite()) {
             return Err(k);
         }
-        #[expect(clippy::cast_possible_truncation, reason = "below six")]
-        {
-            pivots[k] = best as u8;
-        }
+        exchanged[k] = best;
         if best != k {
             a.swap_rows(k, best);
         }
         let inverse = 1.0 / a[(k, k)];
-        for i in k + 1..BLOCK {
-            a[(i, k)] *= inverse;
-        }
-        for j in k + 1..BLOCK {
-            let factor = a[(k, j)];
-            for i in k + 1..BLOCK {
-                a[(i, j)] -= a[(i, k)] * factor;
+        let mut column = a.column(k).into_owned();
+        column[k] = -1.0;
+        a.set_column(k, &Column::zeros());
+        a[(k, k)] = 1.0;
+        for j in 0..BLOCK {
+            let factor = a[(k, j)] * inverse;
+            for i in 0..BLOCK {
+                a[(i, j)] -= column[i] * factor;
             }
-        }
-    }
-    Ok(Pivots(pivots))
-}
-
-/// Solves in place for one right-hand side.
-#[inline]
-pub(super) fn solve(a: &Block, pivots: &Pivots, x: &mut [f64; BLOCK]) {
-    for k in 0..BLOCK {
-        x.swap(k, usize::from(pivots.0[k]));
-    }
-    for k in 0..BLOCK {
-        let value = x[k];
-        for i in k + 1..BLOCK {
-            x[i] -= a[(i, k)] * value;
+            a[(k, j)] = factor;
         }
     }
     for k in (0..BLOCK).rev() {
-        x[k] /= a[(k, k)];
+        a.swap_columns(k, exchanged[k]);
+    }
+    Ok(())
+}
+
+/// `A x`.
+#[inline]
+pub(super) fn product(a: &Block, x: &Column) -> Column {
+    let mut y = Column::zeros();
+    for k in 0..BLOCK {
         let value = x[k];
-        for i in 0..k {
-            x[i] -= a[(i, k)] * value;
+        for i in 0..BLOCK {
+            y[i] += a[(i, k)] * value;
         }
     }
+    y
 }
 
 /// `y -= A x`.
 #[inline]
-pub(super) fn subtract_product(a: &Block, x: &SVector<f64, BLOCK>, y: &mut SVector<f64, BLOCK>) {
+pub(super) fn subtract_product(a: &Block, x: &Column, y: &mut Column) {
     for k in 0..BLOCK {
         let value = x[k];
         for i in 0..BLOCK {
             y[i] -= a[(i, k)] * value;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn inverse_undoes_a_block_that_needs_row_exchanges() {
+        let mut a = Block::from_fn(|i, j| ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64);
+        a[(0, 0)] = 0.0;
+        let mut inverse = a;
+        invert(&mut inverse).unwrap();
+        assert!((a * inverse - Block::identity()).norm() < 1e-12, "{}", a * inverse);
+        let mut singular = a;
+        singular.set_column(3, &a.column(1).into_owned());
+        singular.set_column(1, &Column::zeros());
+        assert_eq!(invert(&mut singular), Err(1));
     }
 }

@@ -2,10 +2,7 @@
 //!
 //! Every chain is eliminated from its free end towards its anchored end, so the border's columns
 //! fill in only from the first block that touches the border on. Cost O(blocks).
-use super::block::{BLOCK, Block, Pivots, factorize, solve, subtract_product};
-use nalgebra::{SMatrix, SVector};
-
-type Column = SVector<f64, BLOCK>;
+use super::block::{BLOCK, Block, Column, invert, product, subtract_product};
 
 /// A pivot vanished: the matrix is singular or holds a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -31,7 +28,6 @@ pub struct Bordered {
     /// Border by border, column-major.
     corner: Vec<f64>,
     touches: Vec<bool>,
-    pivots: Vec<Pivots>,
     filled_from: Vec<usize>,
     corner_pivots: Vec<usize>,
 }
@@ -50,7 +46,6 @@ impl Bordered {
             bottom: vec![Column::zeros(); blocks * border],
             corner: vec![0.0; border * border],
             touches: vec![false; blocks],
-            pivots: vec![Pivots::default(); blocks],
             filled_from: vec![0; chains.len()],
             corner_pivots: vec![0; border],
         }
@@ -119,7 +114,7 @@ impl Bordered {
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.len()];
         let base = self.diagonal.len() * BLOCK;
-        let part = |b: usize| Column::from_column_slice(&x[b * BLOCK..(b + 1) * BLOCK]);
+        let part = |b: usize| column(x, b);
         let mut first = 0;
         for &count in &self.chains {
             for b in first..first + count {
@@ -138,9 +133,9 @@ impl Bordered {
             }
             first += count;
         }
-        for column in 0..self.border {
+        for k in 0..self.border {
             for row in 0..self.border {
-                y[base + row] += self.corner[column * self.border + row] * x[base + column];
+                y[base + row] += self.corner[k * self.border + row] * x[base + k];
             }
         }
         y
@@ -166,34 +161,27 @@ impl Bordered {
 
     /// Eliminates one block: `upper` and `right` become `D^-1 upper` and `D^-1 right`.
     fn eliminate(&mut self, b: usize, has_next: bool, filled: bool) -> Result<(), SingularPivot> {
-        let pivots = factorize(&mut self.diagonal[b]).map_err(|column| SingularPivot {
+        invert(&mut self.diagonal[b]).map_err(|column| SingularPivot {
             unknown: b * BLOCK + column,
         })?;
-        self.pivots[b] = pivots;
         let m = self.border;
         if has_next {
-            for column in 0..BLOCK {
-                let mut x: [f64; BLOCK] = self.upper[b].fixed_view::<6, 1>(0, column).into_owned().into();
-                solve(&self.diagonal[b], &pivots, &mut x);
-                self.upper[b].set_column(column, &Column::from(x));
-            }
-            let product = self.lower[b] * self.upper[b];
-            self.diagonal[b + 1] -= product;
+            self.upper[b] = self.diagonal[b] * self.upper[b];
+            let fill = self.lower[b] * self.upper[b];
+            self.diagonal[b + 1] -= fill;
         }
         if !filled {
             return Ok(());
         }
         for k in 0..m {
-            let mut x: [f64; BLOCK] = self.right[b * m + k].into();
-            solve(&self.diagonal[b], &pivots, &mut x);
-            self.right[b * m + k] = Column::from(x);
+            self.right[b * m + k] = product(&self.diagonal[b], &self.right[b * m + k]);
         }
         if has_next {
             let (head, tail) = self.right.split_at_mut((b + 1) * m);
             for k in 0..m {
                 subtract_product(&self.lower[b], &head[b * m + k], &mut tail[k]);
             }
-            let transposed: SMatrix<f64, BLOCK, BLOCK> = self.upper[b].transpose();
+            let transposed = self.upper[b].transpose();
             let (head, tail) = self.bottom.split_at_mut((b + 1) * m);
             for k in 0..m {
                 subtract_product(&transposed, &head[b * m + k], &mut tail[k]);
@@ -249,14 +237,10 @@ impl Bordered {
         for (chain, &count) in self.chains.iter().enumerate() {
             let end = first + count;
             for b in first..end {
-                let mut y = [0.0; BLOCK];
-                y.copy_from_slice(&blocks[b * BLOCK..(b + 1) * BLOCK]);
-                solve(&self.diagonal[b], &self.pivots[b], &mut y);
-                blocks[b * BLOCK..(b + 1) * BLOCK].copy_from_slice(&y);
-                let y = Column::from(y);
+                let y = product(&self.diagonal[b], &column(blocks, b));
+                blocks[b * BLOCK..(b + 1) * BLOCK].copy_from_slice(y.as_slice());
                 if b + 1 < end {
-                    let mut next =
-                        Column::from_column_slice(&blocks[(b + 1) * BLOCK..(b + 2) * BLOCK]);
+                    let mut next = column(blocks, b + 1);
                     subtract_product(&self.lower[b], &y, &mut next);
                     blocks[(b + 1) * BLOCK..(b + 2) * BLOCK].copy_from_slice(next.as_slice());
                 }
@@ -296,10 +280,9 @@ impl Bordered {
         for (chain, &count) in self.chains.iter().enumerate().rev() {
             let first = end - count;
             for b in (first..end).rev() {
-                let mut y = Column::from_column_slice(&blocks[b * BLOCK..(b + 1) * BLOCK]);
+                let mut y = column(blocks, b);
                 if b + 1 < end {
-                    let next = Column::from_column_slice(&blocks[(b + 1) * BLOCK..(b + 2) * BLOCK]);
-                    subtract_product(&self.upper[b], &next, &mut y);
+                    subtract_product(&self.upper[b], &column(blocks, b + 1), &mut y);
                 }
                 if b >= self.filled_from[chain] {
                     for k in 0..m {
@@ -311,6 +294,12 @@ impl Bordered {
             end = first;
         }
     }
+}
+
+/// Entries of block `b`.
+#[inline]
+fn column(blocks: &[f64], b: usize) -> Column {
+    Column::from_column_slice(&blocks[b * BLOCK..(b + 1) * BLOCK])
 }
 
 #[cfg(test)]

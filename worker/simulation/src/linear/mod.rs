@@ -3,5 +3,5 @@
 mod block;
 mod bordered;
 
-pub use block::{BLOCK, Block, Pivots};
+pub use block::{BLOCK, Block};
 pub use bordered::{Bordered, SingularPivot};

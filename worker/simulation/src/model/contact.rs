@@ -37,6 +37,25 @@ pub struct Surface<'a> {
     pub shapes: Option<&'a Splines>,
 }
 
+/// Where a cylinder's centre lies, seen from the arc's centre: one arc tangent serves all of its
+/// Gauss points.
+#[derive(Clone, Copy, Debug)]
+pub struct Bearing {
+    toward: V2,
+    angle: f64,
+}
+
+/// Angle from `a` to `b` \[rad\], by the arc tangent's series: Gauss points of one cylinder lie
+/// within a few hundredths of a radian, where the first term left out is below 1e-17.
+fn small_angle(a: &V2, b: &V2) -> f64 {
+    let t = (a.x * b.y - a.y * b.x) / a.dot(b);
+    let u = t * t;
+    if u > 4e-3 {
+        return atan2(a.x * b.y - a.y * b.x, a.dot(b));
+    }
+    t * (1.0 - u * (1.0 / 3.0 - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
+}
+
 /// Penetration of one point with its first derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch {
@@ -96,20 +115,25 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Whether a cylinder of half length `half` centred at `g` may touch at all.
-    pub fn near(&self, g: &V2, half: f64) -> bool {
+    /// The bearing of a cylinder of half length `half` centred at `g`, if it may touch at all.
+    pub fn bearing(&self, g: &V2, half: f64) -> Option<Bearing> {
         let reach = self.radius + half + 0.01;
-        (g - self.center).norm_squared() < reach * reach
+        let w = g - self.center;
+        (w.norm_squared() < reach * reach).then(|| Bearing {
+            toward: w,
+            // only a deflected surface asks for the angle
+            angle: self.shapes.map_or(0.0, |_| self.arc_angle(&w)),
+        })
     }
 
     /// Penetration of the point `g` that moves with `velocity`; `shape` receives the modes' radial
     /// shapes there.
-    pub fn touch(&self, g: &V2, velocity: &V2, shape: &mut [f64]) -> Touch {
+    pub fn touch(&self, bearing: &Bearing, g: &V2, velocity: &V2, shape: &mut [f64]) -> Touch {
         let w = g - self.center;
         let distance = w.norm();
         let normal = w / distance;
         let tangent = V2::new(-normal.y, normal.x);
-        let angle = self.arc_angle(&normal);
+        let angle = bearing.angle + small_angle(&bearing.toward, &w);
         let (mut bulge, mut rate, mut slope) = (0.0, 0.0, [0.0; 2]);
         if let Some(shapes) = self.shapes {
             let place = shapes.place(angle);
@@ -137,10 +161,10 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Arc angle in the beam frame, in [0, 2 pi).
-    fn arc_angle(&self, normal: &V2) -> f64 {
+    /// Arc angle of a direction in the beam frame, in [0, 2 pi).
+    fn arc_angle(&self, direction: &V2) -> f64 {
         let turn = std::f64::consts::TAU;
-        let angle = atan2(normal.y, normal.x) - self.beam[0];
+        let angle = atan2(direction.y, direction.x) - self.beam[0];
         angle - turn * (angle / turn).floor()
     }
 
@@ -196,7 +220,8 @@ mod tests {
         let at = |g: V2, theta: f64| {
             let surface = Surface::new(&arc, [theta, 0.6], (&modal, &rate), Some(&shapes));
             let mut shape = [0.0; 2];
-            let touch = surface.touch(&g, &velocity, &mut shape);
+            let bearing = surface.bearing(&V2::new(-1.94, -0.41), 0.1).unwrap();
+            let touch = surface.touch(&bearing, &g, &velocity, &mut shape);
             (touch, surface.curvature(&touch))
         };
         let (g, theta) = (V2::new(-1.93, -0.4), 0.2);

@@ -168,15 +168,15 @@ impl Machine {
         let modes = surface.modal.len();
         let mut shape = [0.0; MAX_MODES];
         for j in 0..self.cylinders(chain) {
-            let pose = self.chain_poses(chain, &scratch.poses)[j];
+            let pose = &self.chain_poses(chain, &scratch.poses)[j];
             let mut total = 0.0;
-            if surface.near(&pose.p.xy(), half) {
+            if let Some(bearing) = surface.bearing(&pose.p.xy(), half) {
                 let (axis, sweep) = (pose.axis(), pose.axis_velocity());
                 for (place, share) in GAUSS {
                     let along = place * half;
                     let g: V2 = (pose.p + axis * along).xy();
                     let velocity: V2 = (pose.v + sweep * along).xy();
-                    let touch = surface.touch(&g, &velocity, &mut shape[..modes]);
+                    let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
                     scratch.loads.deepest = scratch.loads.deepest.max(touch.depth);
                     let law = ropes.contact.force(touch.depth, touch.rate);
                     let f = share * law.force;
@@ -301,14 +301,14 @@ impl Machine {
         let modes = surface.modal.len();
         let mut shape = [0.0; MAX_MODES];
         for pose in self.chain_poses(chain, poses) {
-            if !surface.near(&pose.p.xy(), half) {
+            let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
                 continue;
-            }
+            };
             for (place, share) in GAUSS {
                 let along = place * half;
                 let g = (pose.p + pose.axis() * along).xy();
                 let velocity = (pose.v + pose.axis_velocity() * along).xy();
-                let touch = surface.touch(&g, &velocity, &mut shape[..modes]);
+                let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
                 if touch.depth > 0.0 {
                     visit(share, &touch, &shape[..modes]);
                 }

@@ -256,14 +256,14 @@ impl Machine {
         let beam_rate = state.v[self.layout.beam()];
         let mut shape = [0.0; MAX_MODES];
         for (j, pose) in self.chain_poses(chain, &scratch.poses).iter().enumerate() {
-            if !surface.near(&pose.p.xy(), half) {
+            let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
                 continue;
-            }
+            };
             for (place, share) in GAUSS {
                 let along = place * half;
                 let g: V2 = (pose.p + pose.axis() * along).xy();
                 let velocity: V2 = (pose.v + pose.axis_velocity() * along).xy();
-                let touch = surface.touch(&g, &velocity, &mut shape[..modes]);
+                let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
                 let law = ropes.contact.force(touch.depth, touch.rate);
                 if law.force == 0.0 {
                     continue;
