@@ -1,6 +1,8 @@
 //! From a case, as it travels, to a machine as the dynamics take it, and back: the only file that
 //! names both vocabularies. Degrees become radians and megapascals pascals here.
-use protocol::case::{Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, TurnSense, WeightAxes};
+use protocol::case::{
+    Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, TurnSense, WeightAxes,
+};
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
@@ -92,7 +94,11 @@ fn head(case: &Case) -> Result<Head, Failure> {
     let (influence_start, influence_step) = grid("influence.psi_deg", &head.influence.psi_deg)?;
     let curves = |rows: &[[f64; 4]]| -> Vec<Vec<f64>> {
         (0..4)
-            .map(|gauge| rows.iter().map(|row| row[gauge] * PASCAL_PER_MEGAPASCAL).collect())
+            .map(|gauge| {
+                rows.iter()
+                    .map(|row| row[gauge] * PASCAL_PER_MEGAPASCAL)
+                    .collect()
+            })
             .collect()
     };
     let base_stress = head
@@ -130,7 +136,10 @@ fn head(case: &Case) -> Result<Head, Failure> {
 /// Start and spacing [rad] of a table that must be equally spaced.
 fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
     let [first, second, ..] = degrees else {
-        return Err(misconfigured(field, "needs at least two stations".to_owned()));
+        return Err(misconfigured(
+            field,
+            "needs at least two stations".to_owned(),
+        ));
     };
     let step = second - first;
     let even = degrees
@@ -183,7 +192,11 @@ pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
         ));
     }
     let value = |name: GeneName| -> Result<f64, Failure> {
-        let found = case.genes.iter().zip(genes).find(|(gene, _)| gene.name == name);
+        let found = case
+            .genes
+            .iter()
+            .zip(genes)
+            .find(|(gene, _)| gene.name == name);
         match found {
             Some((gene, &value)) if value > 0.0 && value.is_finite() => Ok(gene.unit.to_si(value)),
             Some((_, value)) => Err(misconfigured(

@@ -96,7 +96,10 @@ mod tests {
             let [_, rate, acceleration] = drive.turn(t);
             let by_turn = (drive.turn(t + h)[0] - drive.turn(t - h)[0]) / (2.0 * h);
             let by_rate = (drive.turn(t + h)[1] - drive.turn(t - h)[1]) / (2.0 * h);
-            assert!((by_turn - rate).abs() < 1e-8 && (by_rate - acceleration).abs() < 1e-6, "{t}");
+            assert!(
+                (by_turn - rate).abs() < 1e-8 && (by_rate - acceleration).abs() < 1e-6,
+                "{t}"
+            );
         }
         let [turn, rate, _] = drive.turn(0.0);
         assert!(turn == -1.0 && rate == 0.0);

@@ -14,9 +14,9 @@
 )]
 pub mod drive;
 pub mod element;
+pub mod integrator;
 pub mod linear;
 pub mod math;
-pub mod integrator;
 pub mod model;
 pub mod observe;
 pub mod run;

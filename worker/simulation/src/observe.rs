@@ -19,16 +19,21 @@ pub fn gauge_stress(system: &System<'_>, state: &State) -> [f64; 4] {
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    machine.each_touch(0, (&state.q, &state.v), &system.scratch.poses, |share, touch, shape| {
-        let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
-        let place = machine.normal_influence.place(touch.angle);
-        for (gauge, stress) in stress.iter_mut().enumerate() {
-            *stress += force * machine.normal_influence.jet(&place, gauge).value;
-        }
-        for (modal, shape) in modal_force.iter_mut().zip(shape) {
-            *modal -= force * shape;
-        }
-    });
+    machine.each_touch(
+        0,
+        (&state.q, &state.v),
+        &system.scratch.poses,
+        |share, touch, shape| {
+            let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
+            let place = machine.normal_influence.place(touch.angle);
+            for (gauge, stress) in stress.iter_mut().enumerate() {
+                *stress += force * machine.normal_influence.jet(&place, gauge).value;
+            }
+            for (modal, shape) in modal_force.iter_mut().zip(shape) {
+                *modal -= force * shape;
+            }
+        },
+    );
 
     // the rope's end pulls at the anchor; in the beam frame
     let beam = layout.beam();
@@ -52,7 +57,11 @@ pub fn gauge_stress(system: &System<'_>, state: &State) -> [f64; 4] {
     // gravity acts like a base acceleration upwards, seen from the beam
     let g = machine.description.gravity;
     let base = [g * s, g * c, state.a[beam]];
-    let base_stress = [&head.weight_stress[0], &head.weight_stress[1], &head.turning_stress];
+    let base_stress = [
+        &head.weight_stress[0],
+        &head.weight_stress[1],
+        &head.turning_stress,
+    ];
     for (k, acceleration) in base.iter().enumerate() {
         for (stress, unit) in stress.iter_mut().zip(base_stress[k]) {
             *stress += acceleration * unit;
@@ -167,11 +176,17 @@ impl Observe for Recorder {
         let machine = system.machine;
         let layout = machine.layout;
         let c = &mut self.curves;
-        c.back_tension.push(system.scratch.loads.joints[0][0].force.norm());
-        c.front_tension.push(system.scratch.loads.joints[1][0].force.norm());
+        c.back_tension
+            .push(system.scratch.loads.joints[0][0].force.norm());
+        c.front_tension
+            .push(system.scratch.loads.joints[1][0].force.norm());
         c.beam.push(state.q[layout.beam()]);
         let at = layout.suspension();
-        for (curve, value) in c.suspension.iter_mut().zip([state.q[at], state.v[at], state.a[at]]) {
+        for (curve, value) in c
+            .suspension
+            .iter_mut()
+            .zip([state.q[at], state.v[at], state.a[at]])
+        {
             curve.push(value);
         }
         let pin = machine.pin_force(&drive, &state.q, &state.v, &state.a, &system.scratch);
@@ -195,7 +210,12 @@ fn shape(sample: usize, system: &System<'_>, drive: &DriveState, state: &State) 
     let centers = [0, 1].map(|chain| {
         let first = layout.base_block(chain) + 1;
         (0..machine.cylinders(chain))
-            .map(|j| [state.q[(first + j) * BLOCK], state.q[(first + j) * BLOCK + 1]])
+            .map(|j| {
+                [
+                    state.q[(first + j) * BLOCK],
+                    state.q[(first + j) * BLOCK + 1],
+                ]
+            })
             .collect()
     });
     let loads = &system.scratch.loads;

@@ -4,7 +4,7 @@ use crate::integrator::tableau::{ESDIRK4, Tableau};
 use crate::integrator::{State, dense::interpolate, esdirk::Esdirk, step_control::StepControl};
 use crate::model::description::RopeLaw;
 use crate::model::{Machine, Powers};
-use crate::settle::{Settled, equilibrium, guess};
+use crate::settle::{Settled, equilibrium, guess, overload};
 use crate::statistics::Statistics;
 use crate::system::System;
 use crate::verdict::{Failure, Limits, Reached, Verdict};
@@ -40,7 +40,7 @@ impl Default for RunSettings {
             samples: 720,
             tolerance: 1.0,
             longest_step: 0.05,
-            budget: 60_000,
+            budget: 25_000,
             limits: Limits::default(),
         }
     }
@@ -125,6 +125,9 @@ fn settle(
     swing: [f64; 2],
 ) -> Result<Vec<f64>, (Failure, f64)> {
     let full = system.drive_state(0.0);
+    if let Some(overload) = overload(system.machine, &system.ropes, &full, &settings.limits) {
+        return Err(overload);
+    }
     let mut attempt = |share: f64| {
         let mut drive = full;
         drive.load *= share;
@@ -141,7 +144,7 @@ fn settle(
         Err(kind) => kind,
     };
     let (mut carried, mut too_much) = (0.0, 1.0);
-    for _ in 0..6 {
+    for _ in 0..4 {
         let middle = 0.5 * (carried + too_much);
         if attempt(middle).is_ok() {
             carried = middle;
@@ -185,7 +188,13 @@ fn revolve(
         // stop exactly where the recorded revolution begins and ends
         let stop = if from.t < begin - 1e-9 { begin } else { end };
         let left = stop - from.t;
-        let step = if h >= left { left } else if h > 0.5 * left { 0.5 * left } else { h };
+        let step = if h >= left {
+            left
+        } else if h > 0.5 * left {
+            0.5 * left
+        } else {
+            h
+        };
         match method.step(system, &from, step, &mut to) {
             Err(_) => {
                 system.statistics.newton_rejections += 1;
@@ -244,7 +253,15 @@ struct Ledger {
 }
 
 impl Ledger {
-    fn add(&mut self, system: &mut System<'_>, from: &State, to: &State, work: &Powers, begin: f64, end: f64) {
+    fn add(
+        &mut self,
+        system: &mut System<'_>,
+        from: &State,
+        to: &State,
+        work: &Powers,
+        begin: f64,
+        end: f64,
+    ) {
         let mut energy = |state: &State| {
             let drive = system.drive_state(state.t);
             let machine = system.machine;

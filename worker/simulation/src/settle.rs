@@ -12,14 +12,18 @@ use crate::system::System;
 use crate::verdict::{Failure, Limits};
 
 /// Iterations (factorisations) that one equilibrium may take.
-pub const BUDGET: u32 = 400;
+pub const BUDGET: u32 = 150;
 
 /// Coordinates near equilibrium: taut, stretched ropes on the arcs, sunk in as far as their line
 /// load asks for.
 ///
 /// # Errors
 /// [`DoesNotClose`] when the stretched rope no longer reaches.
-pub fn guess(machine: &Machine, ropes: &Ropes, drive: &DriveState) -> Result<Vec<f64>, DoesNotClose> {
+pub fn guess(
+    machine: &Machine,
+    ropes: &Ropes,
+    drive: &DriveState,
+) -> Result<Vec<f64>, DoesNotClose> {
     let d = &machine.description;
     let layout = machine.layout;
     let pull = drive.load + d.suspension_mass * d.gravity;
@@ -29,7 +33,8 @@ pub fn guess(machine: &Machine, ropes: &Ropes, drive: &DriveState) -> Result<Vec
     let back = Strand::new(machine, ropes, 0, lever / rigid.arm);
     let mechanism = machine.mechanism(
         back.radius,
-        machine.back_length() + back.extension * (d.rope.back as f64 - 1.0 + 2.0 * d.rope.end_pitches),
+        machine.back_length()
+            + back.extension * (d.rope.back as f64 - 1.0 + 2.0 * d.rope.end_pitches),
     );
     let position = mechanism.position(drive.pin_angle, rigid.beam, rigid.tangent)?;
 
@@ -39,13 +44,54 @@ pub fn guess(machine: &Machine, ropes: &Ropes, drive: &DriveState) -> Result<Vec
     let [x, y] = d.back_arc.center;
     let center = [c * x - s * y, s * x + c * y];
     let leave = position.beam + position.tangent;
-    back.place(machine, 0, center, [d.back_arc.anchor + position.beam, leave], &mut q);
+    back.place(
+        machine,
+        0,
+        center,
+        [d.back_arc.anchor + position.beam, leave],
+        &mut q,
+    );
     let (s, c) = sin_cos(leave);
     // the rod points along the straight rope, towards the head: -t at the tangent point
     q[layout.rod()] = crate::math::elementary::atan2(-c, s);
-    let end = front.place(machine, 1, [0.0; 2], [d.front_arc.anchor + position.beam, 0.0], &mut q);
+    let end = front.place(
+        machine,
+        1,
+        [0.0; 2],
+        [d.front_arc.anchor + position.beam, 0.0],
+        &mut q,
+    );
     q[layout.suspension()] = end;
     Ok(q)
+}
+
+/// What the ropes cannot carry whatever their shape, with the share of the load at which they give
+/// in: the tension follows from the load and the arms alone, so stretch and line load are known
+/// before any equilibrium is sought.
+pub fn overload(
+    machine: &Machine,
+    ropes: &Ropes,
+    drive: &DriveState,
+    limits: &Limits,
+) -> Option<(Failure, f64)> {
+    let d = &machine.description;
+    let pull = drive.load + d.suspension_mass * d.gravity;
+    let rigid = rigid_position(machine, drive.pin_angle).ok()?;
+    let tension = [
+        (pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1) / rigid.arm,
+        pull,
+    ];
+    let pitch = d.rope.pitch;
+    let tightest = tension[0].max(tension[1]);
+    let carried = limits.extension * pitch * ropes.joint.stiffness[0] / tightest;
+    if carried < 1.0 {
+        return Some((Failure::OverstretchedRope, carried.max(0.0)));
+    }
+    let line = (0..2)
+        .map(|chain| tension[chain] * pitch / machine.arc(chain).radius)
+        .fold(0.0, f64::max);
+    let carried = ropes.contact.force(limits.penetration, 0.0).force / line;
+    (carried < 1.0).then_some((Failure::RopeThroughHead, carried.max(0.0)))
 }
 
 /// The inextensible position at a pin angle, followed from bottom dead centre.
@@ -54,7 +100,8 @@ fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, DoesNotClose>
     let mut at = machine.bottom;
     let steps = 24;
     for k in 1..=steps {
-        let angle = machine.bottom.pin + (pin - machine.bottom.pin) * f64::from(k) / f64::from(steps);
+        let angle =
+            machine.bottom.pin + (pin - machine.bottom.pin) * f64::from(k) / f64::from(steps);
         at = mechanism.position(angle, at.beam, at.tangent)?;
     }
     Ok(at)
@@ -70,7 +117,10 @@ impl Strand {
     fn new(machine: &Machine, ropes: &Ropes, chain: usize, tension: f64) -> Self {
         let pitch = machine.description.rope.pitch;
         let radius = machine.arc(chain).radius;
-        let depth = ropes.contact.depth_under(tension * pitch / radius).min(0.05);
+        let depth = ropes
+            .contact
+            .depth_under(tension * pitch / radius)
+            .min(0.05);
         Self {
             radius: radius - depth,
             extension: (tension / ropes.joint.stiffness[0]).clamp(0.0, 0.5 * pitch),
@@ -79,7 +129,14 @@ impl Strand {
 
     /// Places cylinders from the anchor (first angle) over the arc to where the rope leaves it
     /// (second angle) and on along the tangent; returns the height of the rope's free end.
-    fn place(&self, machine: &Machine, chain: usize, center: [f64; 2], [anchor, leave]: [f64; 2], q: &mut [f64]) -> f64 {
+    fn place(
+        &self,
+        machine: &Machine,
+        chain: usize,
+        center: [f64; 2],
+        [anchor, leave]: [f64; 2],
+        q: &mut [f64],
+    ) -> f64 {
         let pitch = machine.description.rope.pitch;
         let count = machine.cylinders(chain);
         let first = machine.layout.base_block(chain) + 1;
@@ -159,13 +216,19 @@ pub fn equilibrium(
         system.forces_under(drive, &trial, &still, &mut force);
         let next = potential(system, drive, &trial, &still);
         // near the minimum the decrease drowns in rounding: then the step itself must be small
-        if next < height - 1e-4 * factor * slope || (norm < ROUNDING && next < height + 1e-9 * height.abs()) {
+        if next < height - 1e-4 * factor * slope
+            || (norm < ROUNDING && next < height + 1e-9 * height.abs())
+        {
             q.copy_from_slice(&trial);
             height = next;
             if lambda == 0.0 && norm < CONVERGED {
                 return within(system, limits, swing, q);
             }
-            lambda = if lambda <= FIRST_DAMPING { 0.0 } else { lambda * 0.1 };
+            lambda = if lambda <= FIRST_DAMPING {
+                0.0
+            } else {
+                lambda * 0.1
+            };
         } else {
             lambda = (lambda * 10.0).max(FIRST_DAMPING);
             if lambda > LAST_DAMPING {

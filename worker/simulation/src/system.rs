@@ -109,7 +109,11 @@ impl<'a> System<'a> {
                 for j in 1..=self.machine.cylinders(chain) {
                     let block = self.matrix.diagonal_mut(base + j);
                     for k in 0..BLOCK {
-                        block[(k, k)] += if k < 3 { lambda } else { lambda * length * length };
+                        block[(k, k)] += if k < 3 {
+                            lambda
+                        } else {
+                            lambda * length * length
+                        };
                     }
                 }
             }
@@ -180,7 +184,8 @@ impl<'a> System<'a> {
         let mut norm = (sum / (3 + layout.modes) as f64).sqrt();
         for chain in 0..2 {
             let first = (layout.base_block(chain) + 1) * BLOCK;
-            for x in error[first..first + self.machine.cylinders(chain) * BLOCK].chunks_exact(BLOCK) {
+            for x in error[first..first + self.machine.cylinders(chain) * BLOCK].chunks_exact(BLOCK)
+            {
                 for k in 0..3 {
                     norm = worst(norm, x[k] / 2e-4);
                     norm = worst(norm, x[3 + k] / 5e-3);

@@ -47,7 +47,13 @@ pub(super) fn run(prepared: &Prepared, spec: &ScoreSpec) -> Result<Evaluation, F
     let compared: Vec<Compared> = record
         .gauges
         .iter()
-        .map(|trace| Compared::new(trace, &recorder.curves.gauge[usize::from(trace.gauge) - 1], case.objective.offset))
+        .map(|trace| {
+            Compared::new(
+                trace,
+                &recorder.curves.gauge[usize::from(trace.gauge) - 1],
+                case.objective.offset,
+            )
+        })
         .collect();
     Ok(Evaluation {
         verdict,
@@ -94,7 +100,11 @@ impl Compared {
         let mean_square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>() / n;
         let mse = mean_square(&residual);
         let measured_mean = measured.iter().sum::<f64>() / n;
-        let deviation = measured.iter().map(|x| (x - measured_mean).abs()).sum::<f64>() / n;
+        let deviation = measured
+            .iter()
+            .map(|x| (x - measured_mean).abs())
+            .sum::<f64>()
+            / n;
         let range = peak_to_peak(measured);
         let simulated_range = peak_to_peak(simulated_pa) * 1e-6;
         Self {

@@ -20,7 +20,9 @@ pub(super) fn run(prepared: &Prepared, spec: &SimulateSpec) -> Result<Simulation
             clippy::cast_sign_loss,
             reason = "clamped to the samples of one turn"
         )]
-        let every = (spec.motion_step_deg / step).round().clamp(1.0, 360.0 / step) as usize;
+        let every = (spec.motion_step_deg / step)
+            .round()
+            .clamp(1.0, 360.0 / step) as usize;
         every
     } else {
         0
@@ -57,7 +59,9 @@ fn assemble(
         verdict: convert::verdict(&result.verdict),
         counters: convert::counters(&result.statistics),
         wall_s,
-        turn_deg: (0..curves.beam.len()).map(|i| step_deg * i as f64).collect(),
+        turn_deg: (0..curves.beam.len())
+            .map(|i| step_deg * i as f64)
+            .collect(),
         gauge_mpa: [0, 1, 2, 3].map(|g| curves.gauge[g].iter().map(|s| s * 1e-6).collect()),
         back_rope_tension_n: curves.back_tension.clone(),
         front_rope_tension_n: curves.front_tension.clone(),
@@ -68,7 +72,11 @@ fn assemble(
         crank_torque_n_m: curves.torque.clone(),
         modal: curves.modal.clone(),
         energy: energy(result),
-        motion: curves.shapes.iter().map(|shape| motion(shape, step_deg)).collect(),
+        motion: curves
+            .shapes
+            .iter()
+            .map(|shape| motion(shape, step_deg))
+            .collect(),
     }
 }
 
@@ -81,7 +89,11 @@ fn energy(result: &RunResult) -> Energy {
         output_j: work.output,
         dissipated_j: work.dissipated,
         stored_j: result.stored,
-        relative_error: if scale > 0.0 { missing.abs() / scale } else { 0.0 },
+        relative_error: if scale > 0.0 {
+            missing.abs() / scale
+        } else {
+            0.0
+        },
     }
 }
 

@@ -182,12 +182,7 @@ impl Bushing {
         let by_position = C * skew(&j.w) - K;
         let force_i = [by_position, -C, K * rho_i + C * relative * rho_i, C * rho_i];
         let arm = skew(&(d + j.rho));
-        let force_j = [
-            -by_position,
-            C,
-            G * skew_e - K * rho_j,
-            -(C * arm),
-        ];
+        let force_j = [-by_position, C, G * skew_e - K * rho_j, -(C * arm)];
 
         let (torque_a_i, torque_w, torque_a_j) = if self.turns() {
             let Kr = M3::from_diagonal_element(k5) + ee * (k4 - k5);
@@ -290,7 +285,10 @@ mod tests {
         let tangents = element.tangent(&at[0], &at[1], &load);
         let h = 1e-6;
         for (body, tangent) in tangents.iter().enumerate() {
-            for (kind, analytic) in [tangent.p, tangent.v, tangent.a, tangent.w].iter().enumerate() {
+            for (kind, analytic) in [tangent.p, tangent.v, tangent.a, tangent.w]
+                .iter()
+                .enumerate()
+            {
                 for k in 0..3 {
                     let at_step = |h: f64| {
                         let mut m = at;
@@ -302,7 +300,10 @@ mod tests {
                     for row in 0..3 {
                         let difference = (plus[row] - minus[row]) / (2.0 * h);
                         let error = (difference - analytic[row].column(k)).norm();
-                        assert!(error < 1e-7, "body {body} kind {kind} column {k} row {row}: {error}");
+                        assert!(
+                            error < 1e-7,
+                            "body {body} kind {kind} column {k} row {row}: {error}"
+                        );
                     }
                 }
             }
@@ -324,7 +325,8 @@ mod tests {
             ..element
         };
         let load = element.load(&i, &j);
-        let power = load.force.dot(&(i.v - j.v)) + load.torque_i.dot(&i.w) + load.torque_j.dot(&j.w);
+        let power =
+            load.force.dot(&(i.v - j.v)) + load.torque_i.dot(&i.w) + load.torque_j.dot(&j.w);
         let advance = |m: &Marker, h: f64| Marker {
             p: m.p + m.v * h,
             rho: rotation(&(m.w * h)) * m.rho,
@@ -333,7 +335,10 @@ mod tests {
         };
         let energy = |h: f64| element.energy(&advance(&i, h), &advance(&j, h));
         let rate = (energy(1e-6) - energy(-1e-6)) / 2e-6;
-        assert!((rate + power + load.dissipated).abs() < 1e-7, "{rate} {power}");
+        assert!(
+            (rate + power + load.dissipated).abs() < 1e-7,
+            "{rate} {power}"
+        );
         assert!(load.dissipated > 0.0);
     }
 }

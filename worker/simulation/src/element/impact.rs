@@ -42,7 +42,10 @@ impl Impact {
         let (step, slope) = if u >= 1.0 {
             (1.0, 0.0)
         } else {
-            (u * u * (3.0 - 2.0 * u), 6.0 * u * (1.0 - u) / self.full_damping_penetration)
+            (
+                u * u * (3.0 - 2.0 * u),
+                6.0 * u * (1.0 - u) / self.full_damping_penetration,
+            )
         };
         let damper = self.damping * step * rate;
         let force = spring + damper;
@@ -91,10 +94,12 @@ mod tests {
         for (depth, rate) in [(4e-4, 0.3), (9.9e-4, -0.2), (3e-3, 0.7)] {
             let at = LAW.force(depth, rate);
             let h = 1e-9;
-            let by_depth = (LAW.force(depth + h, rate).force - LAW.force(depth - h, rate).force) / (2.0 * h);
+            let by_depth =
+                (LAW.force(depth + h, rate).force - LAW.force(depth - h, rate).force) / (2.0 * h);
             assert!((by_depth - at.by_penetration).abs() < 1e-5 * at.by_penetration.abs());
             let h = 1e-6;
-            let by_rate = (LAW.force(depth, rate + h).force - LAW.force(depth, rate - h).force) / (2.0 * h);
+            let by_rate =
+                (LAW.force(depth, rate + h).force - LAW.force(depth, rate - h).force) / (2.0 * h);
             assert!((by_rate - at.by_rate).abs() < 1e-6 * at.by_rate.max(1.0));
             let energy = (LAW.energy(depth + 1e-8) - LAW.energy(depth - 1e-8)) / 2e-8;
             let spring = LAW.force(depth, 0.0).force;

@@ -41,7 +41,9 @@ impl RefactorPolicy {
 
     /// Scaling of a correction solved with a factorisation for another coefficient.
     pub fn relaxation(&self, gamma: f64) -> f64 {
-        self.made_for.map_or(1.0, |made| 2.0 / (1.0 + (gamma / made) * (gamma / made)).max(1e-3))
+        self.made_for.map_or(1.0, |made| {
+            2.0 / (1.0 + (gamma / made) * (gamma / made)).max(1e-3)
+        })
     }
 }
 

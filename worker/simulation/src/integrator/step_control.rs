@@ -24,7 +24,11 @@ impl StepControl {
     /// The next step; small changes are not made, so that a factorisation can be used again.
     pub fn next(&self, step: f64, error: f64) -> f64 {
         let factor = self.factor(error);
-        let factor = if (0.85..=1.25).contains(&factor) { 1.0 } else { factor };
+        let factor = if (0.85..=1.25).contains(&factor) {
+            1.0
+        } else {
+            factor
+        };
         (step * factor).min(self.longest)
     }
 }

@@ -83,7 +83,11 @@ impl Tableau {
     /// Weight of stage `i` in the result.
     pub fn weight(&self, i: usize) -> f64 {
         let last = self.nodes.len() - 1;
-        if i == last { self.diagonal } else { self.rows[last][i] }
+        if i == last {
+            self.diagonal
+        } else {
+            self.rows[last][i]
+        }
     }
 
     /// Number of stages, the explicit first one included.
@@ -116,7 +120,11 @@ mod tests {
             let (a, c) = (full(t), t.nodes);
             let s = t.stages();
             for i in 0..s {
-                assert!((a[i].iter().sum::<f64>() - c[i]).abs() < 1e-15, "{} row {i}", t.name);
+                assert!(
+                    (a[i].iter().sum::<f64>() - c[i]).abs() < 1e-15,
+                    "{} row {i}",
+                    t.name
+                );
             }
             let conditions = |b: &[f64]| -> Vec<(u32, f64)> {
                 let sum = |f: &dyn Fn(usize) -> f64| (0..s).map(|i| b[i] * f(i)).sum::<f64>();
@@ -135,10 +143,19 @@ mod tests {
             };
             let weights: Vec<f64> = (0..s).map(|i| t.weight(i)).collect();
             for (order, defect) in conditions(&weights) {
-                assert_eq!(defect.abs() < 1e-14, order <= t.order, "{} order {order}: {defect}", t.name);
+                assert_eq!(
+                    defect.abs() < 1e-14,
+                    order <= t.order,
+                    "{} order {order}: {defect}",
+                    t.name
+                );
             }
             for (order, defect) in conditions(t.embedded) {
-                assert!(order > 3 || defect.abs() < 1e-14, "{} embedded {order}: {defect}", t.name);
+                assert!(
+                    order > 3 || defect.abs() < 1e-14,
+                    "{} embedded {order}: {defect}",
+                    t.name
+                );
             }
         }
     }

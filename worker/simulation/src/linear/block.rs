@@ -86,11 +86,16 @@ mod tests {
 
     #[test]
     fn inverse_undoes_a_block_that_needs_row_exchanges() {
-        let mut a = Block::from_fn(|i, j| ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64);
+        let mut a =
+            Block::from_fn(|i, j| ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64);
         a[(0, 0)] = 0.0;
         let mut inverse = a;
         invert(&mut inverse).unwrap();
-        assert!((a * inverse - Block::identity()).norm() < 1e-12, "{}", a * inverse);
+        assert!(
+            (a * inverse - Block::identity()).norm() < 1e-12,
+            "{}",
+            a * inverse
+        );
         let mut singular = a;
         singular.set_column(3, &a.column(1).into_owned());
         singular.set_column(1, &Column::zeros());

@@ -202,7 +202,12 @@ impl Bordered {
         let a = &mut self.corner;
         for k in 0..m {
             let best = (k..m)
-                .max_by(|&i, &j| a[k * m + i].abs().total_cmp(&a[k * m + j].abs()).then(j.cmp(&i)))
+                .max_by(|&i, &j| {
+                    a[k * m + i]
+                        .abs()
+                        .total_cmp(&a[k * m + j].abs())
+                        .then(j.cmp(&i))
+                })
                 .unwrap_or(k);
             let size = a[k * m + best].abs();
             if !(size > 0.0 && size.is_finite()) {
@@ -312,7 +317,9 @@ mod tests {
         let mut a = Bordered::new(&chains, 3);
         let mut seed = 1_u64;
         let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             ((seed >> 33) as f64 / f64::from(u32::MAX)) - 0.25
         };
         let mut first = 0;
@@ -352,7 +359,11 @@ mod tests {
             let mut factors = a.clone();
             factors.factorize().unwrap();
             factors.solve(&mut y);
-            let worst = x.iter().zip(&y).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let worst = x
+                .iter()
+                .zip(&y)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max);
             assert!(worst < 1e-11, "{touch_from:?}: {worst}");
         }
     }

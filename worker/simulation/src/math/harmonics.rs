@@ -39,9 +39,15 @@ mod tests {
     fn kept_harmonics_pass_and_others_do_not() {
         let n = 48;
         let wave = |h: usize| -> Vec<f64> {
-            (0..n).map(|i| sin_cos(std::f64::consts::TAU * (h * i) as f64 / n as f64 + 0.4).0).collect()
+            (0..n)
+                .map(|i| sin_cos(std::f64::consts::TAU * (h * i) as f64 / n as f64 + 0.4).0)
+                .collect()
         };
-        let sum: Vec<f64> = wave(3).iter().zip(wave(9)).map(|(a, b)| 7.0 + a + b).collect();
+        let sum: Vec<f64> = wave(3)
+            .iter()
+            .zip(wave(9))
+            .map(|(a, b)| 7.0 + a + b)
+            .collect();
         let cut = low_pass(&sum, 5);
         for (cut, wave) in cut.iter().zip(wave(3)) {
             assert!((cut - 7.0 - wave).abs() < 1e-13);

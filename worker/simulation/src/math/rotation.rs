@@ -22,7 +22,15 @@ pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64>
     let sine2 = axial.norm_squared();
     if cosine > 0.0 && sine2 < 1e-3 {
         // asin(s)/s as a series: exact to 1e-17 for angles below 0.03 rad
-        return axial * (1.0 + sine2 * (1.0 / 6.0 + sine2 * (3.0 / 40.0 + sine2 * (15.0 / 336.0 + sine2 * (105.0 / 3456.0 + sine2 * 945.0 / 42240.0)))));
+        return axial
+            * (1.0
+                + sine2
+                    * (1.0 / 6.0
+                        + sine2
+                            * (3.0 / 40.0
+                                + sine2
+                                    * (15.0 / 336.0
+                                        + sine2 * (105.0 / 3456.0 + sine2 * 945.0 / 42240.0)))));
     }
     let sine = sine2.sqrt();
     let angle = atan2(sine, cosine);
@@ -31,7 +39,9 @@ pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64>
     }
     // half a turn: the axis is the dominant column of R + I
     let S = R + Matrix3::identity();
-    let k = (0..3).max_by(|&a, &b| S[(a, a)].total_cmp(&S[(b, b)])).unwrap_or(0);
+    let k = (0..3)
+        .max_by(|&a, &b| S[(a, a)].total_cmp(&S[(b, b)]))
+        .unwrap_or(0);
     let axis = S.column(k).into_owned();
     axis * (angle / axis.norm().max(1e-300))
 }
@@ -69,7 +79,10 @@ mod tests {
         for scale in [1e-9, 1e-4, 0.02, 0.04, 0.5, 2.0, 3.1] {
             let theta = Vector3::new(0.36, -0.48, 0.8) * scale;
             let found = rotation_vector(&(exp(&theta) * base), &base);
-            assert!((found - theta).norm() < 2e-15 * (1.0 + 10.0 * scale), "{scale}: {found}");
+            assert!(
+                (found - theta).norm() < 2e-15 * (1.0 + 10.0 * scale),
+                "{scale}: {found}"
+            );
         }
     }
 

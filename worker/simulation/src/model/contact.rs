@@ -53,7 +53,9 @@ fn small_angle(a: &V2, b: &V2) -> f64 {
     if u > 4e-3 {
         return atan2(a.x * b.y - a.y * b.x, a.dot(b));
     }
-    t * (1.0 - u * (1.0 / 3.0 - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
+    t * (1.0
+        - u * (1.0 / 3.0
+            - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
 }
 
 /// Penetration of one point with its first derivatives.
@@ -183,8 +185,7 @@ impl<'a> Surface<'a> {
         // the point's distance and angle depend on g - C(theta) only, s also on theta itself
         let rigid = tt * (-1.0 / r) - (nt + nt.transpose()) * (s1 / (r * r));
         let mixed = -(rigid * c) + angle_by_point * (s2 * angle_by_beam);
-        let beam = c.dot(&(rigid * c)) + s2 * angle_by_beam * angle_by_beam
-            - n.dot(&arm)
+        let beam = c.dot(&(rigid * c)) + s2 * angle_by_beam * angle_by_beam - n.dot(&arm)
             + s1 * t.dot(&arm) / r;
         Curvature {
             point,
@@ -212,7 +213,9 @@ mod tests {
             0.1,
             &[
                 (0..20).map(|i| 0.02 * f64::from(i * i % 7)).collect(),
-                (0..20).map(|i| 0.03 * f64::from(i * 3 % 5) - 0.05).collect(),
+                (0..20)
+                    .map(|i| 0.03 * f64::from(i * 3 % 5) - 0.05)
+                    .collect(),
             ],
         );
         let (modal, rate) = ([0.3, -0.2], [0.5, 0.7]);
@@ -231,7 +234,11 @@ mod tests {
             let step = |h: f64| {
                 let mut g = g;
                 let mut theta = theta;
-                if k < 2 { g[k] += h } else { theta += h }
+                if k < 2 {
+                    g[k] += h
+                } else {
+                    theta += h
+                }
                 at(g, theta).0
             };
             let (plus, minus) = (step(h), step(-h));
@@ -241,13 +248,25 @@ mod tests {
             let angle = (plus.angle - minus.angle) / (2.0 * h);
             if k < 2 {
                 assert!((first - touch.by_point[k]).abs() < 1e-8);
-                assert!((point - curvature.point.column(k)).norm() < 1e-7, "{k} {point} {}", curvature.point);
+                assert!(
+                    (point - curvature.point.column(k)).norm() < 1e-7,
+                    "{k} {point} {}",
+                    curvature.point
+                );
                 assert!((beam - curvature.mixed[k]).abs() < 1e-7);
                 assert!((angle - curvature.angle_by.0[k]).abs() < 1e-8);
             } else {
                 assert!((first - touch.by_beam).abs() < 1e-8);
-                assert!((point - curvature.mixed).norm() < 1e-7, "{point} {}", curvature.mixed);
-                assert!((beam - curvature.beam).abs() < 1e-7, "{beam} {}", curvature.beam);
+                assert!(
+                    (point - curvature.mixed).norm() < 1e-7,
+                    "{point} {}",
+                    curvature.mixed
+                );
+                assert!(
+                    (beam - curvature.beam).abs() < 1e-7,
+                    "{beam} {}",
+                    curvature.beam
+                );
                 assert!((angle - curvature.angle_by.1).abs() < 1e-8);
             }
         }

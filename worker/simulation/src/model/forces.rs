@@ -80,9 +80,8 @@ impl Machine {
             let i = self.layout.mode(k);
             let [px, py, _] = d.head.participation[k];
             let w = d.head.frequencies[k];
-            force[i] = -g * (px * s + py * c)
-                - w * w * q[i]
-                - 2.0 * d.head.damping_ratio * w * v[i];
+            force[i] =
+                -g * (px * s + py * c) - w * w * q[i] - 2.0 * d.head.damping_ratio * w * v[i];
             force[beam] += q[i] * g * (py * s - px * c);
         }
 
@@ -97,7 +96,8 @@ impl Machine {
                 let spin = along * (r1 - s * r3);
                 force[at + 3] += along * c * r2 * r3;
                 force[at + 4] -= c * r3 * spin + across * c * s * r3 * r3;
-                force[at + 5] += c * r2 * spin - along * s * c * r2 * r3 + 2.0 * across * c * s * r2 * r3;
+                force[at + 5] +=
+                    c * r2 * spin - along * s * c * r2 * r3 + 2.0 * across * c * s * r2 * r3;
             }
         }
     }
@@ -117,7 +117,12 @@ impl Machine {
             let load = self.law(chain, joint, ropes).load(&i, &j);
             if joint > 0 {
                 let pose = &self.chain_poses(chain, &scratch.poses)[joint - 1];
-                add_wrench(pose, &-load.force, &load.torque_j, &mut force[(base + joint) * BLOCK..]);
+                add_wrench(
+                    pose,
+                    &-load.force,
+                    &load.torque_j,
+                    &mut force[(base + joint) * BLOCK..],
+                );
             } else if chain == 0 {
                 force[self.layout.rod()] += load.torque_j.z;
             } else {
@@ -125,7 +130,12 @@ impl Machine {
             }
             if joint < count {
                 let pose = &self.chain_poses(chain, &scratch.poses)[joint];
-                add_wrench(pose, &load.force, &load.torque_i, &mut force[(base + joint + 1) * BLOCK..]);
+                add_wrench(
+                    pose,
+                    &load.force,
+                    &load.torque_i,
+                    &mut force[(base + joint + 1) * BLOCK..],
+                );
             } else {
                 let beam = self.layout.beam();
                 force[beam] += load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
@@ -241,12 +251,18 @@ impl Machine {
     }
 
     /// Force that the crank pin exerts on the rod, given joint loads and accelerations [N].
-    pub fn pin_force(&self, drive: &DriveState, q: &[f64], v: &[f64], a: &[f64], scratch: &Scratch) -> V2 {
+    pub fn pin_force(
+        &self,
+        drive: &DriveState,
+        q: &[f64],
+        v: &[f64],
+        a: &[f64],
+        scratch: &Scratch,
+    ) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
         let (s, c) = sin_cos(q[i]);
-        let center = drive.pin[2]
-            + V2::new(-s, c) * (rod.center_of_mass * a[i])
+        let center = drive.pin[2] + V2::new(-s, c) * (rod.center_of_mass * a[i])
             - V2::new(c, s) * (rod.center_of_mass * v[i] * v[i]);
         // the joint pulls the rod with minus the force on the first cylinder
         let rope = scratch.loads.joints[0][0].force;

@@ -49,7 +49,11 @@ impl ChainLoads {
 impl Machine {
     /// Number of cylinders of a chain.
     pub(crate) const fn cylinders(&self, chain: usize) -> usize {
-        if chain == 0 { self.layout.back } else { self.layout.front }
+        if chain == 0 {
+            self.layout.back
+        } else {
+            self.layout.front
+        }
     }
 
     /// Poses of a chain among all poses.
@@ -88,9 +92,10 @@ impl Machine {
     ) -> [Marker; 2] {
         let half = 0.5 * self.description.rope.pitch;
         let poses = self.chain_poses(chain, poses);
-        let i = poses
-            .get(joint)
-            .map_or_else(|| self.anchor_marker(chain, state), |pose| on_cylinder(pose, -half));
+        let i = poses.get(joint).map_or_else(
+            || self.anchor_marker(chain, state),
+            |pose| on_cylinder(pose, -half),
+        );
         let j = if joint == 0 {
             self.base_marker(chain, state)
         } else {

@@ -139,7 +139,8 @@ impl Machine {
 
     /// Length from crank pin to back anchor along rod and unstretched rope [m].
     pub fn back_length(&self) -> f64 {
-        self.description.rope.back as f64 * self.description.rope.pitch + self.description.rod.length
+        self.description.rope.back as f64 * self.description.rope.pitch
+            + self.description.rod.length
     }
 
     /// Scales an individual's coefficients to this chain's pitch, so that the rope stays the same.
@@ -204,12 +205,32 @@ fn check(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
     let stations = d.head.radial.first().map_or(0, Vec::len);
     let sizes = [
         ("radial shapes", d.head.radial.len().min(modes), modes),
-        ("tangential shapes", d.head.tangential.len().min(modes), modes),
-        ("head frequencies", d.head.frequencies.len().min(modes), modes),
-        ("gauge stresses", d.head.gauge_stress.len().min(modes), modes),
-        ("participations", d.head.participation.len().min(modes), modes),
+        (
+            "tangential shapes",
+            d.head.tangential.len().min(modes),
+            modes,
+        ),
+        (
+            "head frequencies",
+            d.head.frequencies.len().min(modes),
+            modes,
+        ),
+        (
+            "gauge stresses",
+            d.head.gauge_stress.len().min(modes),
+            modes,
+        ),
+        (
+            "participations",
+            d.head.participation.len().min(modes),
+            modes,
+        ),
         ("normal influence lines", d.head.normal_influence.len(), 4),
-        ("tangential influence lines", d.head.tangential_influence.len(), 4),
+        (
+            "tangential influence lines",
+            d.head.tangential_influence.len(),
+            4,
+        ),
         ("back rope", d.rope.back.min(3), 3),
         ("front rope", d.rope.front.min(3), 3),
         ("load card", d.card.len().min(8), 8),

@@ -131,7 +131,8 @@ mod tests {
             let (plus, minus) = (step(h), step(-h));
             let w = (plus.w - minus.w) / (2.0 * h);
             assert!((w - at.angular_rate().column(k)).norm() < 1e-9);
-            let torque = (plus.angular().transpose() * tau - minus.angular().transpose() * tau) / (2.0 * h);
+            let torque =
+                (plus.angular().transpose() * tau - minus.angular().transpose() * tau) / (2.0 * h);
             assert!((torque - at.torque_by_angles(&tau).column(k)).norm() < 1e-9);
             // a change of the angles is a rotation E d eta
             let spin = (plus.R - minus.R) / (2.0 * h);

@@ -54,7 +54,11 @@ impl Machine {
         for chain in 0..2 {
             let base = self.layout.base_block(chain);
             let block = matrix.diagonal_mut(base);
-            let inertia = if chain == 0 { self.rod_inertia() } else { d.suspension_mass };
+            let inertia = if chain == 0 {
+                self.rod_inertia()
+            } else {
+                d.suspension_mass
+            };
             block[(0, 0)] += mu * inertia;
             for k in 1..BLOCK {
                 block[(k, k)] = 1.0;
@@ -116,7 +120,9 @@ impl Machine {
                 let torque = scratch.loads.joints[chain][j].torque_i
                     + scratch.loads.joints[chain][j + 1].torque_j;
                 let turning = pose.torque_by_angles(&torque);
-                let mut view = matrix.diagonal_mut(base + 1 + j).fixed_view_mut::<3, 3>(3, 3);
+                let mut view = matrix
+                    .diagonal_mut(base + 1 + j)
+                    .fixed_view_mut::<3, 3>(3, 3);
                 view -= turning;
                 debug_assert!(j < count);
             }
@@ -161,10 +167,24 @@ impl Machine {
                 let (upper, lower) = matrix.coupling_mut(block);
                 subtract_own(upper, &columns_i, &angular_j, Side::J);
                 subtract_own(lower, &columns_j, &angular_i, Side::I);
-                subtract_own(matrix.diagonal_mut(block + 1), &columns_i, &angular_i, Side::I);
+                subtract_own(
+                    matrix.diagonal_mut(block + 1),
+                    &columns_i,
+                    &angular_i,
+                    Side::I,
+                );
             } else {
                 let columns_j = cylinder_columns(&by_j, &poses[joint - 1], gamma);
-                self.anchor_tangent(chain, block, state, gamma, (&by_i, &columns_j), load.force, &poses[joint - 1], matrix);
+                self.anchor_tangent(
+                    chain,
+                    block,
+                    state,
+                    gamma,
+                    (&by_i, &columns_j),
+                    load.force,
+                    &poses[joint - 1],
+                    matrix,
+                );
             }
         }
     }
@@ -290,8 +310,9 @@ impl Machine {
                 let gradient_rate_point = curvature.point * velocity
                     + curvature.mixed * beam_rate
                     + angle_by_point * drift;
-                let gradient_rate_beam =
-                    curvature.mixed.dot(&velocity) + curvature.beam * beam_rate + angle_by_beam * drift;
+                let gradient_rate_beam = curvature.mixed.dot(&velocity)
+                    + curvature.beam * beam_rate
+                    + angle_by_beam * drift;
                 let angle_rate = angle_by_point.dot(&velocity) + angle_by_beam * beam_rate;
                 // derivative of the force by point, beam angle and modes
                 let by_point = touch.by_point * stiff + gradient_rate_point * by_rate;
@@ -330,7 +351,10 @@ impl Machine {
                         let (other, other_by) = if m == 0 {
                             (touch.by_beam, by_beam)
                         } else {
-                            (shape[m - 1], shape[m - 1] * stiff + slopes[m - 1] * angle_rate * by_rate)
+                            (
+                                shape[m - 1],
+                                shape[m - 1] * stiff + slopes[m - 1] * angle_rate * by_rate,
+                            )
                         };
                         let bend = match (k, m) {
                             (0, 0) => curvature.beam,
@@ -387,7 +411,13 @@ fn add_cylinder(block: &mut Block, pose: &Pose, along: f64, point: &PointTangent
     }
 }
 
-fn add_border(matrix: &mut Bordered, block: usize, k: usize, (column, row): (&V2, &V2), arms: &[V2; 2]) {
+fn add_border(
+    matrix: &mut Bordered,
+    block: usize,
+    k: usize,
+    (column, row): (&V2, &V2),
+    arms: &[V2; 2],
+) {
     for r in 0..2 {
         matrix.add_right(block, r, k, column[r]);
         matrix.add_bottom(block, k, r, row[r]);

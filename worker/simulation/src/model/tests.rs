@@ -11,11 +11,17 @@ fn machine() -> Machine {
 fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
     let layout = machine.layout;
     let law = example::law();
-    let drive = Drive { start: 1.0, ramp: 1.0, speed: 0.5 };
-    let mut q = crate::settle::guess(machine, &machine.ropes(&law), &drive.state(machine, 0.0)).unwrap();
+    let drive = Drive {
+        start: 1.0,
+        ramp: 1.0,
+        speed: 0.5,
+    };
+    let mut q =
+        crate::settle::guess(machine, &machine.ropes(&law), &drive.state(machine, 0.0)).unwrap();
     let mut v = vec![0.0; layout.len()];
     for i in 0..layout.len() {
-        let locked = (i / 6 == 0 || i / 6 == layout.base_block(1)) && i % 6 > 0 && i < layout.beam();
+        let locked =
+            (i / 6 == 0 || i / 6 == layout.base_block(1)) && i % 6 > 0 && i < layout.beam();
         if locked {
             continue;
         }
@@ -32,18 +38,36 @@ fn tangent_is_the_derivative_of_the_forces() {
     let ropes = machine.ropes(&example::law());
     let layout = machine.layout;
     let (q, v) = disturbed(&machine);
-    let drive = Drive { start: 1.0, ramp: 1.0, speed: 0.5 }.state(&machine, 0.7);
+    let drive = Drive {
+        start: 1.0,
+        ramp: 1.0,
+        speed: 0.5,
+    }
+    .state(&machine, 0.7);
     let mut scratch = Scratch::new(&layout);
     let mut force = vec![0.0; layout.len()];
     machine.forces(&ropes, &drive, (&q, &v), &mut scratch, &mut force);
-    assert!(scratch.loads.contact.iter().all(|c| c.iter().filter(|&&f| f > 0.0).count() > 3));
+    assert!(
+        scratch
+            .loads
+            .contact
+            .iter()
+            .all(|c| c.iter().filter(|&&f| f > 0.0).count() > 3)
+    );
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
         let mut matrix = Bordered::new(&layout.chains(), 1 + layout.modes);
         machine.tangent(&ropes, &drive, (&q, &v), (mu, gamma), &scratch, &mut matrix);
         // the derivative of Q along (dq, gamma dq), one coordinate at a time
         let mut worst: (f64, String) = (0.0, String::new());
         for i in 0..layout.len() {
-            if matrix.product(&unit(layout.len(), i)).iter().filter(|x| **x != 0.0).count() == 1 && i < layout.beam() {
+            if matrix
+                .product(&unit(layout.len(), i))
+                .iter()
+                .filter(|x| **x != 0.0)
+                .count()
+                == 1
+                && i < layout.beam()
+            {
                 continue; // locked
             }
             let h = 1e-7;
@@ -52,7 +76,13 @@ fn tangent_is_the_derivative_of_the_forces() {
                 q[i] += h;
                 v[i] += gamma * h;
                 let mut force = vec![0.0; layout.len()];
-                machine.forces(&ropes, &drive, (&q, &v), &mut Scratch::new(&layout), &mut force);
+                machine.forces(
+                    &ropes,
+                    &drive,
+                    (&q, &v),
+                    &mut Scratch::new(&layout),
+                    &mut force,
+                );
                 force
             };
             let (plus, minus) = (step(h), step(-h));
@@ -64,11 +94,24 @@ fn tangent_is_the_derivative_of_the_forces() {
                 let numeric = -(plus[r] - minus[r]) / (2.0 * h) - mu * inertia[r];
                 let error = (numeric - column[r]).abs() / scale;
                 if error > worst.0 {
-                    worst = (error, format!("row {} column {}: {numeric} {}", layout.describe(r), layout.describe(i), column[r]));
+                    worst = (
+                        error,
+                        format!(
+                            "row {} column {}: {numeric} {}",
+                            layout.describe(r),
+                            layout.describe(i),
+                            column[r]
+                        ),
+                    );
                 }
             }
         }
-        assert!(worst.0 < 2e-6, "mu {mu} gamma {gamma}: {} {}", worst.0, worst.1);
+        assert!(
+            worst.0 < 2e-6,
+            "mu {mu} gamma {gamma}: {} {}",
+            worst.0,
+            worst.1
+        );
     }
 }
 
@@ -88,7 +131,12 @@ fn forces_are_the_gradient_of_the_potential() {
     let layout = machine.layout;
     let (q, _) = disturbed(&machine);
     let v = vec![0.0; layout.len()];
-    let mut drive = Drive { start: 1.0, ramp: 1.0, speed: 0.5 }.state(&machine, 0.0);
+    let mut drive = Drive {
+        start: 1.0,
+        ramp: 1.0,
+        speed: 0.5,
+    }
+    .state(&machine, 0.0);
     drive.load = 0.0;
     let mut scratch = Scratch::new(&layout);
     let mut force = vec![0.0; layout.len()];
@@ -105,6 +153,11 @@ fn forces_are_the_gradient_of_the_potential() {
         };
         let h = 1e-6;
         let numeric = -(energy(h) - energy(-h)) / (2.0 * h);
-        assert!((numeric - force[i]).abs() < 1e-6 * scale, "{}: {numeric} {}", layout.describe(i), force[i]);
+        assert!(
+            (numeric - force[i]).abs() < 1e-6 * scale,
+            "{}: {numeric} {}",
+            layout.describe(i),
+            force[i]
+        );
     }
 }
