@@ -3,7 +3,7 @@ use crate::drive::DriveState;
 use crate::integrator::State;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
-use crate::model::Machine;
+use crate::model::{Instant, Machine};
 use crate::run::Observe;
 use crate::system::System;
 
@@ -12,28 +12,23 @@ use crate::system::System;
 /// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
 /// the base acceleration, plus what the modes move beyond their own static answer,
 /// `sum_k s_k (q_k - f_k / w_k^2)`. So a truncated set of modes costs no static accuracy.
-pub fn gauge_stress(system: &System<'_>, state: &State) -> [f64; 4] {
+pub fn gauge_stress(system: &System<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
     let machine = system.machine;
     let head = &machine.description.head;
     let layout = machine.layout;
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    machine.each_touch(
-        0,
-        (&state.q, &state.v),
-        &system.scratch.poses,
-        |share, touch, shape| {
-            let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
-            let place = machine.normal_influence.place(touch.angle);
-            for (gauge, stress) in stress.iter_mut().enumerate() {
-                *stress += force * machine.normal_influence.jet(&place, gauge).value;
-            }
-            for (modal, shape) in modal_force.iter_mut().zip(shape) {
-                *modal -= force * shape;
-            }
-        },
-    );
+    machine.each_touch(0, at, &system.scratch.poses, |share, touch, shape| {
+        let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
+        let place = machine.normal_influence.place(touch.angle);
+        for (gauge, stress) in stress.iter_mut().enumerate() {
+            *stress += force * machine.normal_influence.jet(&place, gauge).value;
+        }
+        for (modal, shape) in modal_force.iter_mut().zip(shape) {
+            *modal -= force * shape;
+        }
+    });
 
     // the rope's end pulls at the anchor; in the beam frame
     let beam = layout.beam();
@@ -165,14 +160,20 @@ impl Observe for Recorder {
     fn sample(&mut self, index: usize, system: &mut System<'_>, state: &State) {
         self.force.resize(state.q.len(), 0.0);
         system.forces(state.t, &state.q, &state.v, &mut self.force);
-        let stress = gauge_stress(system, state);
+        let drive = system.drive_state(state.t);
+        let at = Instant {
+            ropes: &system.ropes,
+            drive: &drive,
+            q: &state.q,
+            v: &state.v,
+        };
+        let stress = gauge_stress(system, &at, state);
         for (curve, stress) in self.curves.gauge.iter_mut().zip(stress) {
             curve.push(stress);
         }
         if self.gauges_only {
             return;
         }
-        let drive = system.drive_state(state.t);
         let machine = system.machine;
         let layout = machine.layout;
         let c = &mut self.curves;
@@ -181,15 +182,15 @@ impl Observe for Recorder {
         c.front_tension
             .push(system.scratch.loads.joints[1][0].force.norm());
         c.beam.push(state.q[layout.beam()]);
-        let at = layout.suspension();
-        for (curve, value) in c
-            .suspension
-            .iter_mut()
-            .zip([state.q[at], state.v[at], state.a[at]])
+        let height = layout.suspension();
+        for (curve, value) in
+            c.suspension
+                .iter_mut()
+                .zip([state.q[height], state.v[height], state.a[height]])
         {
             curve.push(value);
         }
-        let pin = machine.pin_force(&drive, &state.q, &state.v, &state.a, &system.scratch);
+        let pin = machine.pin_force(&at, &state.a, &system.scratch);
         c.torque.push(crank_torque(machine, &drive, &pin));
         c.modal.resize(layout.modes, Vec::new());
         for (k, curve) in c.modal.iter_mut().enumerate() {

@@ -3,7 +3,7 @@ use crate::drive::Drive;
 use crate::integrator::tableau::{ESDIRK4, Tableau};
 use crate::integrator::{State, dense::interpolate, esdirk::Esdirk, step_control::StepControl};
 use crate::model::description::RopeLaw;
-use crate::model::{Machine, Powers};
+use crate::model::{Instant, Machine, Powers};
 use crate::settle::{Settled, equilibrium, guess, overload};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -266,7 +266,13 @@ impl Ledger {
             let drive = system.drive_state(state.t);
             let machine = system.machine;
             machine.pose(&state.q, &state.v, &mut system.scratch.poses);
-            machine.energy(&system.ropes, &drive, (&state.q, &state.v), &system.scratch)
+            let at = Instant {
+                ropes: &system.ropes,
+                drive: &drive,
+                q: &state.q,
+                v: &state.v,
+            };
+            machine.energy(&at, &system.scratch)
         };
         if from.t >= begin - 1e-9 {
             if self.first.is_none() {

@@ -7,7 +7,7 @@ use crate::drive::DriveState;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
 use crate::model::kinematics::{DoesNotClose, Position};
-use crate::model::{Machine, Ropes};
+use crate::model::{Instant, Machine, Ropes};
 use crate::system::System;
 use crate::verdict::{Failure, Limits};
 
@@ -254,8 +254,13 @@ const ROUNDING: f64 = 1.0;
 
 fn potential(system: &System<'_>, drive: &DriveState, q: &[f64], still: &[f64]) -> f64 {
     let machine = system.machine;
-    machine.potential(&system.ropes, drive, (q, still), &system.scratch)
-        + drive.load * q[machine.layout.suspension()]
+    let at = Instant {
+        ropes: &system.ropes,
+        drive,
+        q,
+        v: still,
+    };
+    machine.potential(&at, &system.scratch) + drive.load * q[machine.layout.suspension()]
 }
 
 fn within(system: &System<'_>, limits: &Limits, swing: [f64; 2], q: &[f64]) -> Settled {

@@ -1,7 +1,7 @@
 //! The equations of motion of one individual as an integrator sees them.
 use crate::drive::{Drive, DriveState};
 use crate::linear::{BLOCK, Bordered, SingularPivot};
-use crate::model::{Machine, Powers, Ropes, Scratch};
+use crate::model::{Instant, Machine, Powers, Ropes, Scratch};
 use crate::statistics::Statistics;
 
 /// Machine, ropes, drive and every buffer: `M(q) a = Q(q, v, t)`.
@@ -63,8 +63,9 @@ impl<'a> System<'a> {
     /// `Q` under a given crank and load.
     pub fn forces_under(&mut self, drive: &DriveState, q: &[f64], v: &[f64], force: &mut [f64]) {
         self.statistics.force_evaluations += 1;
-        self.machine
-            .forces(&self.ropes, drive, (q, v), &mut self.scratch, force);
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine.forces(&at, &mut self.scratch, force);
     }
 
     /// Residual `Q - M a`.
@@ -126,14 +127,10 @@ impl<'a> System<'a> {
 
     fn assemble(&mut self, drive: &DriveState, (q, v): (&[f64], &[f64]), (mu, gamma): (f64, f64)) {
         self.statistics.jacobians += 1;
-        self.machine.tangent(
-            &self.ropes,
-            drive,
-            (q, v),
-            (mu, gamma),
-            &self.scratch,
-            &mut self.matrix,
-        );
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine
+            .tangent(&at, (mu, gamma), &self.scratch, &mut self.matrix);
     }
 
     /// Solves with the last factorisation, in place.
@@ -143,9 +140,10 @@ impl<'a> System<'a> {
 
     /// Powers at the state of the last force evaluation.
     pub fn powers(&mut self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Powers {
-        let drive = self.drive_state(t);
-        self.machine
-            .powers(&self.ropes, &drive, (q, v, a), &self.scratch)
+        let drive = &self.drive_state(t);
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine.powers(&at, a, &self.scratch)
     }
 
     /// Largest change over all coordinates, in units of Newton's accuracy.

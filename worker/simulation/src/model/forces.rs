@@ -1,12 +1,11 @@
 //! Generalised forces, inertia, and the powers that the energy ledger adds up.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
-use crate::drive::DriveState;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
-use crate::model::contact::{GAUSS, Surface};
-use crate::model::links::MarkerState;
-use crate::model::{Machine, Ropes, Scratch, pose::Pose};
+use crate::model::contact::{GAUSS, Surface, Touch};
+use crate::model::links::Instant;
+use crate::model::{Machine, Scratch, pose::Pose};
 use nalgebra::{Vector2, Vector3};
 
 type V2 = Vector2<f64>;
@@ -37,33 +36,20 @@ impl Machine {
     }
 
     /// Generalised forces `Q(q, v, t)` into `force`; joint and contact loads stay in `scratch`.
-    pub fn forces(
-        &self,
-        ropes: &Ropes,
-        drive: &DriveState,
-        (q, v): (&[f64], &[f64]),
-        scratch: &mut Scratch,
-        force: &mut [f64],
-    ) {
+    pub fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
         force.fill(0.0);
-        self.pose(q, v, &mut scratch.poses);
+        self.pose(at.q, at.v, &mut scratch.poses);
         scratch.loads.deepest = 0.0;
-        self.weights(drive, (q, v), &scratch.poses, force);
-        let state = MarkerState { q, v, drive };
+        self.weights(at, &scratch.poses, force);
         for chain in 0..2 {
-            self.joint_forces(chain, ropes, &state, scratch, force);
-            self.contact_forces(chain, ropes, &state, scratch, force);
+            self.joint_forces(chain, at, scratch, force);
+            self.contact_forces(chain, at, scratch, force);
         }
     }
 
     /// Gravity, load, velocity terms, and the head's own stiffness and damping.
-    fn weights(
-        &self,
-        drive: &DriveState,
-        (q, v): (&[f64], &[f64]),
-        poses: &[Pose],
-        force: &mut [f64],
-    ) {
+    fn weights(&self, at: &Instant<'_>, poses: &[Pose], force: &mut [f64]) {
+        let &Instant { q, v, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
         let rod = self.layout.rod();
@@ -105,16 +91,15 @@ impl Machine {
     fn joint_forces(
         &self,
         chain: usize,
-        ropes: &Ropes,
-        state: &MarkerState<'_>,
+        at: &Instant<'_>,
         scratch: &mut Scratch,
         force: &mut [f64],
     ) {
         let base = self.layout.base_block(chain);
         let count = self.cylinders(chain);
         for joint in 0..=count {
-            let [i, j] = self.markers(chain, joint, &scratch.poses, state);
-            let load = self.law(chain, joint, ropes).load(&i, &j);
+            let [i, j] = self.markers(chain, joint, &scratch.poses, at);
+            let load = self.law(chain, joint, at.ropes).load(&i, &j);
             if joint > 0 {
                 let pose = &self.chain_poses(chain, &scratch.poses)[joint - 1];
                 add_wrench(
@@ -140,7 +125,7 @@ impl Machine {
                 let beam = self.layout.beam();
                 force[beam] += load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
                 if chain == 0 {
-                    let (s, c) = sin_cos(state.q[beam]);
+                    let (s, c) = sin_cos(at.q[beam]);
                     for (k, shape) in self.anchor_shape.iter().enumerate() {
                         force[self.layout.mode(k)] += load.force.x * (c * shape[0] - s * shape[1])
                             + load.force.y * (s * shape[0] + c * shape[1]);
@@ -166,12 +151,11 @@ impl Machine {
     fn contact_forces(
         &self,
         chain: usize,
-        ropes: &Ropes,
-        state: &MarkerState<'_>,
+        at: &Instant<'_>,
         scratch: &mut Scratch,
         force: &mut [f64],
     ) {
-        let surface = self.surface(chain, state.q, state.v);
+        let surface = self.surface(chain, at.q, at.v);
         let half = 0.5 * self.description.rope.pitch;
         let first = self.layout.base_block(chain) + 1;
         let beam = self.layout.beam();
@@ -188,18 +172,18 @@ impl Machine {
                     let velocity: V2 = (pose.v + sweep * along).xy();
                     let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
                     scratch.loads.deepest = scratch.loads.deepest.max(touch.depth);
-                    let law = ropes.contact.force(touch.depth, touch.rate);
+                    let law = at.ropes.contact.force(touch.depth, touch.rate);
                     let f = share * law.force;
                     if f == 0.0 {
                         continue;
                     }
                     total += f;
                     let push = touch.by_point * -f;
-                    let at = (first + j) * BLOCK;
-                    force[at] += push.x;
-                    force[at + 1] += push.y;
+                    let own = (first + j) * BLOCK;
+                    force[own] += push.x;
+                    force[own + 1] += push.y;
                     for k in 0..2 {
-                        force[at + 4 + k] += along * push.dot(&pose.axis_by[k].xy());
+                        force[own + 4 + k] += along * push.dot(&pose.axis_by[k].xy());
                     }
                     force[beam] -= f * touch.by_beam;
                     for k in 0..modes {
@@ -251,19 +235,12 @@ impl Machine {
     }
 
     /// Force that the crank pin exerts on the rod, given joint loads and accelerations [N].
-    pub fn pin_force(
-        &self,
-        drive: &DriveState,
-        q: &[f64],
-        v: &[f64],
-        a: &[f64],
-        scratch: &Scratch,
-    ) -> V2 {
+    pub fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
-        let (s, c) = sin_cos(q[i]);
-        let center = drive.pin[2] + V2::new(-s, c) * (rod.center_of_mass * a[i])
-            - V2::new(c, s) * (rod.center_of_mass * v[i] * v[i]);
+        let (s, c) = sin_cos(at.q[i]);
+        let center = at.drive.pin[2] + V2::new(-s, c) * (rod.center_of_mass * a[i])
+            - V2::new(c, s) * (rod.center_of_mass * at.v[i] * at.v[i]);
         // the joint pulls the rod with minus the force on the first cylinder
         let rope = scratch.loads.joints[0][0].force;
         V2::new(
@@ -273,14 +250,9 @@ impl Machine {
     }
 
     /// Powers at an instant whose loads are in `scratch`.
-    pub fn powers(
-        &self,
-        ropes: &Ropes,
-        drive: &DriveState,
-        (q, v, a): (&[f64], &[f64], &[f64]),
-        scratch: &Scratch,
-    ) -> Powers {
-        let pin = self.pin_force(drive, q, v, a, scratch);
+    pub fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
+        let v = at.v;
+        let pin = self.pin_force(at, a, scratch);
         let mut dissipated: f64 = scratch
             .loads
             .joints
@@ -288,8 +260,8 @@ impl Machine {
             .flat_map(|chain| chain.iter().map(|load| load.dissipated))
             .sum();
         for chain in 0..2 {
-            self.each_touch(chain, (q, v), &scratch.poses, |share, touch, _| {
-                dissipated += share * ropes.contact.force(touch.depth, touch.rate).dissipated;
+            self.each_touch(chain, at, &scratch.poses, |share, touch, _| {
+                dissipated += share * at.ropes.contact.force(touch.depth, touch.rate).dissipated;
             });
         }
         let head = &self.description.head;
@@ -298,8 +270,8 @@ impl Machine {
             dissipated += 2.0 * head.damping_ratio * head.frequencies[k] * rate * rate;
         }
         Powers {
-            input: pin.dot(&drive.pin[1]),
-            output: drive.load * v[self.layout.suspension()],
+            input: pin.dot(&at.drive.pin[1]),
+            output: at.drive.load * v[self.layout.suspension()],
             dissipated,
         }
     }
@@ -308,11 +280,11 @@ impl Machine {
     pub(crate) fn each_touch(
         &self,
         chain: usize,
-        (q, v): (&[f64], &[f64]),
+        at: &Instant<'_>,
         poses: &[Pose],
-        mut visit: impl FnMut(f64, &crate::model::contact::Touch, &[f64]),
+        mut visit: impl FnMut(f64, &Touch, &[f64]),
     ) {
-        let surface = self.surface(chain, q, v);
+        let surface = self.surface(chain, at.q, at.v);
         let half = 0.5 * self.description.rope.pitch;
         let modes = surface.modal.len();
         let mut shape = [0.0; MAX_MODES];
@@ -332,28 +304,16 @@ impl Machine {
         }
     }
 
-    /// Kinetic plus potential energy without the load's [J]; `scratch` holds the poses.
-    pub fn energy(
-        &self,
-        ropes: &Ropes,
-        drive: &DriveState,
-        (q, v): (&[f64], &[f64]),
-        scratch: &Scratch,
-    ) -> f64 {
-        self.potential(ropes, drive, (q, v), scratch) + self.kinetic(drive, q, v)
+    /// Kinetic plus potential energy without the load's \[J\]; `scratch` holds the poses.
+    pub fn energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+        self.potential(at, scratch) + self.kinetic(at)
     }
 
-    /// Elastic and gravitational energy [J].
-    pub fn potential(
-        &self,
-        ropes: &Ropes,
-        drive: &DriveState,
-        (q, v): (&[f64], &[f64]),
-        scratch: &Scratch,
-    ) -> f64 {
+    /// Elastic and gravitational energy \[J\].
+    pub fn potential(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+        let &Instant { q, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
-        let state = MarkerState { q, v, drive };
         let (rod, beam) = (self.layout.rod(), self.layout.beam());
         let mut sum = d.rod.mass * g * (drive.pin[0].y + d.rod.center_of_mass * sin_cos(q[rod]).0)
             + d.suspension_mass * g * q[self.layout.suspension()];
@@ -367,11 +327,11 @@ impl Machine {
         }
         for chain in 0..2 {
             for joint in 0..=self.cylinders(chain) {
-                let [i, j] = self.markers(chain, joint, &scratch.poses, &state);
-                sum += self.law(chain, joint, ropes).energy(&i, &j);
+                let [i, j] = self.markers(chain, joint, &scratch.poses, at);
+                sum += self.law(chain, joint, at.ropes).energy(&i, &j);
             }
-            self.each_touch(chain, (q, v), &scratch.poses, |share, touch, _| {
-                sum += share * ropes.contact.energy(touch.depth);
+            self.each_touch(chain, at, &scratch.poses, |share, touch, _| {
+                sum += share * at.ropes.contact.energy(touch.depth);
             });
             for pose in self.chain_poses(chain, &scratch.poses) {
                 sum += self.cylinder_mass * g * pose.p.y;
@@ -380,7 +340,8 @@ impl Machine {
         sum
     }
 
-    fn kinetic(&self, drive: &DriveState, q: &[f64], v: &[f64]) -> f64 {
+    fn kinetic(&self, at: &Instant<'_>) -> f64 {
+        let &Instant { q, v, drive, .. } = at;
         // M v through the inertia operator; the rod's part relative to the moving pin is added
         let mut momentum = vec![0.0; v.len()];
         self.subtract_inertia(q, v, &mut momentum);

@@ -88,16 +88,16 @@ impl Machine {
         chain: usize,
         joint: usize,
         poses: &[Pose],
-        state: &MarkerState<'_>,
+        at: &Instant<'_>,
     ) -> [Marker; 2] {
         let half = 0.5 * self.description.rope.pitch;
         let poses = self.chain_poses(chain, poses);
         let i = poses.get(joint).map_or_else(
-            || self.anchor_marker(chain, state),
+            || self.anchor_marker(chain, at),
             |pose| on_cylinder(pose, -half),
         );
         let j = if joint == 0 {
-            self.base_marker(chain, state)
+            self.base_marker(chain, at)
         } else {
             on_cylinder(&poses[joint - 1], half)
         };
@@ -105,12 +105,12 @@ impl Machine {
     }
 
     /// The joint on the crossbeam end of the rod, or on the suspension point.
-    fn base_marker(&self, chain: usize, state: &MarkerState<'_>) -> Marker {
-        let (q, v) = (state.q, state.v);
+    fn base_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
+        let (q, v) = (at.q, at.v);
         if chain == 0 {
             let rod = self.layout.rod();
             let (s, c) = sin_cos(q[rod]);
-            let [pin, pin_velocity, _] = state.drive.pin;
+            let [pin, pin_velocity, _] = at.drive.pin;
             return Marker {
                 p: V3::new(pin.x, pin.y, 0.0),
                 rho: V3::new(c, s, 0.0) * self.description.rod.length,
@@ -119,11 +119,11 @@ impl Machine {
                 R: turned(s, c),
             };
         }
-        let at = self.layout.suspension();
+        let height = self.layout.suspension();
         Marker {
-            p: V3::new(self.suspension_x, q[at], 0.0),
+            p: V3::new(self.suspension_x, q[height], 0.0),
             rho: V3::zeros(),
-            v: V3::new(0.0, v[at], 0.0),
+            v: V3::new(0.0, v[height], 0.0),
             w: V3::zeros(),
             R: turned(1.0, 0.0),
         }
@@ -131,9 +131,9 @@ impl Machine {
 
     /// The fixed end of a rope on its head. The reference point carries the head's deflection, so
     /// that the arm stays rigid.
-    fn anchor_marker(&self, chain: usize, state: &MarkerState<'_>) -> Marker {
+    fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
         let beam = self.layout.beam();
-        let (theta, rate) = (state.q[beam], state.v[beam]);
+        let (theta, rate) = (at.q[beam], at.v[beam]);
         let arc = self.arc(chain);
         let (s, c) = sin_cos(arc.anchor);
         let place = V3::new(
@@ -148,8 +148,8 @@ impl Machine {
         if chain == 0 {
             for (k, shape) in self.anchor_shape.iter().enumerate() {
                 let direction = R * V3::new(shape[0], shape[1], 0.0);
-                p += direction * state.q[self.layout.mode(k)];
-                v += direction * state.v[self.layout.mode(k)];
+                p += direction * at.q[self.layout.mode(k)];
+                v += direction * at.v[self.layout.mode(k)];
             }
             v += w.cross(&p);
         }
@@ -166,11 +166,17 @@ impl Machine {
     }
 }
 
-/// What places the markers: coordinates, rates, and the prescribed crank.
-pub(crate) struct MarkerState<'a> {
-    pub(crate) q: &'a [f64],
-    pub(crate) v: &'a [f64],
-    pub(crate) drive: &'a DriveState,
+/// An individual's machine at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a> {
+    /// The individual's ropes.
+    pub ropes: &'a Ropes,
+    /// Crank and load.
+    pub drive: &'a DriveState,
+    /// Coordinates.
+    pub q: &'a [f64],
+    /// Their rates.
+    pub v: &'a [f64],
 }
 
 fn on_cylinder(pose: &Pose, along: f64) -> Marker {

@@ -12,7 +12,7 @@ mod tangent;
 
 pub(crate) use forces::MAX_MODES;
 pub use forces::Powers;
-pub use links::ChainLoads;
+pub use links::{ChainLoads, Instant};
 pub use machine::{InvalidDescription, Machine, Ropes, Scratch};
 
 #[cfg(test)]

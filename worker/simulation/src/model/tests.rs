@@ -1,4 +1,4 @@
-use super::{Machine, Scratch, example};
+use super::{Instant, Machine, Scratch, example};
 use crate::drive::Drive;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
@@ -46,7 +46,16 @@ fn tangent_is_the_derivative_of_the_forces() {
     .state(&machine, 0.7);
     let mut scratch = Scratch::new(&layout);
     let mut force = vec![0.0; layout.len()];
-    machine.forces(&ropes, &drive, (&q, &v), &mut scratch, &mut force);
+    machine.forces(
+        &Instant {
+            ropes: &ropes,
+            drive: &drive,
+            q: &q,
+            v: &v,
+        },
+        &mut scratch,
+        &mut force,
+    );
     assert!(
         scratch
             .loads
@@ -56,7 +65,17 @@ fn tangent_is_the_derivative_of_the_forces() {
     );
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
         let mut matrix = Bordered::new(&layout.chains(), 1 + layout.modes);
-        machine.tangent(&ropes, &drive, (&q, &v), (mu, gamma), &scratch, &mut matrix);
+        machine.tangent(
+            &Instant {
+                ropes: &ropes,
+                drive: &drive,
+                q: &q,
+                v: &v,
+            },
+            (mu, gamma),
+            &scratch,
+            &mut matrix,
+        );
         // the derivative of Q along (dq, gamma dq), one coordinate at a time
         let mut worst: (f64, String) = (0.0, String::new());
         for i in 0..layout.len() {
@@ -77,9 +96,12 @@ fn tangent_is_the_derivative_of_the_forces() {
                 v[i] += gamma * h;
                 let mut force = vec![0.0; layout.len()];
                 machine.forces(
-                    &ropes,
-                    &drive,
-                    (&q, &v),
+                    &Instant {
+                        ropes: &ropes,
+                        drive: &drive,
+                        q: &q,
+                        v: &v,
+                    },
                     &mut Scratch::new(&layout),
                     &mut force,
                 );
@@ -140,7 +162,16 @@ fn forces_are_the_gradient_of_the_potential() {
     drive.load = 0.0;
     let mut scratch = Scratch::new(&layout);
     let mut force = vec![0.0; layout.len()];
-    machine.forces(&ropes, &drive, (&q, &v), &mut scratch, &mut force);
+    machine.forces(
+        &Instant {
+            ropes: &ropes,
+            drive: &drive,
+            q: &q,
+            v: &v,
+        },
+        &mut scratch,
+        &mut force,
+    );
     let scale = force.iter().map(|x| x.abs()).fold(0.0, f64::max);
     for i in 0..layout.len() {
         let energy = |h: f64| {
@@ -148,8 +179,25 @@ fn forces_are_the_gradient_of_the_potential() {
             q[i] += h;
             let mut scratch = Scratch::new(&layout);
             let mut force = vec![0.0; layout.len()];
-            machine.forces(&ropes, &drive, (&q, &v), &mut scratch, &mut force);
-            machine.potential(&ropes, &drive, (&q, &v), &scratch)
+            machine.forces(
+                &Instant {
+                    ropes: &ropes,
+                    drive: &drive,
+                    q: &q,
+                    v: &v,
+                },
+                &mut scratch,
+                &mut force,
+            );
+            machine.potential(
+                &Instant {
+                    ropes: &ropes,
+                    drive: &drive,
+                    q: &q,
+                    v: &v,
+                },
+                &scratch,
+            )
         };
         let h = 1e-6;
         let numeric = -(energy(h) - energy(-h)) / (2.0 * h);

@@ -1,0 +1,190 @@
+//! Tangent of the rope's contact with the heads.
+//!
+//! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with
+//! `df = (f_d + gamma c) grad d + c H q'`: `f_d` and `c` are the law's derivatives by penetration
+//! and rate, `H` the second derivatives of the penetration.
+use crate::linear::{Block, Bordered};
+use crate::model::contact::{Curvature, GAUSS, Surface, Touch};
+use crate::model::forces::MAX_MODES;
+use crate::model::links::Instant;
+use crate::model::{Machine, Scratch, pose::Pose};
+use nalgebra::Vector2;
+
+type V2 = Vector2<f64>;
+
+/// Everything about one Gauss point in contact.
+struct Point {
+    touch: Touch,
+    curvature: Curvature,
+    /// Distance from the cylinder's centre along its axis \[m\].
+    along: f64,
+    force: f64,
+    /// Derivative of the force by the penetration's rate.
+    by_rate: f64,
+    /// Derivative of the force by the point and by the border's coordinates.
+    by_point: V2,
+    border: [BorderColumn; MAX_MODES + 1],
+}
+
+/// One coordinate of the border: the beam angle, then the modes.
+#[derive(Clone, Copy, Default)]
+struct BorderColumn {
+    /// Derivative of the penetration.
+    gradient: f64,
+    /// Derivative of the force.
+    force_by: f64,
+    /// Mixed second derivative of the penetration with the point.
+    mixed: V2,
+    /// Slope of the mode's shape over the arc; the beam angle has none.
+    slope: f64,
+}
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
+impl Machine {
+    pub(super) fn contact_tangent(
+        &self,
+        chain: usize,
+        at: &Instant<'_>,
+        gamma: f64,
+        scratch: &Scratch,
+        matrix: &mut Bordered,
+    ) {
+        let surface = self.surface(chain, at.q, at.v);
+        let half = 0.5 * self.description.rope.pitch;
+        let first = self.layout.base_block(chain) + 1;
+        let modes = surface.modal.len();
+        let mut shape = [0.0; MAX_MODES];
+        for (j, pose) in self.chain_poses(chain, &scratch.poses).iter().enumerate() {
+            let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
+                continue;
+            };
+            for (place, share) in GAUSS {
+                let along = place * half;
+                let g: V2 = (pose.p + pose.axis() * along).xy();
+                let velocity: V2 = (pose.v + pose.axis_velocity() * along).xy();
+                let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
+                let law = at.ropes.contact.force(touch.depth, touch.rate);
+                if law.force == 0.0 {
+                    continue;
+                }
+                let by_rate = share * law.by_rate;
+                let stiff = share * law.by_penetration + gamma * by_rate;
+                let mut point = Point {
+                    curvature: surface.curvature(&touch),
+                    touch,
+                    along,
+                    force: share * law.force,
+                    by_rate,
+                    by_point: V2::zeros(),
+                    border: [BorderColumn::default(); MAX_MODES + 1],
+                };
+                point.differentiate(&surface, &velocity, stiff, &shape[..modes]);
+                point.add_cylinder(matrix.diagonal_mut(first + j), pose);
+                point.add_border(matrix, first + j, pose, modes);
+            }
+        }
+    }
+}
+
+impl Point {
+    /// Derivatives of the force by the point, the beam angle and the modes.
+    fn differentiate(&mut self, surface: &Surface<'_>, velocity: &V2, stiff: f64, shape: &[f64]) {
+        let beam_rate = surface.beam[1];
+        let (angle_by_point, angle_by_beam) = self.curvature.angle_by;
+        let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
+        let mut drift = 0.0;
+        if let Some(shapes) = surface.shapes {
+            let at = shapes.place(self.touch.angle);
+            for (k, &shape) in shape.iter().enumerate() {
+                let slope = shapes.jet(&at, k).first;
+                drift += surface.modal_rate[k] * slope;
+                self.border[1 + k] = BorderColumn {
+                    gradient: shape,
+                    force_by: shape * stiff + slope * angle_rate * self.by_rate,
+                    mixed: angle_by_point * slope,
+                    slope,
+                };
+            }
+        }
+        // rates of the gradient along the motion: H q'
+        let point_rate = self.curvature.point * velocity
+            + self.curvature.mixed * beam_rate
+            + angle_by_point * drift;
+        let beam_gradient_rate = self.curvature.mixed.dot(velocity)
+            + self.curvature.beam * beam_rate
+            + angle_by_beam * drift;
+        self.by_point = self.touch.by_point * stiff + point_rate * self.by_rate;
+        self.border[0] = BorderColumn {
+            gradient: self.touch.by_beam,
+            force_by: self.touch.by_beam * stiff + beam_gradient_rate * self.by_rate,
+            mixed: self.curvature.mixed,
+            slope: 0.0,
+        };
+    }
+
+    /// How the point's velocity turns with the cylinder's angles, times the damping.
+    fn turning(&self, pose: &Pose) -> [f64; 2] {
+        pose.axis_velocity_by()
+            .map(|sweep| self.by_rate * self.along * self.touch.by_point.dot(&sweep.xy()))
+    }
+
+    fn arms(&self, pose: &Pose) -> [V2; 2] {
+        pose.axis_by.map(|axis| axis.xy() * self.along)
+    }
+
+    fn add_cylinder(&self, block: &mut Block, pose: &Pose) {
+        let gradient = self.touch.by_point;
+        let core = gradient * self.by_point.transpose() + self.curvature.point * self.force;
+        let (arms, turning) = (self.arms(pose), self.turning(pose));
+        let bends = pose.axis_by_twice();
+        for r in 0..2 {
+            for c in 0..2 {
+                block[(r, c)] += core[(r, c)];
+            }
+        }
+        for (a, arm) in arms.iter().enumerate() {
+            let column = core * arm + gradient * turning[a];
+            let row = core.tr_mul(arm);
+            for k in 0..2 {
+                block[(k, 4 + a)] += column[k];
+                block[(4 + a, k)] += row[k];
+            }
+            for (b, other) in arms.iter().enumerate() {
+                let bend = bends[a + b].xy() * self.along;
+                block[(4 + a, 4 + b)] += arm.dot(&(core * other))
+                    + arm.dot(&gradient) * turning[b]
+                    + self.force * gradient.dot(&bend);
+            }
+        }
+    }
+
+    fn add_border(&self, matrix: &mut Bordered, block: usize, pose: &Pose, modes: usize) {
+        let (arms, turning) = (self.arms(pose), self.turning(pose));
+        let (_, angle_by_beam) = self.curvature.angle_by;
+        let border = &self.border[..=modes];
+        for (k, of) in border.iter().enumerate() {
+            let column = self.touch.by_point * of.force_by + of.mixed * self.force;
+            let row = self.by_point * of.gradient + of.mixed * self.force;
+            for r in 0..2 {
+                matrix.add_right(block, r, k, column[r]);
+                matrix.add_bottom(block, k, r, row[r]);
+            }
+            for (a, arm) in arms.iter().enumerate() {
+                matrix.add_right(block, 4 + a, k, column.dot(arm));
+                matrix.add_bottom(block, k, 4 + a, row.dot(arm) + of.gradient * turning[a]);
+            }
+            for (m, other) in border.iter().enumerate() {
+                let bend = match (k, m) {
+                    (0, 0) => self.curvature.beam,
+                    (0, _) => angle_by_beam * other.slope,
+                    (_, 0) => angle_by_beam * of.slope,
+                    _ => 0.0,
+                };
+                matrix.add_corner(k, m, of.gradient * other.force_by + bend * self.force);
+            }
+        }
+    }
+}
