@@ -1,1 +1,26 @@
 //! Reads a case folder, checks it and resolves it into plain data.
+//!
+//! A folder holds `case.toml` and the files it names: load cards, gauge records with their data
+//! sheets, and the reduced back head. What comes out is a [`Case`](protocol::case::Case), which travels to the workers;
+//! what is wrong ends in one [`CaseError`] that names file, field, value, range and remedy; what
+//! is worth knowing is a [`Note`]. Nothing here knows of dynamics, of search or of the wire.
+mod card;
+mod document;
+mod error;
+mod file;
+mod genes;
+mod geometry;
+mod head;
+mod load;
+mod machine;
+mod note;
+mod record;
+mod schema;
+mod table;
+
+pub use error::CaseError;
+pub use genes::read_genes;
+pub use geometry::Envelope;
+pub use load::{Loaded, Overrides, load, load_with_notes};
+pub use note::Note;
+pub use record::RecordFacts;

@@ -1,0 +1,253 @@
+//! TOML files: parsed into typed data, with errors that show the line and the nearest known key.
+use super::{
+    error::{CaseError, damaged},
+    file,
+};
+use serde::de::DeserializeOwned;
+use std::{
+    fmt::Display,
+    ops::{Range, RangeInclusive},
+    path::{Path, PathBuf},
+};
+use toml::de::{DeTable, DeValue};
+
+/// A TOML file that was read: its text is kept for the excerpts of later errors.
+#[derive(Debug)]
+pub(super) struct Document {
+    /// The file.
+    pub(super) path: PathBuf,
+    text: String,
+}
+
+/// One step of the way to a field.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Step<'a> {
+    /// A key of a table.
+    Key(&'a str),
+    /// An entry of an array.
+    Index(usize),
+}
+
+impl Document {
+    /// Reads a TOML file.
+    ///
+    /// # Errors
+    /// Missing, unreadable, empty or not text.
+    pub(super) fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
+        let text = file::text(path, file::read(path, role)?)?;
+        Ok(Self {
+            path: path.to_owned(),
+            text,
+        })
+    }
+
+    /// Parses the text.
+    ///
+    /// # Errors
+    /// Syntax, unknown keys (with the nearest known one), missing keys, values of another type.
+    pub(super) fn parse<T: DeserializeOwned>(&self) -> Result<T, CaseError> {
+        toml::from_str(&self.text).map_err(|error| {
+            let message = error.message();
+            CaseError::Toml {
+                path: self.path.as_path().into(),
+                problem: first_line(message).into(),
+                excerpt: error
+                    .span()
+                    .map(|span| self.excerpt(span))
+                    .unwrap_or_default()
+                    .into(),
+                help: advice(message).into(),
+            }
+        })
+    }
+
+    /// An error about a field, with its source line.
+    pub(super) fn field(
+        &self,
+        way: &[Step<'_>],
+        value: impl Display,
+        allowed: impl Into<String>,
+        help: &str,
+    ) -> CaseError {
+        CaseError::Field {
+            path: self.path.as_path().into(),
+            field: dotted(way).into(),
+            value: value.to_string().into(),
+            allowed: allowed.into().into(),
+            excerpt: self
+                .span(way)
+                .map(|span| self.excerpt(span))
+                .unwrap_or_default()
+                .into(),
+            help: help.into(),
+        }
+    }
+
+    /// Checks that a number of the file lies in an interval; NaN never does.
+    ///
+    /// # Errors
+    /// Names the field, its value and the interval with its unit.
+    pub(super) fn within(
+        &self,
+        dotted: &str,
+        value: f64,
+        range: RangeInclusive<f64>,
+        unit: &str,
+    ) -> Result<(), CaseError> {
+        if range.contains(&value) {
+            return Ok(());
+        }
+        let way: Vec<Step<'_>> = dotted.split('.').map(Step::Key).collect();
+        Err(self.field(
+            &way,
+            value,
+            format!(
+                "{} to {} {unit}",
+                short(*range.start()),
+                short(*range.end())
+            ),
+            "correct the value; the unit is the end of the key's name",
+        ))
+    }
+
+    /// Where a field stands in the text.
+    fn span(&self, way: &[Step<'_>]) -> Option<Range<usize>> {
+        let root = DeTable::parse(&self.text).ok()?;
+        let (first, rest) = way.split_first()?;
+        let Step::Key(key) = first else { return None };
+        let mut at = root.get_ref().get(*key)?;
+        for step in rest {
+            at = match (step, at.get_ref()) {
+                (Step::Key(key), DeValue::Table(table)) => table.get(*key)?,
+                (Step::Index(index), DeValue::Array(array)) => array.get(*index)?,
+                _ => return Some(at.span()),
+            };
+        }
+        Some(at.span())
+    }
+
+    /// The line of a span with a marker below it.
+    fn excerpt(&self, span: Range<usize>) -> String {
+        let start = span.start.min(self.text.len());
+        let before = self.text.as_bytes().get(..start).unwrap_or_default();
+        let line = before.iter().filter(|byte| **byte == b'\n').count();
+        let column = before
+            .iter()
+            .rev()
+            .take_while(|byte| **byte != b'\n')
+            .count();
+        let Some(source) = self.text.lines().nth(line) else {
+            return String::new();
+        };
+        let room = source.len().saturating_sub(column).max(1);
+        let width = span.end.saturating_sub(span.start).clamp(1, room);
+        let number = (line + 1).to_string();
+        let gutter = " ".repeat(number.len());
+        format!(
+            "\n{gutter} |\n{number} | {source}\n{gutter} | {}{}",
+            " ".repeat(column),
+            "^".repeat(width)
+        )
+    }
+}
+
+/// The way to a field as it is written in messages: `conditions[0].speed_rpm`.
+fn dotted(way: &[Step<'_>]) -> String {
+    let mut text = String::new();
+    for step in way {
+        match step {
+            Step::Key(key) if text.is_empty() => text.push_str(key),
+            Step::Key(key) => {
+                text.push('.');
+                text.push_str(key);
+            }
+            Step::Index(index) => {
+                text.push('[');
+                text.push_str(&index.to_string());
+                text.push(']');
+            }
+        }
+    }
+    text
+}
+
+/// A number without needless digits.
+pub(super) fn short(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// The first line of a library's message, without its list of alternatives.
+fn first_line(message: &str) -> String {
+    let line = message.lines().next().unwrap_or_default();
+    match line.split_once(", expected ") {
+        Some((head, _)) if line.starts_with("unknown ") => head.to_owned(),
+        _ => line.to_owned(),
+    }
+}
+
+/// What to do about a message of the TOML library.
+fn advice(message: &str) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    if message.starts_with("unknown field") || message.starts_with("unknown variant") {
+        let what = quoted.next().unwrap_or_default();
+        let known: Vec<&str> = quoted.collect();
+        let list = known.join(", ");
+        return match nearest(what, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`? known here: {list}"),
+            None => format!("remove it; known here: {list}"),
+        };
+    }
+    if message.starts_with("missing field") {
+        let what = quoted.next().unwrap_or_default();
+        return match what {
+            "unit" => format!("add `unit = \"...\"`: one of {}", units()),
+            _ => format!("add `{what}`; `horsehead case new` prints a commented template"),
+        };
+    }
+    if message.starts_with("invalid type") {
+        return "correct the value's type: numbers without quotes, names with quotes".to_owned();
+    }
+    "correct the marked place; the file must be TOML 1.0".to_owned()
+}
+
+/// Every unit a gene may have, for messages.
+pub(super) fn units() -> String {
+    protocol::unit::Unit::ALL
+        .map(protocol::unit::Unit::symbol)
+        .join(", ")
+}
+
+/// The candidate that is most like a word, if any is much like it.
+pub(super) fn nearest<'a>(
+    word: &str,
+    candidates: impl Iterator<Item = &'a str>,
+) -> Option<&'a str> {
+    candidates
+        .map(|candidate| {
+            let alike = strsim::normalized_damerau_levenshtein(word, candidate);
+            // a key that lacks its unit is the commonest slip: `mass` for `mass_kg`
+            let prefix = candidate.starts_with(word) && word.len() >= 3;
+            (candidate, if prefix { alike.max(0.9) } else { alike })
+        })
+        .filter(|(_, alike)| *alike >= 0.5)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(candidate, _)| candidate)
+}
+
+/// Parses JSON with the file's name in the error.
+///
+/// # Errors
+/// Names the line and column of the first problem.
+pub(super) fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseError> {
+    serde_json::from_slice(bytes).map_err(|error| {
+        damaged(
+            path,
+            format!("the JSON cannot be used: {error}"),
+            "copy the file again from its source; keys and lengths are described in the case's README",
+        )
+    })
+}

@@ -1,0 +1,113 @@
+//! Reading the bytes of a case's files; knows nothing of what they mean.
+use super::error::{CaseError, damaged};
+use std::{fs, io, io::Read, path::Path};
+
+/// Largest file, unpacked [bytes]: 40 hours of a 100 Hz record; a larger one is a mistake or a
+/// compression bomb.
+const LIMIT: u64 = 1 << 30;
+
+/// Reads a file whole.
+///
+/// # Errors
+/// Missing (with `role`: what it is needed for), unreadable, empty or larger than 1 GiB.
+pub(super) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+    let file = fs::File::open(path).map_err(|source| match source.kind() {
+        io::ErrorKind::NotFound => CaseError::Missing {
+            path: path.into(),
+            role: role.into(),
+            help: "put the file there, or correct the name where it is stated".into(),
+        },
+        _ => CaseError::Unreadable {
+            path: path.into(),
+            source,
+        },
+    })?;
+    let bytes = read_limited(file, path)?.map_err(|source| CaseError::Unreadable {
+        path: path.into(),
+        source,
+    })?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(damaged(
+            path,
+            "the file is empty",
+            "copy it again from its source",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// Reads a gzip file whole and unpacks it.
+///
+/// # Errors
+/// As [`read`], and where the file is not gzip, is cut off or fails its checksum.
+pub(super) fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+    let packed = read(path, role)?;
+    if !packed.starts_with(&[0x1f, 0x8b]) {
+        return Err(damaged(
+            path,
+            "the file is not gzip data",
+            "compress the table with gzip, or name it .csv",
+        ));
+    }
+    let decoder = flate2::read::MultiGzDecoder::new(packed.as_slice());
+    let bytes = read_limited(decoder, path)?.map_err(|source| {
+        let problem = if source.kind() == io::ErrorKind::UnexpectedEof {
+            "the gzip data ends too early: the file is truncated".to_owned()
+        } else {
+            format!("the gzip data is damaged: {source}")
+        };
+        damaged(
+            path,
+            problem,
+            "copy the file again from its source; `gzip -t` tests it",
+        )
+    })?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(damaged(
+            path,
+            "the file is empty after unpacking",
+            "copy it again from its source",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// Reads to the end, or refuses what is larger than [`LIMIT`].
+fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, CaseError> {
+    let mut bytes = Vec::new();
+    let outcome = from.take(LIMIT + 1).read_to_end(&mut bytes);
+    if bytes.len() as u64 > LIMIT {
+        return Err(damaged(
+            path,
+            "the file is larger than 1 GiB",
+            "split the record: a few dozen revolutions are enough",
+        ));
+    }
+    Ok(outcome.map(|_| bytes))
+}
+
+/// The bytes as text, without a byte-order mark.
+///
+/// # Errors
+/// Names the first line that is not UTF-8.
+pub(super) fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let line = error
+            .as_bytes()
+            .iter()
+            .take(valid)
+            .filter(|b| **b == b'\n')
+            .count()
+            + 1;
+        damaged(
+            path,
+            format!("line {line} is not UTF-8 text"),
+            "save the file as UTF-8",
+        )
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
+}

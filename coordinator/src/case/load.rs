@@ -1,0 +1,285 @@
+//! From a folder to a [`Case`]: reads `case.toml`, then every file it names.
+use super::{
+    card,
+    document::{Document, Step, nearest},
+    error::CaseError,
+    genes,
+    geometry::Envelope,
+    head, machine,
+    note::Note,
+    record::{self, Expected, RecordFacts},
+    schema::{CaseFile, ConditionEntry, ObjectiveEntry},
+};
+use protocol::case::{Case, Condition, Objective};
+use std::path::{Path, PathBuf};
+
+/// What a command line may replace in a case.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Overrides {
+    /// Folder whose cards and records, of the same names, replace those of the case.
+    pub measured: Option<PathBuf>,
+}
+
+/// A case with what was found on the way.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loaded {
+    /// The case.
+    pub case: Case,
+    /// Remarks that are no errors.
+    pub notes: Vec<Note>,
+    /// Facts about each condition's record, in the order of the conditions.
+    pub records: Vec<Option<RecordFacts>>,
+    /// Where beam and ropes move.
+    pub envelope: Envelope,
+}
+
+/// Loads a case folder.
+///
+/// # Errors
+/// The first thing that is wrong; see [`CaseError`].
+pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
+    load_with_notes(folder, overrides).map(|loaded| loaded.case)
+}
+
+/// Loads a case folder, with remarks and facts.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
+    let document = Document::read(
+        &folder.join("case.toml"),
+        "the description of the case; `horsehead case new` writes a template",
+    )?;
+    let file: CaseFile = document.parse()?;
+    let envelope = machine::check(&document, &file)?;
+    let modal_head = head::read(
+        &folder.join(&file.flexible_head.modes_file),
+        &folder.join(&file.flexible_head.influence_file),
+    )?;
+    machine::check_arc(&document, &file, &modal_head.arc_deg, &envelope)?;
+    document.within(
+        "run.modes",
+        file.run.modes as f64,
+        0.0..=modal_head.frequencies_hz.len() as f64,
+        "modes of the modes file",
+    )?;
+    let mut notes = Vec::new();
+    let mut records = Vec::new();
+    let mut conditions = Vec::new();
+    check_names(&document, &file.conditions)?;
+    let objective = objective(&document, &file.objective, &file.conditions)?;
+    for (index, entry) in file.conditions.iter().enumerate() {
+        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
+        check_condition(&document, entry, way)?;
+        let card_file = place(folder, overrides, &entry.card_file);
+        let role = format!(
+            "the load card of condition `{}` in {}",
+            entry.name,
+            document.path.display()
+        );
+        let card = card::read(&card_file, entry.smoothing, &role)?;
+        let expected = Expected {
+            condition: &entry.name,
+            speed_rpm: entry.speed_rpm,
+            case_file: &document.path,
+            step_deg: file.run.output_step_deg,
+        };
+        let read = entry
+            .record_file
+            .as_ref()
+            .map(|name| record::read(&place(folder, overrides, name), &expected))
+            .transpose()?;
+        let (record, facts) = match read {
+            Some(read) => {
+                notes.extend(read.notes);
+                (Some(read.record), Some(read.facts))
+            }
+            None => (None, None),
+        };
+        records.push(facts);
+        conditions.push(Condition {
+            name: entry.name.clone(),
+            speed_rpm: entry.speed_rpm,
+            counterweight_moment_n_m: entry.counterweight_moment_n_m,
+            card,
+            record,
+        });
+    }
+    let genes = genes::declared(&document, file.genes)?;
+    let case = Case {
+        name: file.name,
+        gravity_m_s2: file.gravity_m_s2,
+        beam: file.beam,
+        crank: file.crank,
+        rod: file.rod,
+        suspension: file.suspension,
+        ropes: file.ropes,
+        contact: file.contact,
+        front_head: file.front_head,
+        back_head: file.back_head,
+        modal_head,
+        genes,
+        conditions,
+        objective,
+        run: file.run,
+    };
+    Ok(Loaded {
+        case,
+        notes,
+        records,
+        envelope,
+    })
+}
+
+/// Where a card or record is read from: `--measured DIR` replaces the folder, not the name.
+fn place(folder: &Path, overrides: &Overrides, named: &Path) -> PathBuf {
+    match (&overrides.measured, named.file_name()) {
+        (Some(measured), Some(name)) => measured.join(name),
+        _ => folder.join(named),
+    }
+}
+
+/// Conditions exist and have names of their own.
+fn check_names(document: &Document, conditions: &[ConditionEntry]) -> Result<(), CaseError> {
+    if conditions.is_empty() {
+        return Err(document.field(
+            &[Step::Key("conditions")],
+            "[]",
+            "at least one condition",
+            "add a [[conditions]] table with name, speed and load card",
+        ));
+    }
+    for (index, condition) in conditions.iter().enumerate() {
+        let way = [
+            Step::Key("conditions"),
+            Step::Index(index),
+            Step::Key("name"),
+        ];
+        let name = &condition.name;
+        let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+        if name.is_empty() || !name.chars().all(plain) {
+            return Err(document.field(
+                &way,
+                format!("\"{name}\""),
+                "a short name of letters, digits, `-`, `_` and `.`",
+                "the name is typed on command lines and becomes part of file names, as `5rpm`",
+            ));
+        }
+        let earlier = conditions.iter().take(index);
+        if earlier.clone().any(|other| other.name == *name) {
+            return Err(document.field(
+                &way,
+                format!("\"{name}\""),
+                "a name that no other condition has",
+                "duplicate condition: rename or remove one of the two",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Ranges of a condition's own numbers.
+fn check_condition<'a>(
+    document: &Document,
+    entry: &ConditionEntry,
+    way: impl Fn(&'static str) -> [Step<'a>; 3],
+) -> Result<(), CaseError> {
+    if !(0.1..=60.0).contains(&entry.speed_rpm) {
+        return Err(document.field(
+            &way("speed_rpm"),
+            entry.speed_rpm,
+            "0.1 to 60 revolutions per minute",
+            "give the crank speed, not the motor's",
+        ));
+    }
+    if !(0.0..=1.0e7).contains(&entry.counterweight_moment_n_m) {
+        return Err(document.field(
+            &way("counterweight_moment_n_m"),
+            entry.counterweight_moment_n_m,
+            "0 to 1e7 N m",
+            "give weight times radius of the counterweights in N m",
+        ));
+    }
+    Ok(())
+}
+
+/// The objective, with its condition by index.
+fn objective(
+    document: &Document,
+    entry: &ObjectiveEntry,
+    conditions: &[ConditionEntry],
+) -> Result<Objective, CaseError> {
+    let names = conditions.iter().map(|condition| condition.name.as_str());
+    let list: Vec<&str> = names.clone().collect();
+    let way = |key| [Step::Key("objective"), Step::Key(key)];
+    let Some(condition) = names.clone().position(|name| name == entry.condition) else {
+        return Err(document.field(
+            &way("condition"),
+            format!("\"{}\"", entry.condition),
+            format!("the name of a condition: {}", list.join(", ")),
+            &nearest(&entry.condition, names)
+                .map_or("name one of the conditions".to_owned(), |near| {
+                    format!("did you mean `{near}`?")
+                }),
+        ));
+    };
+    if conditions
+        .get(condition)
+        .is_some_and(|entry| entry.record_file.is_none())
+    {
+        return Err(document.field(
+            &way("condition"),
+            format!("\"{}\"", entry.condition),
+            "a condition with a record_file",
+            "there is nothing to compare with: add record_file to the condition, or take another",
+        ));
+    }
+    if entry.gauges.is_empty() {
+        return Err(document.field(
+            &way("gauges"),
+            "[]",
+            "at least one gauge",
+            "write gauges = [{ gauge = 1, weight = 1.0 }]",
+        ));
+    }
+    for (index, part) in entry.gauges.iter().enumerate() {
+        let way = |key| {
+            [
+                Step::Key("objective"),
+                Step::Key("gauges"),
+                Step::Index(index),
+                Step::Key(key),
+            ]
+        };
+        let twice = entry
+            .gauges
+            .iter()
+            .take(index)
+            .any(|other| other.gauge == part.gauge);
+        if !(1..=4).contains(&part.gauge) || twice {
+            return Err(document.field(
+                &way("gauge"),
+                part.gauge,
+                "1 to 4, each once",
+                "gauges are numbered as in the record's columns stress_1_mpa .. stress_4_mpa",
+            ));
+        }
+        if !(part.weight > 0.0 && part.weight <= 1.0e6) {
+            return Err(document.field(
+                &way("weight"),
+                part.weight,
+                "above 0, at most 1e6",
+                "leave a gauge out that is not to count",
+            ));
+        }
+    }
+    Ok(Objective {
+        condition,
+        gauges: entry
+            .gauges
+            .iter()
+            .map(|part| (part.gauge, part.weight))
+            .collect(),
+        offset: entry.offset,
+    })
+}

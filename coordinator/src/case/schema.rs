@@ -1,0 +1,125 @@
+//! `case.toml` as it is written: the keys there are, and their types. What the values may be is
+//! checked in [`super::machine`] and beside the data they name.
+use protocol::{
+    case::{
+        BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
+        Suspension,
+    },
+    unit::Unit,
+};
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// A whole `case.toml`.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CaseFile {
+    pub(super) name: String,
+    pub(super) gravity_m_s2: f64,
+    pub(super) beam: Beam,
+    pub(super) crank: Crank,
+    pub(super) rod: Rod,
+    pub(super) suspension: Suspension,
+    pub(super) ropes: Ropes,
+    pub(super) contact: Contact,
+    pub(super) front_head: FrontHead,
+    pub(super) back_head: BackHead,
+    pub(super) flexible_head: FlexibleHead,
+    pub(super) genes: GeneTable<GeneEntry>,
+    pub(super) conditions: Vec<ConditionEntry>,
+    pub(super) objective: ObjectiveEntry,
+    pub(super) run: RunSettings,
+}
+
+/// Where the reduced back head comes from.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FlexibleHead {
+    /// Modes as JSON.
+    pub(super) modes_file: PathBuf,
+    /// Influence lines as CSV.
+    pub(super) influence_file: PathBuf,
+    /// Mesh as MSH 4.1; absent where only the reduction is at hand.
+    pub(super) mesh_file: Option<PathBuf>,
+    /// Density of the mesh [kg/m3].
+    pub(super) density_kg_m3: f64,
+}
+
+/// One entry per gene; all are required.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GeneTable<T> {
+    pub(super) kb1: T,
+    pub(super) kb23: T,
+    pub(super) kb4: T,
+    pub(super) kb56: T,
+    pub(super) cb1: T,
+    pub(super) cb23: T,
+    pub(super) cb4: T,
+    pub(super) cb56: T,
+    pub(super) kc: T,
+    pub(super) cc: T,
+}
+
+impl<T> GeneTable<T> {
+    /// The entries in the order of the chromosome.
+    pub(super) fn into_array(self) -> [T; 10] {
+        [
+            self.kb1, self.kb23, self.kb4, self.kb56, self.cb1, self.cb23, self.cb4, self.cb56,
+            self.kc, self.cc,
+        ]
+    }
+}
+
+/// One gene of the case.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GeneEntry {
+    pub(super) recommended: f64,
+    pub(super) lower: f64,
+    pub(super) upper: f64,
+    pub(super) unit: Unit,
+}
+
+/// One gene of a gene file.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GeneValue {
+    pub(super) value: f64,
+    pub(super) unit: Unit,
+}
+
+/// One working condition.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ConditionEntry {
+    pub(super) name: String,
+    pub(super) speed_rpm: f64,
+    pub(super) counterweight_moment_n_m: f64,
+    pub(super) card_file: PathBuf,
+    #[serde(default = "no_smoothing")]
+    pub(super) smoothing: Smoothing,
+    /// Gauge record; absent where the condition is only simulated.
+    pub(super) record_file: Option<PathBuf>,
+}
+
+const fn no_smoothing() -> Smoothing {
+    Smoothing::None
+}
+
+/// What a calibration minimises.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObjectiveEntry {
+    pub(super) condition: String,
+    pub(super) gauges: Vec<GaugeWeight>,
+    pub(super) offset: Offset,
+}
+
+/// A gauge of the objective.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GaugeWeight {
+    pub(super) gauge: u8,
+    pub(super) weight: f64,
+}

@@ -1,0 +1,178 @@
+//! Tables of numbers in CSV files: named columns, finite numbers, rows counted as lines of the file.
+use super::error::{CaseError, damaged};
+use std::path::Path;
+
+/// A table that was read: the wanted columns, in the order in which they were asked for.
+#[derive(Debug)]
+pub(super) struct Table {
+    /// Numbers per wanted column.
+    pub(super) columns: Vec<Vec<f64>>,
+    /// Line of the file per row of numbers; the header is line 1.
+    pub(super) lines: Vec<u64>,
+    /// The names of the wanted columns.
+    pub(super) names: Vec<String>,
+}
+
+impl Table {
+    /// Reads the wanted columns; others are ignored. A `#` before the header is allowed.
+    ///
+    /// # Errors
+    /// A missing or repeated column, a row of another length, a cell that is not a finite number,
+    /// no rows at all.
+    pub(super) fn read(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Self, CaseError> {
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(bytes);
+        let mut record = csv::ByteRecord::new();
+        advance(path, &mut reader, &mut record)?;
+        let header: Vec<String> = record
+            .iter()
+            .map(|cell| {
+                String::from_utf8_lossy(cell)
+                    .trim_start_matches(['#', '\u{feff}', ' '])
+                    .to_owned()
+            })
+            .collect();
+        let places = wanted
+            .iter()
+            .map(|name| place(path, &header, name))
+            .collect::<Result<Vec<usize>, CaseError>>()?;
+        let mut table = Self {
+            columns: vec![Vec::new(); wanted.len()],
+            lines: Vec::new(),
+            names: wanted.iter().map(|&name| name.to_owned()).collect(),
+        };
+        while advance(path, &mut reader, &mut record)? {
+            let line = record.position().map_or(0, csv::Position::line);
+            if record.len() != header.len() {
+                return Err(CaseError::Cell {
+                    path: path.into(),
+                    row: line,
+                    column: header.last().map_or("", String::as_str).into(),
+                    value: format!("a row of {} cells", record.len()).into(),
+                    allowed: format!("{} cells, as in the header", header.len()).into(),
+                    help: "the row is cut off or has a stray comma: correct or remove it".into(),
+                });
+            }
+            for ((column, &at), name) in table.columns.iter_mut().zip(&places).zip(wanted) {
+                column.push(number(
+                    path,
+                    line,
+                    name,
+                    record.get(at).unwrap_or_default(),
+                )?);
+            }
+            table.lines.push(line);
+        }
+        if table.lines.is_empty() {
+            return Err(damaged(
+                path,
+                "the table has a header but no rows",
+                "copy the file again from its source",
+            ));
+        }
+        Ok(table)
+    }
+
+    /// An error about one cell.
+    pub(super) fn cell(
+        &self,
+        path: &Path,
+        (row, column): (usize, usize),
+        value: impl Into<String>,
+        allowed: impl Into<String>,
+        help: &str,
+    ) -> CaseError {
+        CaseError::Cell {
+            path: path.into(),
+            row: self.lines.get(row).copied().unwrap_or_default(),
+            column: self.names.get(column).map_or("", String::as_str).into(),
+            value: value.into().into(),
+            allowed: allowed.into().into(),
+            help: help.into(),
+        }
+    }
+}
+
+/// Reads the next row; false at the end.
+fn advance(
+    path: &Path,
+    reader: &mut csv::Reader<&[u8]>,
+    record: &mut csv::ByteRecord,
+) -> Result<bool, CaseError> {
+    reader.read_byte_record(record).map_err(|error| {
+        let line = error.position().map_or(0, csv::Position::line);
+        damaged(
+            path,
+            format!("line {line} cannot be read as CSV: {error}"),
+            "use commas between cells and no line breaks in quotes",
+        )
+    })
+}
+
+/// Where a column stands.
+fn place(path: &Path, header: &[String], wanted: &str) -> Result<usize, CaseError> {
+    let mut places = header
+        .iter()
+        .enumerate()
+        .filter(|(_, name)| *name == wanted);
+    let Some((first, _)) = places.next() else {
+        let help = super::document::nearest(wanted, header.iter().map(String::as_str)).map_or_else(
+            || {
+                "add the column; the first row must name the columns, separated by commas"
+                    .to_owned()
+            },
+            |near| format!("did you mean `{near}`? rename it, or add the column"),
+        );
+        return Err(CaseError::Column {
+            path: path.into(),
+            column: wanted.into(),
+            found: clip(&header.join(", "), 200).into(),
+            help: help.into(),
+        });
+    };
+    match places.next() {
+        None => Ok(first),
+        Some((second, _)) => Err(damaged(
+            path,
+            format!(
+                "column `{wanted}` stands twice, in places {} and {}",
+                first + 1,
+                second + 1
+            ),
+            "remove or rename one of them",
+        )),
+    }
+}
+
+/// A cell as a finite number.
+fn number(path: &Path, line: u64, name: &str, cell: &[u8]) -> Result<f64, CaseError> {
+    let text = std::str::from_utf8(cell).unwrap_or_default();
+    let problem = match text.parse::<f64>() {
+        Ok(value) if value.is_finite() => return Ok(value),
+        Ok(_) => "interpolate the value or remove the row: lost samples are allowed, NaN is not",
+        Err(_) if cell.is_empty() => {
+            "remove the row: lost samples are allowed, empty cells are not"
+        }
+        Err(_) => "write a plain number with a decimal point, without its unit",
+    };
+    Err(CaseError::Cell {
+        path: path.into(),
+        row: line,
+        column: name.into(),
+        value: format!("`{}`", clip(&String::from_utf8_lossy(cell), 40)).into(),
+        allowed: "a finite number".into(),
+        help: problem.into(),
+    })
+}
+
+/// At most `limit` characters of a text, for messages.
+pub(super) fn clip(text: &str, limit: usize) -> String {
+    let mut clipped: String = text.chars().take(limit).collect();
+    if clipped.len() < text.len() {
+        clipped.push('…');
+    }
+    clipped
+}
