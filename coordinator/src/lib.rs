@@ -9,3 +9,4 @@ pub mod core;
 pub mod journal;
 pub mod report;
 pub mod runtime;
+pub mod study;
