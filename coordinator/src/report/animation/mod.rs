@@ -1,0 +1,72 @@
+//! The moving machine: an inline SVG drawing in scale with a small player, from the snapshots of a
+//! simulation.
+//!
+//! The drawing stands by itself (first snapshot) where there is no JavaScript or on paper; the
+//! player only moves its parts. No library, no network.
+mod drawing;
+mod film;
+
+use super::chart::{self, ChartError};
+use maud::{Markup, PreEscaped, html};
+use protocol::case::Case;
+use protocol::job::Simulation;
+
+/// The player; reads the film, moves the parts.
+const PLAYER: &str = include_str!("player.js");
+
+/// Draws the machine with its player; none without snapshots.
+///
+/// # Errors
+/// [`ChartError`] when the curves beside it cannot be drawn.
+pub fn machine(
+    case: &Case,
+    condition: usize,
+    simulation: &Simulation,
+) -> Result<Option<Markup>, ChartError> {
+    let Some(film) = film::Film::new(case, condition, simulation) else {
+        return Ok(None);
+    };
+    let curves = chart::player(case, simulation)?;
+    let [left, right, top, bottom] = chart::PLAYER_SPAN.map(|share| 100.0 * share);
+    let span = format!(
+        "left:{left:.3}%;width:{:.3}%;top:{top:.3}%;height:{:.3}%",
+        right - left,
+        bottom - top
+    );
+    Ok(Some(html! {
+        div.machine id="machine" {
+            div.stage {
+                (drawing::drawing(case, &film))
+                div.desk {
+                    div.controls {
+                        button type="button" id="machine-play" { "Play" }
+                        label {
+                            "crank angle"
+                            input id="machine-turn" type="range" min="0" max="360" step="0.5"
+                                value="0";
+                        }
+                        label {
+                            "speed"
+                            select id="machine-speed" {
+                                option value="0.25" { "¼" }
+                                option value="1" selected="selected" { "real time" }
+                                option value="4" { "4 ×" }
+                            }
+                        }
+                    }
+                    (film.readouts())
+                    (drawing::legend(&film))
+                }
+            }
+            figure.strips {
+                div.under-cursor {
+                    (PreEscaped(&curves.svg))
+                    div.span style=(span) { div.cursor id="machine-cursor" {} }
+                }
+                figcaption { (curves.caption) }
+            }
+            script id="machine-film" type="application/json" { (PreEscaped(film.json())) }
+            script { (PreEscaped("/*<![CDATA[*/\n")) (PreEscaped(PLAYER)) (PreEscaped("/*]]>*/")) }
+        }
+    }))
+}

@@ -1,0 +1,97 @@
+//! The dynamometer card: load at the suspension over its simulated position.
+use super::canvas::{Lettering, Pen, render};
+use super::panel::Panel;
+use super::scale::Scale;
+use super::{ChartError, Figure, GREY, INK, VERMILLION, interpolated};
+use crate::report::words::condition_name;
+use plotters::style::text_anchor::{HPos, VPos};
+use protocol::case::{Case, LoadCard};
+use protocol::job::Simulation;
+
+const SIZE: (f64, f64) = (620.0, 330.0);
+
+/// Load of a periodic card at any crank angle [N].
+fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
+    let turn = turn_deg.rem_euclid(360.0);
+    interpolated(&card.turn_deg, &card.load_n, turn).or_else(|| {
+        // between the last entry and 360, which is the first entry again
+        let (x0, y0) = (*card.turn_deg.last()?, *card.load_n.last()?);
+        let y1 = *card.load_n.first()?;
+        let load = y0 + (y1 - y0) * (turn - x0) / (360.0 - x0);
+        load.is_finite().then_some(load)
+    })
+}
+
+/// Draws the card; none if the simulation has no position.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub fn card(
+    case: &Case,
+    condition: usize,
+    simulation: &Simulation,
+) -> Result<Option<Figure>, ChartError> {
+    let Some(found) = case.conditions.get(condition) else {
+        return Ok(None);
+    };
+    let rows: Vec<_> = simulation
+        .turn_deg
+        .iter()
+        .zip(&simulation.suspension_m)
+        .filter_map(|(&turn, &height)| {
+            let load = load_n(&found.card, turn)?;
+            height.is_finite().then_some((turn, height, 1e-3 * load))
+        })
+        .collect();
+    if rows.len() < 2 {
+        return Ok(None);
+    }
+    let name = condition_name(case, condition);
+    let title = format!("Dynamometer card, condition {name}");
+    let panel = Panel {
+        left: 62.0,
+        top: 16.0,
+        width: SIZE.0 - 62.0 - 24.0,
+        height: SIZE.1 - 16.0 - 46.0,
+        x: Scale::linear(rows.iter().map(|row| row.1), 6.0),
+        y: Scale::linear(rows.iter().map(|row| row.2), 5.0),
+    };
+    let svg = render(SIZE, &title, |canvas| {
+        panel.guides(canvas)?;
+        let mut path: Vec<_> = rows.iter().map(|row| (row.1, row.2)).collect();
+        let whole = rows.last().is_some_and(|row| row.0 > 355.0);
+        if whole && let Some(&first) = path.first() {
+            path.push(first);
+        }
+        let pen = Pen {
+            color: VERMILLION,
+            width: 1.4,
+        };
+        panel.curve(canvas, &path, pen)?;
+        for mark in [0.0, 60.0, 120.0, 180.0, 240.0, 300.0] {
+            let Some(row) = rows.iter().find(|row| row.0 >= mark) else {
+                continue;
+            };
+            let (x, y) = panel.at((row.1, row.2));
+            canvas.dot((x, y), 2.6, INK)?;
+            let up = mark < 180.0;
+            let (vertical, offset) = if up {
+                (VPos::Bottom, -5.0)
+            } else {
+                (VPos::Top, 6.0)
+            };
+            let lettering = Lettering::new(10.0, GREY).at(HPos::Center, vertical);
+            canvas.text((x, y + offset), &format!("{mark:.0}°"), lettering)?;
+        }
+        panel.left_axis(canvas, true, "load [kN]")?;
+        panel.lower_axis(canvas, true, "position of the suspension [m]")
+    })?;
+    Ok(Some(Figure {
+        name: format!("card_{name}"),
+        caption: format!(
+            "{title}: prescribed load over the simulated position of the suspension; marks at \
+             crank angles."
+        ),
+        svg,
+    }))
+}

@@ -1,0 +1,239 @@
+//! Measured against simulated stress at one gauge, recommended beside optimised on shared scales,
+//! with the residual below (paper, Figs. 7, 9 and 10).
+use super::canvas::{Canvas, Lettering, Pen, render};
+use super::panel::{CRANK_TITLE, Panel};
+use super::scale::Scale;
+use super::{BAND, ChartError, Figure, GREY, INK, VERMILLION, WIDTH, interpolated, points};
+use crate::report::data::{ConditionResult, Run};
+use crate::report::number::{fixed, percent};
+use crate::report::words;
+use plotters::style::text_anchor::{HPos, VPos};
+use protocol::case::{Case, GaugeRecord, GaugeTrace, Offset};
+use protocol::job::Verdict;
+
+const LEFT: f64 = 58.0;
+const BETWEEN: f64 = 26.0;
+const TOP: f64 = 62.0;
+const STRESS_HEIGHT: f64 = 200.0;
+const RESIDUAL_TOP: f64 = TOP + STRESS_HEIGHT + 16.0;
+const RESIDUAL_HEIGHT: f64 = 62.0;
+const HEIGHT: f64 = RESIDUAL_TOP + RESIDUAL_HEIGHT + 42.0;
+
+/// What is drawn of one parameter set.
+struct Side {
+    heading: &'static str,
+    remark: String,
+    simulated: Vec<(f64, f64)>,
+    residual: Vec<(f64, f64)>,
+}
+
+/// Shift that the objective gives the simulated curve before it is compared [MPa].
+fn shift_mpa(case: &Case, run: &Run, gauge: u8) -> f64 {
+    let channel = run.evaluation.channels.iter().find(|c| c.gauge == gauge);
+    match (case.objective.offset, channel) {
+        (Offset::Free, Some(channel)) if channel.offset_mpa.is_finite() => channel.offset_mpa,
+        (Offset::Free | Offset::Fixed, _) => 0.0,
+    }
+}
+
+/// Simulated stress of a gauge by its number, 1 to 4.
+fn stress(run: &Run, gauge: u8) -> &[f64] {
+    usize::from(gauge)
+        .checked_sub(1)
+        .and_then(|index| run.simulation.gauge_mpa.get(index))
+        .map_or(&[], Vec::as_slice)
+}
+
+impl Side {
+    fn new(
+        heading: &'static str,
+        case: &Case,
+        run: &Run,
+        (record, trace): (&GaugeRecord, &GaugeTrace),
+    ) -> Self {
+        let turn = &run.simulation.turn_deg;
+        let values = stress(run, trace.gauge);
+        let shift = shift_mpa(case, run, trace.gauge);
+        let simulated = points(turn, values)
+            .into_iter()
+            .map(|(x, y)| (x, y + shift))
+            .collect();
+        let residual = record
+            .turn_deg
+            .iter()
+            .zip(&trace.mean_mpa)
+            .map(|(&x, &measured)| {
+                let simulated = interpolated(turn, values, x).unwrap_or(f64::NAN);
+                (x, measured - simulated - shift)
+            })
+            .collect();
+        let channel = run
+            .evaluation
+            .channels
+            .iter()
+            .find(|channel| channel.gauge == trace.gauge);
+        let remark = match (run.simulation.verdict, channel) {
+            (verdict @ Verdict::Failed { .. }, _) => words::verdict(&verdict),
+            (Verdict::Complete, Some(channel)) => format!(
+                "rms error {} MPa, {} of half the range; shifted by {} MPa",
+                fixed(channel.rmse_over_half_range * half_range(trace), 2),
+                percent(channel.rmse_over_half_range),
+                fixed(shift, 2),
+            ),
+            (Verdict::Complete, None) => String::new(),
+        };
+        Self {
+            heading,
+            remark,
+            simulated,
+            residual,
+        }
+    }
+}
+
+/// Half the range of the measured mean [MPa].
+fn half_range(trace: &GaugeTrace) -> f64 {
+    crate::report::number::range(trace.mean_mpa.iter().copied())
+        .map_or(f64::NAN, |(low, high)| 0.5 * (high - low))
+}
+
+/// Draws the overlay of one gauge under one condition; none if the condition or its record does
+/// not have it.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub fn overlay(
+    case: &Case,
+    result: &ConditionResult,
+    gauge: u8,
+) -> Result<Option<Figure>, ChartError> {
+    let Some(condition) = case.conditions.get(result.condition) else {
+        return Ok(None);
+    };
+    let Some(record) = &condition.record else {
+        return Ok(None);
+    };
+    let Some(trace) = record.gauges.iter().find(|trace| trace.gauge == gauge) else {
+        return Ok(None);
+    };
+    let sides = [
+        ("Recommended parameters", &result.recommended),
+        ("Optimised parameters", &result.optimised),
+    ]
+    .map(|(heading, run)| Side::new(heading, case, run, (record, trace)));
+    let band: Vec<_> = record
+        .turn_deg
+        .iter()
+        .zip(trace.mean_mpa.iter().zip(&trace.spread_mpa))
+        .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
+        .collect();
+    let curves = sides.iter().flat_map(|side| &side.simulated);
+    let stresses = Scale::linear(
+        curves
+            .map(|&(_, y)| y)
+            .chain(band.iter().flat_map(|&(_, low, high)| [low, high])),
+        5.0,
+    );
+    let residuals = sides.iter().flat_map(|side| &side.residual);
+    let residuals = Scale::linear(residuals.map(|&(_, y)| y).chain([0.0]), 3.0);
+    let title = format!("Stress at gauge {gauge}, condition {}", condition.name);
+    let measured = points(&record.turn_deg, &trace.mean_mpa);
+    let svg = render((WIDTH, HEIGHT), &title, |canvas| {
+        key(canvas, gauge, record.cycles)?;
+        let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
+        for (index, side) in (0_u8..).zip(&sides) {
+            let left = LEFT + f64::from(index) * (width + BETWEEN);
+            let first = index == 0;
+            let panel = Panel {
+                left,
+                top: TOP,
+                width,
+                height: STRESS_HEIGHT,
+                x: Scale::crank(),
+                y: stresses,
+            };
+            let (left_title, lower_title) = if first {
+                ("stress [MPa]", "residual [MPa]")
+            } else {
+                ("", "")
+            };
+            panel.guides(canvas)?;
+            panel.band(canvas, &band, BAND)?;
+            panel.curve(canvas, &measured, MEASURED)?;
+            panel.curve(canvas, &side.simulated, SIMULATED)?;
+            panel.left_axis(canvas, first, left_title)?;
+            panel.lower_axis(canvas, false, "")?;
+            if side.simulated.len() < 2 {
+                panel.remark(canvas, "no simulated curve: the run failed before it")?;
+            }
+            let heading = Lettering::new(12.0, INK).bold();
+            canvas.text((left, TOP - 27.0), side.heading, heading)?;
+            canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY))?;
+            let strip = Panel {
+                top: RESIDUAL_TOP,
+                height: RESIDUAL_HEIGHT,
+                y: residuals,
+                ..panel
+            };
+            strip.guides(canvas)?;
+            strip.curve(canvas, &side.residual, RESIDUAL)?;
+            strip.left_axis(canvas, first, lower_title)?;
+            strip.lower_axis(canvas, true, CRANK_TITLE)?;
+        }
+        Ok(())
+    })?;
+    let free = match case.objective.offset {
+        Offset::Free => {
+            " The simulated curve is shifted to the measured mean, because a strain bridge has no \
+             absolute zero."
+        }
+        Offset::Fixed => "",
+    };
+    Ok(Some(Figure {
+        name: format!("stress_{}_gauge_{gauge}", condition.name),
+        caption: format!(
+            "{title}: measured and simulated over one crank revolution, on shared scales; below, \
+             measured minus simulated.{free}"
+        ),
+        svg,
+    }))
+}
+
+const MEASURED: Pen = Pen {
+    color: INK,
+    width: 1.3,
+};
+const SIMULATED: Pen = Pen {
+    color: VERMILLION,
+    width: 1.1,
+};
+const RESIDUAL: Pen = Pen {
+    color: INK,
+    width: 0.8,
+};
+
+/// The key above both panels.
+fn key(canvas: &Canvas<'_>, gauge: u8, cycles: usize) -> Result<(), ChartError> {
+    let y = 12.0;
+    canvas.text(
+        (LEFT, y),
+        &format!("Gauge {gauge}"),
+        Lettering::new(13.0, INK).bold(),
+    )?;
+    let text = Lettering::new(10.5, INK);
+    let mut x = WIDTH - 10.0;
+    let right = text.at(HPos::Right, VPos::Center);
+    canvas.text((x, y), "simulated", right)?;
+    x -= 52.0;
+    canvas.line(&[(x - 22.0, y), (x, y)], SIMULATED)?;
+    x -= 40.0;
+    let measured = match cycles {
+        0 | 1 => "measured, one cycle".to_owned(),
+        _ => format!("measured, mean of {cycles} cycles ± one standard deviation"),
+    };
+    canvas.text((x, y), &measured, right)?;
+    // the width of the text is not known here: 5.1 px a letter at this size, on the safe side
+    x -= 5.15 * measured.chars().count() as f64 + 4.0;
+    canvas.rectangle((x - 22.0, y - 4.0), (x, y + 4.0), BAND)?;
+    canvas.line(&[(x - 22.0, y), (x, y)], MEASURED)
+}

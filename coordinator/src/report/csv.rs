@@ -1,0 +1,170 @@
+//! The data behind the figures as CSV, units in the column names.
+//!
+//! An empty field is a value that does not exist; numbers are written with all their digits.
+use super::data::{ConditionResult, HistoryPoint, Run, SingleRun};
+use super::words::condition_name;
+use protocol::case::{Case, GaugeRecord};
+use protocol::job::Simulation;
+use std::io::Write;
+
+/// A number with all its digits, empty if it is none.
+fn field(value: Option<f64>) -> String {
+    value
+        .filter(|value| value.is_finite())
+        .map_or_else(String::new, |value| value.to_string())
+}
+
+const CURVE_COLUMNS: [&str; 22] = [
+    "condition",
+    "parameters",
+    "turn_deg",
+    "measured_1_mpa",
+    "measured_2_mpa",
+    "measured_3_mpa",
+    "measured_4_mpa",
+    "spread_1_mpa",
+    "spread_2_mpa",
+    "spread_3_mpa",
+    "spread_4_mpa",
+    "simulated_1_mpa",
+    "simulated_2_mpa",
+    "simulated_3_mpa",
+    "simulated_4_mpa",
+    "back_rope_tension_n",
+    "front_rope_tension_n",
+    "beam_deg",
+    "suspension_m",
+    "suspension_velocity_m_s",
+    "suspension_acceleration_m_s2",
+    "crank_torque_n_m",
+];
+
+/// Writes the curves of every condition: one row per crank angle and parameter set. Measured
+/// values stand in the rows whose crank angle is on the record's grid; a failed simulation has
+/// rows as far as it got.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub fn curves(to: impl Write, case: &Case, results: &[ConditionResult]) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    writer.write_record(CURVE_COLUMNS)?;
+    for result in results {
+        for (who, run) in [
+            ("recommended", &result.recommended),
+            ("optimised", &result.optimised),
+        ] {
+            let Run { simulation, .. } = run;
+            rows(&mut writer, case, result.condition, who, simulation)?;
+        }
+    }
+    Ok(writer.flush()?)
+}
+
+/// Writes the curves of one simulation, in the columns of [`curves`].
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub fn single_curves(to: impl Write, run: &SingleRun) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    writer.write_record(CURVE_COLUMNS)?;
+    rows(
+        &mut writer,
+        &run.case,
+        run.condition,
+        &run.genes_name,
+        &run.simulation,
+    )?;
+    Ok(writer.flush()?)
+}
+
+fn rows(
+    writer: &mut csv::Writer<impl Write>,
+    case: &Case,
+    condition: usize,
+    parameters: &str,
+    simulation: &Simulation,
+) -> Result<(), csv::Error> {
+    let name = condition_name(case, condition);
+    let found = case.conditions.get(condition);
+    let record = found.and_then(|condition| condition.record.as_ref());
+    for (index, &turn) in simulation.turn_deg.iter().enumerate() {
+        let measured = record.and_then(|record| Some((record, on_grid(record, turn)?)));
+        let trace = |gauge: u8, spread: bool| {
+            let (record, row) = measured?;
+            let trace = record.gauges.iter().find(|trace| trace.gauge == gauge)?;
+            let values = if spread {
+                &trace.spread_mpa
+            } else {
+                &trace.mean_mpa
+            };
+            values.get(row).copied()
+        };
+        let mut fields = vec![name.clone(), parameters.to_owned(), field(Some(turn))];
+        fields.extend((1..=4).map(|gauge| field(trace(gauge, false))));
+        fields.extend((1..=4).map(|gauge| field(trace(gauge, true))));
+        let [first, second, third, fourth] = &simulation.gauge_mpa;
+        let curves = [
+            first,
+            second,
+            third,
+            fourth,
+            &simulation.back_rope_tension_n,
+            &simulation.front_rope_tension_n,
+            &simulation.beam_deg,
+            &simulation.suspension_m,
+            &simulation.suspension_velocity_m_s,
+            &simulation.suspension_acceleration_m_s2,
+            &simulation.crank_torque_n_m,
+        ];
+        fields.extend(curves.map(|curve| field(curve.get(index).copied())));
+        writer.write_record(fields)?;
+    }
+    Ok(())
+}
+
+/// Row of the record at a crank angle, if it has one there.
+fn on_grid(record: &GaugeRecord, turn_deg: f64) -> Option<usize> {
+    const SAME_DEG: f64 = 1e-6;
+    let row = record
+        .turn_deg
+        .partition_point(|&known| known < turn_deg - SAME_DEG);
+    let known = *record.turn_deg.get(row)?;
+    ((known - turn_deg).abs() <= SAME_DEG).then_some(row)
+}
+
+/// Writes the evaluation log: one row per individual, genes in declared units.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub fn history(to: impl Write, case: &Case, history: &[HistoryPoint]) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    let mut head: Vec<String> = [
+        "id",
+        "generation",
+        "purpose",
+        "fitness_mpa2",
+        "complete",
+        "failure",
+    ]
+    .map(str::to_owned)
+    .to_vec();
+    let genes = case.genes.iter();
+    head.extend(genes.map(|gene| format!("{} [{}]", gene.name.as_str(), gene.unit.symbol())));
+    let width = head.len();
+    writer.write_record(&head)?;
+    for point in history {
+        let mut fields = vec![
+            point.id.to_string(),
+            point.generation.to_string(),
+            point.purpose.clone(),
+            field(Some(point.fitness)),
+            point.complete.to_string(),
+            point.failure.clone().unwrap_or_default(),
+        ];
+        fields.extend(point.genes.iter().map(|&value| field(Some(value))));
+        // every record has as many fields as the head, whatever the log holds
+        fields.resize(width, String::new());
+        writer.write_record(fields)?;
+    }
+    Ok(writer.flush()?)
+}

@@ -1,0 +1,157 @@
+//! Plain data that a report is made of: what the study hands over, nothing drawn yet.
+//!
+//! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
+use protocol::case::Case;
+use protocol::job::{Evaluation, Simulation};
+
+/// One parameter set of a calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Individual {
+    /// Its number in the evaluation log; none where it was not proposed by the search.
+    pub id: Option<u64>,
+    /// Gene values in declared units, in the case's order.
+    pub genes: Vec<f64>,
+}
+
+/// One entry of the evaluation log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HistoryPoint {
+    /// Number of the individual, consecutive from 0 over the whole run.
+    pub id: u64,
+    /// Generation (or batch) it was proposed in.
+    pub generation: u32,
+    /// What the search wanted it for, in one word.
+    pub purpose: String,
+    /// Gene values in declared units, in the case's order.
+    pub genes: Vec<f64>,
+    /// Objective [MPa^2] if complete, a graded value above every complete one's otherwise.
+    pub fitness: f64,
+    /// Whether the whole revolution was simulated.
+    pub complete: bool,
+    /// What ended it early, in words.
+    pub failure: Option<String>,
+}
+
+/// What one worker contributed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorkerUse {
+    /// Name of the worker, as the tables show it.
+    pub name: String,
+    /// Host it ran on.
+    pub host: String,
+    /// Simulations it ran at a time.
+    pub slots: u32,
+    /// Jobs whose result was accepted.
+    pub done: u64,
+    /// Jobs that could not be done there.
+    pub failed: u64,
+    /// Time its slots spent computing, summed over slots [s].
+    pub busy_s: f64,
+    /// Time it was attached [s].
+    pub present_s: f64,
+}
+
+impl WorkerUse {
+    /// Share of the worker's slot time that was spent computing, 0 to 1; none if it was never
+    /// attached for a measurable time.
+    pub fn busy_share(&self) -> Option<f64> {
+        let available_s = self.present_s * f64::from(self.slots);
+        (available_s > 0.0 && self.busy_s.is_finite()).then(|| self.busy_s / available_s)
+    }
+}
+
+/// One parameter set under one condition: how well it agrees, and its curves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Agreement with the record; its channels are empty if there is no record or no complete run.
+    pub evaluation: Evaluation,
+    /// The curves, as far as the simulation got.
+    pub simulation: Simulation,
+}
+
+/// Both parameter sets under one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionResult {
+    /// Index of the condition in the case.
+    pub condition: usize,
+    /// With the recommended parameters.
+    pub recommended: Run,
+    /// With the optimised parameters.
+    pub optimised: Run,
+}
+
+/// Everything that identifies how a result was made.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Provenance {
+    /// Program and version.
+    pub program: String,
+    /// Command line that makes it again.
+    pub command: String,
+    /// Name of the run.
+    pub run: String,
+    /// Content hash of the case.
+    pub case_hash: String,
+    /// Where the measured records came from.
+    pub measured_name: String,
+    /// Search preset, where there was a search.
+    pub preset: Option<String>,
+    /// Seed of every random choice, where there was one.
+    pub seed: Option<u64>,
+    /// Digest of the evaluation log in index order, or of the result's bits.
+    pub digest: String,
+}
+
+/// A finished (or stopped) calibration.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Calibration {
+    /// The case that was calibrated.
+    pub case: Case,
+    /// How it was made.
+    pub provenance: Provenance,
+    /// The starting point.
+    pub recommended: Individual,
+    /// The best individual that was found.
+    pub optimised: Individual,
+    /// The evaluation log in index order.
+    pub history: Vec<HistoryPoint>,
+    /// Who computed.
+    pub workers: Vec<WorkerUse>,
+    /// Wall time of the whole run [s].
+    pub wall_s: f64,
+    /// Why the search ended, in words.
+    pub finish: String,
+    /// Results per condition; the calibrated one first by custom.
+    pub conditions: Vec<ConditionResult>,
+    /// Further notes and warnings, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Calibration {
+    /// The result under the condition that was calibrated.
+    pub fn calibrated(&self) -> Option<&ConditionResult> {
+        self.conditions
+            .iter()
+            .find(|result| result.condition == self.case.objective.condition)
+    }
+}
+
+/// One simulation, to be shown by itself.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SingleRun {
+    /// The case that was simulated.
+    pub case: Case,
+    /// How it was made.
+    pub provenance: Provenance,
+    /// Index of the condition in the case.
+    pub condition: usize,
+    /// Where the genes came from, as `recommended` or a file name.
+    pub genes_name: String,
+    /// Gene values in declared units, in the case's order.
+    pub genes: Vec<f64>,
+    /// Agreement with the record, where it was scored.
+    pub evaluation: Option<Evaluation>,
+    /// The curves.
+    pub simulation: Simulation,
+    /// Further notes and warnings, one sentence each.
+    pub notes: Vec<String>,
+}

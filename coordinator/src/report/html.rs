@@ -1,0 +1,69 @@
+//! The report as one HTML file: everything inline, nothing fetched, readable on paper.
+use super::ReportError;
+use super::data::{Calibration, SingleRun};
+use super::section::{SECTIONS, Subject};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("style.css");
+
+/// The report of a calibration.
+///
+/// # Errors
+/// [`ReportError::Chart`] when a figure cannot be drawn.
+pub fn calibration(calibration: &Calibration) -> Result<String, ReportError> {
+    let title = format!("Calibration of {}", calibration.case.name);
+    page(
+        &title,
+        &calibration.provenance.run,
+        Subject::Calibration(calibration),
+    )
+}
+
+/// The report of one simulation.
+///
+/// # Errors
+/// [`ReportError::Chart`] when a figure cannot be drawn.
+pub fn simulation(run: &SingleRun) -> Result<String, ReportError> {
+    let title = format!("Simulation of {}", run.case.name);
+    page(&title, &run.provenance.run, Subject::Single(run))
+}
+
+fn page(title: &str, run: &str, subject: Subject<'_>) -> Result<String, ReportError> {
+    let mut sections = Vec::new();
+    for section in SECTIONS {
+        if let Some(body) = (section.render)(subject)? {
+            sections.push((section, body));
+        }
+    }
+    let page: Markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    p.kind { "Horsehead" @if !run.is_empty() { " · " (run) } }
+                    h1 { (title) }
+                    nav {
+                        @for (section, _) in &sections {
+                            a href=(format!("#{}", section.id)) { (section.title) }
+                        }
+                    }
+                }
+                main {
+                    @for (section, body) in &sections {
+                        section id=(section.id) {
+                            h2 { (section.title) }
+                            (body)
+                        }
+                    }
+                }
+            }
+        }
+    };
+    Ok(page.into_string())
+}

@@ -1,0 +1,182 @@
+//! Numbers as an engineer writes them, the same in terminals, HTML and figures.
+//!
+//! Plain text only: powers of ten use Unicode superscripts, the minus is a real minus sign.
+
+/// What stands where there is no value.
+pub(super) const NONE: &str = "–";
+
+/// Decimal exponent of a finite, non-zero value.
+fn exponent(value: f64) -> i32 {
+    // formatting rounds as the printed digits will be, which log10().floor() does not
+    let text = format!("{:.2e}", value.abs());
+    text.split_once('e')
+        .and_then(|(_, exponent)| exponent.parse().ok())
+        .unwrap_or(0)
+}
+
+/// An integer as Unicode superscript.
+pub(super) fn superscript(value: i32) -> String {
+    value
+        .to_string()
+        .chars()
+        .map(|digit| match digit {
+            '-' => '⁻',
+            '1' => '¹',
+            '2' => '²',
+            '3' => '³',
+            '4' => '⁴',
+            '5' => '⁵',
+            '6' => '⁶',
+            '7' => '⁷',
+            '8' => '⁸',
+            '9' => '⁹',
+            _ => '⁰',
+        })
+        .collect()
+}
+
+/// Replaces the hyphen of a printed number by a minus sign.
+fn signed(text: &str) -> String {
+    text.strip_prefix('-')
+        .map_or_else(|| text.to_owned(), |rest| format!("−{rest}"))
+}
+
+/// Three significant digits; powers of ten outside 0.01 to 100 000.
+pub(super) fn figure(value: f64) -> String {
+    if !value.is_finite() {
+        return NONE.to_owned();
+    }
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let exponent = exponent(value);
+    if !(-2..5).contains(&exponent) {
+        let mantissa = value / 10_f64.powi(exponent);
+        return format!("{} × 10{}", fixed(mantissa, 2), superscript(exponent));
+    }
+    let decimals = usize::try_from(2 - exponent).unwrap_or(0);
+    fixed(value, decimals)
+}
+
+/// A fixed number of decimals.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    if !value.is_finite() {
+        return NONE.to_owned();
+    }
+    let text = format!("{value:.decimals$}");
+    // "-0.00" says more than is known
+    let text = if text.chars().all(|c| matches!(c, '-' | '0' | '.')) {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    };
+    signed(&text)
+}
+
+/// A share of 1 as per cent.
+pub(super) fn percent(share: f64) -> String {
+    if !share.is_finite() {
+        return NONE.to_owned();
+    }
+    let decimals = usize::from(share.abs() < 0.9995);
+    format!("{} %", fixed(100.0 * share, decimals))
+}
+
+/// How many times, with the direction in the sign of the exponent: `2.49 ×`.
+pub(super) fn ratio(of: f64, to: f64) -> String {
+    let ratio = of / to;
+    if ratio.is_finite() {
+        format!("{} ×", figure(ratio))
+    } else {
+        NONE.to_owned()
+    }
+}
+
+/// A whole number with thin spaces between thousands.
+pub(super) fn count(value: u64) -> String {
+    let digits = value.to_string();
+    let mut grouped = String::with_capacity(digits.len() + digits.len() / 3);
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            grouped.push('\u{202f}');
+        }
+        grouped.push(digit);
+    }
+    grouped
+}
+
+/// A duration in the unit that suits it.
+pub(super) fn duration(seconds: f64) -> String {
+    if !seconds.is_finite() || seconds < 0.0 {
+        NONE.to_owned()
+    } else if seconds < 100.0 {
+        format!("{} s", figure(seconds))
+    } else if seconds < 6000.0 {
+        format!("{} min", fixed(seconds / 60.0, 1))
+    } else {
+        format!("{} h", fixed(seconds / 3600.0, 1))
+    }
+}
+
+/// Smallest and largest finite value.
+pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+    values
+        .into_iter()
+        .filter(|value| value.is_finite())
+        .fold(None, |range, value| match range {
+            None => Some((value, value)),
+            Some((low, high)) => Some((low.min(value), high.max(value))),
+        })
+}
+
+/// The value below which a share of the values lies, linearly between neighbours; the values are
+/// sorted ascending.
+pub(super) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let last = sorted.len().checked_sub(1)?;
+    let place = share.clamp(0.0, 1.0) * last as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and the last index"
+    )]
+    let below = place.floor() as usize;
+    let low = *sorted.get(below)?;
+    let high = *sorted.get((below + 1).min(last))?;
+    Some(low + (high - low) * (place - below as f64))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{count, figure, fixed, percent, quantile, ratio};
+
+    #[test]
+    fn three_digits_and_powers_of_ten() {
+        assert_eq!(figure(3.14e8), "3.14 × 10⁸");
+        assert_eq!(figure(-0.00123), "−1.23 × 10⁻³");
+        assert_eq!(figure(5201.3), "5201");
+        assert_eq!(figure(40.0), "40.0");
+        assert_eq!(figure(0.0456), "0.0456");
+        assert_eq!(figure(99_999.0), "1.00 × 10⁵");
+        assert_eq!(figure(9.999), "10.0");
+        assert_eq!(figure(f64::NAN), "–");
+    }
+
+    #[test]
+    fn shares_ratios_and_counts() {
+        assert_eq!(percent(0.2541), "25.4 %");
+        assert_eq!(percent(1.7824), "178 %");
+        assert_eq!(ratio(7.81e8, 3.14e8), "2.49 ×");
+        assert_eq!(ratio(1.0, 0.0), "–");
+        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
+        assert_eq!(fixed(-0.001, 2), "0.00");
+    }
+
+    #[test]
+    fn quantiles_lie_between_neighbours() {
+        let sorted = [1.0, 2.0, 4.0, 8.0];
+        assert_eq!(quantile(&sorted, 0.5), Some(3.0));
+        assert_eq!(quantile(&sorted, 1.0), Some(8.0));
+        assert_eq!(quantile(&sorted, 0.0), Some(1.0));
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+}

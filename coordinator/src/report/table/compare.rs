@@ -1,0 +1,277 @@
+//! Recommended against optimised parameters (paper, Tables 3 and 4), and the workers' table.
+use super::{Label, Row, Table};
+use crate::report::data::{Calibration, ConditionResult, Run, WorkerUse};
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, ratio};
+use crate::report::words::{self, condition_name};
+use protocol::case::{Case, GeneName};
+use protocol::job::{ChannelScore, Verdict};
+
+/// Definition that stands under every table with relative errors.
+const RELATIVE_ERROR: &str = "Relative error: mean absolute error over the mean absolute deviation \
+                              of the measured curve from its own mean.";
+const HALF_RANGE: &str = "RMSE / half-range: root of the mean squared error over half the measured \
+                          range.";
+const OFFSET: &str = "Offset: measured minus simulated mean; a strain bridge has no absolute zero.";
+
+/// Gauges of a result: those of the objective first, then the others of the record.
+fn gauges(case: &Case, result: &ConditionResult) -> Vec<u8> {
+    let mut gauges: Vec<u8> = case.objective.gauges.iter().map(|&(g, _)| g).collect();
+    for run in [&result.recommended, &result.optimised] {
+        for channel in &run.evaluation.channels {
+            if !gauges.contains(&channel.gauge) {
+                gauges.push(channel.gauge);
+            }
+        }
+    }
+    gauges
+}
+
+/// A row of one quantity of one gauge for both parameter sets.
+fn channel_row(
+    label: String,
+    unit: &str,
+    result: &ConditionResult,
+    gauge: u8,
+    value: impl Fn(&ChannelScore) -> f64,
+    write: impl Fn(f64) -> String,
+) -> Row {
+    let of = |run: &Run| {
+        let mut channels = run.evaluation.channels.iter();
+        channels.find(|c| c.gauge == gauge).map(&value)
+    };
+    let (before, after) = (of(&result.recommended), of(&result.optimised));
+    let share = match (before, after) {
+        (Some(before), Some(after)) if before > 0.0 && after >= 0.0 => ratio(after, before),
+        _ => NONE.to_owned(),
+    };
+    let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), &write);
+    Row::new(label, [unit.to_owned(), write(before), write(after), share])
+}
+
+/// Objective and agreement at every gauge of a condition.
+fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
+    let gauges = gauges(case, result);
+    let calibrated = result.condition == case.objective.condition;
+    let point = |gauge: u8| {
+        let weighted = case.objective.gauges.iter().any(|&(g, _)| g == gauge);
+        if weighted || !calibrated {
+            format!("point {gauge}")
+        } else {
+            format!("point {gauge} (not fitted)")
+        }
+    };
+    let mut rows = Vec::new();
+    let objective = |run: &Run| match run.evaluation.verdict {
+        Verdict::Complete => Some(run.evaluation.fitness),
+        Verdict::Failed { .. } => None,
+    };
+    let (before, after) = (objective(&result.recommended), objective(&result.optimised));
+    let write = |value: Option<f64>| value.map_or_else(|| "failed".to_owned(), figure);
+    rows.push(Row::Group("Objective".to_owned()));
+    rows.push(Row::new(
+        "weighted sum of mean squared errors",
+        [
+            "MPa²".to_owned(),
+            write(before),
+            write(after),
+            match (before, after) {
+                (Some(before), Some(after)) => ratio(after, before),
+                _ => NONE.to_owned(),
+            },
+        ],
+    ));
+    rows.push(Row::Group("Mean squared error".to_owned()));
+    for &g in &gauges {
+        rows.push(channel_row(
+            point(g),
+            "MPa²",
+            result,
+            g,
+            |c| c.mse_mpa2,
+            figure,
+        ));
+    }
+    rows.push(Row::Group("Relative error".to_owned()));
+    for &g in &gauges {
+        rows.push(channel_row(
+            point(g),
+            "",
+            result,
+            g,
+            |c| c.relative_error,
+            percent,
+        ));
+    }
+    rows.push(Row::Group("RMSE / half-range".to_owned()));
+    for &g in &gauges {
+        let value = |c: &ChannelScore| c.rmse_over_half_range;
+        rows.push(channel_row(point(g), "", result, g, value, percent));
+    }
+    rows.push(Row::Group("Offset and peak-to-peak".to_owned()));
+    for &g in &gauges {
+        // a ratio of offsets or of signed errors would say nothing
+        let mut row = channel_row(
+            format!("{}: offset", point(g)),
+            "MPa",
+            result,
+            g,
+            |c| c.offset_mpa,
+            |value| fixed(value, 2),
+        );
+        blank_ratio(&mut row);
+        rows.push(row);
+        let value = |c: &ChannelScore| c.peak_to_peak_error;
+        let label = format!("{}: peak-to-peak error", point(g));
+        let mut row = channel_row(label, "", result, g, value, percent);
+        blank_ratio(&mut row);
+        rows.push(row);
+    }
+    rows
+}
+
+fn blank_ratio(row: &mut Row) {
+    if let Row::Values(_, cells) = row
+        && let Some(last) = cells.last_mut()
+    {
+        last.clear();
+    }
+}
+
+fn head() -> Vec<String> {
+    [
+        "",
+        "unit",
+        "recommended",
+        "optimised",
+        "optimised / recommended",
+    ]
+    .map(str::to_owned)
+    .to_vec()
+}
+
+/// Rows of both gene vectors.
+fn gene_rows(calibration: &Calibration) -> Vec<Row> {
+    let mut rows = Vec::new();
+    let mut group = "";
+    let genes = calibration.case.genes.iter().enumerate();
+    for (index, gene) in genes {
+        let of_joint = !matches!(gene.name, GeneName::Kc | GeneName::Cc);
+        let name = if of_joint { "Rope joints" } else { "Contact" };
+        if name != group {
+            rows.push(Row::Group(name.to_owned()));
+            group = name;
+        }
+        let value = |genes: &[f64]| genes.get(index).copied().unwrap_or(f64::NAN);
+        let before = value(&calibration.recommended.genes);
+        let after = value(&calibration.optimised.genes);
+        let mut optimised = figure(after);
+        if words::at_bound(gene.lower, gene.upper, after).is_some() {
+            optimised.push_str(" *");
+        }
+        rows.push(Row::Values(
+            Label::Gene(gene.name),
+            vec![
+                gene.unit.symbol().to_owned(),
+                figure(before),
+                optimised,
+                ratio(after, before),
+            ],
+        ));
+    }
+    rows
+}
+
+/// The paper's Table 3: genes, and agreement under the calibrated condition.
+pub fn table_3(calibration: &Calibration) -> Table {
+    let case = &calibration.case;
+    let mut rows = gene_rows(calibration);
+    let mut notes = vec![
+        RELATIVE_ERROR.to_owned(),
+        HALF_RANGE.to_owned(),
+        OFFSET.to_owned(),
+    ];
+    let genes = case.genes.iter().zip(&calibration.optimised.genes);
+    if genes
+        .into_iter()
+        .any(|(gene, &value)| words::at_bound(gene.lower, gene.upper, value).is_some())
+    {
+        notes.insert(0, "* at a bound of the search.".to_owned());
+    }
+    if let Some(result) = calibration.calibrated() {
+        rows.extend(agreement(case, result));
+        notes.extend(failures(result));
+    }
+    Table {
+        title: format!(
+            "Recommended and optimised parameters, calibrated condition {}",
+            condition_name(case, case.objective.condition)
+        ),
+        head: head(),
+        rows,
+        notes,
+    }
+}
+
+/// The paper's Table 4: agreement under another condition, with the same parameters.
+pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
+    let mut notes = vec![RELATIVE_ERROR.to_owned(), HALF_RANGE.to_owned()];
+    notes.extend(failures(result));
+    Table {
+        title: format!(
+            "The same parameters under condition {}, which took no part in the fit",
+            condition_name(case, result.condition)
+        ),
+        head: head(),
+        rows: agreement(case, result),
+        notes,
+    }
+}
+
+/// Says which of the two runs failed, and how.
+fn failures(result: &ConditionResult) -> Vec<String> {
+    [
+        ("Recommended", &result.recommended),
+        ("Optimised", &result.optimised),
+    ]
+    .into_iter()
+    .filter_map(|(who, run)| match run.evaluation.verdict {
+        Verdict::Complete => None,
+        failed @ Verdict::Failed { .. } => {
+            Some(format!("{who} parameters {}.", words::verdict(&failed)))
+        }
+    })
+    .collect()
+}
+
+/// What each worker did.
+pub fn workers(workers: &[WorkerUse]) -> Table {
+    let rows = workers.iter().map(|worker| {
+        Row::new(
+            worker.name.clone(),
+            [
+                worker.host.clone(),
+                worker.slots.to_string(),
+                count(worker.done),
+                count(worker.failed),
+                duration(worker.busy_s),
+                worker.busy_share().map_or_else(|| NONE.to_owned(), percent),
+            ],
+        )
+    });
+    Table {
+        title: "Workers".to_owned(),
+        head: [
+            "worker",
+            "host",
+            "slots",
+            "jobs done",
+            "failed",
+            "computing",
+            "busy",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        notes: vec!["Busy: time spent computing over slots times the time attached.".to_owned()],
+    }
+}

@@ -1,0 +1,168 @@
+//! Tables from one description: for the terminal and for HTML.
+//!
+//! What stands in them is in [`compare`] and [`single`]; here is only how it is set.
+mod compare;
+mod single;
+
+pub use compare::{table_3, table_4, workers};
+pub use single::{genes, simulation};
+
+use comfy_table::{Attribute, Cell, CellAlignment, presets};
+use maud::{Markup, html};
+use protocol::case::GeneName;
+
+/// A table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// What it shows.
+    pub title: String,
+    /// Heads of the columns; the first belongs to the labels.
+    pub head: Vec<String>,
+    /// Rows from top to bottom.
+    pub rows: Vec<Row>,
+    /// Definitions and remarks below it, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// One row.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Row {
+    /// Heads the rows that follow.
+    Group(String),
+    /// A label and one cell per further column.
+    Values(Label, Vec<String>),
+}
+
+/// What a row is about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Label {
+    /// In words.
+    Text(String),
+    /// A gene; with its symbol where the medium can set it.
+    Gene(GeneName),
+}
+
+impl Row {
+    /// A row about something in words.
+    fn new(label: impl Into<String>, cells: impl IntoIterator<Item = String>) -> Self {
+        Self::Values(Label::Text(label.into()), cells.into_iter().collect())
+    }
+}
+
+/// What a gene is, in words.
+pub(super) const fn meaning(gene: GeneName) -> &'static str {
+    match gene {
+        GeneName::Kb1 => "axial stiffness",
+        GeneName::Kb23 => "shear stiffness",
+        GeneName::Kb4 => "torsional stiffness",
+        GeneName::Kb56 => "bending stiffness",
+        GeneName::Cb1 => "axial damping",
+        GeneName::Cb23 => "shear damping",
+        GeneName::Cb4 => "torsional damping",
+        GeneName::Cb56 => "bending damping",
+        GeneName::Kc => "contact stiffness",
+        GeneName::Cc => "contact damping",
+    }
+}
+
+/// Letter and index of a gene's symbol.
+pub(super) const fn symbol(gene: GeneName) -> (&'static str, &'static str) {
+    match gene {
+        GeneName::Kb1 => ("K", "b1"),
+        GeneName::Kb23 => ("K", "b23"),
+        GeneName::Kb4 => ("K", "b4"),
+        GeneName::Kb56 => ("K", "b56"),
+        GeneName::Cb1 => ("C", "b1"),
+        GeneName::Cb23 => ("C", "b23"),
+        GeneName::Cb4 => ("C", "b4"),
+        GeneName::Cb56 => ("C", "b56"),
+        GeneName::Kc => ("K", "c"),
+        GeneName::Cc => ("C", "c"),
+    }
+}
+
+/// Sets a table as text, with its title and notes; `styled` where the terminal shows bold.
+pub fn text(table: &Table, styled: bool) -> String {
+    let bold = |cell: Cell| {
+        if styled {
+            cell.add_attribute(Attribute::Bold)
+        } else {
+            cell
+        }
+    };
+    let mut grid = comfy_table::Table::new();
+    grid.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    if styled {
+        grid.enforce_styling();
+    } else {
+        grid.force_no_tty();
+    }
+    grid.set_header(table.head.iter().map(|head| bold(Cell::new(head))));
+    for row in &table.rows {
+        match row {
+            Row::Group(name) => {
+                grid.add_row(vec![bold(Cell::new(name))]);
+            }
+            Row::Values(label, cells) => {
+                let label = match label {
+                    Label::Text(text) => format!("  {text}"),
+                    Label::Gene(gene) => format!("  {:<5} {}", gene.as_str(), meaning(*gene)),
+                };
+                let cells = cells
+                    .iter()
+                    .map(|cell| Cell::new(cell).set_alignment(CellAlignment::Right));
+                grid.add_row(std::iter::once(Cell::new(label)).chain(cells));
+            }
+        }
+    }
+    let mut text = format!("{}\n{}\n", table.title, grid.trim_fmt());
+    for note in &table.notes {
+        text.push_str("  ");
+        text.push_str(note);
+        text.push('\n');
+    }
+    text
+}
+
+/// Sets a table as HTML.
+pub(super) fn markup(table: &Table) -> Markup {
+    html! {
+        figure.table {
+            figcaption { (table.title) }
+            table {
+                thead { tr { @for head in &table.head { th scope="col" { (head) } } } }
+                tbody {
+                    @for row in &table.rows {
+                        @match row {
+                            Row::Group(name) => {
+                                tr.group {
+                                    th scope="rowgroup" colspan=(table.head.len()) { (name) }
+                                }
+                            }
+                            Row::Values(label, cells) => {
+                                tr {
+                                    th scope="row" { (label_markup(label)) }
+                                    @for cell in cells { td { (cell) } }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+            @for note in &table.notes { p.note { (note) } }
+        }
+    }
+}
+
+fn label_markup(label: &Label) -> Markup {
+    match label {
+        Label::Text(text) => html! { (text) },
+        Label::Gene(gene) => {
+            let (letter, index) = symbol(*gene);
+            html! {
+                span.symbol { i { (letter) } sub { (index) } } " " (meaning(*gene))
+                " " span.id { (gene.as_str()) }
+            }
+        }
+    }
+}

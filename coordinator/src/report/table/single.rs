@@ -1,0 +1,163 @@
+//! One simulation in numbers.
+use super::{Label, Row, Table};
+use crate::report::data::SingleRun;
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, range};
+use crate::report::words::{self, condition_name};
+use protocol::job::{Energy, Simulation};
+
+/// Cells of a range: smallest, largest, half the range.
+fn range_cells(values: &[f64], factor: f64, unit: &str) -> [String; 4] {
+    match range(values.iter().map(|value| factor * value)) {
+        Some((low, high)) => [
+            unit.to_owned(),
+            fixed(low, 2),
+            fixed(high, 2),
+            fixed(0.5 * (high - low), 2),
+        ],
+        None => [
+            unit.to_owned(),
+            NONE.to_owned(),
+            NONE.to_owned(),
+            NONE.to_owned(),
+        ],
+    }
+}
+
+/// A row with one value only.
+fn one(label: &str, unit: &str, value: String) -> Row {
+    Row::new(
+        label,
+        [unit.to_owned(), String::new(), value, String::new()],
+    )
+}
+
+/// Verdict, ranges of every curve, energy balance and work of a run.
+pub fn simulation(run: &SingleRun) -> Table {
+    let simulation = &run.simulation;
+    let mut rows = vec![Row::Group("Stress".to_owned())];
+    for (gauge, values) in (1..).zip(&simulation.gauge_mpa) {
+        let label = format!("gauge {gauge}");
+        rows.push(Row::new(label, range_cells(values, 1.0, "MPa")));
+    }
+    rows.push(Row::Group("Machine".to_owned()));
+    let curves: [(&str, &[f64], f64, &str); 6] = [
+        (
+            "back rope tension",
+            &simulation.back_rope_tension_n,
+            1e-3,
+            "kN",
+        ),
+        (
+            "front rope tension",
+            &simulation.front_rope_tension_n,
+            1e-3,
+            "kN",
+        ),
+        ("beam angle", &simulation.beam_deg, 1.0, "deg"),
+        ("suspension height", &simulation.suspension_m, 1.0, "m"),
+        (
+            "suspension acceleration",
+            &simulation.suspension_acceleration_m_s2,
+            1.0,
+            "m/s²",
+        ),
+        (
+            "net crank torque",
+            &simulation.crank_torque_n_m,
+            1e-3,
+            "kN m",
+        ),
+    ];
+    for (label, values, factor, unit) in curves {
+        rows.push(Row::new(label, range_cells(values, factor, unit)));
+    }
+    let stroke = range(simulation.suspension_m.iter().copied())
+        .map_or_else(|| NONE.to_owned(), |(low, high)| fixed(high - low, 3));
+    rows.push(one("stroke", "m", stroke));
+    if let Some(evaluation) = &run.evaluation
+        && !evaluation.channels.is_empty()
+    {
+        rows.push(Row::Group("Against the record".to_owned()));
+        rows.push(one("objective", "MPa²", figure(evaluation.fitness)));
+        for channel in &evaluation.channels {
+            rows.push(one(
+                &format!("point {}: mean squared error", channel.gauge),
+                "MPa²",
+                figure(channel.mse_mpa2),
+            ));
+            rows.push(one(
+                &format!("point {}: relative error", channel.gauge),
+                "",
+                percent(channel.relative_error),
+            ));
+        }
+    }
+    rows.extend(energy(&simulation.energy));
+    rows.extend(work(simulation));
+    Table {
+        title: format!(
+            "Condition {}, {} parameters: {}",
+            condition_name(&run.case, run.condition),
+            run.genes_name,
+            words::verdict(&simulation.verdict)
+        ),
+        head: ["", "unit", "smallest", "largest", "half range"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+        notes: vec![
+            "Energy error: what the balance leaves over, relative to the larger of input and \
+             output work."
+                .to_owned(),
+        ],
+    }
+}
+
+fn energy(energy: &Energy) -> Vec<Row> {
+    let joules = |value: f64| fixed(1e-3 * value, 2);
+    vec![
+        Row::Group("Energy of the revolution".to_owned()),
+        one("work of the crank pin", "kJ", joules(energy.input_j)),
+        one("work on the load", "kJ", joules(energy.output_j)),
+        one("dissipated", "kJ", joules(energy.dissipated_j)),
+        one("stored", "kJ", joules(energy.stored_j)),
+        one("error of the balance", "", figure(energy.relative_error)),
+    ]
+}
+
+fn work(simulation: &Simulation) -> Vec<Row> {
+    let counters = &simulation.counters;
+    vec![
+        Row::Group("Work of the integrator".to_owned()),
+        one("accepted steps", "", count(counters.steps)),
+        one("rejected steps", "", count(counters.rejected_steps)),
+        one("Newton iterations", "", count(counters.newton_iterations)),
+        one("Jacobians", "", count(counters.jacobians)),
+        one("factorisations", "", count(counters.factorizations)),
+        one("wall time", "", duration(simulation.wall_s)),
+    ]
+}
+
+/// The genes of one simulation beside the recommended ones.
+pub fn genes(run: &SingleRun) -> Table {
+    let genes = run.case.genes.iter().zip(&run.genes);
+    Table {
+        title: format!("Parameters: {}", run.genes_name),
+        head: ["", "unit", "value", "recommended"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: genes
+            .map(|(gene, &value)| {
+                Row::Values(
+                    Label::Gene(gene.name),
+                    vec![
+                        gene.unit.symbol().to_owned(),
+                        figure(value),
+                        figure(gene.recommended),
+                    ],
+                )
+            })
+            .collect(),
+        notes: Vec::new(),
+    }
+}
