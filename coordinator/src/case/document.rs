@@ -110,6 +110,20 @@ impl Document {
         ))
     }
 
+    /// As [`Self::within`], for several fields of one kind.
+    ///
+    /// # Errors
+    /// Names the first field outside.
+    pub(super) fn all_within(
+        &self,
+        fields: &[(&str, f64)],
+        range: RangeInclusive<f64>,
+        unit: &str,
+    ) -> Result<(), CaseError> {
+        let mut fields = fields.iter();
+        fields.try_for_each(|(field, value)| self.within(field, *value, range.clone(), unit))
+    }
+
     /// Where a field stands in the text.
     fn span(&self, way: &[Step<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;
@@ -128,18 +142,13 @@ impl Document {
 
     /// The line of a span with a marker below it.
     fn excerpt(&self, span: Range<usize>) -> String {
-        let start = span.start.min(self.text.len());
-        let before = self.text.as_bytes().get(..start).unwrap_or_default();
-        let line = before.iter().filter(|byte| **byte == b'\n').count();
-        let column = before
-            .iter()
-            .rev()
-            .take_while(|byte| **byte != b'\n')
-            .count();
+        let before = self.text.get(..span.start).unwrap_or_default();
+        let line = before.matches('\n').count();
+        let column = before.chars().rev().take_while(|c| *c != '\n').count();
         let Some(source) = self.text.lines().nth(line) else {
             return String::new();
         };
-        let room = source.len().saturating_sub(column).max(1);
+        let room = source.chars().count().saturating_sub(column).max(1);
         let width = span.end.saturating_sub(span.start).clamp(1, room);
         let number = (line + 1).to_string();
         let gutter = " ".repeat(number.len());

@@ -11,16 +11,19 @@ const LIMIT: u64 = 1 << 30;
 /// # Errors
 /// Missing (with `role`: what it is needed for), unreadable, empty or larger than 1 GiB.
 pub(super) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
-    let file = fs::File::open(path).map_err(|source| match source.kind() {
-        io::ErrorKind::NotFound => CaseError::Missing {
-            path: path.into(),
-            role: role.into(),
-            help: "put the file there, or correct the name where it is stated".into(),
-        },
-        _ => CaseError::Unreadable {
-            path: path.into(),
-            source,
-        },
+    let file = fs::File::open(path).map_err(|source| {
+        if source.kind() == io::ErrorKind::NotFound {
+            CaseError::Missing {
+                path: path.into(),
+                role: role.into(),
+                help: "put the file there, or correct the name where it is stated".into(),
+            }
+        } else {
+            CaseError::Unreadable {
+                path: path.into(),
+                source,
+            }
+        }
     })?;
     let bytes = read_limited(file, path)?.map_err(|source| CaseError::Unreadable {
         path: path.into(),
@@ -93,13 +96,8 @@ fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, Cas
 pub(super) fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
-        let line = error
-            .as_bytes()
-            .iter()
-            .take(valid)
-            .filter(|b| **b == b'\n')
-            .count()
-            + 1;
+        let start = error.as_bytes().get(..valid).unwrap_or_default();
+        let line = start.split(|byte| *byte == b'\n').count();
         damaged(
             path,
             format!("line {line} is not UTF-8 text"),

@@ -11,22 +11,22 @@ use protocol::case::TurnSense;
 /// Extremes over one turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Envelope {
-    /// Lowest and highest beam angle [deg].
+    /// Lowest and highest beam angle \[deg\].
     pub beam_deg: [f64; 2],
-    /// Least and greatest angle of the contact normal on the back head, beam frame [deg].
+    /// Least and greatest angle of the contact normal on the back head, beam frame \[deg\].
     pub contact_deg: [f64; 2],
-    /// Shortest and longest free back rope, from crossbeam to head [m].
+    /// Shortest and longest free back rope, from crossbeam to head \[m\].
     pub free_rope_m: [f64; 2],
-    /// Shortest and longest front rope below the head [m].
+    /// Shortest and longest front rope below the head \[m\].
     pub hang_m: [f64; 2],
-    /// Travel of the suspension [m].
+    /// Travel of the suspension \[m\].
     pub stroke_m: f64,
 }
 
 /// Crank angles that are tried: every two degrees.
 const STEPS: u32 = 180;
 
-/// Extremes over one turn; or the crank-pin angle [deg] at which the loop cannot be closed.
+/// Extremes over one turn; or the crank-pin angle \[deg\] at which the loop cannot be closed.
 pub(super) fn envelope(case: &CaseFile) -> Result<Envelope, f64> {
     let back_rope = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
     let front_rope = case.ropes.front_cylinders as f64 * case.ropes.cylinder_length_m;

@@ -52,19 +52,11 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<ModalHead, CaseErro
     })
 }
 
-/// Shapes, order and ranges of the modes.
+/// Order and ranges of the modes.
 fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
-    let field = |field: &str, value: String, allowed: &str, help: &str| CaseError::Field {
-        path: path.into(),
-        field: field.into(),
-        value: value.into(),
-        allowed: allowed.into(),
-        excerpt: "".into(),
-        help: help.into(),
-    };
-    let count = modes.frequencies_hz.len();
     ascending(&modes.frequencies_hz).map_err(|at| {
         field(
+            path,
             &format!("frequencies_hz[{at}]"),
             number(&modes.frequencies_hz, at),
             "positive frequencies in ascending order [Hz]",
@@ -77,6 +69,7 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
         .is_some_and(|first| *first > 0.0)
     {
         return Err(field(
+            path,
             "frequencies_hz[0]",
             number(&modes.frequencies_hz, 0),
             "at least one mode, all above 0 Hz",
@@ -85,16 +78,43 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     }
     ascending(&modes.arc_deg).map_err(|at| {
         field(
+            path,
             &format!("arc_deg[{at}]"),
             number(&modes.arc_deg, at),
             "stations in ascending order [deg]",
             "sort the stations, with the shapes",
         )
     })?;
-    if modes.arc_deg.len() < 2 {
+    if !(0.0..1.0).contains(&modes.damping_ratio) {
         return Err(field(
+            path,
+            "damping_ratio",
+            modes.damping_ratio.to_string(),
+            "0 to below 1",
+            "give the modal damping ratio; 0.01 is usual for welded steel",
+        ));
+    }
+    if !(modes.mass_kg > 0.0 && modes.mass_kg <= 1.0e5) {
+        return Err(field(
+            path,
+            "mass_kg",
+            modes.mass_kg.to_string(),
+            "above 0, at most 1e5 kg",
+            "give the mass of the meshed steel",
+        ));
+    }
+    check_shapes(path, modes)
+}
+
+/// Every mode has its rows, every station its values.
+fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
+    let count = modes.frequencies_hz.len();
+    let stations = modes.arc_deg.len();
+    if stations < 2 {
+        return Err(field(
+            path,
             "arc_deg",
-            format!("{} stations", modes.arc_deg.len()),
+            format!("{stations} stations"),
             "at least 2 stations [deg]",
             "give the shapes along the rope arc",
         ));
@@ -108,6 +128,7 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
     for (name, length) in lengths {
         if length != count {
             return Err(field(
+                path,
                 name,
                 format!("{length} rows"),
                 &format!("{count} rows: one per frequency"),
@@ -115,10 +136,10 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
             ));
         }
     }
-    let stations = modes.arc_deg.len();
     for (name, shapes) in [("radial", &modes.radial), ("tangential", &modes.tangential)] {
         if let Some(at) = shapes.iter().position(|shape| shape.len() != stations) {
             return Err(field(
+                path,
                 &format!("{name}[{at}]"),
                 format!("{} values", shapes.get(at).map_or(0, Vec::len)),
                 &format!("{stations} values: one per station of arc_deg"),
@@ -126,23 +147,19 @@ fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
             ));
         }
     }
-    if !(0.0..1.0).contains(&modes.damping_ratio) {
-        return Err(field(
-            "damping_ratio",
-            modes.damping_ratio.to_string(),
-            "0 to below 1",
-            "give the modal damping ratio; 0.01 is usual for welded steel",
-        ));
-    }
-    if !(modes.mass_kg > 0.0 && modes.mass_kg <= 1.0e5) {
-        return Err(field(
-            "mass_kg",
-            modes.mass_kg.to_string(),
-            "above 0, at most 1e5 kg",
-            "give the mass of the meshed steel",
-        ));
-    }
     Ok(())
+}
+
+/// An error about a field of the modes file.
+fn field(path: &Path, field: &str, value: String, allowed: &str, help: &str) -> CaseError {
+    CaseError::Field {
+        path: path.into(),
+        field: field.into(),
+        value: value.into(),
+        allowed: allowed.into(),
+        excerpt: "".into(),
+        help: help.into(),
+    }
 }
 
 /// Reads the influence lines: `psi_deg`, four normal and four tangential columns.
@@ -220,7 +237,7 @@ fn ascending(values: &[f64]) -> Result<(), usize> {
     let broken = values
         .iter()
         .zip(values.iter().skip(1))
-        .position(|(a, b)| !(b > a));
+        .position(|(a, b)| b <= a);
     broken.map_or(Ok(()), |at| Err(at + 1))
 }
 

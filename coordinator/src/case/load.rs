@@ -2,15 +2,15 @@
 use super::{
     card,
     document::{Document, Step, nearest},
-    error::CaseError,
+    error::{CaseError, damaged},
     genes,
     geometry::Envelope,
-    head, machine,
+    head, machine, mesh,
     note::Note,
     record::{self, Expected, RecordFacts},
     schema::{CaseFile, ConditionEntry, ObjectiveEntry},
 };
-use protocol::case::{Case, Condition, Objective};
+use protocol::case::{Case, Condition, ModalHead, Objective};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -52,58 +52,24 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
     )?;
     let file: CaseFile = document.parse()?;
     let envelope = machine::check(&document, &file)?;
-    let modal_head = head::read(
-        &folder.join(&file.flexible_head.modes_file),
-        &folder.join(&file.flexible_head.influence_file),
-    )?;
+    let modal_head = flexible_head(folder, &document, &file)?;
     machine::check_arc(&document, &file, &modal_head.arc_deg, &envelope)?;
-    document.within(
-        "run.modes",
-        file.run.modes as f64,
-        0.0..=modal_head.frequencies_hz.len() as f64,
-        "modes of the modes file",
-    )?;
+    check_names(&document, &file.conditions)?;
+    let objective = objective(&document, &file.objective, &file.conditions)?;
     let mut notes = Vec::new();
     let mut records = Vec::new();
     let mut conditions = Vec::new();
-    check_names(&document, &file.conditions)?;
-    let objective = objective(&document, &file.objective, &file.conditions)?;
-    for (index, entry) in file.conditions.iter().enumerate() {
-        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
-        check_condition(&document, entry, way)?;
-        let card_file = place(folder, overrides, &entry.card_file);
-        let role = format!(
-            "the load card of condition `{}` in {}",
-            entry.name,
-            document.path.display()
-        );
-        let card = card::read(&card_file, entry.smoothing, &role)?;
-        let expected = Expected {
-            condition: &entry.name,
-            speed_rpm: entry.speed_rpm,
-            case_file: &document.path,
-            step_deg: file.run.output_step_deg,
+    for index in 0..file.conditions.len() {
+        let source = Source {
+            folder,
+            overrides,
+            document: &document,
+            file: &file,
         };
-        let read = entry
-            .record_file
-            .as_ref()
-            .map(|name| record::read(&place(folder, overrides, name), &expected))
-            .transpose()?;
-        let (record, facts) = match read {
-            Some(read) => {
-                notes.extend(read.notes);
-                (Some(read.record), Some(read.facts))
-            }
-            None => (None, None),
-        };
+        let (condition, facts, remarks) = source.condition(index)?;
+        conditions.push(condition);
         records.push(facts);
-        conditions.push(Condition {
-            name: entry.name.clone(),
-            speed_rpm: entry.speed_rpm,
-            counterweight_moment_n_m: entry.counterweight_moment_n_m,
-            card,
-            record,
-        });
+        notes.extend(remarks);
     }
     let genes = genes::declared(&document, file.genes)?;
     let case = Case {
@@ -131,11 +97,95 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
     })
 }
 
-/// Where a card or record is read from: `--measured DIR` replaces the folder, not the name.
-fn place(folder: &Path, overrides: &Overrides, named: &Path) -> PathBuf {
-    match (&overrides.measured, named.file_name()) {
-        (Some(measured), Some(name)) => measured.join(name),
-        _ => folder.join(named),
+/// Modes, influence lines and, where there is one, the mesh they belong to.
+fn flexible_head(
+    folder: &Path,
+    document: &Document,
+    file: &CaseFile,
+) -> Result<ModalHead, CaseError> {
+    let flexible = &file.flexible_head;
+    let modes_file = folder.join(&flexible.modes_file);
+    let head = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
+    if let Some(name) = &flexible.mesh_file {
+        let path = folder.join(name);
+        let mesh = mesh::read(&path)?;
+        mesh::check_mass(
+            &path,
+            &mesh,
+            flexible.density_kg_m3,
+            (&modes_file, head.mass_kg),
+        )?;
+    }
+    let available = head.frequencies_hz.len();
+    if file.run.modes > available {
+        return Err(document.field(
+            &[Step::Key("run"), Step::Key("modes")],
+            file.run.modes,
+            format!(
+                "0 to {available}, the modes of {}",
+                flexible.modes_file.display()
+            ),
+            "take fewer modes, or reduce the head with more",
+        ));
+    }
+    Ok(head)
+}
+
+/// Where conditions come from.
+struct Source<'a> {
+    folder: &'a Path,
+    overrides: &'a Overrides,
+    document: &'a Document,
+    file: &'a CaseFile,
+}
+
+impl Source<'_> {
+    /// Reads one condition with its card and record.
+    fn condition(
+        &self,
+        index: usize,
+    ) -> Result<(Condition, Option<RecordFacts>, Vec<Note>), CaseError> {
+        let Some(entry) = self.file.conditions.get(index) else {
+            return Err(damaged(&self.document.path, "no such condition", "add it"));
+        };
+        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
+        check_condition(self.document, entry, way)?;
+        let role = format!(
+            "the load card of condition `{}` in {}",
+            entry.name,
+            self.document.path.display()
+        );
+        let card = card::read(&self.place(&entry.card_file), entry.smoothing, &role)?;
+        let expected = Expected {
+            condition: &entry.name,
+            speed_rpm: entry.speed_rpm,
+            case_file: &self.document.path,
+            step_deg: self.file.run.output_step_deg,
+        };
+        let record_file = entry.record_file.as_ref();
+        let read = record_file
+            .map(|name| record::read(&self.place(name), &expected))
+            .transpose()?;
+        let (record, facts, notes) = match read {
+            Some(read) => (Some(read.record), Some(read.facts), read.notes),
+            None => (None, None, Vec::new()),
+        };
+        let condition = Condition {
+            name: entry.name.clone(),
+            speed_rpm: entry.speed_rpm,
+            counterweight_moment_n_m: entry.counterweight_moment_n_m,
+            card,
+            record,
+        };
+        Ok((condition, facts, notes))
+    }
+
+    /// Where a card or record is read from: `--measured DIR` replaces the folder, not the name.
+    fn place(&self, named: &Path) -> PathBuf {
+        match (&self.overrides.measured, named.file_name()) {
+            (Some(measured), Some(name)) => measured.join(name),
+            _ => self.folder.join(named),
+        }
     }
 }
 

@@ -16,137 +16,8 @@ pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, Ca
 
 /// Each number in the range of a machine that can be built.
 fn check_ranges(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
-    let length = 1.0e-3..=100.0;
-    let place = -100.0..=100.0;
-    let mass = 1.0e-3..=1.0e6;
-    let inertia = 1.0e-6..=1.0e8;
-    let checks = [
-        ("gravity_m_s2", case.gravity_m_s2, 0.0..=100.0, "m/s2"),
-        (
-            "beam.inertia_kg_m2",
-            case.beam.inertia_kg_m2,
-            inertia.clone(),
-            "kg m2",
-        ),
-        (
-            "beam.gravity_moment_n_m",
-            case.beam.gravity_moment_n_m,
-            -1.0e6..=1.0e6,
-            "N m",
-        ),
-        (
-            "crank.center_x_m",
-            case.crank.center_x_m,
-            place.clone(),
-            "m",
-        ),
-        (
-            "crank.center_y_m",
-            case.crank.center_y_m,
-            place.clone(),
-            "m",
-        ),
-        ("crank.radius_m", case.crank.radius_m, length.clone(), "m"),
-        (
-            "crank.counterweight_phase_deg",
-            case.crank.counterweight_phase_deg,
-            -360.0..=360.0,
-            "deg",
-        ),
-        ("rod.length_m", case.rod.length_m, length.clone(), "m"),
-        ("rod.mass_kg", case.rod.mass_kg, mass.clone(), "kg"),
-        (
-            "rod.center_of_mass_m",
-            case.rod.center_of_mass_m,
-            place.clone(),
-            "m",
-        ),
-        (
-            "rod.inertia_kg_m2",
-            case.rod.inertia_kg_m2,
-            inertia,
-            "kg m2",
-        ),
-        ("suspension.mass_kg", case.suspension.mass_kg, mass, "kg"),
-        ("ropes.diameter_m", case.ropes.diameter_m, 1.0e-3..=0.2, "m"),
-        (
-            "ropes.cylinder_length_m",
-            case.ropes.cylinder_length_m,
-            1.0e-3..=1.0,
-            "m",
-        ),
-        (
-            "ropes.density_kg_m3",
-            case.ropes.density_kg_m3,
-            100.0..=3.0e4,
-            "kg/m3",
-        ),
-        (
-            "ropes.reference_length_m",
-            case.ropes.reference_length_m,
-            1.0e-3..=1.0,
-            "m",
-        ),
-        (
-            "ropes.back_cylinders",
-            case.ropes.back_cylinders as f64,
-            2.0..=5000.0,
-            "cylinders",
-        ),
-        (
-            "ropes.front_cylinders",
-            case.ropes.front_cylinders as f64,
-            2.0..=5000.0,
-            "cylinders",
-        ),
-        ("contact.exponent", case.contact.exponent, 1.0..=3.0, ""),
-        (
-            "contact.full_damping_penetration_m",
-            case.contact.full_damping_penetration_m,
-            1.0e-7..=0.01,
-            "m",
-        ),
-        (
-            "front_head.radius_m",
-            case.front_head.radius_m,
-            length.clone(),
-            "m",
-        ),
-        (
-            "front_head.rope_anchor_deg",
-            case.front_head.rope_anchor_deg,
-            0.0..=180.0,
-            "deg",
-        ),
-        ("back_head.radius_m", case.back_head.radius_m, length, "m"),
-        (
-            "back_head.center_x_m",
-            case.back_head.center_x_m,
-            place.clone(),
-            "m",
-        ),
-        (
-            "back_head.center_y_m",
-            case.back_head.center_y_m,
-            place,
-            "m",
-        ),
-        (
-            "back_head.rope_anchor_deg",
-            case.back_head.rope_anchor_deg,
-            0.0..=360.0,
-            "deg",
-        ),
-        (
-            "flexible_head.density_kg_m3",
-            case.flexible_head.density_kg_m3,
-            100.0..=3.0e4,
-            "kg/m3",
-        ),
-    ];
-    for (field, value, range, unit) in checks {
-        document.within(field, value, range, unit)?;
-    }
+    check_bodies(document, case)?;
+    check_rope_numbers(document, case)?;
     if case.name.trim().is_empty() {
         return Err(document.field(
             &[Step::Key("name")],
@@ -156,6 +27,81 @@ fn check_ranges(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
         ));
     }
     Ok(())
+}
+
+/// Lengths, places, masses and inertias of the bodies.
+fn check_bodies(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
+    let (beam, crank, rod) = (&case.beam, &case.crank, &case.rod);
+    let (front, back) = (&case.front_head, &case.back_head);
+    let lengths = [
+        ("crank.radius_m", crank.radius_m),
+        ("rod.length_m", rod.length_m),
+        ("front_head.radius_m", front.radius_m),
+        ("back_head.radius_m", back.radius_m),
+    ];
+    let places = [
+        ("crank.center_x_m", crank.center_x_m),
+        ("crank.center_y_m", crank.center_y_m),
+        ("rod.center_of_mass_m", rod.center_of_mass_m),
+        ("back_head.center_x_m", back.center_x_m),
+        ("back_head.center_y_m", back.center_y_m),
+    ];
+    let masses = [
+        ("rod.mass_kg", rod.mass_kg),
+        ("suspension.mass_kg", case.suspension.mass_kg),
+    ];
+    let inertias = [
+        ("beam.inertia_kg_m2", beam.inertia_kg_m2),
+        ("rod.inertia_kg_m2", rod.inertia_kg_m2),
+    ];
+    let angles = [
+        (
+            "crank.counterweight_phase_deg",
+            crank.counterweight_phase_deg,
+        ),
+        ("front_head.rope_anchor_deg", front.rope_anchor_deg),
+        ("back_head.rope_anchor_deg", back.rope_anchor_deg),
+    ];
+    document.all_within(&lengths, 1.0e-3..=100.0, "m")?;
+    document.all_within(&places, -100.0..=100.0, "m")?;
+    document.all_within(&masses, 1.0e-3..=1.0e6, "kg")?;
+    document.all_within(&inertias, 1.0e-6..=1.0e8, "kg m2")?;
+    document.all_within(&angles, -360.0..=360.0, "deg")?;
+    document.within("gravity_m_s2", case.gravity_m_s2, 0.0..=100.0, "m/s2")?;
+    let moment = beam.gravity_moment_n_m;
+    document.within("beam.gravity_moment_n_m", moment, -1.0e6..=1.0e6, "N m")
+}
+
+/// Ropes, contact and the density of the mesh.
+fn check_rope_numbers(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
+    let (ropes, contact) = (&case.ropes, &case.contact);
+    let pitches = [
+        ("ropes.cylinder_length_m", ropes.cylinder_length_m),
+        ("ropes.reference_length_m", ropes.reference_length_m),
+    ];
+    let counts = [
+        ("ropes.back_cylinders", ropes.back_cylinders as f64),
+        ("ropes.front_cylinders", ropes.front_cylinders as f64),
+    ];
+    let densities = [
+        ("ropes.density_kg_m3", ropes.density_kg_m3),
+        (
+            "flexible_head.density_kg_m3",
+            case.flexible_head.density_kg_m3,
+        ),
+    ];
+    document.within("ropes.diameter_m", ropes.diameter_m, 1.0e-3..=0.2, "m")?;
+    document.all_within(&pitches, 1.0e-3..=1.0, "m")?;
+    document.all_within(&counts, 2.0..=5000.0, "cylinders")?;
+    document.all_within(&densities, 100.0..=3.0e4, "kg/m3")?;
+    document.within("contact.exponent", contact.exponent, 1.0..=3.0, "(no unit)")?;
+    let depth = contact.full_damping_penetration_m;
+    document.within(
+        "contact.full_damping_penetration_m",
+        depth,
+        1.0e-7..=0.01,
+        "m",
+    )
 }
 
 /// Settings of a run, and the smoothing of the cards.
@@ -169,14 +115,14 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     )?;
     document.within("run.lead_in_deg", run.lead_in_deg, 0.0..=3600.0, "deg")?;
     document.within("run.ramp_s", run.ramp_s, 0.0..=600.0, "s")?;
-    document.within("run.tolerance", run.tolerance, 1.0e-6..=1.0e3, "")?;
+    document.within("run.tolerance", run.tolerance, 1.0e-6..=1.0e3, "(no unit)")?;
     let count = 360.0 / run.output_step_deg;
     if (count - count.round()).abs() > 1e-9 * count {
         return Err(document.field(
             &[Step::Key("run"), Step::Key("output_step_deg")],
             run.output_step_deg,
             "a step that divides 360 deg",
-            &format!("take {} deg, for example", 360.0 / count.round().max(1.0)),
+            &format!("take {} deg, for example", plain_step(run.output_step_deg)),
         ));
     }
     for (index, condition) in case.conditions.iter().enumerate() {
@@ -200,6 +146,19 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     Ok(())
 }
 
+/// The divisor of 360 with few decimals that is nearest to a step [deg].
+fn plain_step(step: f64) -> f64 {
+    let plain = [
+        0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,
+    ];
+    let more = [
+        4.0, 5.0, 6.0, 7.5, 8.0, 9.0, 10.0, 12.0, 15.0, 18.0, 20.0, 24.0, 30.0,
+    ];
+    let all = plain.into_iter().chain(more);
+    all.min_by(|a, b| (a - step).abs().total_cmp(&(b - step).abs()))
+        .unwrap_or(0.5)
+}
+
 /// The ropes reach over the whole turn and stay on their arcs.
 fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
     let ropes = &case.ropes;
@@ -209,7 +168,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     let envelope = geometry::envelope(case).map_err(|pin| {
         document.field(
             &cylinders("back_cylinders"),
-            format!("{} ({back} m of rope)", ropes.back_cylinders),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
             format!(
                 "enough that rope and rod ({} m) reach from the crank pin to the back head at every \
                  crank angle; they do not at a pin angle of {pin:.0} deg",
@@ -223,7 +182,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     if free < pitch {
         return Err(document.field(
             &cylinders("back_cylinders"),
-            format!("{} ({back} m of rope)", ropes.back_cylinders),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
             format!(
                 "at least {:.3} m: at one end of the stroke all of it lies on the head",
                 back - free + pitch
@@ -235,12 +194,15 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     let [contact, _] = envelope.contact_deg;
     if contact <= case.back_head.rope_anchor_deg {
         return Err(document.field(
-            &[Step::Key("back_head"), Step::Key("rope_anchor_deg")],
-            case.back_head.rope_anchor_deg,
+            &cylinders("back_cylinders"),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
             format!(
-                "below {contact:.1} deg, where the rope leaves the head at one end of the stroke"
+                "more: at one end of the stroke the rope would leave the head at {contact:.1} deg, \
+                 beyond its anchor at {} deg",
+                case.back_head.rope_anchor_deg
             ),
-            "move the anchor up, or lengthen rod or rope",
+            "rope and rod are shorter than the path they have to cover: add cylinders, lengthen \
+             rod.length_m, or move back_head.rope_anchor_deg",
         ));
     }
     let [low, _] = envelope.beam_deg;
@@ -259,7 +221,7 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     if hang < pitch {
         return Err(document.field(
             &cylinders("front_cylinders"),
-            format!("{} ({front} m of rope)", ropes.front_cylinders),
+            format!("{} ({front:.3} m of rope)", ropes.front_cylinders),
             format!(
                 "at least {:.3} m: at the top of the stroke all of it lies on the head",
                 front - hang + pitch

@@ -5,6 +5,7 @@
 //! what is wrong ends in one [`CaseError`] that names file, field, value, range and remedy; what
 //! is worth knowing is a [`Note`]. Nothing here knows of dynamics, of search or of the wire.
 mod card;
+mod check;
 mod document;
 mod error;
 mod file;
@@ -13,11 +14,13 @@ mod geometry;
 mod head;
 mod load;
 mod machine;
+pub mod mesh;
 mod note;
 mod record;
 mod schema;
 mod table;
 
+pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, template};
 pub use error::CaseError;
 pub use genes::read_genes;
 pub use geometry::Envelope;

@@ -19,9 +19,9 @@ pub struct Condition {
 /// Load at the suspension point over one turn, periodic.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadCard {
-    /// Crank angle from bottom dead centre, equally spaced from 0, without 360 [deg].
+    /// Crank angle from bottom dead centre, equally spaced from 0, without 360 \[deg\].
     pub turn_deg: Vec<f64>,
-    /// Load, positive downwards [N]; same length.
+    /// Load, positive downwards \[N\]; same length.
     pub load_n: Vec<f64>,
     /// What is done to the card before it is applied.
     pub smoothing: Smoothing,
@@ -42,7 +42,7 @@ pub enum Smoothing {
 /// Measured stress on the output grid, averaged over cycles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GaugeRecord {
-    /// Crank angle from bottom dead centre: the output grid [deg].
+    /// Crank angle from bottom dead centre: the output grid \[deg\].
     pub turn_deg: Vec<f64>,
     /// Number of whole cycles that were averaged.
     pub cycles: usize,
@@ -55,8 +55,8 @@ pub struct GaugeRecord {
 pub struct GaugeTrace {
     /// Gauge number, 1 to 4.
     pub gauge: u8,
-    /// Mean over cycles [MPa].
+    /// Mean over cycles \[MPa\].
     pub mean_mpa: Vec<f64>,
-    /// Standard deviation between cycles [MPa]; zeros where there is one cycle only.
+    /// Standard deviation between cycles \[MPa\]; zeros where there is one cycle only.
     pub spread_mpa: Vec<f64>,
 }

@@ -6,25 +6,25 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum GeneName {
-    /// Axial stiffness of a bushing, K_11.
+    /// Axial stiffness of a bushing, `K_11`.
     Kb1,
-    /// Shear stiffness of a bushing, K_22 = K_33.
+    /// Shear stiffness of a bushing, `K_22 = K_33`.
     Kb23,
-    /// Torsional stiffness of a bushing, K_44.
+    /// Torsional stiffness of a bushing, `K_44`.
     Kb4,
-    /// Bending stiffness of a bushing, K_55 = K_66.
+    /// Bending stiffness of a bushing, `K_55 = K_66`.
     Kb56,
-    /// Axial damping of a bushing, C_11.
+    /// Axial damping of a bushing, `C_11`.
     Cb1,
-    /// Shear damping of a bushing, C_22 = C_33.
+    /// Shear damping of a bushing, `C_22 = C_33`.
     Cb23,
-    /// Torsional damping of a bushing, C_44.
+    /// Torsional damping of a bushing, `C_44`.
     Cb4,
-    /// Bending damping of a bushing, C_55 = C_66.
+    /// Bending damping of a bushing, `C_55 = C_66`.
     Cb56,
-    /// Contact stiffness K_c.
+    /// Contact stiffness `K_c`.
     Kc,
-    /// Largest contact damping C_c.
+    /// Largest contact damping `C_c`.
     Cc,
 }
 

@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 /// Mass-normalised fixed-interface modes, as a case carries them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ModalHead {
-    /// Natural frequencies, ascending [Hz]; length n.
+    /// Natural frequencies, ascending \[Hz\]; length n.
     pub frequencies_hz: Vec<f64>,
-    /// Modal damping ratio, the same for every mode [1].
+    /// Modal damping ratio, the same for every mode \[1\].
     pub damping_ratio: f64,
-    /// Stations on the rope arc, ascending [deg]; length s.
+    /// Stations on the rope arc, ascending \[deg\]; length s.
     pub arc_deg: Vec<f64>,
     /// Outward radial shape per mode and station [m per unit modal coordinate]; n x s.
     pub radial: Vec<Vec<f64>>,
@@ -18,12 +18,12 @@ pub struct ModalHead {
     pub tangential: Vec<Vec<f64>>,
     /// Gauge stress per mode and gauge [MPa per unit modal coordinate]; n x 4.
     pub gauge_stress_mpa: Vec<[f64; 4]>,
-    /// Integrals of density times (phi_x, phi_y, x phi_y - y phi_x) per mode; n x 3.
+    /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)` per mode; n x 3.
     pub participation: Vec<[f64; 3]>,
     /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
-    /// Mass of the meshed steel [kg].
+    /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
     /// Exact static gauge stress per newton.
     pub influence: Influence,
@@ -32,7 +32,7 @@ pub struct ModalHead {
 /// Static influence lines of the gauges.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Influence {
-    /// Stations on the rope arc, ascending [deg]; length s.
+    /// Stations on the rope arc, ascending \[deg\]; length s.
     pub psi_deg: Vec<f64>,
     /// Stress per newton of inward normal force [MPa/N]; s x 4.
     pub normal_mpa_per_n: Vec<[f64; 4]>,

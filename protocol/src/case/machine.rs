@@ -28,15 +28,15 @@ pub enum TurnSense {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Crank {
-    /// Shaft centre [m].
+    /// Shaft centre \[m\].
     pub center_x_m: f64,
-    /// Shaft centre [m].
+    /// Shaft centre \[m\].
     pub center_y_m: f64,
-    /// Distance from the shaft to the crank pin [m].
+    /// Distance from the shaft to the crank pin \[m\].
     pub radius_m: f64,
     /// Sense of rotation.
     pub sense: TurnSense,
-    /// Angle by which the counterweight leads the crank pin [deg].
+    /// Angle by which the counterweight leads the crank pin \[deg\].
     pub counterweight_phase_deg: f64,
 }
 
@@ -44,11 +44,11 @@ pub struct Crank {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rod {
-    /// From the crank pin to the rope's revolute joint [m].
+    /// From the crank pin to the rope's revolute joint \[m\].
     pub length_m: f64,
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass_kg: f64,
-    /// From the crank pin to the centre of mass [m].
+    /// From the crank pin to the centre of mass \[m\].
     pub center_of_mass_m: f64,
     /// Moment of inertia about its own centre of mass [kg m2].
     pub inertia_kg_m2: f64,
@@ -58,7 +58,7 @@ pub struct Rod {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Suspension {
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass_kg: f64,
 }
 
@@ -66,13 +66,13 @@ pub struct Suspension {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Ropes {
-    /// Diameter of a cylinder [m].
+    /// Diameter of a cylinder \[m\].
     pub diameter_m: f64,
-    /// Length of a cylinder [m].
+    /// Length of a cylinder \[m\].
     pub cylinder_length_m: f64,
     /// Density [kg/m3].
     pub density_kg_m3: f64,
-    /// Length of cylinder that the genes' stiffness and damping belong to [m]; chains of other
+    /// Length of cylinder that the genes' stiffness and damping belong to \[m\]; chains of other
     /// pitch are scaled so that the rope stays the same.
     pub reference_length_m: f64,
     /// Stiffness of the two end joints of a rope.
@@ -100,7 +100,7 @@ pub enum RopeEnds {
 pub struct Contact {
     /// Exponent n of the penetration.
     pub exponent: f64,
-    /// Penetration at which the damping reaches its full value, d_max [m].
+    /// Penetration at which the damping reaches its full value, `d_max` \[m\].
     pub full_damping_penetration_m: f64,
 }
 
@@ -108,9 +108,9 @@ pub struct Contact {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FrontHead {
-    /// Radius of the rope's centre line on the arc: the front arm [m].
+    /// Radius of the rope's centre line on the arc: the front arm \[m\].
     pub radius_m: f64,
-    /// Where the rope is fixed, in the beam frame [deg].
+    /// Where the rope is fixed, in the beam frame \[deg\].
     pub rope_anchor_deg: f64,
 }
 
@@ -118,12 +118,12 @@ pub struct FrontHead {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BackHead {
-    /// Radius of the rope's centre line on the arc [m].
+    /// Radius of the rope's centre line on the arc \[m\].
     pub radius_m: f64,
-    /// Centre of the arc in the beam frame [m].
+    /// Centre of the arc in the beam frame \[m\].
     pub center_x_m: f64,
-    /// Centre of the arc in the beam frame [m].
+    /// Centre of the arc in the beam frame \[m\].
     pub center_y_m: f64,
-    /// Where the rope is fixed, as seen from the centre, in the beam frame [deg].
+    /// Where the rope is fixed, as seen from the centre, in the beam frame \[deg\].
     pub rope_anchor_deg: f64,
 }

@@ -58,11 +58,11 @@ pub struct Case {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunSettings {
-    /// Spacing of the output on crank angle [deg]; divides 360.
+    /// Spacing of the output on crank angle \[deg\]; divides 360.
     pub output_step_deg: f64,
-    /// Crank angle that is run before the recorded revolution [deg].
+    /// Crank angle that is run before the recorded revolution \[deg\].
     pub lead_in_deg: f64,
-    /// Time in which the crank is brought from rest to full speed [s].
+    /// Time in which the crank is brought from rest to full speed \[s\].
     pub ramp_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,

@@ -5,6 +5,8 @@
 mod resample;
 mod samples;
 mod sheet;
+#[cfg(test)]
+mod tests;
 
 use super::{
     error::{CaseError, contradiction, damaged},
@@ -25,7 +27,7 @@ pub(super) struct Expected<'a> {
     pub(super) speed_rpm: f64,
     /// The case file, for messages.
     pub(super) case_file: &'a Path,
-    /// Output grid [deg].
+    /// Output grid \[deg\].
     pub(super) step_deg: f64,
 }
 
@@ -38,11 +40,11 @@ pub struct RecordFacts {
     pub samples: usize,
     /// Samples that are missing in the time column.
     pub lost: u64,
-    /// Samples per second [Hz].
+    /// Samples per second \[Hz\].
     pub rate_hz: f64,
     /// Mean speed between the first and the last index pulse [1/min].
     pub speed_rpm: f64,
-    /// Noise that the data sheet states, per sample [MPa].
+    /// Noise that the data sheet states, per sample \[MPa\].
     pub stated_noise_mpa: Option<f64>,
 }
 

@@ -1,5 +1,8 @@
 //! The samples of a gauge record: time, crank angle and stress columns, checked row by row.
-use super::super::{error::CaseError, table::Table};
+use super::super::{
+    error::{CaseError, damaged},
+    table::Table,
+};
 use std::path::Path;
 
 /// Columns of a record that are used; load, position and torque are for the reader.
@@ -38,12 +41,15 @@ impl Samples {
     pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
         let table = Table::read(path, bytes, &COLUMNS)?;
         let [time, crank, stress @ ..] = table.columns.as_slice() else {
-            return Err(super::super::error::damaged(
-                path,
-                "no columns",
-                "copy it again",
-            ));
+            return Err(damaged(path, "no columns", "copy it again"));
         };
+        if time.len() < 4 {
+            return Err(damaged(
+                path,
+                format!("the record has {} rows: no whole revolution", time.len()),
+                "record at least one revolution from index pulse to index pulse, better five or more",
+            ));
+        }
         check_time(path, &table, time)?;
         let (angle_deg, pulses_s) = unwrap_angle(path, &table, time, crank)?;
         for (index, values) in stress.iter().enumerate() {

@@ -1,0 +1,234 @@
+//! What `horsehead case check` tells about a case that is in order.
+use super::{CaseError, Envelope, Note, Overrides, RecordFacts, load_with_notes};
+use protocol::case::{Case, Gene};
+use std::{fmt, path::Path};
+
+/// A case in figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Name of the machine.
+    pub name: String,
+    /// Where beam and ropes move, by rigid kinematics.
+    pub envelope: Envelope,
+    /// Length of the back rope \[m\] and its number of cylinders.
+    pub back_rope: (f64, usize),
+    /// Length of the front rope \[m\] and its number of cylinders.
+    pub front_rope: (f64, usize),
+    /// Frequencies of the head modes that are simulated \[Hz\].
+    pub modes_hz: Vec<f64>,
+    /// Mass of the meshed head \[kg\].
+    pub head_mass_kg: f64,
+    /// The unknown numbers.
+    pub genes: Vec<Gene>,
+    /// One entry per condition.
+    pub conditions: Vec<ConditionSummary>,
+    /// Name of the calibrated condition, and its gauges with weights.
+    pub objective: (String, Vec<(u8, f64)>),
+    /// Remarks.
+    pub notes: Vec<Note>,
+}
+
+/// A working condition in figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionSummary {
+    /// Name.
+    pub name: String,
+    /// Crank speed [1/min].
+    pub speed_rpm: f64,
+    /// Smallest and largest load of the card \[N\].
+    pub load_n: [f64; 2],
+    /// The record, where there is one.
+    pub record: Option<RecordSummary>,
+}
+
+/// A gauge record in figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordSummary {
+    /// File, samples, losses, speed.
+    pub facts: RecordFacts,
+    /// Whole cycles that were averaged.
+    pub cycles: usize,
+    /// Per gauge: number, half of the measured range \[MPa\], noise of the mean curve \[MPa\] (root
+    /// mean square of spread / sqrt(cycles)).
+    pub gauges: Vec<(u8, f64, f64)>,
+}
+
+/// Loads a case and tells what is in it.
+///
+/// # Errors
+/// As [`super::load`].
+pub fn check(folder: &Path) -> Result<Summary, CaseError> {
+    check_with(folder, &Overrides::default())
+}
+
+/// As [`check`], with what the command line replaces.
+///
+/// # Errors
+/// As [`super::load`].
+pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseError> {
+    let loaded = load_with_notes(folder, overrides)?;
+    let case = loaded.case;
+    let rope = |count: usize| (count as f64 * case.ropes.cylinder_length_m, count);
+    let calibrated = case.conditions.get(case.objective.condition);
+    Ok(Summary {
+        envelope: loaded.envelope,
+        back_rope: rope(case.ropes.back_cylinders),
+        front_rope: rope(case.ropes.front_cylinders),
+        modes_hz: case
+            .modal_head
+            .frequencies_hz
+            .iter()
+            .take(case.run.modes)
+            .copied()
+            .collect(),
+        head_mass_kg: case.modal_head.mass_kg,
+        conditions: conditions(&case, loaded.records),
+        objective: (
+            calibrated
+                .map(|condition| condition.name.clone())
+                .unwrap_or_default(),
+            case.objective.gauges.clone(),
+        ),
+        notes: loaded.notes,
+        genes: case.genes,
+        name: case.name,
+    })
+}
+
+/// One summary per condition.
+fn conditions(case: &Case, facts: Vec<Option<RecordFacts>>) -> Vec<ConditionSummary> {
+    let summaries = case.conditions.iter().zip(facts).map(|(condition, facts)| {
+        let record = condition.record.as_ref().zip(facts).map(|(record, facts)| {
+            let gauges = record.gauges.iter().map(|trace| {
+                let [low, high] = range(&trace.mean_mpa);
+                let count = trace.spread_mpa.len().max(1) as f64;
+                let square: f64 = trace.spread_mpa.iter().map(|s| s * s).sum::<f64>() / count;
+                let noise = (square / record.cycles.max(1) as f64).sqrt();
+                (trace.gauge, (high - low) / 2.0, noise)
+            });
+            RecordSummary {
+                facts,
+                cycles: record.cycles,
+                gauges: gauges.collect(),
+            }
+        });
+        ConditionSummary {
+            name: condition.name.clone(),
+            speed_rpm: condition.speed_rpm,
+            load_n: range(&condition.card.load_n),
+            record,
+        }
+    });
+    summaries.collect()
+}
+
+/// Smallest and largest value.
+fn range(values: &[f64]) -> [f64; 2] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+impl fmt::Display for Summary {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write_machine(to)?;
+        for condition in &self.conditions {
+            write!(to, "{condition}")?;
+        }
+        let (condition, gauges) = &self.objective;
+        let gauges = gauges
+            .iter()
+            .map(|(gauge, weight)| format!("{gauge} (weight {weight})"));
+        let gauges: Vec<String> = gauges.collect();
+        write!(to, "objective   {condition}: gauges {}", gauges.join(", "))?;
+        for note in &self.notes {
+            write!(to, "\nnote: {note}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Summary {
+    /// Machine, ropes, head and genes.
+    fn write_machine(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Envelope {
+            beam_deg: [low, high],
+            contact_deg: [from, until],
+            free_rope_m: [shortest, longest],
+            hang_m: [top, bottom],
+            stroke_m,
+        } = self.envelope;
+        writeln!(to, "machine     {}", self.name)?;
+        writeln!(
+            to,
+            "stroke      {stroke_m:.3} m, beam {low:.2} to {high:.2} deg"
+        )?;
+        let (length, count) = self.back_rope;
+        writeln!(
+            to,
+            "back rope   {length:.3} m in {count} cylinders, {shortest:.3} to {longest:.3} m free, \
+             leaves the head at {from:.1} to {until:.1} deg"
+        )?;
+        let (length, count) = self.front_rope;
+        writeln!(
+            to,
+            "front rope  {length:.3} m in {count} cylinders, {top:.3} to {bottom:.3} m hanging"
+        )?;
+        let modes: Vec<String> = self.modes_hz.iter().map(|f| format!("{f:.1}")).collect();
+        writeln!(
+            to,
+            "back head   {:.1} kg, modes at {} Hz",
+            self.head_mass_kg,
+            modes.join(", ")
+        )?;
+        writeln!(to, "genes       recommended (lower .. upper)")?;
+        for gene in &self.genes {
+            writeln!(
+                to,
+                "  {:<6} {:>10.3e} ({:.2e} .. {:.2e}) {}",
+                gene.name.as_str(),
+                gene.recommended,
+                gene.lower,
+                gene.upper,
+                gene.unit.symbol()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for ConditionSummary {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [least, greatest] = self.load_n.map(|load| load / 1000.0);
+        writeln!(
+            to,
+            "condition   {}: {} /min, load {least:.1} to {greatest:.1} kN",
+            self.name, self.speed_rpm
+        )?;
+        let Some(record) = &self.record else {
+            return writeln!(to, "  no record: simulated only");
+        };
+        writeln!(
+            to,
+            "  record {} cycles, {} samples at {:.0} Hz, {} lost, measured speed {:.3} /min",
+            record.cycles,
+            record.facts.samples,
+            record.facts.rate_hz,
+            record.facts.lost,
+            record.facts.speed_rpm
+        )?;
+        for (gauge, half_range, noise) in &record.gauges {
+            writeln!(
+                to,
+                "  gauge {gauge}: half-range {half_range:.2} MPa, noise of the mean {noise:.3} MPa"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// A commented `case.toml` to start from; it loads as soon as the files it names exist.
+pub const fn template() -> &'static str {
+    include_str!("template.toml")
+}

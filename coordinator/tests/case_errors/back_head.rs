@@ -1,0 +1,161 @@
+//! Faults of modes, influence lines and mesh.
+use super::spoilt::{INFLUENCE, MESH, MODES, Spoilt, TOML, cell, scaled};
+use std::fs;
+
+pub(super) const FAULTS: &[Spoilt] = &[
+    (
+        "modes absent",
+        |c| fs::remove_file(c.path(MODES)).unwrap(),
+        &["back_head_modes.json", "no such file"],
+    ),
+    (
+        "modes truncated",
+        |c| {
+            let bytes = fs::read(c.path(MODES)).unwrap();
+            fs::write(c.path(MODES), &bytes[..bytes.len() / 2]).unwrap();
+        },
+        &["back_head_modes.json", "line 1"],
+    ),
+    (
+        "modes ragged",
+        |c| c.replace(MODES, "\"arc_deg\": [118.0, ", "\"arc_deg\": ["),
+        &[
+            "back_head_modes.json",
+            "`radial[0]` = 103 values",
+            "102 values",
+            "ragged",
+        ],
+    ),
+    (
+        "mode missing",
+        |c| {
+            c.replace(
+                MODES,
+                "\"frequencies_hz\": [116.0122, ",
+                "\"frequencies_hz\": [",
+            );
+        },
+        &[
+            "back_head_modes.json",
+            "`radial` = 12 rows",
+            "11 rows",
+            "ragged",
+        ],
+    ),
+    (
+        "modes not ascending",
+        |c| c.replace(MODES, "[116.0122, 121.2575", "[121.2575, 116.0122"),
+        &[
+            "back_head_modes.json",
+            "`frequencies_hz[1]` = 116.0122",
+            "ascending",
+        ],
+    ),
+    (
+        "stations not ascending",
+        |c| c.replace(MODES, "118.0, 119.0,", "119.0, 118.0,"),
+        &["back_head_modes.json", "`arc_deg[1]` = 118", "ascending"],
+    ),
+    (
+        "influence too short",
+        |c| c.lines(INFLUENCE, |at, line| (at < 100).then(|| line.to_owned())),
+        &[
+            "back_head_influence.csv",
+            "row 99",
+            "`psi_deg`",
+            "must cover the modes' arc, 118 to 220 deg",
+        ],
+    ),
+    (
+        "influence not ascending",
+        |c| {
+            c.lines(INFLUENCE, |at, line| {
+                Some(if at == 9 {
+                    cell(line, 0, "10")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &["back_head_influence.csv", "row 9", "`psi_deg`", "ascending"],
+    ),
+    (
+        "influence in Pa",
+        |c| c.lines(INFLUENCE, |at, line| scaled(at, line, &[1, 2, 3], 1e6)),
+        &[
+            "back_head_influence.csv",
+            "`normal_1_mpa_per_n`",
+            "check the unit",
+        ],
+    ),
+    (
+        "mesh absent",
+        |c| fs::remove_file(c.path(MESH)).unwrap(),
+        &["back_head.msh", "no such file"],
+    ),
+    (
+        "mesh of another format",
+        |c| fs::write(c.path(MESH), "solid head\nfacet normal 0 0 1\n").unwrap(),
+        &["back_head.msh", "line 1", "$MeshFormat", "MSH 4.1"],
+    ),
+    (
+        "mesh of another version",
+        |c| c.replace(MESH, "4.1 0 8", "2.2 0 8"),
+        &["back_head.msh", "line 2", "`2.2 0 8`", "4.1"],
+    ),
+    (
+        "binary mesh",
+        |c| c.replace(MESH, "4.1 0 8", "4.1 1 8"),
+        &["back_head.msh", "line 2", "ASCII"],
+    ),
+    (
+        "group missing",
+        |c| c.replace(MESH, "2 3 \"pin_b\"", "2 3 \"pinb\""),
+        &["back_head.msh", "`pin_b` is missing", "pinb"],
+    ),
+    (
+        "mesh cut off",
+        |c| {
+            let bytes = fs::read(c.path(MESH)).unwrap();
+            fs::write(c.path(MESH), &bytes[..bytes.len() / 2]).unwrap();
+        },
+        &["back_head.msh", "line ", "MSH 4.1"],
+    ),
+    (
+        "mesh with text",
+        |c| c.replace(MESH, "-2.049794994", "-2.04x"),
+        &["back_head.msh", "line 23436", "numbers"],
+    ),
+    (
+        "mesh in millimetres",
+        |c| c.replace(MESH, "-2.049794994", "-2049.794994"),
+        &["back_head.msh", "line 23436", "not in metres"],
+    ),
+    (
+        "element inside out",
+        |c| {
+            c.replace(
+                MESH,
+                "1 336 333 331 334 3105 3040 2989 3056",
+                "1 3105 3040 2989 3056 336 333 331 334",
+            );
+        },
+        &["back_head.msh", "element 1 of group `steel`", "inside out"],
+    ),
+    (
+        "mass contradicts the modes",
+        |c| {
+            c.replace(
+                TOML,
+                "density_kg_m3 = 7850.0                                 #",
+                "density_kg_m3 = 7000.0 #",
+            );
+        },
+        &[
+            "back_head.msh",
+            "785",
+            "mass_kg = 881.016",
+            "flexible_head.density_kg_m3",
+        ],
+    ),
+];

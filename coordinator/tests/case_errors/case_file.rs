@@ -1,0 +1,221 @@
+//! Faults of `case.toml`.
+use super::spoilt::{Spoilt, TOML};
+use std::fs;
+
+pub(super) const FAULTS: &[Spoilt] = &[
+    (
+        "syntax",
+        |c| c.replace(TOML, "[rod]", "[rod"),
+        &["case.toml", "[rod", "| "],
+    ),
+    (
+        "unknown key",
+        |c| c.replace(TOML, "mass_kg = 450.0", "mas_kg = 450.0"),
+        &[
+            "case.toml",
+            "unknown field `mas_kg`",
+            "mas_kg = 450.0",
+            "did you mean `mass_kg`?",
+        ],
+    ),
+    (
+        "unit missing in a key",
+        |c| c.replace(TOML, "inertia_kg_m2 = 2.4e4", "inertia = 2.4e4"),
+        &["case.toml", "`inertia`", "did you mean `inertia_kg_m2`?"],
+    ),
+    (
+        "unit missing in a gene",
+        |c| c.replace(TOML, "upper = 3.14e12, unit = \"N/m\"", "upper = 3.14e12"),
+        &["case.toml", "missing field `unit`", "N.m/deg"],
+    ),
+    (
+        "unit unknown",
+        |c| {
+            c.replace(
+                TOML,
+                "upper = 3.14e12, unit = \"N/m\"",
+                "upper = 3.14e12, unit = \"N/mm\"",
+            );
+        },
+        &["case.toml", "unknown variant `N/mm`", "did you mean `N/m`?"],
+    ),
+    (
+        "unit of another quantity",
+        |c| {
+            c.replace(
+                TOML,
+                "upper = 1.10e6,  unit = \"N.m/deg\"",
+                "upper = 1.10e6, unit = \"N/m\"",
+            );
+        },
+        &[
+            "case.toml",
+            "`genes.kb4.unit` = \"N/m\"",
+            "allowed: N.m/rad or N.m/deg for kb4",
+        ],
+    ),
+    (
+        "missing key",
+        |c| c.replace(TOML, "speed_rpm = 5.0", ""),
+        &["case.toml", "missing field `speed_rpm`", "add `speed_rpm`"],
+    ),
+    (
+        "text for a number",
+        |c| c.replace(TOML, "mass_kg = 450.0", "mass_kg = \"450\""),
+        &[
+            "case.toml",
+            "invalid type",
+            "mass_kg = \"450\"",
+            "numbers without quotes",
+        ],
+    ),
+    (
+        "NaN",
+        |c| c.replace(TOML, "mass_kg = 450.0", "mass_kg = nan"),
+        &[
+            "case.toml",
+            "`rod.mass_kg` = NaN",
+            "allowed: 0.001 to 1e6 kg",
+            "mass_kg = nan",
+            "^^^",
+        ],
+    ),
+    (
+        "infinity",
+        |c| c.replace(TOML, "inertia_kg_m2 = 385.0", "inertia_kg_m2 = inf"),
+        &["case.toml", "`rod.inertia_kg_m2` = inf", "allowed: "],
+    ),
+    (
+        "infinite gene",
+        |c| c.replace(TOML, "upper = 3.14e12", "upper = inf"),
+        &["case.toml", "`genes.kb1.upper` = inf", "allowed: above 0"],
+    ),
+    (
+        "negative mass",
+        |c| c.replace(TOML, "mass_kg = 175.0", "mass_kg = -175.0"),
+        &[
+            "case.toml",
+            "`suspension.mass_kg` = -175",
+            "allowed: 0.001 to 1e6 kg",
+        ],
+    ),
+    (
+        "zero radius",
+        |c| c.replace(TOML, "radius_m = 1.900", "radius_m = 0.0"),
+        &[
+            "case.toml",
+            "`back_head.radius_m` = 0",
+            "allowed: 0.001 to 100 m",
+        ],
+    ),
+    (
+        "bounds exclude the recommended value",
+        |c| c.replace(TOML, "recommended = 3.14e8", "recommended = 3.14e13"),
+        &["case.toml", "`genes.kb1.recommended`", "exclude"],
+    ),
+    (
+        "bounds exchanged",
+        |c| {
+            c.replace(
+                TOML,
+                "lower = 3.14e4, upper = 3.14e12",
+                "lower = 3.14e12, upper = 3.14e4",
+            );
+        },
+        &["case.toml", "`genes.kb1.lower`", "below upper"],
+    ),
+    (
+        "duplicate condition",
+        |c| c.replace(TOML, "name = \"4rpm\"", "name = \"5rpm\""),
+        &[
+            "case.toml",
+            "`conditions[1].name` = \"5rpm\"",
+            "duplicate condition",
+        ],
+    ),
+    (
+        "back rope too short",
+        |c| c.replace(TOML, "back_cylinders = 72", "back_cylinders = 50"),
+        &[
+            "case.toml",
+            "`ropes.back_cylinders` = 50 (2.500 m of rope)",
+            "allowed: ",
+        ],
+    ),
+    (
+        "back rope all on the head",
+        |c| {
+            c.replace(TOML, "back_cylinders = 72", "back_cylinders = 56");
+            c.replace(TOML, "length_m = 2.876", "length_m = 3.676");
+        },
+        &[
+            "case.toml",
+            "`ropes.back_cylinders` = 56",
+            "shorter than the path",
+        ],
+    ),
+    (
+        "front rope too short",
+        |c| c.replace(TOML, "front_cylinders = 114", "front_cylinders = 80"),
+        &[
+            "case.toml",
+            "`ropes.front_cylinders` = 80 (4.000 m of rope)",
+            "shorter than the path",
+        ],
+    ),
+    (
+        "front anchor within the swing",
+        |c| c.replace(TOML, "rope_anchor_deg = 36.6", "rope_anchor_deg = 20.0"),
+        &[
+            "case.toml",
+            "`front_head.rope_anchor_deg` = 20",
+            "above 31.8 deg",
+        ],
+    ),
+    (
+        "anchor outside the arc",
+        |c| {
+            c.replace(TOML, "rope_anchor_deg = 125.0", "rope_anchor_deg = 110.0");
+            c.replace(TOML, "length_m = 2.876", "length_m = 3.373");
+        },
+        &[
+            "case.toml",
+            "`back_head.rope_anchor_deg` = 110",
+            "118 to 220 deg",
+        ],
+    ),
+    (
+        "step that does not divide 360",
+        |c| c.replace(TOML, "output_step_deg = 0.5", "output_step_deg = 0.7"),
+        &["case.toml", "`run.output_step_deg` = 0.7", "divides 360"],
+    ),
+    (
+        "more modes than there are",
+        |c| c.replace(TOML, "modes = 6", "modes = 13"),
+        &["case.toml", "`run.modes` = 13", "0 to 12"],
+    ),
+    (
+        "objective without condition",
+        |c| c.replace(TOML, "condition = \"5rpm\"", "condition = \"5 rpm\""),
+        &[
+            "case.toml",
+            "`objective.condition` = \"5 rpm\"",
+            "did you mean `5rpm`?",
+        ],
+    ),
+    (
+        "gauge twice",
+        |c| c.replace(TOML, "{ gauge = 3,", "{ gauge = 1,"),
+        &["case.toml", "`objective.gauges[1].gauge` = 1", "each once"],
+    ),
+    (
+        "empty",
+        |c| fs::write(c.path(TOML), "\n").unwrap(),
+        &["case.toml", "empty"],
+    ),
+    (
+        "absent",
+        |c| fs::remove_file(c.path(TOML)).unwrap(),
+        &["case.toml", "no such file", "horsehead case new"],
+    ),
+];

@@ -1,0 +1,134 @@
+//! Whatever is wrong with a case ends in one error that names the file, the field, and a remedy.
+#![expect(
+    clippy::unwrap_used,
+    reason = "a test that cannot prepare its case has failed"
+)]
+mod back_head;
+mod card;
+mod case_file;
+mod record;
+mod spoilt;
+
+use coordinator::case::{self, Overrides};
+use spoilt::{Copy, RECORD, SHEET, assert_each_is_named, scaled};
+use std::fs;
+
+#[test]
+fn every_fault_of_the_case_file_is_named() {
+    assert_each_is_named(case_file::FAULTS);
+}
+
+#[test]
+fn every_fault_of_a_load_card_is_named() {
+    assert_each_is_named(card::FAULTS);
+}
+
+#[test]
+fn every_fault_of_a_record_is_named() {
+    assert_each_is_named(record::FAULTS);
+}
+
+#[test]
+fn every_fault_of_the_back_head_is_named() {
+    assert_each_is_named(back_head::FAULTS);
+}
+
+#[test]
+fn another_test_of_the_same_machine_replaces_the_records() {
+    let copy = Copy::new();
+    let other = copy.path("other");
+    fs::create_dir(&other).unwrap();
+    let overrides = Overrides {
+        measured: Some(other.clone()),
+    };
+    let load = || case::load(copy.folder.path(), &overrides);
+    let message = load().unwrap_err().to_string();
+    assert!(
+        message.contains("other/card_5rpm.csv: no such file"),
+        "{message}"
+    );
+    for file in [
+        "card_5rpm.csv",
+        "test_5rpm.csv.gz",
+        "test_5rpm.toml",
+        "card_4rpm.csv",
+        "test_4rpm.csv.gz",
+    ] {
+        fs::copy(copy.path(&format!("measured/{file}")), other.join(file)).unwrap();
+    }
+    let message = load().unwrap_err().to_string();
+    assert!(
+        message.contains("other/test_4rpm.toml: no such file"),
+        "{message}"
+    );
+    fs::copy(
+        copy.path("measured/test_4rpm.toml"),
+        other.join("test_4rpm.toml"),
+    )
+    .unwrap();
+    copy.lines("other/test_5rpm.csv.gz", |at, line| {
+        scaled(at, line, &[2], 2.0)
+    });
+    let plain = case::load(copy.folder.path(), &Overrides::default()).unwrap();
+    let replaced = load().unwrap();
+    let first = |case: &protocol::case::Case| {
+        case.conditions[0].record.as_ref().unwrap().gauges[0].mean_mpa[7]
+    };
+    assert!((first(&replaced) - 2.0 * first(&plain)).abs() < 1e-9);
+    assert_eq!(replaced.conditions[1], plain.conditions[1]);
+}
+
+#[test]
+fn what_is_doubtful_is_a_note() {
+    let copy = Copy::new();
+    copy.replace(SHEET, "samples_recorded = 5972", "");
+    copy.replace(
+        SHEET,
+        "revolutions = 5",
+        "revolutions = 5\noperator = \"night shift\"",
+    );
+    // 2.2 revolutions are left, and one burst of 0.3 s is lost
+    copy.lines(RECORD, |at, line| {
+        (at < 2640 && !(700..730).contains(&at)).then(|| line.to_owned())
+    });
+    let loaded = case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap();
+    let record = loaded.case.conditions[0].record.as_ref().unwrap();
+    assert_eq!(record.cycles, 2);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    let notes = notes.join("\n");
+    for expected in [
+        "test_5rpm.toml: `operator` is not used",
+        "the time column lacks 49 samples, the data sheet says 28",
+        "2 whole cycles: the noise model is rough",
+        "grid angles lack a cycle",
+    ] {
+        assert!(notes.contains(expected), "no `{expected}` in\n{notes}");
+    }
+
+    copy.lines(RECORD, |at, line| (at < 1300).then(|| line.to_owned()));
+    // the burst is in the only cycle now: nothing stands for it
+    let message = copy.error().to_string();
+    assert!(message.contains("on every cycle"), "{message}");
+}
+
+#[test]
+fn one_cycle_has_no_spread() {
+    let copy = Copy::new();
+    copy.replace(SHEET, "samples_recorded = 5972", "");
+    copy.lines(RECORD, |_, line| {
+        let time = line.split(',').next().unwrap().parse::<f64>();
+        time.map_or(true, |time| (35.0..49.5).contains(&time))
+            .then(|| line.to_owned())
+    });
+    let loaded = case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap();
+    let record = loaded.case.conditions[0].record.as_ref().unwrap();
+    assert_eq!(record.cycles, 1);
+    assert!(
+        record
+            .gauges
+            .iter()
+            .all(|trace| trace.spread_mpa == vec![0.0; 720])
+    );
+    let text = format!("{:?}", loaded.notes);
+    assert!(text.contains("one whole cycle only"), "{text}");
+}

@@ -1,0 +1,273 @@
+//! Faults of a gauge record and its data sheet.
+use super::spoilt::{RECORD, SHEET, Spoilt, cell, scaled};
+use std::fs;
+
+pub(super) const FAULTS: &[Spoilt] = &[
+    (
+        "absent",
+        |c| fs::remove_file(c.path(RECORD)).unwrap(),
+        &["test_5rpm.csv.gz", "no such file"],
+    ),
+    (
+        "sheet absent",
+        |c| fs::remove_file(c.path(SHEET)).unwrap(),
+        &["test_5rpm.toml", "data sheet"],
+    ),
+    (
+        "empty",
+        |c| fs::write(c.path(RECORD), "").unwrap(),
+        &["test_5rpm.csv.gz", "empty"],
+    ),
+    (
+        "truncated",
+        |c| {
+            let bytes = fs::read(c.path(RECORD)).unwrap();
+            fs::write(c.path(RECORD), &bytes[..bytes.len() / 2]).unwrap();
+        },
+        &["test_5rpm.csv.gz", "truncated", "gzip -t"],
+    ),
+    (
+        "not gzip",
+        |c| fs::write(c.path(RECORD), "time_s,crank_deg\n").unwrap(),
+        &["test_5rpm.csv.gz", "not gzip", "name it .csv"],
+    ),
+    (
+        "flipped bit",
+        |c| {
+            let mut bytes = fs::read(c.path(RECORD)).unwrap();
+            let middle = bytes.len() - 6;
+            bytes[middle] ^= 4;
+            fs::write(c.path(RECORD), bytes).unwrap();
+        },
+        &["test_5rpm.csv.gz", "damaged"],
+    ),
+    (
+        "column missing",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 1 {
+                    line.replace("stress_3_mpa", "stress3_mpa")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "`stress_3_mpa` is missing",
+            "stress3_mpa",
+        ],
+    ),
+    (
+        "text",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 77 {
+                    cell(line, 4, "overload")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &["test_5rpm.csv.gz", "row 77", "`stress_3_mpa`", "overload"],
+    ),
+    (
+        "NaN",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 78 {
+                    cell(line, 2, "NaN")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "row 78",
+            "`stress_1_mpa`",
+            "NaN",
+            "lost samples are allowed",
+        ],
+    ),
+    (
+        "empty cell",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 78 {
+                    cell(line, 2, "")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "row 78",
+            "`stress_1_mpa`",
+            "empty cells",
+        ],
+    ),
+    (
+        "duplicated time",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 500 {
+                    format!("{line}\n{line}")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &["test_5rpm.csv.gz", "row 501", "`time_s`", "same time again"],
+    ),
+    (
+        "time backwards",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 501 {
+                    cell(line, 0, "1.00")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &["test_5rpm.csv.gz", "row 501", "`time_s`", "backwards"],
+    ),
+    (
+        "time in milliseconds",
+        |c| c.lines(RECORD, |at, line| scaled(at, line, &[0], 1e3)),
+        &["test_5rpm.csv.gz", "speed", "5"],
+    ),
+    (
+        "crank reversed",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                let angle: Option<f64> =
+                    line.split(',').nth(1).and_then(|angle| angle.parse().ok());
+                Some(angle.filter(|_| at > 1).map_or(line.into(), |angle| {
+                    cell(line, 1, &format!("{:.1}", 360.0 - angle))
+                }))
+            });
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "row 3",
+            "`crank_deg`",
+            "reverse its sense",
+        ],
+    ),
+    (
+        "crank in radians",
+        |c| c.lines(RECORD, |at, line| scaled(at, line, &[1], 0.0174533)),
+        &["test_5rpm.csv.gz", "`crank_deg`"],
+    ),
+    (
+        "sampling contradicts the sheet",
+        |c| c.replace(SHEET, "sample_rate_hz = 100.0", "sample_rate_hz = 200.0"),
+        &[
+            "test_5rpm.csv.gz",
+            "100.00 Hz",
+            "test_5rpm.toml: sample_rate_hz = 200",
+            "time_s",
+        ],
+    ),
+    (
+        "rows contradict the sheet",
+        |c| c.lines(RECORD, |at, line| (at < 4000).then(|| line.to_owned())),
+        &["test_5rpm.csv.gz", "3998", "samples_recorded = 5972"],
+    ),
+    (
+        "sheet's speed contradicts the case",
+        |c| {
+            c.replace(
+                SHEET,
+                "strokes_per_minute = 5.0",
+                "strokes_per_minute = 4.0",
+            );
+        },
+        &[
+            "test_5rpm.toml",
+            "`strokes_per_minute`",
+            "4",
+            "speed_rpm = 5",
+        ],
+    ),
+    (
+        "record's speed contradicts the case",
+        |c| {
+            fs::copy(c.path("measured/test_4rpm.csv.gz"), c.path(RECORD)).unwrap();
+        },
+        &["test_5rpm.csv.gz", "4.002 /min", "speed_rpm = 5"],
+    ),
+    (
+        "less than a revolution",
+        |c| {
+            c.lines(RECORD, |at, line| (at < 900).then(|| line.to_owned()));
+            c.replace(SHEET, "samples_recorded = 5972", "");
+        },
+        &["test_5rpm.csv.gz", "no whole revolution", "index pulse"],
+    ),
+    (
+        "gap on every cycle",
+        |c| {
+            c.lines(RECORD, |_, line| {
+                let angle: Option<f64> =
+                    line.split(',').nth(1).and_then(|angle| angle.parse().ok());
+                angle
+                    .is_none_or(|angle| !(100.0..106.0).contains(&angle))
+                    .then(|| line.to_owned())
+            });
+            c.replace(SHEET, "samples_recorded = 5972", "");
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "`crank_deg`",
+            "near 100",
+            "on every cycle",
+        ],
+    ),
+    (
+        "Pa",
+        |c| c.lines(RECORD, |at, line| scaled(at, line, &[2, 3, 4, 5], 1e6)),
+        &[
+            "test_5rpm.csv.gz",
+            "`stress_1_mpa`",
+            "looks like Pa",
+            "2000 MPa",
+        ],
+    ),
+    (
+        "GPa",
+        |c| c.lines(RECORD, |at, line| scaled(at, line, &[2, 3, 4, 5], 1e-3)),
+        &["test_5rpm.csv.gz", "`stress_1_mpa`", "looks like GPa"],
+    ),
+    (
+        "spike",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 60 {
+                    cell(line, 3, "99999")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &["test_5rpm.csv.gz", "row 60", "`stress_2_mpa`", "spike"],
+    ),
+    (
+        "dead gauge",
+        |c| c.lines(RECORD, |at, line| scaled(at, line, &[5], 0.0)),
+        &["test_5rpm.csv.gz", "`stress_4_mpa`", "dead"],
+    ),
+    (
+        "sheet's unit",
+        |c| c.replace(SHEET, "unit = \"MPa\"", "unit = \"Pa\""),
+        &["test_5rpm.toml", "`gauges.unit` = \"Pa\"", "\"MPa\""],
+    ),
+    (
+        "sheet malformed",
+        |c| c.replace(SHEET, "sample_rate_hz = 100.0", "sample_rate_hz = fast"),
+        &["test_5rpm.toml", "sample_rate_hz = fast"],
+    ),
+];
