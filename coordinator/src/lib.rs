@@ -5,6 +5,7 @@
 //! back, and the [`report`] shows it. [`runtime`] is the only asynchronous glue. Nothing here
 //! links the dynamics.
 pub mod case;
+pub mod cli;
 pub mod core;
 pub mod journal;
 pub mod report;

@@ -7,6 +7,7 @@ mod bus;
 mod calibrate;
 mod case;
 mod completions;
+mod finish;
 mod problem;
 mod interrupt;
 mod json;
