@@ -74,7 +74,7 @@ impl TlsFiles {
 }
 
 /// What a session of either end is made of.
-fn common(tls: Value) -> Value {
+fn common(tls: &Value) -> Value {
     json!({
         "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
         "adminspace": { "enabled": false },

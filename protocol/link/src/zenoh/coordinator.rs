@@ -54,7 +54,7 @@ impl ZenohCoordinator {
             listening.push(locator.with_free_port()?);
         }
         let references: Vec<&Locator> = listening.iter().collect();
-        let mut config = common(tls_for(&references, tls.as_ref(), TlsFiles::listening)?);
+        let mut config = common(&tls_for(&references, tls.as_ref(), TlsFiles::listening)?);
         let names: Vec<String> = listening.iter().map(ToString::to_string).collect();
         config["mode"] = json!("router");
         config["listen"] = json!({ "endpoints": names, "exit_on_failure": true, "timeout_ms": 0 });
@@ -134,10 +134,10 @@ async fn watch_presence(
         .liveliness()
         .declare_subscriber(key::all_alive(run))
         .callback(move |sample| {
-            if sample.kind() == SampleKind::Delete {
-                if let Some(worker) = key::worker_of(sample.key_expr().as_str()) {
-                    offer(&to, Heard::Gone(worker));
-                }
+            if sample.kind() == SampleKind::Delete
+                && let Some(worker) = key::worker_of(sample.key_expr().as_str())
+            {
+                offer(&to, Heard::Gone(worker));
             }
         })
         .background()

@@ -37,8 +37,8 @@ impl Sender {
                         tracing::debug!(key, %error, "a frame was not sent");
                     }
                 }
-                // nobody waits any more if the end was dropped rather than closed
-                let _: Result<(), ()> = end.send(());
+                // tells whoever waits in `finish`
+                drop(end);
             })?;
         Ok(Self { queue, ended })
     }

@@ -38,7 +38,7 @@ impl ZenohWorker {
         tls: Option<&TlsFiles>,
         id: WorkerId,
     ) -> Result<Self, LinkError> {
-        let mut config = common(tls_for(&[connect], tls, TlsFiles::connecting)?);
+        let mut config = common(&tls_for(&[connect], tls, TlsFiles::connecting)?);
         config["mode"] = json!("client");
         config["listen"] = json!({ "endpoints": [] });
         config["connect"] = json!({
