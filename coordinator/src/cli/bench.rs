@@ -27,7 +27,11 @@ enum What {
 
 /// Measures and shows.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let What::Dispatch { workers, jobs, output: OutputChoice { output } } = &arguments.what;
+    let What::Dispatch {
+        workers,
+        jobs,
+        output: OutputChoice { output },
+    } = &arguments.what;
     if *output == Output::Table {
         output::tell(&format!("{jobs} no-op jobs on {workers} workers"));
     }

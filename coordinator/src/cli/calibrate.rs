@@ -5,7 +5,10 @@ use super::{
     progress::Display,
     run_folder::{Begun, Manifest, RunFolder, command_line},
 };
-use crate::cli::finish::{self, Session};
+use crate::{
+    cli::finish::{self, Session},
+    study::StudyError,
+};
 use clap::Args;
 use search::{
     space::Space,
@@ -50,15 +53,27 @@ pub(super) struct Arguments {
 }
 
 fn presets() -> String {
-    let line = |preset: &search::strategy::Preset| {
-        format!("  {:<12} {}\n", preset.name, preset.summary)
-    };
+    let line =
+        |preset: &search::strategy::Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
     CATALOGUE.iter().map(line).collect()
+}
+
+/// Whether the same command may bring more: not if the case or the workers are at fault.
+fn can_go_on(error: &anyhow::Error) -> bool {
+    let study = error.downcast_ref::<StudyError>();
+    matches!(
+        study,
+        Some(StudyError::Interrupted | StudyError::Evaluator(_))
+    )
 }
 
 /// Calibrates from the first proposal to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let LoadedCase { case, measured, notes } = arguments.choice.load()?;
+    let LoadedCase {
+        case,
+        measured,
+        notes,
+    } = arguments.choice.load()?;
     let space = Space::new(&case.genes)?;
     let Some(preset) = preset(&arguments.preset) else {
         let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
@@ -88,11 +103,20 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         notes,
         wall_s: 0.0,
     };
-    let path = arguments.run.clone().unwrap_or_else(|| {
-        RunFolder::default_path(&case.name, preset.name, arguments.seed)
-    });
-    let Begun { folder, resumed, wall_s } = RunFolder::begin(&path, &manifest, &case)?;
-    let verb = if resumed { "going on with" } else { "beginning" };
+    let path = arguments
+        .run
+        .clone()
+        .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
+    let Begun {
+        folder,
+        resumed,
+        wall_s,
+    } = RunFolder::begin(&path, &manifest, &case)?;
+    let verb = if resumed {
+        "going on with"
+    } else {
+        "beginning"
+    };
     output::tell(&format!("{verb} {}", path.display()));
 
     let local_workers = arguments.workers.unwrap_or_else(cores);
@@ -105,6 +129,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         listen: arguments.listen.clone(),
         insecure: arguments.insecure,
         local_workers,
+        replay: false,
     };
     let result = bus::block_on(async {
         let mut stop = interrupt::listen();
@@ -114,7 +139,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         result
     });
     folder.spent(&manifest, session.wall_s())?;
-    let result = result.inspect_err(|_| {
+    let result = result.inspect_err(|error| {
+        if !can_go_on(error) {
+            return;
+        }
         output::tell(&format!(
             "results so far are kept in {}; to go on:\n  {}",
             path.display(),

@@ -47,12 +47,18 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
-    let overrides = crate::case::Overrides { measured: choice.measured.clone() };
+    let overrides = crate::case::Overrides {
+        measured: choice.measured.clone(),
+    };
     let summary = crate::case::check_with(&choice.case, &overrides)?;
     let object = CheckOutput {
         case: &summary.name,
         conditions: summary.conditions.iter().map(|c| c.name.as_str()).collect(),
-        genes: summary.genes.iter().map(|gene| gene.name.as_str()).collect(),
+        genes: summary
+            .genes
+            .iter()
+            .map(|gene| gene.name.as_str())
+            .collect(),
         notes: summary.notes.iter().map(ToString::to_string).collect(),
     };
     output::print(output.output, || format!("{summary}"), &object)

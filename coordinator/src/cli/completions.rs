@@ -18,6 +18,11 @@ pub(super) struct Arguments {
 /// Prints the script.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "horsehead", &mut script);
+    clap_complete::generate(
+        arguments.shell,
+        &mut Cli::command(),
+        "horsehead",
+        &mut script,
+    );
     output::write(&String::from_utf8(script)?)
 }

@@ -32,7 +32,10 @@ pub(super) struct Session<'a> {
     pub(super) started: Instant,
     pub(super) listen: Option<String>,
     pub(super) insecure: bool,
+    /// Worker processes to start here.
     pub(super) local_workers: usize,
+    /// Whether nothing is to be computed.
+    pub(super) replay: bool,
 }
 
 /// What a session found.
@@ -69,7 +72,11 @@ impl Session<'_> {
             kind: "calibrate".to_owned(),
             settings: self.manifest.settings_json()?,
         };
-        let mut bus = bus::Bus::open(options, self.case).await?;
+        let mut bus = if self.replay {
+            bus::Bus::replay(options, self.case)?
+        } else {
+            bus::Bus::open(options, self.case).await?
+        };
         let found = self.work(&mut bus, &mut strategy, observer, stop).await;
         let closed = bus.close().await;
         let found = found?;
@@ -85,10 +92,17 @@ impl Session<'_> {
         stop: &mut Stop,
     ) -> Result<Found, study::StudyError> {
         let calibrated = study::calibrate(bus, self.case, strategy, observer, stop).await?;
-        debug_assert!(strategy.finished().is_some(), "a calibration ends with its search");
+        debug_assert!(
+            strategy.finished().is_some(),
+            "a calibration ends with its search"
+        );
         let wanted = comparison(self.case, &calibrated.best.genes);
         let compared = study::compare(bus, self.case, &wanted, stop).await?;
-        Ok(Found { calibrated, compared, crew: bus.crew() })
+        Ok(Found {
+            calibrated,
+            compared,
+            crew: bus.crew(),
+        })
     }
 }
 
@@ -97,7 +111,9 @@ impl Session<'_> {
 fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
     let calibrated = case.objective.condition;
     let recorded = |index: &usize| case.conditions[*index].record.is_some();
-    let others = (0..case.conditions.len()).filter(|index| *index != calibrated).filter(recorded);
+    let others = (0..case.conditions.len())
+        .filter(|index| *index != calibrated)
+        .filter(recorded);
     std::iter::once(calibrated)
         .chain(others)
         .map(|condition| Wanted {
@@ -177,7 +193,10 @@ fn tables(calibration: &Calibration) -> String {
     for result in &calibration.conditions {
         if result.condition != calibration.case.objective.condition {
             text.push('\n');
-            text.push_str(&table::text(&table::table_4(&calibration.case, result), styled));
+            text.push_str(&table::text(
+                &table::table_4(&calibration.case, result),
+                styled,
+            ));
         }
     }
     text
@@ -191,7 +210,10 @@ fn result_object<'a>(
     let case = session.case;
     let log = &found.calibrated.log;
     let mut calibrated = json::ConditionOutput {
-        objective: Both { recommended: None, optimised: None },
+        objective: Both {
+            recommended: None,
+            optimised: None,
+        },
         channels: BTreeMap::new(),
     };
     let mut other_conditions = BTreeMap::new();
@@ -251,8 +273,14 @@ fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibrati
             seed: Some(session.manifest.seed),
             digest: log.digest(),
         },
-        recommended: Individual { id: None, genes: case.recommended() },
-        optimised: Individual { id: Some(best.id), genes: best.genes.clone() },
+        recommended: Individual {
+            id: None,
+            genes: case.recommended(),
+        },
+        optimised: Individual {
+            id: Some(best.id),
+            genes: best.genes.clone(),
+        },
         history: history.collect(),
         workers: found.crew.workers.iter().map(worker_use).collect(),
         wall_s: session.wall_s(),

@@ -19,7 +19,10 @@ pub(super) fn listen() -> Stop {
     stop
 }
 
-#[expect(clippy::exit, reason = "the user asked twice: nothing is worth waiting for")]
+#[expect(
+    clippy::exit,
+    reason = "the user asked twice: nothing is worth waiting for"
+)]
 fn leave() {
     std::process::exit(i32::from(INTERRUPTED));
 }

@@ -73,12 +73,20 @@ impl From<Verdict> for VerdictOutput {
     fn from(verdict: Verdict) -> Self {
         match verdict {
             Verdict::Complete => Self::Complete("complete"),
-            Verdict::Failed { kind, reached: Reached::LoadFraction(load_fraction) } => {
-                Self::Settling { kind: kind.as_str(), load_fraction }
-            }
-            Verdict::Failed { kind, reached: Reached::TimeFraction(time_fraction) } => {
-                Self::Moving { kind: kind.as_str(), time_fraction }
-            }
+            Verdict::Failed {
+                kind,
+                reached: Reached::LoadFraction(load_fraction),
+            } => Self::Settling {
+                kind: kind.as_str(),
+                load_fraction,
+            },
+            Verdict::Failed {
+                kind,
+                reached: Reached::TimeFraction(time_fraction),
+            } => Self::Moving {
+                kind: kind.as_str(),
+                time_fraction,
+            },
         }
     }
 }
@@ -195,7 +203,7 @@ pub(super) struct BenchOutput {
     /// Worker processes.
     pub(super) workers: usize,
     /// Jobs that were done.
-    pub(super) jobs: usize,
+    pub(super) jobs: u64,
     /// Round trip of one job at a time (ms).
     pub(super) rtt_ms: RoundTrip,
     /// Throughput with every worker busy.
@@ -257,12 +265,16 @@ pub(super) fn objective(evaluation: Option<&Evaluation>) -> Option<f64> {
 
 /// Scores of both parameter sets, recommended first.
 pub(super) fn condition(recommended: &Curves, optimised: &Curves) -> ConditionOutput {
-    let (mut before, mut after) =
-        (channels(recommended.evaluation.as_ref()), channels(optimised.evaluation.as_ref()));
+    let (mut before, mut after) = (
+        channels(recommended.evaluation.as_ref()),
+        channels(optimised.evaluation.as_ref()),
+    );
     let gauges: Vec<String> = before.keys().chain(after.keys()).cloned().collect();
     let both = gauges.into_iter().map(|gauge| {
-        let scores =
-            Both { recommended: before.remove(&gauge), optimised: after.remove(&gauge) };
+        let scores = Both {
+            recommended: before.remove(&gauge),
+            optimised: after.remove(&gauge),
+        };
         (gauge, scores)
     });
     let mut channels = BTreeMap::new();
@@ -288,7 +300,10 @@ pub(super) fn simulation<'a>(
     let gauges = (1..).zip(&simulation.gauge_mpa);
     SimulateOutput {
         case: &case.name,
-        condition: case.conditions.get(condition).map_or("", |condition| &condition.name),
+        condition: case
+            .conditions
+            .get(condition)
+            .map_or("", |condition| &condition.name),
         verdict: simulation.verdict.into(),
         wall_s: simulation.wall_s,
         counters: CountersOutput {
@@ -302,7 +317,9 @@ pub(super) fn simulation<'a>(
         objective: objective(curves.evaluation.as_ref()),
         channels: channels(curves.evaluation.as_ref()),
         crank_deg: &simulation.turn_deg,
-        gauge_mpa: gauges.map(|(gauge, curve)| (gauge.to_string(), &curve[..])).collect(),
+        gauge_mpa: gauges
+            .map(|(gauge, curve)| (gauge.to_string(), &curve[..]))
+            .collect(),
         rope_tension_n: &simulation.back_rope_tension_n,
         front_rope_tension_n: &simulation.front_rope_tension_n,
         beam_deg: &simulation.beam_deg,

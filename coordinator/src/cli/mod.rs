@@ -8,10 +8,10 @@ mod calibrate;
 mod case;
 mod completions;
 mod finish;
-mod problem;
 mod interrupt;
 mod json;
 mod output;
+mod problem;
 mod progress;
 mod report;
 mod run_folder;
@@ -102,14 +102,20 @@ impl CaseChoice {
 }
 
 fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCase> {
-    let overrides = crate::case::Overrides { measured: measured.map(Path::to_owned) };
+    let overrides = crate::case::Overrides {
+        measured: measured.map(Path::to_owned),
+    };
     let loaded = crate::case::load_with_notes(folder, &overrides)?;
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
     for note in &notes {
         output::tell(&format!("note: {note}"));
     }
     let measured = measured.unwrap_or(folder).display().to_string();
-    Ok(LoadedCase { case: loaded.case, measured, notes })
+    Ok(LoadedCase {
+        case: loaded.case,
+        measured,
+        notes,
+    })
 }
 
 /// Position of a condition by name; the calibrated one without.
@@ -134,6 +140,7 @@ fn cores() -> usize {
 /// Runs the program; its exit code says how it ended.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
+    output::diagnostics();
     let ended = match cli.command {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),

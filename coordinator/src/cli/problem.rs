@@ -1,6 +1,9 @@
 //! Errors as people see them: what happened, why, and what to do; and the exit code they mean.
 use super::output;
-use crate::{case::CaseError, study::{EvaluatorError, StudyError}};
+use crate::{
+    case::CaseError,
+    study::{EvaluatorError, StudyError},
+};
 use std::{fmt, process::ExitCode};
 
 /// Exit code of a command that could not do its work.
@@ -54,10 +57,21 @@ fn describe(error: &anyhow::Error) -> String {
     causes.dedup();
     let mut text = format!("error: {}", causes.join("\n  caused by: "));
     for cause in error.chain() {
-        let study = cause.downcast_ref::<StudyError>().and_then(StudyError::help);
-        let evaluator = cause.downcast_ref::<EvaluatorError>().and_then(|e| e.help.clone());
-        let usage = cause.downcast_ref::<Usage>().map(|usage| usage.help.clone());
-        for help in study.or(evaluator).or(usage).into_iter().filter(|help| !help.is_empty()) {
+        let study = cause
+            .downcast_ref::<StudyError>()
+            .and_then(StudyError::help);
+        let evaluator = cause
+            .downcast_ref::<EvaluatorError>()
+            .and_then(|e| e.help.clone());
+        let usage = cause
+            .downcast_ref::<Usage>()
+            .map(|usage| usage.help.clone());
+        for help in study
+            .or(evaluator)
+            .or(usage)
+            .into_iter()
+            .filter(|help| !help.is_empty())
+        {
             let line = format!("\nhelp: {help}");
             if !text.contains(&line) {
                 text.push_str(&line);
@@ -74,14 +88,20 @@ mod tests {
 
     #[test]
     fn causes_and_remedies_are_told_and_the_code_tells_whose_fault_it_is() {
-        let usage = Usage { message: "no such condition".into(), help: "it has: 5rpm".into() };
+        let usage = Usage {
+            message: "no such condition".into(),
+            help: "it has: 5rpm".into(),
+        };
         let error = Err::<(), _>(usage).context("cannot verify").unwrap_err();
         assert_eq!(
             describe(&error),
             "error: cannot verify\n  caused by: no such condition\nhelp: it has: 5rpm"
         );
         assert_eq!(code(&error), 2);
-        let lost = EvaluatorError { message: "no worker".into(), help: Some("start one".into()) };
+        let lost = EvaluatorError {
+            message: "no worker".into(),
+            help: Some("start one".into()),
+        };
         let error = anyhow::Error::from(StudyError::from(lost));
         assert_eq!(describe(&error), "error: no worker\nhelp: start one");
         assert_eq!(code(&error), 1);

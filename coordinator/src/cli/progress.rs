@@ -30,7 +30,12 @@ impl Display {
             ProgressBar::new(1).with_style(style)
         });
         let now = Instant::now();
-        Self { bar, started: now, last: now, generation: None }
+        Self {
+            bar,
+            started: now,
+            last: now,
+            generation: None,
+        }
     }
 
     /// Takes the bar away.
@@ -68,7 +73,10 @@ impl Observe for Display {
 
 /// One line: generation, best, failures, workers, rate, time left.
 fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
-    let mut parts = vec![format!("generation {} of {}", view.generation, view.generations)];
+    let mut parts = vec![format!(
+        "generation {} of {}",
+        view.generation, view.generations
+    )];
     if let Some(best) = view.best {
         parts.push(format!("best {best:.4} MPa^2"));
     }
@@ -121,7 +129,10 @@ mod tests {
             describe(&ProgressView::default(), &crew, Duration::from_secs(1)),
             "generation 0 of 0  waiting for workers"
         );
-        crew.workers.push(WorkerStatus { attached: true, ..WorkerStatus::default() });
+        crew.workers.push(WorkerStatus {
+            attached: true,
+            ..WorkerStatus::default()
+        });
         assert_eq!(
             describe(&view, &crew, Duration::from_secs(20)),
             "generation 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"

@@ -45,6 +45,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         listen: None,
         insecure: false,
         local_workers: 0,
+        replay: true,
     };
     let found = bus::block_on(async {
         let mut stop = interrupt::listen();

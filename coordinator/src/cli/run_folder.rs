@@ -64,7 +64,13 @@ impl RunFolder {
     pub(super) fn default_path(case: &str, preset: &str, seed: u64) -> PathBuf {
         let word: String = case
             .chars()
-            .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' })
+            .map(|c| {
+                if c.is_ascii_alphanumeric() {
+                    c.to_ascii_lowercase()
+                } else {
+                    '-'
+                }
+            })
             .collect();
         Path::new("runs").join(format!("{word}-{preset}-seed{seed}"))
     }
@@ -74,22 +80,35 @@ impl RunFolder {
     /// # Errors
     /// If the folder holds another run, or cannot be written.
     pub(super) fn begin(path: &Path, manifest: &Manifest, case: &Case) -> anyhow::Result<Begun> {
-        let folder = Self { path: path.to_owned() };
+        let folder = Self {
+            path: path.to_owned(),
+        };
         if !folder.file("run.json").exists() {
             fs::create_dir_all(path).with_context(|| format!("cannot make {}", path.display()))?;
             folder.write_json("case.json", case)?;
             folder.write_json("run.json", manifest)?;
-            return Ok(Begun { folder, resumed: false, wall_s: 0.0 });
+            return Ok(Begun {
+                folder,
+                resumed: false,
+                wall_s: 0.0,
+            });
         }
         let (earlier, earlier_case) = folder.load()?;
         let difference = if earlier.seed != manifest.seed {
             format!("its seed is {}, not {}", earlier.seed, manifest.seed)
         } else if earlier.settings != manifest.settings {
-            format!("its search settings differ (it was begun with preset {})", earlier.preset)
+            format!(
+                "its search settings differ (it was begun with preset {})",
+                earlier.preset
+            )
         } else if earlier_case != *case {
             "its case or its records differ".to_owned()
         } else {
-            return Ok(Begun { folder, resumed: true, wall_s: earlier.wall_s });
+            return Ok(Begun {
+                folder,
+                resumed: true,
+                wall_s: earlier.wall_s,
+            });
         };
         Err(Usage {
             message: format!("{} holds another run: {difference}", path.display()),
@@ -106,7 +125,9 @@ impl RunFolder {
     /// # Errors
     /// If the folder holds no run, or one of another version.
     pub(super) fn open(path: &Path) -> anyhow::Result<(Self, Manifest, Case)> {
-        let folder = Self { path: path.to_owned() };
+        let folder = Self {
+            path: path.to_owned(),
+        };
         if !folder.file("run.json").exists() {
             return Err(Usage {
                 message: format!("{} is no run folder: it has no run.json", path.display()),
@@ -136,7 +157,13 @@ impl RunFolder {
 
     /// Remembers the time that was spent.
     pub(super) fn spent(&self, manifest: &Manifest, wall_s: f64) -> anyhow::Result<()> {
-        self.write_json("run.json", &Manifest { wall_s, ..manifest.clone() })
+        self.write_json(
+            "run.json",
+            &Manifest {
+                wall_s,
+                ..manifest.clone()
+            },
+        )
     }
 
     /// The folder.
@@ -194,7 +221,9 @@ pub(super) fn gene_file(case: &Case, values: &[f64], about: &str) -> String {
     for (gene, value) in case.genes.iter().zip(values) {
         let name = gene.name.as_str();
         let unit = gene.unit.symbol();
-        text.push_str(&format!("{name:<4} = {{ value = {value:e}, unit = \"{unit}\" }}\n"));
+        text.push_str(&format!(
+            "{name:<4} = {{ value = {value:e}, unit = \"{unit}\" }}\n"
+        ));
     }
     text
 }

@@ -25,7 +25,12 @@ pub(super) struct Arguments {
     #[command(flatten)]
     choice: CaseChoice,
     /// Parameters: `recommended`, or a gene file such as a run's `calibrated.toml`.
-    #[arg(long, value_name = "recommended|FILE", default_value = "recommended", env = "HORSEHEAD_GENES")]
+    #[arg(
+        long,
+        value_name = "recommended|FILE",
+        default_value = "recommended",
+        env = "HORSEHEAD_GENES"
+    )]
     genes: String,
     /// Working condition; that of the case's objective by default.
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
@@ -48,7 +53,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let individuals = vec![(arguments.genes.clone(), genes)];
     let motion_step_deg = if arguments.out.is_some() { 3.0 } else { 0.0 };
-    let wanted = Wanted { condition, individuals, motion_step_deg };
+    let wanted = Wanted {
+        condition,
+        individuals,
+        motion_step_deg,
+    };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let curves = first(groups).context("no result came back")?;
 
@@ -74,7 +83,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.out {
         let files = report::write_simulation(folder, &run)?;
         if let Some(first) = files.first() {
-            output::tell(&format!("wrote {} files; open {}", files.len(), first.display()));
+            output::tell(&format!(
+                "wrote {} files; open {}",
+                files.len(),
+                first.display()
+            ));
         }
     }
     let object = json::simulation((case, condition), &curves);

@@ -46,7 +46,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let parameters = folder.file("calibrated.toml");
     if !parameters.exists() {
         return Err(Usage {
-            message: format!("{} has no calibrated parameters yet", arguments.run.display()),
+            message: format!(
+                "{} has no calibrated parameters yet",
+                arguments.run.display()
+            ),
             help: format!("finish the run first:\n  {}", manifest.command),
         }
         .into());
@@ -60,8 +63,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    let wanted =
-        Wanted { condition, individuals: finish::pair(&case, &best), motion_step_deg: 0.0 };
+    let wanted = Wanted {
+        condition,
+        individuals: finish::pair(&case, &best),
+        motion_step_deg: 0.0,
+    };
     let workers = arguments.workers.unwrap_or_else(|| cores().min(4)).max(1);
     let groups = compare_once("verify", &case, std::slice::from_ref(&wanted), workers)?;
     let compared = groups.first().context("no result came back")?;

@@ -2,7 +2,7 @@
 use super::{Ending, Entry, EvaluationLog, Evaluator, ProgressView, StudyError};
 use protocol::{
     case::Case,
-    job::{Failure, Job, Outcome, ScoreSpec},
+    job::{Job, Outcome, ScoreSpec},
 };
 use search::strategy::{Best, Finish, Proposal, Purpose, Strategy};
 use std::collections::BTreeMap;
@@ -96,13 +96,10 @@ fn score(case: &Case, proposal: &Proposal) -> Job {
 fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
     match outcome {
         Outcome::Scored(evaluation) => Ok(Entry::scored(proposal, &evaluation)),
-        Outcome::Failed(Failure::Misconfigured { field, problem }) => {
-            Err(StudyError::Misconfigured { field, problem })
-        }
-        Outcome::Failed(Failure::Refused { reason }) => Err(StudyError::Refused { reason }),
-        Outcome::Failed(
-            failure @ (Failure::Deadline { .. } | Failure::Crashed { .. } | Failure::Lost { .. }),
-        ) => Ok(Entry::lost(proposal, failure)),
+        Outcome::Failed(failure) => match StudyError::hopeless(&failure) {
+            Some(error) => Err(error),
+            None => Ok(Entry::lost(proposal, failure)),
+        },
         Outcome::Simulated(_) | Outcome::Nothing(_) => {
             Err(StudyError::WrongKind { id: proposal.id })
         }

@@ -25,7 +25,10 @@ pub fn simulation_digest(simulation: &Simulation) -> String {
         &simulation.suspension_acceleration_m_s2,
         &simulation.crank_torque_n_m,
     ];
-    let curves = single.into_iter().chain(&simulation.gauge_mpa).chain(&simulation.modal);
+    let curves = single
+        .into_iter()
+        .chain(&simulation.gauge_mpa)
+        .chain(&simulation.modal);
     for curve in curves {
         number(curve.len() as f64);
         curve.iter().copied().for_each(&mut number);

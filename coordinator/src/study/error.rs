@@ -57,6 +57,18 @@ pub enum StudyError {
 }
 
 impl StudyError {
+    /// The error of a failure that every other job would meet too; none for one that concerns
+    /// one job alone.
+    pub(super) fn hopeless(failure: &Failure) -> Option<Self> {
+        match failure.clone() {
+            Failure::Misconfigured { field, problem } => {
+                Some(Self::Misconfigured { field, problem })
+            }
+            Failure::Refused { reason } => Some(Self::Refused { reason }),
+            Failure::Deadline { .. } | Failure::Crashed { .. } | Failure::Lost { .. } => None,
+        }
+    }
+
     /// What to do about it.
     pub fn help(&self) -> Option<String> {
         let text = match self {

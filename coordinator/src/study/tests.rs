@@ -303,11 +303,7 @@ async fn the_user_can_stop_while_nothing_comes_back() {
     let case = case();
     let mut oracle = Oracle::new(&case, 1, physics);
     let (sender, mut stop) = watch::channel(false);
-    let stopped = async {
-        calibrate::or_stop(oracle.next(), &mut stop)
-            .await
-            .err()
-    };
+    let stopped = async { calibrate::or_stop(oracle.next(), &mut stop).await.err() };
     let stopper = async { sender.send(true).unwrap() };
     assert_eq!(
         tokio::join!(stopped, stopper).0,
