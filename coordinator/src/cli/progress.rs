@@ -46,6 +46,13 @@ impl Display {
     }
 }
 
+/// Shows nothing: for a replay, which takes a moment and whose workers are those of the past.
+pub(super) struct Silent;
+
+impl Observe for Silent {
+    fn progress(&mut self, _view: &ProgressView, _crew: &dyn Fn() -> Crew) {}
+}
+
 impl Observe for Display {
     fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Crew) {
         let now = Instant::now();

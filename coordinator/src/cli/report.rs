@@ -4,7 +4,7 @@ use super::{
     finish::{self, Session},
     interrupt,
     problem::Usage,
-    progress::Display,
+    progress::Silent,
     run_folder::RunFolder,
 };
 use clap::Args;
@@ -49,10 +49,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let found = bus::block_on(async {
         let mut stop = interrupt::listen();
-        let mut display = Display::new();
-        let found = session.run(&mut display, &mut stop).await;
-        display.clear();
-        found
+        session.run(&mut Silent, &mut stop).await
     })?;
     finish::show(&session, &found, arguments.output.output)
 }

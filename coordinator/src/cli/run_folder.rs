@@ -221,9 +221,8 @@ pub(super) fn gene_file(case: &Case, values: &[f64], about: &str) -> String {
     for (gene, value) in case.genes.iter().zip(values) {
         let name = gene.name.as_str();
         let unit = gene.unit.symbol();
-        text.push_str(&format!(
-            "{name:<4} = {{ value = {value:e}, unit = \"{unit}\" }}\n"
-        ));
+        let line = format!("{name:<4} = {{ value = {value:e}, unit = \"{unit}\" }}\n");
+        text.push_str(&line);
     }
     text
 }

@@ -3,7 +3,7 @@ use super::{
     run_folder::{Manifest, RunFolder, gene_file},
     *,
 };
-use clap::{CommandFactory as _, Parser as _};
+use clap::CommandFactory as _;
 use search::{space::Space, strategy::preset};
 
 fn shipped() -> PathBuf {

@@ -282,7 +282,7 @@ async fn if_the_whole_initial_population_fails_the_study_says_how() {
 async fn an_individual_that_is_lost_is_the_worst_and_the_search_goes_on() {
     let case = case();
     let answer = |space: &Space, id: u64, spec: &ScoreSpec| {
-        if id % 7 == 0 {
+        if id.is_multiple_of(7) {
             return Outcome::Failed(Failure::Lost { workers: 2 });
         }
         physics(space, id, spec)
@@ -290,7 +290,7 @@ async fn an_individual_that_is_lost_is_the_worst_and_the_search_goes_on() {
     let (found, _) = run(&mut Oracle::new(&case, 1, answer), &case)
         .await
         .unwrap();
-    assert!(found.best.id % 7 != 0 && found.best.complete);
+    assert!(!found.best.id.is_multiple_of(7) && found.best.complete);
     let lost = found
         .log
         .entries()
