@@ -45,9 +45,9 @@ pub struct WorkerUse {
     pub done: u64,
     /// Jobs that could not be done there.
     pub failed: u64,
-    /// Time its slots spent computing, summed over slots [s].
+    /// Time its slots spent computing, summed over slots, in seconds.
     pub busy_s: f64,
-    /// Time it was attached [s].
+    /// Time it was attached, in seconds.
     pub present_s: f64,
 }
 
@@ -116,7 +116,7 @@ pub struct Calibration {
     pub history: Vec<HistoryPoint>,
     /// Who computed.
     pub workers: Vec<WorkerUse>,
-    /// Wall time of the whole run [s].
+    /// Wall time of the whole run, in seconds.
     pub wall_s: f64,
     /// Why the search ended, in words.
     pub finish: String,

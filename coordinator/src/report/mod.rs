@@ -102,7 +102,13 @@ pub fn write_simulation(folder: &Path, run: &SingleRun) -> Result<Vec<PathBuf>, 
     written.push(stream(folder, "curves.csv", |file| {
         csv::single_curves(file, run)
     })?);
-    let tables = table::text(&table::simulation(run), false);
+    let tables = [
+        table::simulation(run),
+        table::balance(run),
+        table::genes(run),
+    ]
+    .map(|table| table::text(&table, false))
+    .join("\n");
     written.push(write(folder, "tables.txt", &tables)?);
     let figures = chart::simulation(&run.case, run.condition, &run.simulation)?;
     written.extend(write_figures(folder, &figures)?);

@@ -2,8 +2,13 @@
 //!
 //! Plain text only: powers of ten use Unicode superscripts, the minus is a real minus sign.
 
+use protocol::unit::Unit;
+
 /// What stands where there is no value.
 pub(super) const NONE: &str = "–";
+
+/// Keeps a number and its unit or power on one line.
+const NO_BREAK: char = '\u{a0}';
 
 /// Decimal exponent of a finite, non-zero value.
 fn exponent(value: f64) -> i32 {
@@ -52,7 +57,11 @@ pub(super) fn figure(value: f64) -> String {
     let exponent = exponent(value);
     if !(-2..5).contains(&exponent) {
         let mantissa = value / 10_f64.powi(exponent);
-        return format!("{} × 10{}", fixed(mantissa, 2), superscript(exponent));
+        return format!(
+            "{}{NO_BREAK}×{NO_BREAK}10{}",
+            fixed(mantissa, 2),
+            superscript(exponent)
+        );
     }
     let decimals = usize::try_from(2 - exponent).unwrap_or(0);
     fixed(value, decimals)
@@ -79,16 +88,29 @@ pub(super) fn percent(share: f64) -> String {
         return NONE.to_owned();
     }
     let decimals = usize::from(share.abs() < 0.9995);
-    format!("{} %", fixed(100.0 * share, decimals))
+    format!("{}{NO_BREAK}%", fixed(100.0 * share, decimals))
 }
 
 /// How many times, with the direction in the sign of the exponent: `2.49 ×`.
 pub(super) fn ratio(of: f64, to: f64) -> String {
     let ratio = of / to;
     if ratio.is_finite() {
-        format!("{} ×", figure(ratio))
+        format!("{}{NO_BREAK}×", figure(ratio))
     } else {
         NONE.to_owned()
+    }
+}
+
+/// A unit as print sets it.
+pub(super) const fn unit(unit: Unit) -> &'static str {
+    match unit {
+        Unit::NewtonPerMetre => "N/m",
+        Unit::NewtonMetrePerRadian => "N·m/rad",
+        Unit::NewtonMetrePerDegree => "N·m/deg",
+        Unit::NewtonSecondPerMetre => "N·s/m",
+        Unit::NewtonMetreSecondPerRadian => "N·m·s/rad",
+        Unit::NewtonMetreSecondPerDegree => "N·m·s/deg",
+        Unit::NewtonPerMetreToThreeHalves => "N/m¹·⁵",
     }
 }
 
@@ -151,21 +173,21 @@ mod tests {
 
     #[test]
     fn three_digits_and_powers_of_ten() {
-        assert_eq!(figure(3.14e8), "3.14 × 10⁸");
-        assert_eq!(figure(-0.00123), "−1.23 × 10⁻³");
+        assert_eq!(figure(3.14e8), "3.14\u{a0}×\u{a0}10⁸");
+        assert_eq!(figure(-0.00123), "−1.23\u{a0}×\u{a0}10⁻³");
         assert_eq!(figure(5201.3), "5201");
         assert_eq!(figure(40.0), "40.0");
         assert_eq!(figure(0.0456), "0.0456");
-        assert_eq!(figure(99_999.0), "1.00 × 10⁵");
+        assert_eq!(figure(99_999.0), "1.00\u{a0}×\u{a0}10⁵");
         assert_eq!(figure(9.999), "10.0");
         assert_eq!(figure(f64::NAN), "–");
     }
 
     #[test]
     fn shares_ratios_and_counts() {
-        assert_eq!(percent(0.2541), "25.4 %");
-        assert_eq!(percent(1.7824), "178 %");
-        assert_eq!(ratio(7.81e8, 3.14e8), "2.49 ×");
+        assert_eq!(percent(0.2541), "25.4\u{a0}%");
+        assert_eq!(percent(1.7824), "178\u{a0}%");
+        assert_eq!(ratio(7.81e8, 3.14e8), "2.49\u{a0}×");
         assert_eq!(ratio(1.0, 0.0), "–");
         assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!(fixed(-0.001, 2), "0.00");

@@ -2,7 +2,7 @@
 //!
 //! Says what the data say and no more; every sentence stands by itself.
 use super::data::{Calibration, ConditionResult};
-use super::number::{figure, percent};
+use super::number::{figure, percent, unit};
 use protocol::case::Case;
 use protocol::job::{ChannelScore, PhysicsFailure, Reached, Verdict};
 
@@ -45,14 +45,14 @@ fn channel(channels: &[ChannelScore], gauge: u8) -> Option<&ChannelScore> {
     channels.iter().find(|channel| channel.gauge == gauge)
 }
 
-/// How a value changed, as "fell from a to b MPa² (−89 %)".
-fn change(from: f64, to: f64, unit: &str) -> String {
+/// How a value changed, as "fell from 6.8 to 0.75 (−89 %)".
+fn change(from: f64, to: f64, suffix: &str) -> String {
     let verb = if to < from {
         "fell"
     } else if to > from {
         "rose"
     } else {
-        return format!("stayed at {}{unit}", figure(from));
+        return format!("stayed at {}{suffix}", figure(from));
     };
     let share = to / from - 1.0;
     let share = if !share.is_finite() || from <= 0.0 {
@@ -64,7 +64,7 @@ fn change(from: f64, to: f64, unit: &str) -> String {
         format!(" ({} times)", figure(to / from))
     };
     format!(
-        "{verb} from {} to {}{unit}{share}",
+        "{verb} from {} to {}{suffix}{share}",
         figure(from),
         figure(to)
     )
@@ -77,37 +77,70 @@ pub(super) fn complete_objective(result: &ConditionResult) -> Option<f64> {
 }
 
 /// Headline of a calibration: whether the error fell, and by how much.
-pub(super) fn headline(calibration: &Calibration) -> String {
+pub fn headline(calibration: &Calibration) -> String {
     let Some(result) = calibration.calibrated() else {
         return "The calibrated condition has no result.".to_owned();
     };
     let name = condition_name(&calibration.case, result.condition);
     let (before, after) = (&result.recommended.evaluation, &result.optimised.evaluation);
+    let what = objective(&calibration.case);
     match (before.verdict, after.verdict) {
         (_, failed @ Verdict::Failed { .. }) => format!(
             "No usable parameters were found: under condition {name} the best individual {}.",
             verdict(&failed)
         ),
         (failed @ Verdict::Failed { .. }, Verdict::Complete) => format!(
-            "The optimised parameters simulate condition {name} with an objective of {} MPa²; \
-             the recommended ones {}, so there is no error to compare with.",
+            "With the optimised parameters, {what} is {} MPa² under condition {name}. With the \
+             recommended ones the simulation {}, so there is no error to compare with.",
             figure(after.fitness),
             verdict(&failed)
         ),
         (Verdict::Complete, Verdict::Complete) if after.fitness < before.fitness => format!(
-            "The objective {} under condition {name}.",
+            "{} {} under condition {name}.",
+            capitalised(&what),
             change(before.fitness, after.fitness, " MPa²")
         ),
         (Verdict::Complete, Verdict::Complete) => format!(
-            "The search found nothing better than the recommended parameters: the objective {} \
-             under condition {name}.",
+            "The search found nothing better than the recommended parameters: {what} {} under \
+             condition {name}.",
             change(before.fitness, after.fitness, " MPa²")
         ),
     }
 }
 
+/// What is minimised, in words.
+fn objective(case: &Case) -> String {
+    let gauges: Vec<_> = case
+        .objective
+        .gauges
+        .iter()
+        .map(|(gauge, _)| gauge.to_string())
+        .collect();
+    let weighted = case
+        .objective
+        .gauges
+        .iter()
+        .any(|&(_, weight)| (weight - 1.0).abs() > 1e-12);
+    let sum = if weighted { "weighted sum" } else { "sum" };
+    match gauges.as_slice() {
+        [one] => format!("the mean squared error at point {one}"),
+        _ => format!(
+            "the {sum} of the mean squared errors at points {}",
+            gauges.join(" and ")
+        ),
+    }
+}
+
+/// The same sentence with a capital at its start.
+fn capitalised(sentence: &str) -> String {
+    let mut letters = sentence.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
+}
+
 /// One sentence per gauge of a condition; gauges that got worse are said to be worse.
-pub(super) fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
+pub fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
     let before = &result.recommended.evaluation.channels;
     let after = &result.optimised.evaluation.channels;
     let calibrated = result.condition == case.objective.condition;
@@ -147,7 +180,7 @@ pub(super) fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
 }
 
 /// Warnings that follow from the data of a calibration.
-pub(super) fn warnings(calibration: &Calibration) -> Vec<String> {
+pub fn warnings(calibration: &Calibration) -> Vec<String> {
     let case = &calibration.case;
     let mut warnings = Vec::new();
     for result in &calibration.conditions {
@@ -179,7 +212,7 @@ pub(super) fn warnings(calibration: &Calibration) -> Vec<String> {
                 "{} ended at its {side} bound ({} {}): the optimum may lie outside.",
                 gene.name.as_str(),
                 figure(value),
-                gene.unit.symbol()
+                unit(gene.unit)
             ));
         }
     }
@@ -213,9 +246,12 @@ mod tests {
     fn changes_are_said_with_their_direction() {
         assert_eq!(
             change(6.8, 0.75, " MPa²"),
-            "fell from 6.80 to 0.750 MPa² (−89.0 %)"
+            "fell from 6.80 to 0.750 MPa² (−89.0\u{a0}%)"
         );
-        assert_eq!(change(1.0, 1.5, ""), "rose from 1.00 to 1.50 (+50.0 %)");
+        assert_eq!(
+            change(1.0, 1.5, ""),
+            "rose from 1.00 to 1.50 (+50.0\u{a0}%)"
+        );
         assert_eq!(change(1.0, 40.0, ""), "rose from 1.00 to 40.0 (40.0 times)");
         assert_eq!(change(2.0, 2.0, ""), "stayed at 2.00");
     }

@@ -2,13 +2,10 @@
 //!
 //! Arcs, anchors, pins, lengths and ropes are the case's; post, gearbox, well head and the
 //! outlines of beam and heads away from the arcs are schematic, and the legend says so.
-use super::film::{Film, RopeFrame};
-use crate::report::color;
+use super::film::{Film, MM};
+use super::rope;
 use maud::{Markup, html};
 use protocol::case::Case;
-
-/// Millimetres per unit of the drawing.
-const MM: f64 = 10.0;
 
 /// A point of the drawing from metres in a frame with y upwards.
 fn xy(x_m: f64, y_m: f64) -> String {
@@ -102,15 +99,14 @@ pub(super) fn drawing(case: &Case, film: &Film) -> Markup {
             title { "Side view of the pumping unit, in scale" }
             (hatch())
             (ground(case, &frame))
-            (rod(case, film))
+            (post(&frame))
             (crank(case, film))
-            (post(case, &frame))
+            (rod(case, film))
             g id="machine-beam" transform=(format!("rotate({:.3})", -beam)) {
                 (beam_and_heads(case, &frame))
             }
-            (pressure(film))
-            (rope("machine-back", &film.back[0], &rope_ends(film, true), film))
-            (rope("machine-front", &film.front[0], &rope_ends(film, false), film))
+            (rope::pressure(film))
+            (rope::ropes(film))
             (pivot())
             (suspension(film, &frame))
             (scale_bar(&frame))
@@ -164,7 +160,7 @@ fn ground(case: &Case, frame: &Frame) -> Markup {
 }
 
 /// Post from the pivot to the ground: schematic.
-fn post(_case: &Case, frame: &Frame) -> Markup {
+fn post(frame: &Frame) -> Markup {
     let foot = frame.ground;
     let (front, back) = (0.2 * -foot, -0.13 * -foot);
     let brace = |share: f64| {
@@ -196,6 +192,7 @@ fn crank(case: &Case, film: &Film) -> Markup {
             "M{}L{}M{}L{}",
             xy(cx - 1.25 * r, cy), xy(cx + 1.25 * r, cy), xy(cx, cy - 1.25 * r), xy(cx, cy + 1.25 * r)
         )) {}
+        (dimension(cx - 1.36 * r, cy - 0.72 * r, 0.0, &format!("r {r:.3} m")))
         g id="machine-crank" transform=(to_crank) {
             g transform=(to_weight) {
                 path.part d=(closed(&[
@@ -274,6 +271,7 @@ fn beam_and_heads(case: &Case, frame: &Frame) -> Markup {
         (-0.3, -0.24),
         (root, -0.24),
     ]);
+    let middle = on_circle((0.0, 0.0), 1.0, 0.5 * (first + last));
     let anchor_front = on_circle((0.0, 0.0), front.radius_m, front.rope_anchor_deg);
     let anchor_back = on_circle(center, back.radius_m, back.rope_anchor_deg);
     html! {
@@ -292,10 +290,23 @@ fn beam_and_heads(case: &Case, frame: &Frame) -> Markup {
             xy(center.0 - 0.12, center.1), xy(center.0 + 0.12, center.1),
             xy(center.0, center.1 - 0.12), xy(center.0, center.1 + 0.12)
         )) {}
+        (dimension(0.83 * front.radius_m, 0.0, 90.0, &format!("R {:.2} m", front.radius_m)))
+        (dimension(
+            center.0 + 0.62 * back.radius_m * middle.0,
+            center.1 + 0.62 * back.radius_m * middle.1,
+            90.0,
+            &format!("R {:.2} m", back.radius_m)
+        ))
         @for (x, y) in [anchor_front, anchor_back] {
             circle.anchor cx=(format!("{:.1}", 100.0 * x)) cy=(format!("{:.1}", -100.0 * y)) r="6" {}
         }
     }
+}
+
+/// A length written on the part it belongs to, turned counter-clockwise.
+fn dimension(x_m: f64, y_m: f64, turned_deg: f64, text: &str) -> Markup {
+    let place = format!("translate({}) rotate({:.0})", xy(x_m, y_m), -turned_deg);
+    html! { text transform=(place) text-anchor="middle" dominant-baseline="middle" { (text) } }
 }
 
 fn pivot() -> Markup {
@@ -304,76 +315,6 @@ fn pivot() -> Markup {
         path.quarter d="M0,0L8,0A8,8 0 0 1 0,8ZM0,0L-8,0A8,8 0 0 1 0,-8Z" {}
         circle.ring cx="0" cy="0" r="8" {}
     }
-}
-
-/// Where a rope starts and ends in the first frame [mm]: crossbeam or suspension, and the anchor.
-fn rope_ends(film: &Film, back: bool) -> [[f64; 2]; 2] {
-    let (start, head) = if back {
-        (film.crossbeam[0], film.back_head)
-    } else {
-        (film.suspension[0], film.front_head)
-    };
-    let beam = film.beam.first().copied().unwrap_or(0.0).to_radians();
-    let (sin, cos) = beam.sin_cos();
-    let (x, y) = (f64::from(head[2]), f64::from(head[3]));
-    [start.map(f64::from), [cos * x - sin * y, sin * x + cos * y]]
-}
-
-/// A rope as one line per joint, coloured by its tension; the last one ends at the anchor.
-fn rope(id: &str, frame: &RopeFrame, ends: &[[f64; 2]; 2], film: &Film) -> Markup {
-    let mut points = vec![ends[0]];
-    points.extend(frame.points().iter().map(|point| point.map(f64::from)));
-    points.push(ends[1]);
-    let [low, high] = film.tension_range;
-    let tension = |index: usize| {
-        let known = frame.tension.get(index).or(frame.tension.last());
-        (known.copied().map_or(low, f64::from) - low) / (high - low)
-    };
-    html! {
-        g.rope id=(id) {
-            @for (index, pair) in points.windows(2).enumerate() {
-                line x1=(format!("{:.1}", pair[0][0] / MM)) y1=(format!("{:.1}", -pair[0][1] / MM))
-                    x2=(format!("{:.1}", pair[1][0] / MM)) y2=(format!("{:.1}", -pair[1][1] / MM))
-                    stroke=(color::css(color::tension(tension(index)))) {}
-            }
-        }
-    }
-}
-
-/// Contact force along both ropes as diagrams outside the arcs.
-fn pressure(film: &Film) -> Markup {
-    let beam = film.beam.first().copied().unwrap_or(0.0).to_radians();
-    let (sin, cos) = beam.sin_cos();
-    let path = |frame: &RopeFrame, head: [i32; 4]| {
-        let (x, y) = (f64::from(head[0]), f64::from(head[1]));
-        diagram(frame, [cos * x - sin * y, sin * x + cos * y])
-    };
-    html! {
-        path.pressure id="machine-back-contact" d=(path(&film.back[0], film.back_head)) {}
-        path.pressure id="machine-front-contact" d=(path(&film.front[0], film.front_head)) {}
-    }
-}
-
-/// The diagram of one rope: out along the arc's normals, back along the rope.
-fn diagram(frame: &RopeFrame, center_mm: [f64; 2]) -> String {
-    let mut outer = Vec::new();
-    let mut inner = Vec::new();
-    for (point, &height) in frame.points().iter().zip(&frame.contact) {
-        if height <= 0 && outer.is_empty() {
-            continue;
-        }
-        let [x, y] = point.map(f64::from);
-        let (dx, dy) = (x - center_mm[0], y - center_mm[1]);
-        let reach = 1.0 + f64::from(height) / dx.hypot(dy).max(1.0);
-        let (x1, y1) = (center_mm[0] + reach * dx, center_mm[1] + reach * dy);
-        outer.push(format!("{:.1},{:.1}", x1 / MM, -y1 / MM));
-        inner.push(format!("{:.1},{:.1}", x / MM, -y / MM));
-    }
-    if outer.is_empty() {
-        return "M0,0".to_owned();
-    }
-    inner.reverse();
-    format!("M{}L{}Z", outer.join("L"), inner.join("L"))
 }
 
 fn suspension(film: &Film, frame: &Frame) -> Markup {
@@ -409,8 +350,8 @@ pub(super) fn legend(film: &Film) -> Markup {
             div.ramp style=(gradient) {}
             div.ramp-ends { span { (format!("{low:.0}")) } span { (format!("{high:.0}")) } }
             p {
-                span.swatch {} " contact force per length, outwards: 0.25 m in the drawing is "
-                (format!("{quarter:.0}")) " kN/m"
+                span.swatch {} " contact force per length, drawn outwards: "
+                (format!("{quarter:.0}")) " kN/m is 0.25 m on the scale of the machine"
             }
             p.note {
                 "Arcs, anchors, crank, rod and ropes are in scale from the case, ropes drawn \

@@ -7,6 +7,8 @@ use protocol::case::Case;
 use protocol::job::{Motion, Simulation};
 use serde::Serialize;
 
+/// Millimetres per unit of the drawing, a centimetre.
+pub(super) const MM: f64 = 10.0;
 /// Snapshots kept at most: one every two degrees.
 const FRAMES: usize = 181;
 
@@ -71,6 +73,19 @@ pub(super) struct Film {
     pub readouts: Vec<Readout>,
 }
 
+/// Whether every place in a snapshot is a number; others cannot be drawn.
+fn is_finite(motion: &Motion) -> bool {
+    let single = [
+        motion.crank_pin_m,
+        motion.crossbeam_m,
+        motion.suspension_m,
+        [motion.beam_deg, 0.0],
+    ];
+    let ropes = motion.back_rope_m.iter().chain(&motion.front_rope_m);
+    let mut places = ropes.chain(&single).flatten();
+    motion.turn_deg.is_finite() && places.all(|place| place.is_finite())
+}
+
 /// Metres to whole millimetres; zero where there is no number.
 #[expect(
     clippy::cast_possible_truncation,
@@ -100,7 +115,8 @@ impl RopeFrame {
             path.extend([x - before[0], y - before[1]]);
             before = [x, y];
         }
-        let force = |newtons: f32| mm(1e-3 * f64::from(newtons) * 1e-2);
+        // hundreds of newtons, through the same rounding as lengths
+        let force = |newtons: f32| mm(1e-5 * f64::from(newtons));
         let contact = |newtons: f32| mm(1e-3 * mm_per_newton * f64::from(newtons)).clamp(0, 1500);
         let count = points.len();
         Self {
@@ -133,7 +149,7 @@ impl Film {
         let usable: Vec<&Motion> = simulation
             .motion
             .iter()
-            .filter(|motion| motion.turn_deg.is_finite() && motion.beam_deg.is_finite())
+            .filter(|motion| is_finite(motion))
             .collect();
         let every = usable.len().div_ceil(FRAMES).max(1);
         let frames: Vec<&Motion> = usable.iter().copied().step_by(every).collect();
@@ -157,8 +173,8 @@ impl Film {
         );
         let end = |share| quantile(&tensions, share).map_or(0.0, |newtons| 1e-2 * newtons);
         let (low, high) = (
-            (end(0.02) / 50.0).floor() * 5.0,
-            (end(0.98) / 50.0).ceil() * 5.0,
+            (end(0.02) / 50.0).floor() * 50.0,
+            (end(0.98) / 50.0).ceil() * 50.0,
         );
         // the strong contacts of ordinary running are drawn about 0.35 m high
         let strong_n = quantile(&contacts, 0.9).unwrap_or(1.0).max(1.0);
@@ -201,7 +217,7 @@ impl Film {
                 f64::from(mm(case.crank.center_y_m)),
                 phase,
             ],
-            tension_range: [low, if high > low { high } else { low + 5.0 }],
+            tension_range: [low, if high > low { high } else { low + 50.0 }],
             stops: crate::report::color::tension_stops(),
             pressure_kn_per_m: 1e-3 * strong_n / case.ropes.cylinder_length_m / 0.35,
             readouts: readouts(case, simulation, &frames),

@@ -5,6 +5,7 @@
 //! player only moves its parts. No library, no network.
 mod drawing;
 mod film;
+mod rope;
 
 use super::chart::{self, ChartError};
 use maud::{Markup, PreEscaped, html};
@@ -18,7 +19,7 @@ const PLAYER: &str = include_str!("player.js");
 ///
 /// # Errors
 /// [`ChartError`] when the curves beside it cannot be drawn.
-pub fn machine(
+pub(super) fn machine(
     case: &Case,
     condition: usize,
     simulation: &Simulation,
@@ -26,8 +27,8 @@ pub fn machine(
     let Some(film) = film::Film::new(case, condition, simulation) else {
         return Ok(None);
     };
-    let curves = chart::player(case, simulation)?;
-    let [left, right, top, bottom] = chart::PLAYER_SPAN.map(|share| 100.0 * share);
+    let (curves, span) = chart::player(case, simulation)?;
+    let [left, right, top, bottom] = span.map(|share| 100.0 * share);
     let span = format!(
         "left:{left:.3}%;width:{:.3}%;top:{top:.3}%;height:{:.3}%",
         right - left,

@@ -177,13 +177,6 @@ impl Canvas<'_> {
             .draw(&Circle::new(place(at), unit(radius), color.filled()))?)
     }
 
-    /// A circle.
-    pub(super) fn ring(&self, at: (f64, f64), radius: f64, pen: Pen) -> Result<(), ChartError> {
-        Ok(self
-            .area
-            .draw(&Circle::new(place(at), unit(radius), width(pen)))?)
-    }
-
     /// One line of text.
     pub(super) fn text(
         &self,

@@ -68,20 +68,21 @@ pub fn card(
             width: 1.4,
         };
         panel.curve(canvas, &path, pen)?;
+        let (x0, x1) = panel.x.ends();
+        let (y0, y1) = panel.y.ends();
+        let middle = panel.at((0.5 * (x0 + x1), 0.5 * (y0 + y1)));
         for mark in [0.0, 60.0, 120.0, 180.0, 240.0, 300.0] {
             let Some(row) = rows.iter().find(|row| row.0 >= mark) else {
                 continue;
             };
             let (x, y) = panel.at((row.1, row.2));
             canvas.dot((x, y), 2.6, INK)?;
-            let up = mark < 180.0;
-            let (vertical, offset) = if up {
-                (VPos::Bottom, -5.0)
-            } else {
-                (VPos::Top, 6.0)
-            };
-            let lettering = Lettering::new(10.0, GREY).at(HPos::Center, vertical);
-            canvas.text((x, y + offset), &format!("{mark:.0}°"), lettering)?;
+            // outside the loop, away from its middle
+            let (dx, dy) = (x - middle.0, y - middle.1);
+            let away = 15.0 / dx.hypot(dy).max(1.0);
+            let lettering = Lettering::new(10.0, GREY).at(HPos::Center, VPos::Center);
+            let at = (x + away * dx, y + away * dy);
+            canvas.text(at, &format!("{mark:.0}°"), lettering)?;
         }
         panel.left_axis(canvas, true, "load [kN]")?;
         panel.lower_axis(canvas, true, "position of the suspension [m]")

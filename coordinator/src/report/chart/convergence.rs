@@ -215,3 +215,53 @@ fn labels(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{best_so_far, generations};
+    use crate::report::data::HistoryPoint;
+
+    fn log() -> Vec<HistoryPoint> {
+        let fitness = [9.0, 1e6, 4.0, 7.0, 3.0, 1e6, 1e6, 5.0];
+        (0..)
+            .zip(fitness)
+            .map(|(id, fitness)| HistoryPoint {
+                id,
+                generation: u32::from(id >= 4),
+                purpose: String::new(),
+                genes: Vec::new(),
+                fitness,
+                complete: fitness < 1e6,
+                failure: None,
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_best_only_falls_and_ignores_failures() {
+        let mut log = log();
+        // a failed individual with a small graded value is still not a solution
+        log[1].fitness = 0.1;
+        let steps = [
+            (1.0, 9.0),
+            (3.0, 9.0),
+            (3.0, 4.0),
+            (5.0, 4.0),
+            (5.0, 3.0),
+            (8.0, 3.0),
+        ];
+        assert_eq!(best_so_far(&log), steps);
+    }
+
+    #[test]
+    fn generations_have_their_own_median_and_failed_share() {
+        let log = log();
+        let found = generations(&log, 10);
+        let medians: Vec<_> = found.iter().map(|g| g.quantiles.map(|q| q[1])).collect();
+        let failed: Vec<_> = found.iter().map(|g| g.failed_share).collect();
+        assert_eq!(medians, [Some(7.0), Some(4.0)]);
+        assert_eq!(failed, [0.25, 0.5]);
+        assert_eq!(generations(&log, 1).len(), 1);
+        assert!(generations(&[], 10).is_empty());
+    }
+}

@@ -4,14 +4,15 @@ use super::panel::Panel;
 use super::scale::Scale;
 use super::{AXIS, ChartError, Figure, GREY, INK, VERMILLION, WIDTH, thinned};
 use crate::report::data::Calibration;
-use crate::report::number::figure;
+use crate::report::number::{figure, unit};
+use crate::report::table::meaning;
 use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::{HPos, VPos};
 use protocol::case::Gene;
 
 const COLUMNS: usize = 5;
 const LEFT: f64 = 58.0;
-const BETWEEN: f64 = 20.0;
+const BETWEEN: f64 = 28.0;
 const TOP: f64 = 52.0;
 const ROW: f64 = 178.0;
 const PLOT: f64 = 104.0;
@@ -151,7 +152,8 @@ fn small(
     canvas.text((panel.right(), panel.top - 7.0), &text, right)?;
     let first = index % COLUMNS == 0;
     panel.left_axis(canvas, first, if first { "objective [MPa²]" } else { "" })?;
-    panel.lower_axis(canvas, true, gene.unit.symbol())
+    let title = format!("{} [{}]", meaning(gene.name), unit(gene.unit));
+    panel.lower_axis(canvas, true, &title)
 }
 
 /// The key above the panels.

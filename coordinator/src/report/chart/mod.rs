@@ -9,6 +9,7 @@ mod convergence;
 mod gene;
 mod overlay;
 mod panel;
+mod revolution;
 mod scale;
 mod strip;
 mod worker;
@@ -18,8 +19,8 @@ pub use contact::contact;
 pub use convergence::convergence;
 pub use gene::genes;
 pub use overlay::overlay;
-pub(super) use strip::{PLAYER_SPAN, player};
-pub use strip::{gauges, motion, tension, torque};
+pub(super) use revolution::player;
+pub use revolution::{gauges, motion, tension, torque};
 pub use worker::workers;
 
 use super::data::ConditionResult;

@@ -27,7 +27,7 @@ struct Side {
     residual: Vec<(f64, f64)>,
 }
 
-/// Shift that the objective gives the simulated curve before it is compared [MPa].
+/// Shift that the objective gives the simulated curve before it is compared [`MPa`].
 fn shift_mpa(case: &Case, run: &Run, gauge: u8) -> f64 {
     let channel = run.evaluation.channels.iter().find(|c| c.gauge == gauge);
     match (case.objective.offset, channel) {
@@ -73,7 +73,9 @@ impl Side {
             .iter()
             .find(|channel| channel.gauge == trace.gauge);
         let remark = match (run.simulation.verdict, channel) {
-            (verdict @ Verdict::Failed { .. }, _) => words::verdict(&verdict),
+            (verdict @ Verdict::Failed { .. }, _) => {
+                format!("{}; not shifted", words::verdict(&verdict))
+            }
             (Verdict::Complete, Some(channel)) => format!(
                 "rms error {} MPa, {} of half the range; shifted by {} MPa",
                 fixed(channel.rmse_over_half_range * half_range(trace), 2),
@@ -91,7 +93,7 @@ impl Side {
     }
 }
 
-/// Half the range of the measured mean [MPa].
+/// Half the range of the measured mean [`MPa`].
 fn half_range(trace: &GaugeTrace) -> f64 {
     crate::report::number::range(trace.mean_mpa.iter().copied())
         .map_or(f64::NAN, |(low, high)| 0.5 * (high - low))
@@ -121,6 +123,7 @@ pub fn overlay(
         ("Optimised parameters", &result.optimised),
     ]
     .map(|(heading, run)| Side::new(heading, case, run, (record, trace)));
+    let cycles = record.cycles;
     let band: Vec<_> = record
         .turn_deg
         .iter()
@@ -137,55 +140,22 @@ pub fn overlay(
     let residuals = sides.iter().flat_map(|side| &side.residual);
     let residuals = Scale::linear(residuals.map(|&(_, y)| y).chain([0.0]), 3.0);
     let title = format!("Stress at gauge {gauge}, condition {}", condition.name);
-    let measured = points(&record.turn_deg, &trace.mean_mpa);
+    let record = Measured {
+        mean: points(&record.turn_deg, &trace.mean_mpa),
+        band,
+        stresses,
+        residuals,
+    };
     let svg = render((WIDTH, HEIGHT), &title, |canvas| {
-        key(canvas, gauge, record.cycles)?;
-        let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
-        for (index, side) in (0_u8..).zip(&sides) {
-            let left = LEFT + f64::from(index) * (width + BETWEEN);
-            let first = index == 0;
-            let panel = Panel {
-                left,
-                top: TOP,
-                width,
-                height: STRESS_HEIGHT,
-                x: Scale::crank(),
-                y: stresses,
-            };
-            let (left_title, lower_title) = if first {
-                ("stress [MPa]", "residual [MPa]")
-            } else {
-                ("", "")
-            };
-            panel.guides(canvas)?;
-            panel.band(canvas, &band, BAND)?;
-            panel.curve(canvas, &measured, MEASURED)?;
-            panel.curve(canvas, &side.simulated, SIMULATED)?;
-            panel.left_axis(canvas, first, left_title)?;
-            panel.lower_axis(canvas, false, "")?;
-            if side.simulated.len() < 2 {
-                panel.remark(canvas, "no simulated curve: the run failed before it")?;
-            }
-            let heading = Lettering::new(12.0, INK).bold();
-            canvas.text((left, TOP - 27.0), side.heading, heading)?;
-            canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY))?;
-            let strip = Panel {
-                top: RESIDUAL_TOP,
-                height: RESIDUAL_HEIGHT,
-                y: residuals,
-                ..panel
-            };
-            strip.guides(canvas)?;
-            strip.curve(canvas, &side.residual, RESIDUAL)?;
-            strip.left_axis(canvas, first, lower_title)?;
-            strip.lower_axis(canvas, true, CRANK_TITLE)?;
-        }
-        Ok(())
+        key(canvas, gauge, cycles)?;
+        let [recommended, optimised] = &sides;
+        column(canvas, &record, recommended, true)?;
+        column(canvas, &record, optimised, false)
     })?;
     let free = match case.objective.offset {
         Offset::Free => {
-            " The simulated curve is shifted to the measured mean, because a strain bridge has no \
-             absolute zero."
+            " Complete simulated curves are shifted to the measured mean, because a strain bridge \
+             has no absolute zero."
         }
         Offset::Fixed => "",
     };
@@ -197,6 +167,57 @@ pub fn overlay(
         ),
         svg,
     }))
+}
+
+/// The measured side of both columns, and the scales they share.
+struct Measured {
+    mean: Vec<(f64, f64)>,
+    /// Rows of (crank angle, low, high).
+    band: Vec<(f64, f64, f64)>,
+    stresses: Scale,
+    residuals: Scale,
+}
+
+/// One parameter set: stress above, residual below. Only the first column labels its scales.
+fn column(
+    canvas: &Canvas<'_>,
+    measured: &Measured,
+    side: &Side,
+    first: bool,
+) -> Result<(), ChartError> {
+    let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
+    let left = if first { LEFT } else { LEFT + width + BETWEEN };
+    let panel = Panel {
+        left,
+        top: TOP,
+        width,
+        height: STRESS_HEIGHT,
+        x: Scale::crank(),
+        y: measured.stresses,
+    };
+    let title = |title| if first { title } else { "" };
+    panel.guides(canvas)?;
+    panel.band(canvas, &measured.band, BAND)?;
+    panel.curve(canvas, &measured.mean, MEASURED)?;
+    panel.curve(canvas, &side.simulated, SIMULATED)?;
+    panel.left_axis(canvas, first, title("stress [MPa]"))?;
+    panel.lower_axis(canvas, false, "")?;
+    if side.simulated.len() < 2 {
+        panel.remark(canvas, "no simulated curve: the run failed before it")?;
+    }
+    let heading = Lettering::new(12.0, INK).bold();
+    canvas.text((left, TOP - 27.0), side.heading, heading)?;
+    canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY))?;
+    let strip = Panel {
+        top: RESIDUAL_TOP,
+        height: RESIDUAL_HEIGHT,
+        y: measured.residuals,
+        ..panel
+    };
+    strip.guides(canvas)?;
+    strip.curve(canvas, &side.residual, RESIDUAL)?;
+    strip.left_axis(canvas, first, title("residual [MPa]"))?;
+    strip.lower_axis(canvas, true, CRANK_TITLE)
 }
 
 const MEASURED: Pen = Pen {

@@ -208,8 +208,9 @@ mod tests {
     #[test]
     fn labels_are_kept_apart_and_inside() {
         let placed = spread(&[50.0, 48.0, 99.0, 100.0], 10.0, 0.0, 100.0);
-        assert_eq!(placed[1], 48.0);
-        assert_eq!(placed[0], 58.0);
-        assert_eq!((placed[2], placed[3]), (90.0, 100.0));
+        let wanted = [58.0, 48.0, 90.0, 100.0];
+        for (placed, wanted) in placed.iter().zip(wanted) {
+            assert!((placed - wanted).abs() < 1e-12, "{placed} is not {wanted}");
+        }
     }
 }

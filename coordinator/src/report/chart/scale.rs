@@ -47,8 +47,8 @@ impl Scale {
         }
     }
 
-    /// Linear over all finite values, widened to whole steps; `parts` is the number of steps
-    /// aimed at. Without any finite value: 0 to 1.
+    /// Linear over all finite values with a little air; `parts` is the number of steps aimed at.
+    /// Without any finite value: 0 to 1.
     pub(super) fn linear(values: impl IntoIterator<Item = f64>, parts: f64) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
         // a constant curve still needs room around it
@@ -59,9 +59,10 @@ impl Scale {
         };
         let (low, high) = (low - margin, high + margin);
         let step = round_step(high - low, parts);
+        let air = 0.05 * (high - low);
         Self {
-            low: (low / step - 0.08).floor() * step,
-            high: (high / step + 0.08).ceil() * step,
+            low: low - air,
+            high: high + air,
             spacing: Spacing::Linear { step },
         }
     }
@@ -212,7 +213,7 @@ mod tests {
     #[test]
     fn linear_ticks_are_round_and_cover_the_values() {
         let scale = Scale::linear([-12.4, 37.0], 5.0);
-        assert_eq!(labels(scale), ["−20", "−10", "0", "10", "20", "30", "40"]);
+        assert_eq!(labels(scale), ["−10", "0", "10", "20", "30"]);
         assert!(scale.share(-12.4) > 0.0 && scale.share(37.0) < 1.0);
     }
 

@@ -8,6 +8,7 @@ pub(super) const SECTION: Section = Section {
     render,
 };
 
+#[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
 fn render(subject: Subject<'_>) -> Rendered {
     let notes = match subject {
         Subject::Calibration(calibration) => &calibration.notes,

@@ -12,6 +12,7 @@ pub(super) const SECTION: Section = Section {
     render,
 };
 
+#[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
 fn render(subject: Subject<'_>) -> Rendered {
     Ok(Some(match subject {
         Subject::Calibration(calibration) => {

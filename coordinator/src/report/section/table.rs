@@ -9,6 +9,7 @@ pub(super) const SECTION: Section = Section {
     render,
 };
 
+#[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
 fn render(subject: Subject<'_>) -> Rendered {
     Ok(Some(match subject {
         Subject::Calibration(calibration) => {
@@ -24,6 +25,7 @@ fn render(subject: Subject<'_>) -> Rendered {
         }
         Subject::Single(run) => html! {
             (table::markup(&table::simulation(run)))
+            (table::markup(&table::balance(run)))
             (table::markup(&table::genes(run)))
         },
     }))

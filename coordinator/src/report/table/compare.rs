@@ -1,7 +1,7 @@
 //! Recommended against optimised parameters (paper, Tables 3 and 4), and the workers' table.
 use super::{Label, Row, Table};
 use crate::report::data::{Calibration, ConditionResult, Run, WorkerUse};
-use crate::report::number::{NONE, count, duration, figure, fixed, percent, ratio};
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, ratio, unit};
 use crate::report::words::{self, condition_name};
 use protocol::case::{Case, GeneName};
 use protocol::job::{ChannelScore, Verdict};
@@ -107,22 +107,18 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
         let value = |c: &ChannelScore| c.rmse_over_half_range;
         rows.push(channel_row(point(g), "", result, g, value, percent));
     }
-    rows.push(Row::Group("Offset and peak-to-peak".to_owned()));
+    // a ratio of signed errors or of offsets would say nothing
+    rows.push(Row::Group("Error of the peak-to-peak stress".to_owned()));
     for &g in &gauges {
-        // a ratio of offsets or of signed errors would say nothing
-        let mut row = channel_row(
-            format!("{}: offset", point(g)),
-            "MPa",
-            result,
-            g,
-            |c| c.offset_mpa,
-            |value| fixed(value, 2),
-        );
+        let value = |c: &ChannelScore| c.peak_to_peak_error;
+        let mut row = channel_row(point(g), "", result, g, value, percent);
         blank_ratio(&mut row);
         rows.push(row);
-        let value = |c: &ChannelScore| c.peak_to_peak_error;
-        let label = format!("{}: peak-to-peak error", point(g));
-        let mut row = channel_row(label, "", result, g, value, percent);
+    }
+    rows.push(Row::Group("Offset".to_owned()));
+    for &g in &gauges {
+        let write = |value| fixed(value, 2);
+        let mut row = channel_row(point(g), "MPa", result, g, |c| c.offset_mpa, write);
         blank_ratio(&mut row);
         rows.push(row);
     }
@@ -171,7 +167,7 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         rows.push(Row::Values(
             Label::Gene(gene.name),
             vec![
-                gene.unit.symbol().to_owned(),
+                unit(gene.unit).to_owned(),
                 figure(before),
                 optimised,
                 ratio(after, before),

@@ -1,13 +1,13 @@
 //! Tables from one description: for the terminal and for HTML.
 //!
-//! What stands in them is in [`compare`] and [`single`]; here is only how it is set.
+//! Here is only how a table is set; `compare` and `single` fill it.
 mod compare;
 mod single;
 
 pub use compare::{table_3, table_4, workers};
-pub use single::{genes, simulation};
+pub use single::{balance, genes, simulation};
 
-use comfy_table::{Attribute, Cell, CellAlignment, presets};
+use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};
 use protocol::case::GeneName;
 
@@ -91,13 +91,21 @@ pub fn text(table: &Table, styled: bool) -> String {
         }
     };
     let mut grid = comfy_table::Table::new();
-    grid.load_style(presets::UTF8_HORIZONTAL_ONLY);
+    // rules above, below and under the head only, as in print
+    grid.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
     if styled {
         grid.enforce_styling();
     } else {
         grid.force_no_tty();
     }
-    grid.set_header(table.head.iter().map(|head| bold(Cell::new(head))));
+    grid.set_header(table.head.iter().enumerate().map(|(column, head)| {
+        let alignment = if column == 0 {
+            CellAlignment::Left
+        } else {
+            CellAlignment::Right
+        };
+        bold(Cell::new(head).set_alignment(alignment))
+    }));
     for row in &table.rows {
         match row {
             Row::Group(name) => {

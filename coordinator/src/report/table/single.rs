@@ -1,7 +1,7 @@
 //! One simulation in numbers.
 use super::{Label, Row, Table};
 use crate::report::data::SingleRun;
-use crate::report::number::{NONE, count, duration, figure, fixed, percent, range};
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, unit};
 use crate::report::words::{self, condition_name};
 use protocol::job::{Energy, Simulation};
 
@@ -23,15 +23,12 @@ fn range_cells(values: &[f64], factor: f64, unit: &str) -> [String; 4] {
     }
 }
 
-/// A row with one value only.
+/// A row with one value.
 fn one(label: &str, unit: &str, value: String) -> Row {
-    Row::new(
-        label,
-        [unit.to_owned(), String::new(), value, String::new()],
-    )
+    Row::new(label, [unit.to_owned(), value])
 }
 
-/// Verdict, ranges of every curve, energy balance and work of a run.
+/// Verdict, and the range of every curve.
 pub fn simulation(run: &SingleRun) -> Table {
     let simulation = &run.simulation;
     let mut rows = vec![Row::Group("Stress".to_owned())];
@@ -71,6 +68,25 @@ pub fn simulation(run: &SingleRun) -> Table {
     for (label, values, factor, unit) in curves {
         rows.push(Row::new(label, range_cells(values, factor, unit)));
     }
+    Table {
+        title: format!(
+            "Condition {}, {} parameters: {}",
+            condition_name(&run.case, run.condition),
+            run.genes_name,
+            words::verdict(&simulation.verdict)
+        ),
+        head: ["", "unit", "smallest", "largest", "half range"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+        notes: Vec::new(),
+    }
+}
+
+/// Stroke, agreement with the record, energy balance and work of a run.
+pub fn balance(run: &SingleRun) -> Table {
+    let simulation = &run.simulation;
+    let mut rows = Vec::new();
     let stroke = range(simulation.suspension_m.iter().copied())
         .map_or_else(|| NONE.to_owned(), |(low, high)| fixed(high - low, 3));
     rows.push(one("stroke", "m", stroke));
@@ -95,18 +111,11 @@ pub fn simulation(run: &SingleRun) -> Table {
     rows.extend(energy(&simulation.energy));
     rows.extend(work(simulation));
     Table {
-        title: format!(
-            "Condition {}, {} parameters: {}",
-            condition_name(&run.case, run.condition),
-            run.genes_name,
-            words::verdict(&simulation.verdict)
-        ),
-        head: ["", "unit", "smallest", "largest", "half range"]
-            .map(str::to_owned)
-            .to_vec(),
+        title: "Stroke, agreement, energy and work".to_owned(),
+        head: ["", "unit", "value"].map(str::to_owned).to_vec(),
         rows,
         notes: vec![
-            "Energy error: what the balance leaves over, relative to the larger of input and \
+            "Error of the balance: what it leaves over, relative to the larger of input and \
              output work."
                 .to_owned(),
         ],
@@ -151,7 +160,7 @@ pub fn genes(run: &SingleRun) -> Table {
                 Row::Values(
                     Label::Gene(gene.name),
                     vec![
-                        gene.unit.symbol().to_owned(),
+                        unit(gene.unit).to_owned(),
                         figure(value),
                         figure(gene.recommended),
                     ],

@@ -1,0 +1,216 @@
+//! The curves of one simulation over the crank angle: gauges, rope tensions, motion of the
+//! suspension, crank torque.
+use super::strip::{Curve, Strip, curve, span, stack, strip};
+use super::{BLUE, ChartError, Figure, GREEN, INK, PURPLE, VERMILLION};
+use crate::report::words::condition_name;
+use protocol::case::Case;
+use protocol::job::Simulation;
+
+/// Stress at all four gauges, with the measured mean and its spread where there is a record.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub fn gauges(
+    case: &Case,
+    condition: usize,
+    simulation: &Simulation,
+) -> Result<Figure, ChartError> {
+    let name = condition_name(case, condition);
+    let record = case
+        .conditions
+        .get(condition)
+        .and_then(|condition| condition.record.as_ref());
+    let strips: Vec<_> = (1_u8..)
+        .zip(&simulation.gauge_mpa)
+        .map(|(gauge, stress)| {
+            let trace = record.and_then(|record| {
+                let trace = record.gauges.iter().find(|trace| trace.gauge == gauge)?;
+                Some((record, trace))
+            });
+            let label = if trace.is_some() {
+                "simulated".to_owned()
+            } else {
+                format!("gauge {gauge}")
+            };
+            let mut curves = vec![curve(label, VERMILLION, &simulation.turn_deg, stress, 1.0)];
+            let mut band = Vec::new();
+            if let Some((record, trace)) = trace {
+                let measured = curve("measured", INK, &record.turn_deg, &trace.mean_mpa, 1.0);
+                curves.insert(0, measured);
+                let rows = trace.mean_mpa.iter().zip(&trace.spread_mpa);
+                band = record
+                    .turn_deg
+                    .iter()
+                    .zip(rows)
+                    .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
+                    .collect();
+            }
+            Strip {
+                title: [
+                    "gauge 1 [MPa]",
+                    "gauge 2 [MPa]",
+                    "gauge 3 [MPa]",
+                    "gauge 4 [MPa]",
+                ][usize::from(gauge - 1)],
+                height: 96.0,
+                curves,
+                band,
+            }
+        })
+        .collect();
+    stack(
+        format!("gauges_{name}"),
+        &format!("Stress at the gauges, condition {name}"),
+        format!(
+            "Stress at the four gauges under condition {name}, absolute values: no curve is \
+             shifted here."
+        ),
+        &strips,
+    )
+}
+
+/// Tension of both ropes [kN].
+fn tensions(simulation: &Simulation) -> Vec<Curve> {
+    let turn = &simulation.turn_deg;
+    let (back, front) = (
+        &simulation.back_rope_tension_n,
+        &simulation.front_rope_tension_n,
+    );
+    vec![
+        curve("back rope", BLUE, turn, back, 1e-3),
+        curve("front rope", GREEN, turn, front, 1e-3),
+    ]
+}
+
+/// Axial force of both ropes at their free ends.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub fn tension(simulation: &Simulation) -> Result<Figure, ChartError> {
+    let strips = [strip("tension [kN]", 150.0, tensions(simulation))];
+    stack(
+        "rope_tension",
+        "Rope tension",
+        "Axial force in the back rope at the crossbeam and in the front rope at the suspension."
+            .to_owned(),
+        &strips,
+    )
+}
+
+/// Motion of the suspension point.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub fn motion(simulation: &Simulation) -> Result<Figure, ChartError> {
+    let turn = &simulation.turn_deg;
+    let strips = [
+        strip(
+            "height [m]",
+            84.0,
+            vec![curve("position", INK, turn, &simulation.suspension_m, 1.0)],
+        ),
+        strip(
+            "velocity [m/s]",
+            84.0,
+            vec![curve(
+                "velocity",
+                INK,
+                turn,
+                &simulation.suspension_velocity_m_s,
+                1.0,
+            )],
+        ),
+        strip(
+            "acceler. [m/s²]",
+            84.0,
+            vec![curve(
+                "acceleration",
+                INK,
+                turn,
+                &simulation.suspension_acceleration_m_s2,
+                1.0,
+            )],
+        ),
+    ];
+    stack(
+        "suspension",
+        "Motion of the suspension point",
+        "Position above the lowest design position, velocity and acceleration of the suspension \
+         point, upwards positive."
+            .to_owned(),
+        &strips,
+    )
+}
+
+/// Net torque at the crank shaft.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub fn torque(simulation: &Simulation) -> Result<Figure, ChartError> {
+    let strips = [strip(
+        "torque [kN m]",
+        130.0,
+        vec![curve(
+            "net torque",
+            PURPLE,
+            &simulation.turn_deg,
+            &simulation.crank_torque_n_m,
+            1e-3,
+        )],
+    )];
+    stack(
+        "crank_torque",
+        "Crank torque",
+        "Net torque at the crank shaft, counterweight included; below zero the machine drives the \
+         gear."
+            .to_owned(),
+        &strips,
+    )
+}
+
+/// The strips beside the moving machine, and where their crank axis lies: left, right, upper and
+/// lower end as shares of the figure's width and height.
+///
+/// # Errors
+/// [`ChartError`] when the drawing library fails.
+pub(in crate::report) fn player(
+    case: &Case,
+    simulation: &Simulation,
+) -> Result<(Figure, [f64; 4]), ChartError> {
+    let turn = &simulation.turn_deg;
+    let colors = [VERMILLION, INK, GREEN, PURPLE];
+    let stress = case
+        .objective
+        .gauges
+        .iter()
+        .filter_map(|&(gauge, _)| {
+            let index = usize::from(gauge).checked_sub(1)?;
+            let values = simulation.gauge_mpa.get(index)?;
+            let label = format!("gauge {gauge}");
+            Some(curve(label, colors[index % 4], turn, values, 1.0))
+        })
+        .collect();
+    let strips = [
+        strip("stress [MPa]", 104.0, stress),
+        strip("tension [kN]", 84.0, tensions(simulation)),
+        strip(
+            "torque [kN m]",
+            84.0,
+            vec![curve(
+                "crank",
+                PURPLE,
+                turn,
+                &simulation.crank_torque_n_m,
+                1e-3,
+            )],
+        ),
+    ];
+    let figure = stack(
+        "player",
+        "Curves beside the moving machine",
+        "Simulated stress, rope tension and crank torque; the vertical line follows the machine."
+            .to_owned(),
+        &strips,
+    )?;
+    Ok((figure, span(&strips)))
+}
