@@ -8,7 +8,7 @@ use tests::{
     process::{Process, children, free_locator, is_alive, wait_until},
 };
 
-const LIMIT: Duration = Duration::from_secs(60);
+const LIMIT: Duration = Duration::from_mins(1);
 
 #[tokio::test(flavor = "multi_thread")]
 async fn local_workers_do_all_jobs_and_are_gone_afterwards() {

@@ -1,4 +1,9 @@
 //! Real processes on loopback: killed, frozen, restarted; nothing may be lost.
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "helpers of a test suite: to panic is to fail the test"
+)]
 mod faults;
 mod resume;
 mod slots;

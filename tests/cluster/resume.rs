@@ -15,7 +15,7 @@ use tests::{
     process::{Process, children, free_locator, is_alive, wait_until},
 };
 
-const LIMIT: Duration = Duration::from_secs(60);
+const LIMIT: Duration = Duration::from_mins(1);
 
 fn coordinator(run_dir: &Path, locator: &str, jobs: u64, local: usize) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));

@@ -22,7 +22,7 @@ use worker::{
     session::{self, Ending, SessionOptions},
 };
 
-const LIMIT: Duration = Duration::from_secs(60);
+const LIMIT: Duration = Duration::from_mins(1);
 
 fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
     let attempt = Attempt {
@@ -89,11 +89,9 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     let pid = rustix::process::Pid::from_raw(pid).unwrap();
     kill_process(pid, Signal::SEGV).unwrap();
     let crashed = failure(freed.blocking_recv().unwrap());
-    assert_eq!(
-        crashed,
-        Failure::Crashed {
-            how: "ended by signal 11".to_owned()
-        }
+    assert!(
+        matches!(&crashed, Failure::Crashed { how } if how.contains("ended by signal 11")),
+        "{crashed:?}"
     );
 
     pool.run(0, task(3, 600_000, LIMIT));

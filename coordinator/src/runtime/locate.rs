@@ -105,6 +105,19 @@ fn build(cargo: &Path, target: &Target) -> Result<PathBuf, LocateError> {
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(Stdio::piped());
+    // what the outer cargo says of the program it runs would make build scripts run again
+    for (name, _) in env::vars_os() {
+        let name = name.to_string_lossy().into_owned();
+        let of_package = [
+            "CARGO_PKG_",
+            "CARGO_MANIFEST_",
+            "CARGO_BIN_",
+            "CARGO_CRATE_",
+        ];
+        if name == "LD_LIBRARY_PATH" || of_package.iter().any(|start| name.starts_with(start)) {
+            command.env_remove(name);
+        }
+    }
     if let Some(root) = target.folder.parent() {
         command.arg("--target-dir").arg(root);
     }
