@@ -1,7 +1,7 @@
 //! A calibration from the first proposal to the comparison of its result.
 //!
-//! [`calibrate`] asks a search strategy for individuals, has them scored and tells the strategy
-//! the results; [`compare`] then scores and simulates chosen parameter sets under chosen
+//! [`calibrate()`] asks a search strategy for individuals, has them scored and tells the strategy
+//! the results; [`compare()`] then scores and simulates chosen parameter sets under chosen
 //! conditions. Both see workers only through the trait [`Evaluator`], in whatever order results
 //! arrive: what they return is a function of the case, the settings and the seed.
 mod calibrate;
