@@ -2,10 +2,13 @@
 //!
 //! Data flows one way: a case folder is read and checked ([`case`]), a search strategy proposes
 //! individuals, the sans-I/O [`core`] leases them to workers, the [`journal`] records what came
-//! back, and the [`report`] shows it. [`runtime`] is the only asynchronous glue. Nothing here
-//! links the dynamics.
+//! back, and the [`report`] shows it. [`study`] is the loop from the first proposal to the
+//! comparison of the result, [`cli`] the commands around it, [`runtime`] the only asynchronous
+//! glue. Nothing here links the dynamics.
 pub mod case;
+pub mod cli;
 pub mod core;
 pub mod journal;
 pub mod report;
 pub mod runtime;
+pub mod study;

@@ -2,6 +2,12 @@
 //!
 //! The arrows of the workspace end here: this crate knows nothing of sockets, files, clocks or
 //! dynamics. At this edge every number carries its unit in its name.
+pub mod announce;
 pub mod case;
+pub mod event;
+pub mod id;
 pub mod job;
+pub mod key;
+pub mod message;
 pub mod unit;
+pub mod wire;

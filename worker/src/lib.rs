@@ -1,3 +1,17 @@
 //! One machine that evaluates: takes jobs from the bus, simulates, returns outcomes.
+//!
+//! ```text
+//! coordinator <-- link --> session (one per process) <-- pipes --> slot processes
+//! ```
+//!
+//! A [`session`] owns the connection, the queue and the outbox; [`pool`] keeps the slots; each
+//! slot computes in a process of its own ([`slot`]), so that a job that never returns or crashes
+//! takes nothing with it. A worker keeps no files and decides nothing.
+pub mod cli;
 pub mod convert;
 pub mod handler;
+pub mod outbox;
+pub mod pool;
+pub mod session;
+pub mod slot;
+mod stream;

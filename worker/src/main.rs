@@ -1,1 +1,133 @@
-fn main() {}
+//! `horsehead-worker`: one worker of the bus, or one of its slots.
+use anyhow::Context;
+use clap::Parser;
+use link::{
+    locator::Locator,
+    zenoh::{TlsFiles, ZenohWorker},
+};
+use protocol::id::{WorkerId, draw};
+use rustix::process::{Signal, set_parent_process_death_signal};
+use std::{
+    env,
+    future::Future,
+    io::{self, Read},
+    process::ExitCode,
+    thread,
+    time::{Duration, SystemTime, UNIX_EPOCH},
+};
+use tokio::{
+    signal::unix::{SignalKind, signal},
+    sync::mpsc,
+};
+use tracing_subscriber::EnvFilter;
+use worker::{
+    cli::Cli,
+    session::{self, Ending, SessionOptions},
+    slot,
+};
+
+fn main() -> anyhow::Result<ExitCode> {
+    let cli = Cli::parse();
+    let filter = EnvFilter::try_from_env("HORSEHEAD_LOG")
+        .unwrap_or_else(|_| EnvFilter::new("warn,zenoh=off,zenoh_link=off,zenoh_transport=off"));
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(io::stderr)
+        .init();
+    match cli.role {
+        Some(worker::cli::Role::Slot) => {
+            slot::serve().context("the slot ended")?;
+            Ok(ExitCode::SUCCESS)
+        }
+        None => serve(&cli),
+    }
+}
+
+fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
+    let locator = Locator::parse(cli.connect.as_deref().unwrap_or_default())?;
+    if cli.embedded {
+        set_parent_process_death_signal(Some(Signal::KILL))?;
+    }
+    let cores = || thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let options = SessionOptions {
+        id: draw_id(),
+        slots: cli.slots.map_or_else(cores, usize::from),
+        program: env::current_exe().context("where this program lies is unknown")?,
+        idle_timeout: cli.idle_timeout.map(Duration::from_secs),
+        embedded: cli.embedded,
+    };
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .context("the runtime did not start")?;
+    let ending = runtime.block_on(work(&locator, options));
+    runtime.shutdown_timeout(Duration::from_millis(200));
+    Ok(match ending? {
+        Ending::Refused(reason) => {
+            tracing::error!("refused: {reason}");
+            ExitCode::from(3)
+        }
+        Ending::Unlinked => ExitCode::FAILURE,
+        Ending::Asked | Ending::RunOver | Ending::Idle => ExitCode::SUCCESS,
+    })
+}
+
+async fn work(locator: &Locator, options: SessionOptions) -> anyhow::Result<Ending> {
+    let mut asked = asked_to_end(options.embedded)?;
+    let tls = TlsFiles::from_env();
+    let link = loop {
+        tokio::select! {
+            opened = ZenohWorker::open(locator, tls.as_ref(), options.id) => match opened {
+                Ok(link) => break link,
+                Err(error @ link::LinkError::Transport { .. }) => {
+                    tracing::warn!("{error}; trying again");
+                    tokio::time::sleep(Duration::from_millis(500)).await;
+                }
+                Err(error) => return Err(error.into()),
+            },
+            () = &mut asked => return Ok(Ending::Asked),
+        }
+    };
+    Ok(session::run(link, options, asked).await?)
+}
+
+/// Completes when the worker is to end: by SIGTERM, SIGINT or, embedded, the end of its input.
+fn asked_to_end(embedded: bool) -> io::Result<impl Future<Output = ()> + Send + Unpin> {
+    let mut terminate = signal(SignalKind::terminate())?;
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let (parent_here, mut parent_gone) = mpsc::channel::<()>(1);
+    if embedded {
+        thread::Builder::new()
+            .name("parent".to_owned())
+            .spawn(move || {
+                let _here = parent_here;
+                let mut byte = [0];
+                while matches!(io::stdin().read(&mut byte), Ok(1)) {}
+            })?;
+    } else {
+        // held for ever: nobody's end is ours
+        tokio::spawn(async move {
+            let _here = parent_here;
+            std::future::pending::<()>().await;
+        });
+    }
+    Ok(Box::pin(async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = interrupt.recv() => {}
+            _ = parent_gone.recv() => {}
+        }
+    }))
+}
+
+fn draw_id() -> WorkerId {
+    let host = rustix::system::uname()
+        .nodename()
+        .to_string_lossy()
+        .into_owned();
+    let nanos = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |since| since.as_nanos());
+    WorkerId(draw(&format!("{host}:{}", std::process::id()), nanos))
+}

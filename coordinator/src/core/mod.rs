@@ -1,1 +1,218 @@
-//! The sans-I/O state machine that leases jobs to workers.
+//! The state machine that leases jobs to workers: no sockets, no files, no clock.
+//!
+//! ```text
+//! Submit -> queued -> leased -> result accepted -> stored -> acknowledged
+//!             ^         |  (lost, overdue, crashed: offered again, within limits)
+//!             +---------+
+//! ```
+//!
+//! Jobs are pure functions, so the first result of a job is *the* result, whoever brings it and
+//! however late; further ones are acknowledged and dropped. A result is delivered as soon as it
+//! is accepted but acknowledged only once it is stored: a worker forgets nothing that a crash of
+//! this process could lose.
+mod assign;
+mod input;
+mod membership;
+mod notice;
+mod policy;
+mod result;
+mod snapshot;
+mod state;
+#[cfg(test)]
+mod tests;
+
+pub use input::{Command, Input};
+pub use notice::{Notice, Stop};
+pub use policy::Policy;
+pub use snapshot::{Snapshot, WorkerSnapshot};
+pub use state::Spent;
+
+use protocol::{
+    id::{ContentHash, JobId, RunId, WorkerId},
+    job::Job,
+    message::{Attempt, Done, ToWorker},
+    wire,
+};
+use state::{Member, Pending};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    mem,
+    time::Duration,
+};
+
+/// What a core is begun with.
+#[derive(Clone, Debug)]
+pub struct CoreOptions {
+    /// The run.
+    pub run: RunId,
+    /// Which process of the run, from 1: keeps attempts of different processes apart.
+    pub epoch: u32,
+    /// The case that workers must hold.
+    pub case: ContentHash,
+    /// Its length [bytes].
+    pub case_bytes: u64,
+    /// Numerics that all workers of this run must have; none before the first.
+    pub model_digest: Option<String>,
+    /// Jobs whose results are in the journal.
+    pub finished: BTreeSet<JobId>,
+    /// Times and limits.
+    pub policy: Policy,
+}
+
+/// The state machine.
+#[derive(Debug)]
+pub struct Core {
+    options: CoreOptions,
+    members: BTreeMap<WorkerId, Member>,
+    refused: BTreeSet<WorkerId>,
+    jobs: BTreeMap<JobId, Pending>,
+    queue: BTreeSet<JobId>,
+    /// Accepted, not yet stored: whom to acknowledge.
+    storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
+    finished: BTreeSet<JobId>,
+    /// Results of jobs that were not submitted (yet).
+    early: BTreeMap<JobId, (WorkerId, Done)>,
+    times: policy::Times,
+    counts: Counts,
+    last_call: Duration,
+    lonely_since: Option<Duration>,
+    told_lonely: bool,
+    closing: bool,
+    out: Vec<Command>,
+}
+
+/// Running totals.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    lost: u32,
+    failed: u32,
+    succeeded: u64,
+    repeated: u32,
+    duplicates: u64,
+    past: Spent,
+}
+
+impl Core {
+    /// Begins without workers and jobs.
+    pub fn new(mut options: CoreOptions) -> Self {
+        let finished = mem::take(&mut options.finished);
+        Self {
+            options,
+            members: BTreeMap::new(),
+            refused: BTreeSet::new(),
+            jobs: BTreeMap::new(),
+            queue: BTreeSet::new(),
+            storing: BTreeMap::new(),
+            finished,
+            early: BTreeMap::new(),
+            times: policy::Times::default(),
+            counts: Counts::default(),
+            last_call: Duration::ZERO,
+            lonely_since: None,
+            told_lonely: false,
+            closing: false,
+            out: Vec::new(),
+        }
+    }
+
+    /// Takes note of something at a time since any fixed moment; what follows from it must be
+    /// done in order.
+    pub fn handle(&mut self, input: Input, now: Duration) -> Vec<Command> {
+        membership::forgive_stall(self, now);
+        match input {
+            Input::Submit { id, job } => self.submit(id, job, now),
+            Input::Heard { from, message } => membership::heard(self, from, message, now),
+            Input::Stranger { from } => self.send(from, ToWorker::Identify),
+            Input::Gone { worker } => membership::lose(self, worker, "its connection ended", now),
+            Input::Stored { jobs } => result::stored(self, jobs),
+            Input::Tick => {
+                membership::check_silence(self, now);
+                assign::check_overdue(self, now);
+                membership::check_lonely(self, now);
+            }
+            Input::Close => {
+                let members: Vec<WorkerId> = self.members.keys().copied().collect();
+                for to in members {
+                    self.send(to, ToWorker::Ended);
+                }
+                self.closing = true;
+            }
+        }
+        if !self.closing {
+            assign::assign(self, now);
+        }
+        mem::take(&mut self.out)
+    }
+
+    /// Whether the job has its result, stored or about to be.
+    pub fn has_finished(&self, job: JobId) -> bool {
+        self.finished.contains(&job) || self.storing.contains_key(&job)
+    }
+
+    /// Results that are not yet stored.
+    pub fn unstored(&self) -> usize {
+        self.storing.len()
+    }
+
+    /// The state at a time.
+    pub fn snapshot(&self, now: Duration) -> Snapshot {
+        let mut spent = self.counts.past;
+        let mut workers = Vec::with_capacity(self.members.len());
+        for (id, member) in &self.members {
+            spent.add(&membership::account(member, now));
+            workers.push(WorkerSnapshot {
+                id: *id,
+                host: member.announcement.host.clone(),
+                slots: member.announcement.slots,
+                busy: u32::try_from(member.leases.len().min(member.slots())).unwrap_or(u32::MAX),
+                done: member.done,
+            });
+        }
+        Snapshot {
+            workers,
+            queued: self.queue.len(),
+            running: self.jobs.len() - self.queue.len(),
+            done: self.finished.len() + self.storing.len(),
+            lost: self.counts.lost,
+            failed: self.counts.failed,
+            repeated: self.counts.repeated,
+            duplicates: self.counts.duplicates,
+            spent,
+        }
+    }
+
+    fn submit(&mut self, id: JobId, job: Job, now: Duration) {
+        if self.has_finished(id) || self.jobs.contains_key(&id) {
+            return;
+        }
+        let work = work_hash(&job);
+        let pending = Pending {
+            job,
+            work,
+            next: 0,
+            holders: Vec::new(),
+            refused_by: BTreeSet::new(),
+            failures: policy::Failures::default(),
+        };
+        self.jobs.insert(id, pending);
+        self.queue.insert(id);
+        assign::adopt(self, id, now);
+        if let Some((from, done)) = self.early.remove(&id) {
+            result::done(self, from, done, now);
+        }
+    }
+
+    fn send(&mut self, to: WorkerId, message: ToWorker) {
+        self.out.push(Command::Send { to, message });
+    }
+
+    fn notice(&mut self, notice: Notice) {
+        self.out.push(Command::Notice(notice));
+    }
+}
+
+/// The name of a piece of work: the hash of its encoded job.
+pub fn work_hash(job: &Job) -> ContentHash {
+    // a job that cannot be encoded cannot be sent either; all of those share one name
+    ContentHash::of(&wire::encode(job).unwrap_or_default())
+}

@@ -22,11 +22,24 @@ pub enum Job {
     /// Do nothing, return at once: measures the bus.
     Nothing {
         /// Bytes that travel to the worker.
-        #[serde(with = "serde_bytes_vec")]
+        #[serde(with = "byte_string")]
         payload: Vec<u8>,
         /// Bytes that travel back.
         reply_bytes: u32,
+        /// How long the slot is held [ms].
+        delay_ms: u32,
     },
+}
+
+impl Job {
+    /// Name of the kind, as workers announce it.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Score(_) => "score",
+            Self::Simulate(_) => "simulate",
+            Self::Nothing { .. } => "nothing",
+        }
+    }
 }
 
 /// The answer to a [`Job`] that was done.
@@ -37,7 +50,7 @@ pub enum Outcome {
     /// Of [`Job::Simulate`].
     Simulated(Box<Simulation>),
     /// Of [`Job::Nothing`].
-    Nothing(#[serde(with = "serde_bytes_vec")] Vec<u8>),
+    Nothing(#[serde(with = "byte_string")] Vec<u8>),
     /// The job could not be done.
     Failed(Failure),
 }
@@ -85,14 +98,14 @@ impl Failure {
 }
 
 /// `Vec<u8>` as a byte string rather than a sequence of numbers.
-mod serde_bytes_vec {
+pub(crate) mod byte_string {
     use serde::{Deserialize, Deserializer, Serializer};
 
-    pub(super) fn serialize<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
+    pub(crate) fn serialize<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
         to.serialize_bytes(bytes)
     }
 
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {
         Vec::<u8>::deserialize(from)
     }
 }

@@ -19,6 +19,7 @@ pub mod linear;
 pub mod math;
 pub mod model;
 pub mod observe;
+pub mod reference;
 pub mod run;
 pub mod settle;
 pub mod statistics;

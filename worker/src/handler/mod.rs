@@ -7,6 +7,7 @@ mod simulate;
 use crate::convert;
 use protocol::{
     case::Case,
+    id::ContentHash,
     job::{Failure, Job, Outcome},
 };
 use simulation::model::Machine;
@@ -58,10 +59,27 @@ impl Prepared {
 
 /// Does a job that needs no case; `Refused` for any other.
 pub fn nothing(job: &Job) -> Outcome {
-    let Job::Nothing { reply_bytes, .. } = job else {
+    let Job::Nothing {
+        reply_bytes,
+        delay_ms,
+        ..
+    } = job
+    else {
         return Outcome::Failed(Failure::Refused {
-            reason: "this job needs a case".to_owned(),
+            reason: format!("a {} job needs a case", job.kind()),
         });
     };
+    if *delay_ms > 0 {
+        std::thread::sleep(std::time::Duration::from_millis(u64::from(*delay_ms)));
+    }
     Outcome::Nothing(vec![0; *reply_bytes as usize])
+}
+
+/// Names the numerics of this build by the bits of a reference run: equal digests promise equal
+/// results. Takes as long as that run, some hundredths of a second.
+pub fn model_digest() -> String {
+    let (bits, statistics) = simulation::reference::bits();
+    let mut bytes: Vec<u8> = bits.iter().flat_map(|bits| bits.to_le_bytes()).collect();
+    bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
+    ContentHash::of(&bytes).to_string()
 }

@@ -16,6 +16,4 @@ pub use links::{ChainLoads, Instant};
 pub use machine::{InvalidDescription, Machine, Ropes, Scratch};
 
 #[cfg(test)]
-pub(crate) mod example;
-#[cfg(test)]
 mod tests;

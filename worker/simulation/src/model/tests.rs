@@ -1,16 +1,17 @@
-use super::{Instant, Machine, Scratch, example};
+use super::{Instant, Machine, Scratch};
 use crate::drive::Drive;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
+use crate::reference;
 
 fn machine() -> Machine {
-    Machine::new(example::description(), 2).unwrap()
+    Machine::new(reference::description(), 2).unwrap()
 }
 
 /// A state near the working position, disturbed in every coordinate so that nothing vanishes.
 fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
     let layout = machine.layout;
-    let law = example::law();
+    let law = reference::law();
     let drive = Drive {
         start: 1.0,
         ramp: 1.0,
@@ -35,7 +36,7 @@ fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
 #[test]
 fn tangent_is_the_derivative_of_the_forces() {
     let machine = machine();
-    let ropes = machine.ropes(&example::law());
+    let ropes = machine.ropes(&reference::law());
     let layout = machine.layout;
     let (q, v) = disturbed(&machine);
     let drive = Drive {
@@ -146,7 +147,7 @@ fn unit(n: usize, i: usize) -> Vec<f64> {
 #[test]
 fn forces_are_the_gradient_of_the_potential() {
     let machine = machine();
-    let mut law = example::law();
+    let mut law = reference::law();
     // torsion and bending must be equal for an exact potential out of plane
     law.bushing.rotational_stiffness = [308.0; 2];
     let ropes = machine.ropes(&law);

@@ -1,0 +1,59 @@
+//! Initial designs: where to look first, before anything is known.
+use crate::{
+    random::{Phase, Streams},
+    space::Interval,
+};
+
+/// A Latin hypercube: along every axis each of the `count` equal parts of its interval holds
+/// exactly one point. Returns `count` points (decades).
+pub(super) fn latin_hypercube(
+    intervals: &[Interval],
+    count: usize,
+    streams: Streams,
+) -> Vec<Vec<f64>> {
+    let mut points = vec![Vec::with_capacity(intervals.len()); count];
+    for (axis, interval) in intervals.iter().enumerate() {
+        let mut stream = streams.at(0, Phase::Initial, axis);
+        let mut parts: Vec<usize> = (0..count).collect();
+        stream.shuffle(&mut parts);
+        for (point, part) in points.iter_mut().zip(parts) {
+            let share = (part as f64 + stream.unit()) / count as f64;
+            point.push(interval.from + share * interval.length());
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_of_every_axis_is_met_once() {
+        let intervals = [
+            Interval {
+                from: -1.0,
+                to: 1.5,
+            },
+            Interval { from: 0.0, to: 4.0 },
+        ];
+        let points = latin_hypercube(&intervals, 25, Streams::new(3, 0));
+        for (axis, interval) in intervals.iter().enumerate() {
+            let mut seen = [false; 25];
+            for point in &points {
+                let share = (point[axis] - interval.from) / interval.length();
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "a share of 0..25"
+                )]
+                let part = (share * 25.0) as usize;
+                assert!(
+                    !std::mem::replace(&mut seen[part], true),
+                    "part {part} twice"
+                );
+            }
+            assert!(seen.iter().all(|part| *part));
+        }
+    }
+}

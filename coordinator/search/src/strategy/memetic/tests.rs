@@ -1,0 +1,195 @@
+//! What is particular to the memetic algorithm: its costs, its options, exact speculation.
+use super::*;
+use crate::{
+    strategy::{
+        Finish, Settings, Strategy,
+        tests::{Record, run},
+    },
+    test_function::{self, SPHERE, TestFunction},
+};
+
+/// Another reading of the paper.
+type Change = fn(&mut MemeticSettings);
+
+/// Runs the paper's algorithm with changed settings.
+fn search(
+    change: impl Fn(&mut MemeticSettings),
+    function: &TestFunction,
+    seed: u64,
+) -> (Record, MemeticSettings) {
+    let mut settings = MemeticSettings {
+        population: 20,
+        generations: 12,
+        ..MemeticSettings::paper()
+    };
+    change(&mut settings);
+    let space = function.space();
+    let mut strategy = Settings::Memetic(settings.clone())
+        .build(&space, seed)
+        .unwrap();
+    (
+        run(&mut strategy, &|genes| function.tell(&space, genes), None),
+        settings,
+    )
+}
+
+/// The individuals of a generation's children depend on the whole population, elite included: if
+/// they agree in every generation, the elite took the same path.
+fn children(record: &Record) -> Vec<(u32, Vec<f64>)> {
+    let bred = record
+        .asked
+        .iter()
+        .filter(|p| p.purpose == Purpose::Offspring);
+    bred.map(|proposal| (proposal.generation, proposal.genes.clone()))
+        .collect()
+}
+
+#[test]
+fn exact_speculation_takes_the_same_path_as_the_sequential_climb() {
+    for function in test_function::ALL {
+        for seed in 0..6 {
+            let run = |speculation| {
+                let change = |s: &mut MemeticSettings| {
+                    s.speculation = speculation;
+                    s.reuse_clones = false;
+                };
+                search(change, function, seed).0
+            };
+            let (sequential, half, full) = (run(Some(1)), run(Some(7)), run(None));
+            assert_eq!(sequential.asked.len(), 20 + 12 * 40, "{}", function.name);
+            assert!(
+                full.asked.len() > sequential.asked.len(),
+                "{}",
+                function.name
+            );
+            for other in [&half, &full] {
+                assert_eq!(children(&sequential), children(other), "{}", function.name);
+                assert_eq!(sequential.best.genes, other.best.genes);
+                assert_eq!(
+                    sequential.best.fitness.to_bits(),
+                    other.best.fitness.to_bits()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn reuse_of_clones_saves_evaluations_and_changes_nothing_else() {
+    let clones = |s: &mut MemeticSettings| s.mutation_probability = 0.002;
+    let without = search(
+        |s| {
+            clones(s);
+            s.reuse_clones = false;
+        },
+        &SPHERE,
+        9,
+    );
+    let with = search(clones, &SPHERE, 9);
+    assert!(with.0.asked.len() + 20 < without.0.asked.len());
+    assert_eq!(with.0.best.genes, without.0.best.genes);
+    assert_eq!(
+        with.0.best.fitness.to_bits(),
+        without.0.best.fitness.to_bits()
+    );
+}
+
+#[test]
+fn the_paper_costs_what_its_text_implies() {
+    let count = |change: fn(&mut MemeticSettings)| {
+        let space = SPHERE.space();
+        let mut settings = MemeticSettings {
+            reuse_clones: false,
+            ..MemeticSettings::paper()
+        };
+        change(&mut settings);
+        let mut strategy = Settings::Memetic(settings).build(&space, 1).unwrap();
+        let (mut batches, mut evaluations) = (0, 0);
+        while strategy.finished().is_none() {
+            let batch = strategy.ask();
+            batches += 1;
+            evaluations += batch.len();
+            for proposal in batch {
+                strategy.tell(proposal.id, SPHERE.tell(&space, &proposal.genes));
+            }
+        }
+        (evaluations, batches)
+    };
+    assert_eq!(count(|s| s.speculation = Some(1)), (6_080, 1_261));
+    assert_eq!(
+        count(|s| *s = MemeticSettings {
+            reuse_clones: false,
+            ..MemeticSettings::paper_batch()
+        }),
+        (9_680, 121)
+    );
+    assert_eq!(count(|s| s.climbers = Climbers::All), (14_480, 181));
+    let (evaluations, batches) = count(|_| {});
+    assert!((6_081..8_000).contains(&evaluations), "{evaluations}");
+    assert!((121..350).contains(&batches), "{batches}");
+}
+
+#[test]
+fn every_reading_of_the_paper_finds_the_sphere() {
+    let readings: &[(&str, Change)] = &[
+        ("gray", |s| s.encoding = Encoding::Gray),
+        ("real", |s| s.encoding = Encoding::Real),
+        ("inverse plus one", |s| {
+            s.roulette = Roulette::InversePlusOne;
+        }),
+        ("difference", |s| s.roulette = Roulette::Difference),
+        ("rank", |s| s.roulette = Roulette::Rank),
+        ("one point", |s| s.crossover = Crossover::OnePoint),
+        ("per gene", |s| s.mutation_unit = MutationUnit::Gene),
+        ("per individual", |s| {
+            s.mutation_unit = MutationUnit::Individual;
+        }),
+        ("even", |s| s.special_crossover = SpecialCrossover::Even),
+        ("two bits", |s| s.flipped_bits = FlippedBits::Fixed(2)),
+        ("all climb", |s| s.climbers = Climbers::All),
+        ("literal", |s| s.climbers = Climbers::Literal),
+        ("best of batch", |s| s.acceptance = Acceptance::BestOfBatch),
+        ("plus", |s| s.survival = Survival::Plus),
+    ];
+    for (name, change) in readings {
+        let long = |s: &mut MemeticSettings| {
+            s.generations = 40;
+            change(s);
+        };
+        let (record, settings) = search(long, &SPHERE, 17);
+        let first = record.told[..settings.population].iter();
+        let first = first.map(|told| told.fitness).fold(f64::MAX, f64::min);
+        let last = record.best.fitness;
+        assert!(
+            last < 0.5 * first && last < 0.6,
+            "{name}: {first} became {last}"
+        );
+        let text = serde_json::to_string(&Settings::Memetic(settings.clone())).unwrap();
+        let back: Settings = serde_json::from_str(&text).unwrap();
+        assert_eq!(back, Settings::Memetic(settings), "{name}");
+    }
+}
+
+#[test]
+fn a_linear_scale_starts_in_the_highest_decade() {
+    let (record, settings) = search(|s| s.scale = Scale::Linear, &SPHERE, 1);
+    let space = SPHERE.space();
+    let first = &record.asked[..settings.population];
+    let points = first
+        .iter()
+        .flat_map(|proposal| space.decades(&proposal.genes));
+    let high = points.filter(|x| *x > 3.0).count();
+    assert!(
+        high * 10 > settings.population * space.dimension() * 8,
+        "{high}"
+    );
+}
+
+#[test]
+fn the_threshold_ends_the_search() {
+    let (record, _) = search(|s| s.threshold = Some(0.5), &SPHERE, 1);
+    assert_eq!(record.finish, Finish::Threshold);
+    assert!(record.best.fitness <= 0.5);
+    let before = search(|_| {}, &SPHERE, 1).0.asked.len();
+    assert!(record.asked.len() < before);
+}

@@ -1,0 +1,193 @@
+//! Line scans: one gene is moved over a grid, everything else stays.
+//!
+//! A narrow valley that no random step meets is found by brute force along the one axis that is
+//! known to be narrow. All stations are independent, so any number of workers is busy at once.
+use super::{Archive, Batch, Draft, Evaluated, Piece, Purpose, SettingsError, require};
+use crate::space::Space;
+use serde::{Deserialize, Serialize};
+
+/// What the grid is laid around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Center {
+    /// The recommended value of the scanned gene.
+    Recommended,
+    /// The value that the point has.
+    Point,
+}
+
+/// A gene that is moved away from the point's value, for a whole line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Shift {
+    /// Position of the gene in the case.
+    pub gene: usize,
+    /// Offset from the point's value (decades).
+    pub by: f64,
+}
+
+/// A line scan.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ScanSettings {
+    /// Position of the scanned gene in the case.
+    pub gene: usize,
+    /// What the grid is laid around.
+    pub center: Center,
+    /// How far below the centre it begins (decades).
+    pub below: f64,
+    /// How far above the centre it ends (decades).
+    pub above: f64,
+    /// Spacing (decades); a valley narrower than twice this may be missed.
+    pub step: f64,
+    /// How many of the best points are scanned.
+    pub points: usize,
+    /// How far apart those points are at least, in any gene but the scanned one (decades).
+    pub apart: f64,
+    /// The lines through and beside each point, each with its shifts; at least one.
+    pub lines: Vec<Vec<Shift>>,
+}
+
+impl ScanSettings {
+    /// Stations per line.
+    fn stations(&self) -> usize {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "checked: positive and not above 100,000"
+        )]
+        let intervals = ((self.below + self.above) / self.step).round() as usize;
+        intervals + 1
+    }
+
+    /// # Errors
+    /// If a setting lies outside its range.
+    pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
+        let known = |gene: usize| gene < space.dimension();
+        require(
+            known(self.gene),
+            "scan gene",
+            self.gene as f64,
+            "the position of a gene",
+        )?;
+        let length = self.below + self.above;
+        require(
+            length > 0.0 && length <= 20.0,
+            "scan length",
+            length,
+            "above 0, at most 20",
+        )?;
+        require(self.step >= 2e-4, "scan step", self.step, "at least 0.0002")?;
+        require(!self.lines.is_empty(), "scan lines", 0.0, "at least 1")?;
+        for shift in self.lines.iter().flatten() {
+            let gene = shift.gene;
+            require(
+                known(gene),
+                "shifted gene",
+                gene as f64,
+                "the position of a gene",
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// A line scan as a piece of a strategy.
+pub struct Scan {
+    settings: ScanSettings,
+    space: Space,
+    done: bool,
+    /// Stations that are being evaluated.
+    running: usize,
+}
+
+impl Scan {
+    /// # Errors
+    /// If a setting lies outside its range.
+    pub fn new(settings: ScanSettings, space: &Space) -> Result<Self, SettingsError> {
+        settings.check(space)?;
+        Ok(Self {
+            settings,
+            space: space.clone(),
+            done: false,
+            running: 0,
+        })
+    }
+
+    /// The best points that differ enough from each other (decades).
+    fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
+        let mut bases: Vec<Vec<f64>> = Vec::new();
+        for entry in archive.ranked() {
+            let point = self.space.decades(&entry.genes);
+            let far = |base: &Vec<f64>| {
+                let pairs = base.iter().zip(&point).enumerate();
+                let others = pairs.filter(|(axis, _)| *axis != self.settings.gene);
+                others.fold(0.0, |far: f64, (_, (a, b))| far.max((a - b).abs()))
+                    >= self.settings.apart
+            };
+            if bases.iter().all(far) {
+                bases.push(point);
+            }
+            if bases.len() >= self.settings.points {
+                break;
+            }
+        }
+        bases
+    }
+}
+
+impl Piece for Scan {
+    fn plan(&mut self, archive: &Archive) -> Option<Batch> {
+        if std::mem::replace(&mut self.done, true) {
+            return None;
+        }
+        let ScanSettings {
+            gene,
+            center,
+            below,
+            step,
+            ..
+        } = self.settings;
+        let mut drafts = Vec::new();
+        for base in self.bases(archive) {
+            let middle = match center {
+                Center::Recommended => 0.0,
+                Center::Point => base[gene],
+            };
+            for shifts in &self.settings.lines {
+                for station in 0..self.settings.stations() {
+                    let mut point = base.clone();
+                    for shift in shifts {
+                        point[shift.gene] += shift.by;
+                    }
+                    point[gene] = middle - below + step * station as f64;
+                    let genes = self.space.values(&point);
+                    drafts.push(Draft {
+                        genes,
+                        purpose: Purpose::Scan,
+                    });
+                }
+            }
+        }
+        self.running = drafts.len();
+        (!drafts.is_empty()).then_some(Batch {
+            generation: 1,
+            drafts,
+        })
+    }
+
+    fn absorb(&mut self, _results: &[Evaluated]) {
+        self.running = 0;
+    }
+
+    fn generations(&self) -> u32 {
+        1
+    }
+
+    fn remaining(&self) -> u64 {
+        if self.done {
+            return self.running as u64;
+        }
+        (self.settings.points * self.settings.lines.len() * self.settings.stations()) as u64
+    }
+}

@@ -1,0 +1,221 @@
+//! Functions with known minima, to hold strategies to.
+//!
+//! Points are in decades from the recommended value, over +-4 decades. All minima are 0.
+use crate::{
+    space::{Space, SpaceError},
+    strategy::Told,
+};
+use protocol::case::{Gene, GeneName};
+
+/// A function with a known minimum of 0.
+#[derive(Clone, Copy, Debug)]
+pub struct TestFunction {
+    /// Its name.
+    pub name: &'static str,
+    /// Where its minimum lies (decades); at most 10 genes.
+    pub optimum: &'static [f64],
+    value: fn(&[f64], &[f64]) -> Told,
+}
+
+/// Every published function.
+pub const ALL: &[TestFunction] = &[SPHERE, RASTRIGIN, CLIFF, RESONANCE];
+
+/// Sum of squares: one basin, all genes alike.
+pub const SPHERE: TestFunction = TestFunction {
+    name: "sphere",
+    optimum: &[0.7, -1.3, 0.2, 1.9],
+    value: sphere,
+};
+
+/// Sum of squares with a ripple of half a decade: hundreds of basins.
+pub const RASTRIGIN: TestFunction = TestFunction {
+    name: "rastrigin",
+    optimum: &[0.7, -1.3, 0.2, 1.9],
+    value: rastrigin,
+};
+
+/// Sum of squares where everything farther than 2.5 decades from the minimum fails, with a grade.
+pub const CLIFF: TestFunction = TestFunction {
+    name: "cliff",
+    optimum: &[0.7, -1.3, 0.2, 1.9],
+    value: cliff,
+};
+
+/// Two resonators under a comb of harmonics, like a rope under a load card: a valley in axial
+/// stiffness about 0.02 decade wide, on a plateau on which too much damping pays.
+pub const RESONANCE: TestFunction = TestFunction {
+    name: "resonance",
+    optimum: &[0.4, 0.26, 0.27, 0.35, 3.0, 1.03, 0.05, 0.15, 2.6, 1.31],
+    value: resonance,
+};
+
+impl TestFunction {
+    /// The same function with its minimum elsewhere.
+    #[must_use]
+    pub const fn moved(self, optimum: &'static [f64]) -> Self {
+        Self { optimum, ..self }
+    }
+
+    /// Its space: genes named and measured as those of a rope, +-4 decades wide.
+    ///
+    /// # Panics
+    /// Never: the bounds are ordered.
+    pub fn space(&self) -> Space {
+        let gene = |(name, scale): (GeneName, f64)| Gene {
+            name,
+            unit: name.si_unit(),
+            recommended: scale,
+            lower: 1e-4 * scale,
+            upper: 1e4 * scale,
+        };
+        let scales = [
+            3.14e8, 1.25e8, 110.0, 137.0, 400.0, 410.0, 40.0, 41.0, 1e6, 50.0,
+        ];
+        let genes: Vec<Gene> = GeneName::ALL
+            .into_iter()
+            .zip(scales)
+            .take(self.optimum.len())
+            .map(gene)
+            .collect();
+        let space: Result<Space, SpaceError> = Space::new(&genes);
+        space.expect("ordered bounds about positive values")
+    }
+
+    /// Its result at gene values [declared units of [`Self::space`]].
+    pub fn tell(&self, space: &Space, genes: &[f64]) -> Told {
+        (self.value)(&space.decades(genes), self.optimum)
+    }
+}
+
+fn complete(fitness: f64) -> Told {
+    Told {
+        fitness,
+        complete: true,
+    }
+}
+
+fn sphere(x: &[f64], optimum: &[f64]) -> Told {
+    complete(x.iter().zip(optimum).map(|(x, o)| (x - o) * (x - o)).sum())
+}
+
+fn rastrigin(x: &[f64], optimum: &[f64]) -> Told {
+    let ripple = |d: f64| d * d + 0.5 - 0.5 * libm::cos(4.0 * std::f64::consts::PI * d);
+    complete(x.iter().zip(optimum).map(|(x, o)| ripple(x - o)).sum())
+}
+
+fn cliff(x: &[f64], optimum: &[f64]) -> Told {
+    let told = sphere(x, optimum);
+    let distance = libm::sqrt(told.fitness);
+    if distance > 2.5 {
+        Told {
+            fitness: 1e6 * distance,
+            complete: false,
+        }
+    } else {
+        told
+    }
+}
+
+/// The difference of two steady responses, as a mean square.
+///
+/// The load excites two rope modes near the 60th and 80th harmonic of the crank. Their frequency
+/// follows axial stiffness and contact stiffness in series, their damping the axial damping. The
+/// response is `H_n = 1 / (1 - r^2 + 2 i zeta r)`, `r = n / order`, and the fitness the sum over
+/// harmonics of `a_n^2 |H_n - H*_n|^2 / 2`: a valley about 0.02 decade wide in axial stiffness,
+/// and a plateau near 0.3 on which too much damping pays. Bending matters a little, the other
+/// genes not at all; far from the recommendation the simulation fails.
+fn resonance(x: &[f64], optimum: &[f64]) -> Told {
+    let limits = [
+        (0, -1.2, 2.2),
+        (3, -3.0, 2.5),
+        (7, -3.0, 3.3),
+        (8, -1.0, 3.9),
+        (4, -3.0, 3.95),
+    ];
+    let beyond = limits
+        .iter()
+        .map(|&(gene, low, high)| (low - x[gene]).max(x[gene] - high))
+        .fold(0.0, f64::max);
+    if beyond > 0.0 {
+        return Told {
+            fitness: 1e6 * (1.0 + beyond),
+            complete: false,
+        };
+    }
+    let (here, truth) = (modes(x), modes(optimum));
+    let mut sum = 0.0;
+    for n in 1..=240 {
+        let n = f64::from(n);
+        for (mode, truth) in here.iter().zip(&truth) {
+            let (re, im) = response(n, *mode);
+            let (re_0, im_0) = response(n, *truth);
+            let square = (re - re_0) * (re - re_0) + (im - im_0) * (im - im_0);
+            sum += square / (n * n);
+        }
+    }
+    let sink = libm::exp10(-x[8] / 1.5) - libm::exp10(-optimum[8] / 1.5);
+    let bending = (x[3] - optimum[3]).clamp(-1.0, 1.0);
+    complete(0.11 * sum + 0.05 * sink * sink + 0.02 * bending * bending)
+}
+
+/// Order [harmonics of the crank] and damping ratio of both modes.
+fn modes(x: &[f64]) -> [(f64, f64); 2] {
+    let compliance = libm::exp10(0.4 - x[0]) + 0.015 * libm::exp10((2.6 - x[8]) / 1.5);
+    let root = libm::sqrt(1.015 / compliance);
+    [60.0, 80.0].map(|order| {
+        let relative = order / 60.0 * libm::exp10(x[4] - 3.0 - (x[0] - 0.4) / 2.0);
+        (order * root, 0.003 + 0.012 * relative)
+    })
+}
+
+fn response(n: f64, (order, damping): (f64, f64)) -> (f64, f64) {
+    let ratio = n / order;
+    let (re, im) = (1.0 - ratio * ratio, 2.0 * damping * ratio);
+    let square = re * re + im * im;
+    (re / square, -im / square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_minimum_is_where_it_is_said_to_be() {
+        for function in ALL {
+            let space = function.space();
+            let at = |point: &[f64]| function.tell(&space, &space.values(point));
+            let least = at(function.optimum);
+            assert!(least.complete && least.fitness < 1e-12, "{}", function.name);
+            for axis in 0..space.dimension() {
+                for step in [-0.01, 0.01] {
+                    let mut point = function.optimum.to_vec();
+                    point[axis] += step;
+                    assert!(
+                        at(&point).fitness >= least.fitness,
+                        "{} {axis}",
+                        function.name
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_resonance_has_a_narrow_valley_on_a_plateau() {
+        let space = RESONANCE.space();
+        let along = |axis: usize, step: f64| {
+            let mut point = RESONANCE.optimum.to_vec();
+            point[axis] += step;
+            RESONANCE.tell(&space, &space.values(&point)).fitness
+        };
+        for side in [-1.0, 1.0] {
+            assert!((0.05..0.15).contains(&along(0, side * 0.02)));
+            assert!((0.15..0.25).contains(&along(0, side * 0.04)));
+            assert!((0.25..0.40).contains(&along(0, side * 0.1)));
+        }
+        assert!((0.2..0.4).contains(&along(0, 0.3)));
+        assert!(along(4, 0.4) < 0.06 && along(4, -0.4) < 0.11);
+        assert!(along(8, 0.4) < 0.02 && along(8, -0.4) < 0.03);
+        assert!(RESONANCE.tell(&space, &space.values(&[0.0; 10])).fitness > 1.0);
+    }
+}

@@ -1,0 +1,188 @@
+//! Joins the commands to the dispatcher: the only file of the command line that names it.
+use super::json::{BenchOutput, RoundTrip};
+use crate::{
+    runtime::{self, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
+    study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
+};
+use link::memory::{Faults, Hub};
+use protocol::{
+    case::Case,
+    id::{ContentHash, JobId},
+    job::Job,
+    wire,
+};
+use std::path::PathBuf;
+
+/// Name and version of this program.
+pub(super) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
+
+/// How to open the bus.
+pub(super) struct Options {
+    /// Folder of the journal.
+    pub(super) run_dir: PathBuf,
+    /// Where other machines may connect.
+    pub(super) listen: Option<String>,
+    /// Whether they may do so without certificates.
+    pub(super) insecure: bool,
+    /// Worker processes to start here.
+    pub(super) local_workers: usize,
+    /// Which command the run belongs to.
+    pub(super) kind: String,
+    /// Canonical JSON of everything that decides the result.
+    pub(super) settings: String,
+}
+
+impl Options {
+    fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
+        Ok(DispatchOptions {
+            run_dir: self.run_dir,
+            listen: self.listen,
+            insecure: self.insecure,
+            local_workers: self.local_workers,
+            case: case.clone(),
+            header: RunHeader {
+                kind: self.kind,
+                case: content_hash(case)?,
+                settings: self.settings,
+            },
+        })
+    }
+}
+
+/// The dispatcher, as an evaluator.
+pub(super) struct Bus {
+    dispatch: Dispatch,
+}
+
+impl Bus {
+    /// Opens or resumes the journal and starts local workers.
+    pub(super) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
+        let options = options.for_dispatch(case)?;
+        let dispatch = Dispatch::open(options)
+            .await
+            .map_err(|error| explain(&error))?;
+        Ok(Self { dispatch })
+    }
+
+    /// Opens the journal without anybody who could evaluate: only recorded results come back.
+    /// Needs a running asynchronous runtime.
+    pub(super) fn replay(options: Options, case: &Case) -> anyhow::Result<Self> {
+        let options = options.for_dispatch(case)?;
+        let dispatch = Dispatch::over(&options, |_, blob| Hub::new(Faults::NONE, blob).0);
+        Ok(Self {
+            dispatch: dispatch.map_err(|error| explain(&error))?,
+        })
+    }
+
+    /// Tells the workers to end and waits for the local ones.
+    pub(super) async fn close(self) -> anyhow::Result<()> {
+        self.dispatch
+            .close()
+            .await
+            .map_err(|error| explain(&error))?;
+        Ok(())
+    }
+}
+
+impl Evaluator for Bus {
+    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError> {
+        self.dispatch
+            .submit(JobId(id), job)
+            .map_err(|error| explain(&error))
+    }
+
+    async fn next(&mut self) -> Result<Completed, EvaluatorError> {
+        let completed = self
+            .dispatch
+            .next()
+            .await
+            .map_err(|error| explain(&error))?;
+        Ok(Completed {
+            id: completed.id.0,
+            outcome: completed.outcome,
+            replayed: completed.replayed,
+        })
+    }
+
+    fn crew(&self) -> Crew {
+        crew(self.dispatch.snapshot())
+    }
+}
+
+fn crew(snapshot: Snapshot) -> Crew {
+    let workers = snapshot.workers.into_iter().map(|worker| WorkerStatus {
+        name: worker.id.to_string(),
+        host: worker.host,
+        attached: true,
+        slots: worker.slots,
+        busy: worker.busy,
+        done: worker.done,
+        ..WorkerStatus::default()
+    });
+    Crew {
+        workers: workers.collect(),
+        queued: snapshot.queued,
+        running: snapshot.running,
+    }
+}
+
+fn explain(error: &DispatchError) -> EvaluatorError {
+    EvaluatorError {
+        message: error.to_string(),
+        help: None,
+    }
+}
+
+fn content_hash(case: &Case) -> anyhow::Result<ContentHash> {
+    Ok(ContentHash::of(&wire::encode(case)?))
+}
+
+/// The name of a case's content, in hexadecimal digits.
+pub(super) fn case_hash(case: &Case) -> anyhow::Result<String> {
+    Ok(content_hash(case)?.to_string())
+}
+
+/// Runs a future to its end on a runtime of its own.
+pub(super) fn block_on<T>(future: impl Future<Output = anyhow::Result<T>>) -> anyhow::Result<T> {
+    tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()?
+        .block_on(future)
+}
+
+/// Measures the dispatcher with no-op jobs, in a scratch folder.
+pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOutput> {
+    let scratch = tempfile::tempdir()?;
+    let options = Options {
+        run_dir: scratch.path().to_owned(),
+        listen: None,
+        insecure: false,
+        local_workers: workers,
+        kind: "bench".to_owned(),
+        settings: "{}".to_owned(),
+    };
+    let options = options.for_dispatch(&empty_case()?)?;
+    let result = runtime::bench(options, jobs as u64)
+        .await
+        .map_err(|error| explain(&error))?;
+    Ok(BenchOutput {
+        workers: result.workers,
+        jobs: result.jobs,
+        rtt_ms: RoundTrip {
+            median: result.rtt_median_ms,
+            p99: result.rtt_p99_ms,
+        },
+        jobs_per_s: result.jobs_per_s,
+        coordinator_cpu_us_per_job: result.coordinator_cpu_us_per_job,
+        coordinator_rss_mib: result.coordinator_rss_mib,
+    })
+}
+
+/// A case in which everything is zero or empty: jobs that do nothing need no more. Its encoding
+/// is a row of zeros, whose length depends on the version of the case.
+fn empty_case() -> anyhow::Result<Case> {
+    let zeros = [0; 4096];
+    (1..zeros.len())
+        .find_map(|length| wire::decode(&zeros[..length]).ok())
+        .ok_or_else(|| anyhow::anyhow!("this version of the case cannot be all zeros"))
+}

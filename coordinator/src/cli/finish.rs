@@ -1,0 +1,306 @@
+//! From a run folder to its result: the search (or its replay), the comparison, the files.
+use super::{
+    Output, bus,
+    json::{self, Both, CalibrateOutput},
+    output,
+    run_folder::{Manifest, RunFolder, gene_file},
+};
+use crate::{
+    report::{
+        self, Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, WorkerUse,
+        table,
+    },
+    study::{self, Calibrated, Compared, Crew, Curves, Evaluator as _, Observe, Stop, Wanted},
+};
+use protocol::{
+    case::Case,
+    job::{Counters, Evaluation},
+};
+use search::{
+    space::Space,
+    strategy::{Finish, Settings, Strategy as _},
+};
+use std::{collections::BTreeMap, time::Instant};
+
+/// One session of a run.
+pub(super) struct Session<'a> {
+    pub(super) folder: &'a RunFolder,
+    pub(super) manifest: &'a Manifest,
+    pub(super) case: &'a Case,
+    /// Wall time of earlier sessions (s).
+    pub(super) earlier_s: f64,
+    pub(super) started: Instant,
+    pub(super) listen: Option<String>,
+    pub(super) insecure: bool,
+    /// Worker processes to start here.
+    pub(super) local_workers: usize,
+    /// Whether nothing is to be computed.
+    pub(super) replay: bool,
+}
+
+/// What a session found.
+pub(super) struct Found {
+    calibrated: Calibrated,
+    /// The calibrated condition first.
+    compared: Vec<Compared>,
+    crew: Crew,
+}
+
+impl Session<'_> {
+    /// Wall time of all sessions (s).
+    pub(super) fn wall_s(&self) -> f64 {
+        self.earlier_s + self.started.elapsed().as_secs_f64()
+    }
+
+    /// Searches, then compares recommended and best individual under every recorded condition.
+    /// What the journal holds is not computed again.
+    pub(super) async fn run(
+        &self,
+        observer: &mut dyn Observe,
+        stop: &mut Stop,
+    ) -> anyhow::Result<Found> {
+        let space = Space::new(&self.case.genes)?;
+        let settings: &Settings = &self.manifest.settings;
+        let mut strategy = settings
+            .build(&space, self.manifest.seed)
+            .map_err(study::StudyError::from)?;
+        let options = bus::Options {
+            run_dir: self.folder.path().to_owned(),
+            listen: self.listen.clone(),
+            insecure: self.insecure,
+            local_workers: self.local_workers,
+            kind: "calibrate".to_owned(),
+            settings: self.manifest.settings_json()?,
+        };
+        let mut bus = if self.replay {
+            bus::Bus::replay(options, self.case)?
+        } else {
+            bus::Bus::open(options, self.case).await?
+        };
+        let found = self.work(&mut bus, &mut strategy, observer, stop).await;
+        let closed = bus.close().await;
+        let found = found?;
+        closed?;
+        Ok(found)
+    }
+
+    async fn work(
+        &self,
+        bus: &mut bus::Bus,
+        strategy: &mut search::strategy::Conductor,
+        observer: &mut dyn Observe,
+        stop: &mut Stop,
+    ) -> Result<Found, study::StudyError> {
+        let calibrated = study::calibrate(bus, self.case, strategy, observer, stop).await?;
+        debug_assert!(
+            strategy.finished().is_some(),
+            "a calibration ends with its search"
+        );
+        let wanted = comparison(self.case, &calibrated.best.genes);
+        let compared = study::compare(bus, self.case, &wanted, stop).await?;
+        Ok(Found {
+            calibrated,
+            compared,
+            crew: bus.crew(),
+        })
+    }
+}
+
+/// Recommended and best individual under every condition with a record, the calibrated one first
+/// and with the moving machine.
+fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
+    let calibrated = case.objective.condition;
+    let recorded = |index: &usize| case.conditions[*index].record.is_some();
+    let others = (0..case.conditions.len())
+        .filter(|index| *index != calibrated)
+        .filter(recorded);
+    std::iter::once(calibrated)
+        .chain(others)
+        .map(|condition| Wanted {
+            condition,
+            individuals: pair(case, best),
+            motion_step_deg: if condition == calibrated { 3.0 } else { 0.0 },
+        })
+        .collect()
+}
+
+/// The two parameter sets of the paper's tables.
+pub(super) fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
+    vec![
+        ("recommended".to_owned(), case.recommended()),
+        ("optimised".to_owned(), best.to_vec()),
+    ]
+}
+
+/// The report's form of one comparison of recommended and optimised.
+pub(super) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
+    let [recommended, optimised] = compared.individuals.as_slice() else {
+        return None;
+    };
+    Some(ConditionResult {
+        condition: compared.condition,
+        recommended: report_run(recommended),
+        optimised: report_run(optimised),
+    })
+}
+
+fn report_run(curves: &Curves) -> Run {
+    let unscored = || Evaluation {
+        verdict: curves.simulation.verdict,
+        fitness: f64::NAN,
+        channels: Vec::new(),
+        residual_mpa: Vec::new(),
+        counters: Counters::default(),
+    };
+    Run {
+        evaluation: curves.evaluation.clone().unwrap_or_else(unscored),
+        simulation: curves.simulation.clone(),
+    }
+}
+
+/// Writes the files of a finished run and prints its result.
+pub(super) fn show(session: &Session<'_>, found: &Found, output: Output) -> anyhow::Result<()> {
+    let calibration = calibration(session, found)?;
+    let folder = session.folder;
+    let about = format!(
+        "Calibrated parameters of {}: preset {}, seed {}, log {}",
+        session.case.name,
+        session.manifest.preset,
+        session.manifest.seed,
+        calibration.provenance.digest
+    );
+    let genes = gene_file(session.case, &found.calibrated.best.genes, &about);
+    folder.write("calibrated.toml", &genes)?;
+    let mut files: Vec<String> = report::write_calibration(folder.path(), &calibration)?
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
+    files.push(folder.file("calibrated.toml").display().to_string());
+    files.push(folder.file("result.json").display().to_string());
+    let object = result_object(session, found, files);
+    folder.write_json("result.json", &object)?;
+    output::tell(&format!(
+        "open {}\nparameters in {}",
+        folder.file("report.html").display(),
+        folder.file("calibrated.toml").display()
+    ));
+    output::print(output, || tables(&calibration), &object)
+}
+
+fn tables(calibration: &Calibration) -> String {
+    let styled = output::styled();
+    let mut text = table::text(&table::table_3(calibration), styled);
+    for result in &calibration.conditions {
+        if result.condition != calibration.case.objective.condition {
+            text.push('\n');
+            text.push_str(&table::text(
+                &table::table_4(&calibration.case, result),
+                styled,
+            ));
+        }
+    }
+    text
+}
+
+fn result_object<'a>(
+    session: &Session<'a>,
+    found: &Found,
+    files: Vec<String>,
+) -> CalibrateOutput<'a> {
+    let case = session.case;
+    let log = &found.calibrated.log;
+    let mut calibrated = json::ConditionOutput {
+        objective: Both {
+            recommended: None,
+            optimised: None,
+        },
+        channels: BTreeMap::new(),
+    };
+    let mut other_conditions = BTreeMap::new();
+    for compared in &found.compared {
+        let [recommended, optimised] = compared.individuals.as_slice() else {
+            continue;
+        };
+        let scores = json::condition(recommended, optimised);
+        if compared.condition == case.objective.condition {
+            calibrated = scores;
+        } else {
+            other_conditions.insert(case.conditions[compared.condition].name.clone(), scores);
+        }
+    }
+    CalibrateOutput {
+        run: session.folder.path().display().to_string(),
+        case: &case.name,
+        preset: &session.manifest.preset,
+        seed: session.manifest.seed,
+        evaluations: log.len(),
+        failed_simulations: log.failed(),
+        wall_s: session.wall_s(),
+        genes: json::genes(case, &found.calibrated.best.genes),
+        objective: calibrated.objective,
+        channels: calibrated.channels,
+        other_conditions,
+        log_digest: log.digest(),
+        files,
+    }
+}
+
+fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibration> {
+    let case = session.case;
+    let Calibrated { best, finish, log } = &found.calibrated;
+    let mut notes = session.manifest.notes.clone();
+    if !best.complete {
+        notes.push("no individual completed its simulation".to_owned());
+    }
+    let history = log.entries().map(|entry| HistoryPoint {
+        id: entry.id,
+        generation: entry.generation,
+        purpose: entry.purpose.as_str().to_owned(),
+        genes: entry.genes.clone(),
+        fitness: entry.fitness,
+        complete: entry.ending == study::Ending::Complete,
+        failure: entry.ending.failure(),
+    });
+    Ok(Calibration {
+        case: case.clone(),
+        provenance: Provenance {
+            program: session.manifest.program.clone(),
+            command: session.manifest.command.clone(),
+            run: session.folder.path().display().to_string(),
+            case_hash: bus::case_hash(case)?,
+            measured_name: session.manifest.measured.clone(),
+            preset: Some(session.manifest.preset.clone()),
+            seed: Some(session.manifest.seed),
+            digest: log.digest(),
+        },
+        recommended: Individual {
+            id: None,
+            genes: case.recommended(),
+        },
+        optimised: Individual {
+            id: Some(best.id),
+            genes: best.genes.clone(),
+        },
+        history: history.collect(),
+        workers: found.crew.workers.iter().map(worker_use).collect(),
+        wall_s: session.wall_s(),
+        finish: match finish {
+            Finish::Planned => "everything that was planned has been evaluated".to_owned(),
+            Finish::Threshold => "the fitness threshold was reached".to_owned(),
+        },
+        conditions: found.compared.iter().filter_map(condition_result).collect(),
+        notes,
+    })
+}
+
+fn worker_use(worker: &study::WorkerStatus) -> WorkerUse {
+    WorkerUse {
+        name: worker.name.clone(),
+        host: worker.host.clone(),
+        slots: worker.slots,
+        done: worker.done,
+        failed: worker.failed,
+        busy_s: worker.busy_s,
+        present_s: worker.present_s,
+    }
+}

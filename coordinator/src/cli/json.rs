@@ -1,0 +1,341 @@
+//! What `--output json` prints: exactly one object per command. The fields are a contract with
+//! other programs; more may be added, none renamed. Numbers that are not finite become `null`.
+use crate::study::{Curves, simulation_digest};
+use protocol::{
+    case::Case,
+    job::{Evaluation, Reached, Simulation, Verdict},
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Of `horsehead simulate`.
+#[derive(Debug, Serialize)]
+pub(super) struct SimulateOutput<'a> {
+    /// Name of the machine.
+    pub(super) case: &'a str,
+    /// Name of the condition.
+    pub(super) condition: &'a str,
+    /// `"complete"`, or what happened and how far it got.
+    pub(super) verdict: VerdictOutput,
+    /// Time on the worker (s).
+    pub(super) wall_s: f64,
+    /// Work that was done.
+    pub(super) counters: CountersOutput,
+    /// Gene values by name.
+    pub(super) genes: BTreeMap<&'static str, GeneOutput>,
+    /// Objective `MPa^2`; null without a record or a complete run.
+    pub(super) objective: Option<f64>,
+    /// Agreement by gauge number; empty without a record.
+    pub(super) channels: BTreeMap<String, ChannelOutput>,
+    /// Crank angle from bottom dead centre (deg).
+    pub(super) crank_deg: &'a [f64],
+    /// Stress by gauge number `MPa`.
+    pub(super) gauge_mpa: BTreeMap<String, &'a [f64]>,
+    /// Tension of the back rope at the crossbeam (N).
+    pub(super) rope_tension_n: &'a [f64],
+    /// Tension of the front rope at the suspension (N).
+    pub(super) front_rope_tension_n: &'a [f64],
+    /// Beam angle (deg).
+    pub(super) beam_deg: &'a [f64],
+    /// Suspension height above its lowest design position (m).
+    pub(super) suspension_m: &'a [f64],
+    /// Net torque at the crank shaft (N m).
+    pub(super) crank_torque_nm: &'a [f64],
+    /// Energy of the revolution.
+    pub(super) energy: EnergyOutput,
+    /// Hash of all result bits.
+    pub(super) digest: String,
+}
+
+/// How a simulation ended.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(super) enum VerdictOutput {
+    /// `"complete"`.
+    Complete(&'static str),
+    /// It failed while the static load was applied.
+    Settling {
+        /// What happened.
+        kind: &'static str,
+        /// Share of the load that was applied.
+        load_fraction: f64,
+    },
+    /// It failed in motion.
+    Moving {
+        /// What happened.
+        kind: &'static str,
+        /// Share of the simulated time that was reached.
+        time_fraction: f64,
+    },
+}
+
+impl From<Verdict> for VerdictOutput {
+    fn from(verdict: Verdict) -> Self {
+        match verdict {
+            Verdict::Complete => Self::Complete("complete"),
+            Verdict::Failed {
+                kind,
+                reached: Reached::LoadFraction(load_fraction),
+            } => Self::Settling {
+                kind: kind.as_str(),
+                load_fraction,
+            },
+            Verdict::Failed {
+                kind,
+                reached: Reached::TimeFraction(time_fraction),
+            } => Self::Moving {
+                kind: kind.as_str(),
+                time_fraction,
+            },
+        }
+    }
+}
+
+/// Work counters.
+#[derive(Debug, Serialize)]
+pub(super) struct CountersOutput {
+    steps: u64,
+    rejected_steps: u64,
+    newton_iterations: u64,
+    jacobians: u64,
+    factorizations: u64,
+}
+
+/// Energy over the recorded revolution (J).
+#[derive(Debug, Serialize)]
+pub(super) struct EnergyOutput {
+    input_j: f64,
+    output_j: f64,
+    dissipated_j: f64,
+    stored_j: f64,
+    relative_error: f64,
+}
+
+/// A gene with its interval, in its declared unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct GeneOutput {
+    value: f64,
+    unit: &'static str,
+    recommended: f64,
+    lower: f64,
+    upper: f64,
+}
+
+/// Agreement of one gauge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct ChannelOutput {
+    mse_mpa2: f64,
+    relative_error: f64,
+    rmse_over_half_range: f64,
+    mse_fixed_offset_mpa2: f64,
+    offset_mpa: f64,
+    peak_to_peak_error: f64,
+}
+
+/// Of `horsehead calibrate`, and kept as `result.json` in the run folder.
+#[derive(Debug, Serialize)]
+pub(super) struct CalibrateOutput<'a> {
+    /// The run folder.
+    pub(super) run: String,
+    /// Name of the machine.
+    pub(super) case: &'a str,
+    /// The preset.
+    pub(super) preset: &'a str,
+    /// The seed.
+    pub(super) seed: u64,
+    /// How many individuals were evaluated.
+    pub(super) evaluations: usize,
+    /// How many of them did not complete.
+    pub(super) failed_simulations: usize,
+    /// Wall time over all sessions (s).
+    pub(super) wall_s: f64,
+    /// The identified parameters by name.
+    pub(super) genes: BTreeMap<&'static str, GeneOutput>,
+    /// Objective of both parameter sets `MPa^2`.
+    pub(super) objective: Both<Option<f64>>,
+    /// Agreement by gauge number, of both parameter sets, at the calibrated condition.
+    pub(super) channels: BTreeMap<String, Both<Option<ChannelOutput>>>,
+    /// Other conditions with a record, by name.
+    pub(super) other_conditions: BTreeMap<String, ConditionOutput>,
+    /// Hash of the evaluation log in index order.
+    pub(super) log_digest: String,
+    /// Files that were written.
+    pub(super) files: Vec<String>,
+}
+
+/// Of `horsehead verify`.
+#[derive(Debug, Serialize)]
+pub(super) struct VerifyOutput<'a> {
+    /// The run folder.
+    pub(super) run: String,
+    /// Name of the machine.
+    pub(super) case: &'a str,
+    /// Name of the condition.
+    pub(super) condition: &'a str,
+    /// Wall time (s).
+    pub(super) wall_s: f64,
+    /// Scores of both parameter sets.
+    #[serde(flatten)]
+    pub(super) scores: ConditionOutput,
+}
+
+/// Scores of both parameter sets under one condition.
+#[derive(Debug, Serialize)]
+pub(super) struct ConditionOutput {
+    /// Objective of both parameter sets `MPa^2`.
+    pub(super) objective: Both<Option<f64>>,
+    /// Agreement by gauge number, of both parameter sets.
+    pub(super) channels: BTreeMap<String, Both<Option<ChannelOutput>>>,
+}
+
+/// One thing for each parameter set.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(super) struct Both<T> {
+    /// Of the recommended parameters.
+    pub(super) recommended: T,
+    /// Of the optimised parameters.
+    pub(super) optimised: T,
+}
+
+/// Of `horsehead bench dispatch`.
+#[derive(Debug, Serialize)]
+pub(super) struct BenchOutput {
+    /// Worker processes.
+    pub(super) workers: usize,
+    /// Jobs that were done.
+    pub(super) jobs: u64,
+    /// Round trip of one job at a time (ms).
+    pub(super) rtt_ms: RoundTrip,
+    /// Throughput with every worker busy.
+    pub(super) jobs_per_s: f64,
+    /// CPU time of this process per job (us).
+    pub(super) coordinator_cpu_us_per_job: f64,
+    /// Memory of this process (MiB).
+    pub(super) coordinator_rss_mib: f64,
+}
+
+/// Round-trip times (ms).
+#[derive(Debug, Serialize)]
+pub(super) struct RoundTrip {
+    pub(super) median: f64,
+    pub(super) p99: f64,
+}
+
+/// Genes by name.
+pub(super) fn genes(case: &Case, values: &[f64]) -> BTreeMap<&'static str, GeneOutput> {
+    let pairs = case.genes.iter().zip(values);
+    pairs
+        .map(|(gene, &value)| {
+            let output = GeneOutput {
+                value,
+                unit: gene.unit.symbol(),
+                recommended: gene.recommended,
+                lower: gene.lower,
+                upper: gene.upper,
+            };
+            (gene.name.as_str(), output)
+        })
+        .collect()
+}
+
+/// Agreement by gauge number.
+pub(super) fn channels(evaluation: Option<&Evaluation>) -> BTreeMap<String, ChannelOutput> {
+    let scores = evaluation.map_or(&[][..], |evaluation| &evaluation.channels);
+    scores
+        .iter()
+        .map(|score| {
+            let output = ChannelOutput {
+                mse_mpa2: score.mse_mpa2,
+                relative_error: score.relative_error,
+                rmse_over_half_range: score.rmse_over_half_range,
+                mse_fixed_offset_mpa2: score.mse_fixed_offset_mpa2,
+                offset_mpa: score.offset_mpa,
+                peak_to_peak_error: score.peak_to_peak_error,
+            };
+            (score.gauge.to_string(), output)
+        })
+        .collect()
+}
+
+/// The objective of a complete run.
+pub(super) fn objective(evaluation: Option<&Evaluation>) -> Option<f64> {
+    let complete = evaluation.filter(|evaluation| evaluation.verdict == Verdict::Complete)?;
+    Some(complete.fitness)
+}
+
+/// Scores of both parameter sets, recommended first.
+pub(super) fn condition(recommended: &Curves, optimised: &Curves) -> ConditionOutput {
+    let (mut before, mut after) = (
+        channels(recommended.evaluation.as_ref()),
+        channels(optimised.evaluation.as_ref()),
+    );
+    let gauges: Vec<String> = before.keys().chain(after.keys()).cloned().collect();
+    let both = gauges.into_iter().map(|gauge| {
+        let scores = Both {
+            recommended: before.remove(&gauge),
+            optimised: after.remove(&gauge),
+        };
+        (gauge, scores)
+    });
+    let mut channels = BTreeMap::new();
+    for (gauge, scores) in both {
+        channels.entry(gauge).or_insert(scores);
+    }
+    ConditionOutput {
+        objective: Both {
+            recommended: objective(recommended.evaluation.as_ref()),
+            optimised: objective(optimised.evaluation.as_ref()),
+        },
+        channels,
+    }
+}
+
+/// Everything about one simulation.
+pub(super) fn simulation<'a>(
+    (case, condition): (&'a Case, usize),
+    curves: &'a Curves,
+) -> SimulateOutput<'a> {
+    let simulation: &Simulation = &curves.simulation;
+    let (counters, energy) = (simulation.counters, simulation.energy);
+    let gauges = (1..).zip(&simulation.gauge_mpa);
+    SimulateOutput {
+        case: &case.name,
+        condition: case
+            .conditions
+            .get(condition)
+            .map_or("", |condition| &condition.name),
+        verdict: simulation.verdict.into(),
+        wall_s: simulation.wall_s,
+        counters: CountersOutput {
+            steps: counters.steps,
+            rejected_steps: counters.rejected_steps,
+            newton_iterations: counters.newton_iterations,
+            jacobians: counters.jacobians,
+            factorizations: counters.factorizations,
+        },
+        genes: genes(case, &curves.genes),
+        objective: objective(curves.evaluation.as_ref()),
+        channels: channels(curves.evaluation.as_ref()),
+        crank_deg: &simulation.turn_deg,
+        gauge_mpa: gauges
+            .map(|(gauge, curve)| (gauge.to_string(), &curve[..]))
+            .collect(),
+        rope_tension_n: &simulation.back_rope_tension_n,
+        front_rope_tension_n: &simulation.front_rope_tension_n,
+        beam_deg: &simulation.beam_deg,
+        suspension_m: &simulation.suspension_m,
+        crank_torque_nm: &simulation.crank_torque_n_m,
+        energy: EnergyOutput {
+            input_j: energy.input_j,
+            output_j: energy.output_j,
+            dissipated_j: energy.dissipated_j,
+            stored_j: energy.stored_j,
+            relative_error: energy.relative_error,
+        },
+        digest: simulation_digest(simulation),
+    }
+}
+
+#[cfg(test)]
+#[path = "json_tests.rs"]
+mod tests;

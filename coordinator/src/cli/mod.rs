@@ -1,0 +1,160 @@
+//! The command line: one command per file, each with the same habits.
+//!
+//! Results go to standard output, everything else to standard error. `--output json` prints
+//! exactly one object. Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.
+mod bench;
+mod bus;
+mod calibrate;
+mod case;
+mod completions;
+mod finish;
+mod interrupt;
+mod json;
+mod output;
+mod problem;
+mod progress;
+mod report;
+mod run_folder;
+mod simulate;
+mod verify;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use problem::Usage;
+use std::{
+    path::{Path, PathBuf},
+    process::ExitCode,
+};
+
+/// What the help of every command ends with.
+const EXIT_CODES: &str = "\
+Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
+
+/// Makes a simulation of a rope-driven pumping unit agree with its strain gauges.
+#[derive(Debug, Parser)]
+#[command(name = "horsehead", version, max_term_width = 100, after_help = FIRST_STEPS)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const FIRST_STEPS: &str = "\
+First steps:
+  horsehead case check cases/cyjs10-5-37hb
+  horsehead simulate cases/cyjs10-5-37hb
+  horsehead calibrate cases/cyjs10-5-37hb
+
+Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Simulate(simulate::Arguments),
+    Calibrate(calibrate::Arguments),
+    Verify(verify::Arguments),
+    Report(report::Arguments),
+    Case(case::Arguments),
+    Bench(bench::Arguments),
+    Completions(completions::Arguments),
+}
+
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Output {
+    /// Tables for people.
+    Table,
+    /// One JSON object for programs.
+    Json,
+}
+
+/// The choice of output, shared by all commands.
+#[derive(Clone, Copy, Debug, Args)]
+struct OutputChoice {
+    /// How results are printed on standard output.
+    #[arg(long, value_enum, default_value = "table", env = "HORSEHEAD_OUTPUT")]
+    output: Output,
+}
+
+/// Where a case comes from, shared by commands that read one.
+#[derive(Clone, Debug, Args)]
+struct CaseChoice {
+    /// Case folder, with `case.toml` in it.
+    #[arg(value_name = "CASE")]
+    case: PathBuf,
+    /// Folder whose load cards and gauge records replace those of the case: a new test of the
+    /// same machine.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    measured: Option<PathBuf>,
+}
+
+/// A case that was read.
+struct LoadedCase {
+    case: protocol::case::Case,
+    /// Where the records came from.
+    measured: String,
+    /// What there is to know about them.
+    notes: Vec<String>,
+}
+
+impl CaseChoice {
+    /// Reads the case; what is worth knowing goes to standard error.
+    fn load(&self) -> anyhow::Result<LoadedCase> {
+        load_case(&self.case, self.measured.as_deref())
+    }
+}
+
+fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCase> {
+    let overrides = crate::case::Overrides {
+        measured: measured.map(Path::to_owned),
+    };
+    let loaded = crate::case::load_with_notes(folder, &overrides)?;
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    for note in &notes {
+        output::tell(&format!("note: {note}"));
+    }
+    let measured = measured.unwrap_or(folder).display().to_string();
+    Ok(LoadedCase {
+        case: loaded.case,
+        measured,
+        notes,
+    })
+}
+
+/// Position of a condition by name; the calibrated one without.
+fn condition(case: &protocol::case::Case, name: Option<&str>) -> Result<usize, Usage> {
+    let Some(name) = name else {
+        return Ok(case.objective.condition);
+    };
+    case.condition(name).ok_or_else(|| {
+        let known: Vec<&str> = case.conditions.iter().map(|c| c.name.as_str()).collect();
+        Usage {
+            message: format!("the case has no condition `{name}`"),
+            help: format!("it has: {}", known.join(", ")),
+        }
+    })
+}
+
+/// How many local worker processes to start by default: one per core.
+fn cores() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Runs the program; its exit code says how it ended.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    output::diagnostics();
+    let ended = match cli.command {
+        Command::Simulate(arguments) => simulate::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
+        Command::Case(arguments) => case::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+    };
+    match ended {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => problem::explain(&error),
+    }
+}
+
+#[cfg(test)]
+mod tests;

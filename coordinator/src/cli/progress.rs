@@ -1,0 +1,148 @@
+//! Progress on standard error: a bar on a terminal, else a line per generation or ten seconds.
+use super::output;
+use crate::study::{Crew, Observe, ProgressView};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::{
+    io::{self, IsTerminal as _},
+    time::{Duration, Instant},
+};
+
+/// Longest silence where there is no terminal.
+const SILENCE: Duration = Duration::from_secs(10);
+/// Least time between two looks at the workers, which cost more than a result does.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// Shows how a calibration comes along.
+pub(super) struct Display {
+    bar: Option<ProgressBar>,
+    started: Instant,
+    last: Instant,
+    generation: Option<u32>,
+}
+
+impl Display {
+    pub(super) fn new() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let template = "{bar:32} {pos}/{len}  {msg}";
+            let style = ProgressStyle::with_template(template)
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .progress_chars("=> ");
+            ProgressBar::new(1).with_style(style)
+        });
+        let now = Instant::now();
+        Self {
+            bar,
+            started: now,
+            last: now,
+            generation: None,
+        }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows nothing: for a replay, which takes a moment and whose workers are those of the past.
+pub(super) struct Silent;
+
+impl Observe for Silent {
+    fn progress(&mut self, _view: &ProgressView, _crew: &dyn Fn() -> Crew) {}
+}
+
+impl Observe for Display {
+    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Crew) {
+        let now = Instant::now();
+        let silent = now.duration_since(self.last);
+        let due = match &self.bar {
+            Some(_) => silent >= LOOK,
+            None => self.generation != Some(view.generation) || silent >= SILENCE,
+        };
+        if !due && view.completed < view.expected {
+            return;
+        }
+        self.last = now;
+        self.generation = Some(view.generation);
+        let words = describe(view, &crew(), now.duration_since(self.started));
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length(view.expected);
+                bar.set_position(view.completed);
+                bar.set_message(words);
+            }
+            None => output::tell(&format!("{}/{}  {words}", view.completed, view.expected)),
+        }
+    }
+}
+
+/// One line: generation, best, failures, workers, rate, time left.
+fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
+    let mut parts = vec![format!(
+        "generation {} of {}",
+        view.generation, view.generations
+    )];
+    if let Some(best) = view.best {
+        parts.push(format!("best {best:.4} MPa^2"));
+    }
+    if view.failed > 0 {
+        parts.push(format!("{} failed", view.failed));
+    }
+    let attached = crew.workers.iter().filter(|worker| worker.attached).count();
+    parts.push(match attached {
+        0 => "waiting for workers".to_owned(),
+        1 => "1 worker".to_owned(),
+        several => format!("{several} workers"),
+    });
+    if let Some(rate) = view.rate(elapsed) {
+        parts.push(format!("{rate:.1}/s"));
+    }
+    if let Some(left) = view.remaining(elapsed) {
+        parts.push(format!("{} left", clock(left)));
+    }
+    parts.join("  ")
+}
+
+/// `42 s`, `3 min 05 s`, `2 h 07 min`.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {:02} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {:02} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::WorkerStatus;
+
+    #[test]
+    fn a_line_says_everything_that_is_known() {
+        let view = ProgressView {
+            generation: 3,
+            generations: 60,
+            completed: 240,
+            expected: 6080,
+            failed: 12,
+            replayed: 40,
+            best: Some(0.31239),
+        };
+        let mut crew = Crew::default();
+        assert_eq!(
+            describe(&ProgressView::default(), &crew, Duration::from_secs(1)),
+            "generation 0 of 0  waiting for workers"
+        );
+        crew.workers.push(WorkerStatus {
+            attached: true,
+            ..WorkerStatus::default()
+        });
+        assert_eq!(
+            describe(&view, &crew, Duration::from_secs(20)),
+            "generation 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
+        );
+    }
+}

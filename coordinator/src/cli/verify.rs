@@ -1,0 +1,87 @@
+//! `horsehead verify`: the parameters of a run under a condition that took no part in the fit.
+use super::{
+    EXIT_CODES, OutputChoice, condition, cores, finish,
+    json::{self, VerifyOutput},
+    load_case, output,
+    problem::Usage,
+    run_folder::RunFolder,
+    simulate::{compare_once, run_name},
+};
+use crate::{report::table, study::Wanted};
+use anyhow::Context as _;
+use clap::Args;
+use std::{path::PathBuf, time::Instant};
+
+/// Score a run's parameters under another working condition (the paper's Table 4).
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Example:
+  horsehead verify runs/cyjs10-5-37hb-quick-seed1 --condition 4rpm
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Run folder of a calibration.
+    #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
+    run: PathBuf,
+    /// Working condition, one with a gauge record.
+    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
+    condition: String,
+    /// Folder whose load cards and gauge records replace those of the case.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    measured: Option<PathBuf>,
+    /// Worker processes to start [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS")]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Scores both parameter sets and shows them side by side.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let started = Instant::now();
+    let (folder, manifest, mut case) = RunFolder::open(&arguments.run)?;
+    if let Some(measured) = &arguments.measured {
+        case = load_case(&manifest.case_folder, Some(measured))?.case;
+    }
+    let parameters = folder.file("calibrated.toml");
+    if !parameters.exists() {
+        return Err(Usage {
+            message: format!(
+                "{} has no calibrated parameters yet",
+                arguments.run.display()
+            ),
+            help: format!("finish the run first:\n  {}", manifest.command),
+        }
+        .into());
+    }
+    let best = crate::case::read_genes(&parameters, &case)?;
+    let condition = condition(&case, Some(&arguments.condition))?;
+    if case.conditions[condition].record.is_none() {
+        return Err(Usage {
+            message: format!("condition {} has no gauge record", arguments.condition),
+            help: "`horsehead simulate --condition` shows the curves without one".to_owned(),
+        }
+        .into());
+    }
+    let wanted = Wanted {
+        condition,
+        individuals: finish::pair(&case, &best),
+        motion_step_deg: 0.0,
+    };
+    let workers = arguments.workers.unwrap_or_else(|| cores().min(4)).max(1);
+    let groups = compare_once("verify", &case, std::slice::from_ref(&wanted), workers)?;
+    let compared = groups.first().context("no result came back")?;
+    let result = finish::condition_result(compared).context("a result is missing")?;
+    let [recommended, optimised] = compared.individuals.as_slice() else {
+        anyhow::bail!("a result is missing");
+    };
+    let object = VerifyOutput {
+        run: run_name(&folder),
+        case: &case.name,
+        condition: &arguments.condition,
+        wall_s: started.elapsed().as_secs_f64(),
+        scores: json::condition(recommended, optimised),
+    };
+    let tables = || table::text(&table::table_4(&case, &result), output::styled());
+    output::print(arguments.output.output, tables, &object)
+}

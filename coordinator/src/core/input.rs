@@ -1,0 +1,73 @@
+//! What the core is told, and what it wants done.
+use super::notice::{Notice, Stop};
+use protocol::{
+    event::{Event, Finished},
+    id::{JobId, WorkerId},
+    job::{Job, Outcome},
+    message::{FromWorker, ToWorker},
+};
+
+/// Something that happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Input {
+    /// A job is to be done; ids of a run are never reused for other work.
+    Submit {
+        /// Its name.
+        id: JobId,
+        /// What to do.
+        job: Job,
+    },
+    /// A worker spoke.
+    Heard {
+        /// Which.
+        from: WorkerId,
+        /// What it said.
+        message: FromWorker,
+    },
+    /// A worker spoke of another run, or in words that cannot be read.
+    Stranger {
+        /// Which.
+        from: WorkerId,
+    },
+    /// The transport lost a worker.
+    Gone {
+        /// Which.
+        worker: WorkerId,
+    },
+    /// These results are safe in the journal.
+    Stored {
+        /// Their jobs.
+        jobs: Vec<JobId>,
+    },
+    /// Time has passed.
+    Tick,
+    /// The run is over.
+    Close,
+}
+
+/// Something the runtime must do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Send a message.
+    Send {
+        /// To whom.
+        to: WorkerId,
+        /// What.
+        message: ToWorker,
+    },
+    /// Write a result to the journal and answer [`Input::Stored`] once it is safe.
+    Store(Box<Finished>),
+    /// Write to the journal when convenient.
+    Record(Event),
+    /// Hand a result to whoever submitted the job.
+    Deliver {
+        /// The job.
+        id: JobId,
+        /// Its one accepted outcome.
+        outcome: Outcome,
+    },
+    /// Tell people.
+    Notice(Notice),
+    /// The run cannot go on.
+    Stop(Stop),
+}

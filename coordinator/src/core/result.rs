@@ -1,0 +1,199 @@
+//! What becomes of results and failures.
+use super::{
+    Core, assign,
+    input::Command,
+    membership,
+    notice::{Notice, Stop},
+};
+use protocol::{
+    event::Finished,
+    id::{AttemptId, JobId, WorkerId},
+    job::{Failure, Outcome},
+    message::{Attempt, Done, ToWorker},
+};
+use std::time::Duration;
+
+/// Results of jobs not (yet) submitted that are kept at most; workers repeat the others.
+const MOST_EARLY: usize = 4096;
+
+/// A worker brought a result.
+pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
+    let job = done.attempt.job;
+    if let Some(waiting) = core.storing.get_mut(&job) {
+        if !waiting.contains(&(from, done.attempt)) {
+            waiting.push((from, done.attempt));
+            if let Some(member) = core.members.get_mut(&from) {
+                member.spent.duplicate_us += done.wall_us;
+            }
+        }
+        core.counts.duplicates += 1;
+        return;
+    }
+    if core.finished.contains(&job) {
+        core.send(from, ToWorker::Stored(vec![done.attempt]));
+        core.counts.duplicates += 1;
+        return;
+    }
+    let Some(pending) = core.jobs.get(&job) else {
+        if core.early.len() < MOST_EARLY {
+            core.early.insert(job, (from, done));
+        }
+        return;
+    };
+    if pending.work != done.work {
+        // an answer to another question, of another run or build: forget it
+        core.send(from, ToWorker::Stored(vec![done.attempt]));
+        return;
+    }
+    match done.outcome {
+        Outcome::Failed(failure) => {
+            let held = core.members.get(&from).is_some_and(|member| {
+                member
+                    .leases
+                    .iter()
+                    .any(|lease| lease.attempt == done.attempt)
+            });
+            core.send(from, ToWorker::Stored(vec![done.attempt]));
+            if let Some(member) = core.members.get_mut(&from) {
+                member.spent.failed_us += done.wall_us;
+            }
+            // a failure of an attempt that was taken away says nothing about the job
+            if held {
+                failed(core, from, job, failure, now);
+            }
+        }
+        Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Nothing(_) => {
+            if let Some(member) = core.members.get_mut(&from) {
+                member.done += 1;
+                member.spent.useful_us += done.wall_us;
+            }
+            core.times.add(done.wall_us, &core.options.policy);
+            core.counts.succeeded += 1;
+            accept(core, Some(from), done);
+        }
+    }
+}
+
+/// The one result of a job: stored, delivered, and no longer wanted from anyone else.
+fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
+    let job = done.attempt.job;
+    let Some(pending) = core.jobs.remove(&job) else {
+        return;
+    };
+    core.queue.remove(&job);
+    for holder in pending.holders {
+        let lease = core
+            .members
+            .get_mut(&holder)
+            .and_then(|member| member.drop_lease(job));
+        if let (Some(lease), false) = (lease, Some(holder) == from) {
+            core.send(holder, ToWorker::Cancel(lease.attempt));
+        }
+    }
+    core.storing.insert(
+        job,
+        from.map(|from| (from, done.attempt)).into_iter().collect(),
+    );
+    core.out.push(Command::Deliver {
+        id: job,
+        outcome: done.outcome.clone(),
+    });
+    core.out.push(Command::Store(Box::new(Finished {
+        attempt: done.attempt,
+        work: done.work,
+        worker: from,
+        wall_us: done.wall_us,
+        outcome: done.outcome,
+    })));
+}
+
+/// Results became safe: the workers may forget them.
+pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
+    let mut acknowledged: std::collections::BTreeMap<WorkerId, Vec<Attempt>> =
+        std::collections::BTreeMap::new();
+    for job in jobs {
+        for (worker, attempt) in core.storing.remove(&job).unwrap_or_default() {
+            acknowledged.entry(worker).or_default().push(attempt);
+        }
+        core.finished.insert(job);
+    }
+    for (worker, attempts) in acknowledged {
+        core.send(worker, ToWorker::Stored(attempts));
+    }
+}
+
+/// An attempt failed: try again, or give the job up.
+pub(super) fn failed(
+    core: &mut Core,
+    worker: WorkerId,
+    job: JobId,
+    failure: Failure,
+    now: Duration,
+) {
+    assign::release(core, worker, job);
+    let policy = &core.options.policy;
+    let Some(pending) = core.jobs.get_mut(&job) else {
+        return;
+    };
+    let before = pending.failures;
+    let mut again = pending.failures.count(&failure, policy);
+    if let Failure::Refused { .. } = failure {
+        pending.refused_by.insert(worker);
+        let refused_by = &pending.refused_by;
+        again = core
+            .members
+            .keys()
+            .any(|member| !refused_by.contains(member));
+    }
+    let (after, suspect) = (pending.failures, policy.suspect);
+    if !membership::is_suspect(before, suspect) && membership::is_suspect(after, suspect) && again {
+        core.notice(Notice::Quarantined {
+            job,
+            workers: after.losses,
+        });
+    }
+    if !again {
+        give_up(core, job, failure);
+    }
+    assign::adopt(core, job, now);
+}
+
+fn give_up(core: &mut Core, job: JobId, failure: Failure) {
+    let Some(work) = core.jobs.get(&job).map(|pending| pending.work) else {
+        return;
+    };
+    core.counts.failed += 1;
+    core.notice(Notice::GivenUp {
+        job,
+        failure: failure.clone(),
+    });
+    if core.counts.succeeded == 0 && core.counts.failed == core.options.policy.hopeless {
+        let (jobs, last) = (core.counts.failed, failure.clone());
+        core.out
+            .push(Command::Stop(Stop::EverythingFails { jobs, last }));
+    }
+    let attempt = Attempt {
+        job,
+        attempt: AttemptId(u32::MAX),
+    };
+    let done = Done {
+        attempt,
+        work,
+        wall_us: 0,
+        outcome: Outcome::Failed(failure),
+    };
+    match &done.outcome {
+        // another build or another case may do better: not a result of the run
+        Outcome::Failed(Failure::Refused { .. } | Failure::Misconfigured { .. }) => {
+            core.jobs.remove(&job);
+            core.queue.remove(&job);
+            core.out.push(Command::Deliver {
+                id: job,
+                outcome: done.outcome,
+            });
+        }
+        Outcome::Failed(_) | Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Nothing(_) => {
+            accept(core, None, done);
+        }
+    }
+}

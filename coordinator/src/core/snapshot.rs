@@ -1,0 +1,41 @@
+//! The state of a run at a moment, for progress lines and reports.
+use super::state::Spent;
+use protocol::id::WorkerId;
+
+/// A moment of a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Snapshot {
+    /// Workers that take part, by id.
+    pub workers: Vec<WorkerSnapshot>,
+    /// Jobs that wait for a worker.
+    pub queued: usize,
+    /// Jobs that a worker holds.
+    pub running: usize,
+    /// Jobs with an accepted result, of this and earlier processes of the run.
+    pub done: usize,
+    /// Workers lost by this process.
+    pub lost: u32,
+    /// Jobs given up by this process.
+    pub failed: u32,
+    /// Attempts beyond the first of their job, by this process.
+    pub repeated: u32,
+    /// Results that came after another had been accepted.
+    pub duplicates: u64,
+    /// Slot time of all workers by use.
+    pub spent: Spent,
+}
+
+/// A worker at a moment.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WorkerSnapshot {
+    /// Its id.
+    pub id: WorkerId,
+    /// Its machine.
+    pub host: String,
+    /// Jobs it can compute at a time.
+    pub slots: u32,
+    /// Jobs it computes.
+    pub busy: u32,
+    /// Jobs it has brought results of.
+    pub done: u64,
+}

@@ -1,0 +1,171 @@
+//! Reading a journal, damaged or not.
+use super::{JournalError, MARK, RECORD_HEADER};
+use protocol::{
+    event::Event,
+    wire::{self, BODY_LIMIT},
+};
+use std::{
+    fmt,
+    fs::File,
+    io::{self, BufReader, Read, Seek, SeekFrom},
+    path::Path,
+};
+
+/// A stretch of a journal that could not be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Damage {
+    /// Where it begins [bytes].
+    pub at: u64,
+    /// How long it is [bytes].
+    pub bytes: u64,
+    /// Whether nothing readable follows: a record that was being written at a crash.
+    pub torn: bool,
+}
+
+impl fmt::Display for Damage {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { at, bytes, torn } = self;
+        if *torn {
+            write!(
+                to,
+                "the journal ends in an unfinished record ({bytes} bytes at {at}): dropped"
+            )
+        } else {
+            write!(
+                to,
+                "{bytes} bytes of the journal at {at} are damaged: skipped; what they held is computed again"
+            )
+        }
+    }
+}
+
+/// Where a record lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its body [bytes from the start of the file].
+    pub at: u64,
+    /// Length of the body [bytes].
+    pub length: u32,
+}
+
+/// What became of a reading.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReadReport {
+    /// Records read.
+    pub records: u64,
+    /// Stretches skipped.
+    pub damage: Vec<Damage>,
+    /// End of the last readable record [bytes].
+    pub end: u64,
+}
+
+/// Calls `apply` for each readable event of a journal, in order.
+///
+/// # Errors
+/// [`JournalError::Io`] if the file cannot be read; damage is no error.
+pub fn fold(path: &Path, mut apply: impl FnMut(Entry, Event)) -> Result<ReadReport, JournalError> {
+    let failed = |source| JournalError::Io {
+        doing: "read",
+        path: path.to_owned(),
+        source,
+    };
+    let file = File::open(path).map_err(failed)?;
+    let length = file.metadata().map_err(failed)?.len();
+    let mut reader = Reader {
+        file: BufReader::with_capacity(1 << 16, file),
+        at: 0,
+        length,
+    };
+    let mut report = ReadReport::default();
+    let mut lost_from = None;
+    while reader.at < length {
+        let at = reader.at;
+        if let Some((entry, event)) = reader.record().map_err(failed)? {
+            if let Some(from) = lost_from.take() {
+                report.damage.push(Damage {
+                    at: from,
+                    bytes: at - from,
+                    torn: false,
+                });
+            }
+            report.records += 1;
+            report.end = reader.at;
+            apply(entry, event);
+        } else {
+            lost_from.get_or_insert(at);
+            reader.seek_mark(at + 1).map_err(failed)?;
+        }
+    }
+    if let Some(from) = lost_from {
+        report.damage.push(Damage {
+            at: from,
+            bytes: length - from,
+            torn: true,
+        });
+    }
+    Ok(report)
+}
+
+struct Reader {
+    file: BufReader<File>,
+    at: u64,
+    length: u64,
+}
+
+impl Reader {
+    /// Reads the record at the current place; `None` if there is no sound one.
+    fn record(&mut self) -> io::Result<Option<(Entry, Event)>> {
+        let left = self.length - self.at;
+        let mut header = [0; RECORD_HEADER];
+        if left < RECORD_HEADER as u64 {
+            return Ok(None);
+        }
+        self.file.read_exact(&mut header)?;
+        let [m0, m1, m2, m3, l0, l1, l2, l3, c0, c1, c2, c3] = header;
+        let length = u32::from_le_bytes([l0, l1, l2, l3]);
+        let fits =
+            length as usize <= BODY_LIMIT && u64::from(length) + RECORD_HEADER as u64 <= left;
+        if [m0, m1, m2, m3] != MARK || !fits {
+            return Ok(None);
+        }
+        let mut body = vec![0; length as usize];
+        self.file.read_exact(&mut body)?;
+        if checksum(length, &body) != u32::from_le_bytes([c0, c1, c2, c3]) {
+            return Ok(None);
+        }
+        let Ok(event) = wire::decode(&body) else {
+            return Ok(None);
+        };
+        let entry = Entry {
+            at: self.at + RECORD_HEADER as u64,
+            length,
+        };
+        self.at = entry.at + u64::from(length);
+        Ok(Some((entry, event)))
+    }
+
+    /// Goes to the next mark at or behind a place, or to the end.
+    fn seek_mark(&mut self, from: u64) -> io::Result<()> {
+        self.file.seek(SeekFrom::Start(from))?;
+        let mut last = [0; 4];
+        for (place, byte) in (from..).zip(self.file.by_ref().bytes()) {
+            last.rotate_left(1);
+            last[3] = byte?;
+            if last == MARK && place >= from + 3 {
+                self.at = place - 3;
+                self.file.seek(SeekFrom::Start(self.at))?;
+                return Ok(());
+            }
+        }
+        self.at = self.length;
+        Ok(())
+    }
+}
+
+/// The checksum of a record: over its length too, which would otherwise be trusted.
+pub(super) fn checksum(length: u32, body: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&length.to_le_bytes());
+    hasher.update(body);
+    hasher.finalize()
+}

@@ -1,0 +1,269 @@
+//! The task of an open run: carries words between link, core and journal, and decides nothing.
+use super::{
+    Completed, DispatchError, Parts, Snapshot, Summary,
+    local::{LocalEvent, LocalWorkers},
+};
+use crate::{
+    core::{Command, Core, Input, work_hash},
+    journal::{Appended, Journal},
+};
+use link::{CoordinatorEnd, Heard};
+use protocol::{
+    event::Event,
+    id::{JobId, RunId, WorkerId},
+    job::Job,
+    key::Lane,
+    message::{FromWorker, ToWorker},
+    wire::{self, Kind, WireError},
+};
+use std::{
+    sync::{Arc, Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+use tokio::{
+    sync::mpsc::{UnboundedReceiver, UnboundedSender},
+    time::{MissedTickBehavior, interval, timeout},
+};
+
+/// How often the core looks at its clocks.
+const TICK: Duration = Duration::from_millis(250);
+/// How long the last results may take to reach the disk at the end.
+const LAST_WRITE: Duration = Duration::from_secs(1);
+
+/// What the owner of a run asks for.
+#[derive(Debug)]
+pub(super) enum Request {
+    Submit { id: JobId, job: Box<Job> },
+}
+
+type Deliver = UnboundedSender<Result<Completed, DispatchError>>;
+
+pub(super) struct Engine<L> {
+    run: RunId,
+    core: Core,
+    journal: Journal,
+    said: UnboundedReceiver<Appended>,
+    link: L,
+    workers: Option<LocalWorkers>,
+    only_local: bool,
+    deliver: Deliver,
+    shown: Arc<Mutex<Snapshot>>,
+    begun: Instant,
+    replayed: u64,
+}
+
+impl<L: CoordinatorEnd> Engine<L> {
+    pub(super) fn new(
+        parts: Parts,
+        link: L,
+        workers: Option<LocalWorkers>,
+        only_local: bool,
+        deliver: Deliver,
+        shown: Arc<Mutex<Snapshot>>,
+    ) -> Self {
+        let Parts {
+            run,
+            core,
+            journal,
+            said,
+            ..
+        } = parts;
+        let begun = Instant::now();
+        Self {
+            run,
+            core,
+            journal,
+            said,
+            link,
+            workers,
+            only_local,
+            deliver,
+            shown,
+            begun,
+            replayed: 0,
+        }
+    }
+
+    pub(super) async fn run(mut self, mut requests: UnboundedReceiver<Request>) -> Summary {
+        let mut ticks = interval(TICK);
+        ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        loop {
+            tokio::select! {
+                request = requests.recv() => match request {
+                    Some(Request::Submit { id, job }) => self.submit(id, *job),
+                    None => break,
+                },
+                heard = self.link.receive() => match heard {
+                    Some(heard) => self.hear(heard),
+                    None => break,
+                },
+                Some(appended) = self.said.recv() => self.appended(appended),
+                event = local_event(&mut self.workers) => self.local(event),
+                _ = ticks.tick() => {
+                    self.handle(Input::Tick);
+                    self.show();
+                }
+            }
+        }
+        self.close().await
+    }
+
+    fn submit(&mut self, id: JobId, job: Job) {
+        match self.journal.recall(id) {
+            Ok(None) => self.handle(Input::Submit { id, job }),
+            Ok(Some(finished)) if finished.work == work_hash(&job) => {
+                self.replayed += 1;
+                let outcome = finished.outcome;
+                self.give(Ok(Completed {
+                    id,
+                    outcome,
+                    replayed: true,
+                }));
+            }
+            Ok(Some(_)) => self.give(Err(DispatchError::JobDiffers { job: id })),
+            Err(error) => self.give(Err(error.into())),
+        }
+    }
+
+    fn hear(&mut self, heard: Heard) {
+        let (from, frame) = match heard {
+            Heard::Gone(worker) => return self.handle(Input::Gone { worker }),
+            Heard::Frame(from, frame) => (from, frame),
+        };
+        match wire::unseal::<FromWorker>(Kind::FromWorker, &frame) {
+            Ok((run, message)) => {
+                let known = run == self.run || matches!(message, FromWorker::Announce(_));
+                self.handle(if known {
+                    Input::Heard { from, message }
+                } else {
+                    Input::Stranger { from }
+                });
+            }
+            Err(error @ WireError::Version { .. }) => {
+                tracing::warn!("worker {from}: {error}");
+                // in our version, so that the other end can say why it does not work
+                self.send(from, &ToWorker::Identify);
+            }
+            Err(error) => tracing::debug!(%from, %error, "a frame was dropped"),
+        }
+    }
+
+    fn appended(&mut self, appended: Appended) {
+        match appended {
+            Appended::Stored(jobs) => self.handle(Input::Stored { jobs }),
+            Appended::Paused(why) => tracing::error!(
+                "the journal cannot be written ({why}): results wait, nothing is lost; make room \
+                 on the disk"
+            ),
+            Appended::Resumed => tracing::warn!("the journal is written again"),
+        }
+    }
+
+    fn local(&mut self, event: LocalEvent) {
+        match event {
+            LocalEvent::Ended { how } => tracing::warn!("a local worker {how}; it is restarted"),
+            LocalEvent::GivenUp { how } => {
+                tracing::warn!("a local worker {how} too often; it is not restarted");
+            }
+            LocalEvent::AllGivenUp { how } if self.only_local => {
+                self.give(Err(DispatchError::LocalWorkers { how }));
+            }
+            LocalEvent::AllGivenUp { .. } => {}
+        }
+    }
+
+    fn handle(&mut self, input: Input) {
+        for command in self.core.handle(input, self.begun.elapsed()) {
+            match command {
+                Command::Send { to, message } => self.send(to, &message),
+                Command::Store(finished) => self.record(Event::Finished(finished)),
+                Command::Record(event) => self.record(event),
+                Command::Deliver { id, outcome } => {
+                    self.give(Ok(Completed {
+                        id,
+                        outcome,
+                        replayed: false,
+                    }));
+                }
+                Command::Notice(notice) if notice.is_routine() => tracing::info!("{notice}"),
+                Command::Notice(notice) => tracing::warn!("{notice}"),
+                Command::Stop(stop) => self.give(Err(stop.into())),
+            }
+        }
+    }
+
+    fn send(&mut self, to: WorkerId, message: &ToWorker) {
+        let lane = match message {
+            ToWorker::Run(_) | ToWorker::Cancel(_) => Lane::Data,
+            ToWorker::Identify
+            | ToWorker::Admitted { .. }
+            | ToWorker::Refused { .. }
+            | ToWorker::Stored(_)
+            | ToWorker::Ended => Lane::Control,
+        };
+        match wire::seal(Kind::ToWorker, self.run, message) {
+            Ok(frame) => self.link.send(to, lane, frame),
+            Err(error) => tracing::error!(%error, "a message cannot be sent"),
+        }
+    }
+
+    fn record(&self, event: Event) {
+        if let Err(error) = self.journal.append(event) {
+            self.give(Err(error.into()));
+        }
+    }
+
+    fn give(&self, completed: Result<Completed, DispatchError>) {
+        // the owner may have lost interest
+        drop(self.deliver.send(completed));
+    }
+
+    fn show(&self) {
+        let snapshot = self.core.snapshot(self.begun.elapsed());
+        *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
+    }
+
+    async fn close(mut self) -> Summary {
+        let wait = async {
+            while self.core.unstored() > 0 {
+                let Some(appended) = self.said.recv().await else {
+                    break;
+                };
+                self.appended(appended);
+            }
+        };
+        if timeout(LAST_WRITE, wait).await.is_err() {
+            tracing::warn!("the last results did not reach the journal; they are computed again");
+        }
+        self.handle(Input::Close);
+        self.record(Event::Closed);
+        let now = self.begun.elapsed();
+        let last = self.core.snapshot(now);
+        let workers = self.workers.take();
+        let mut journal = self.journal;
+        let ended = tokio::task::spawn_blocking(move || drop(workers));
+        self.link.close().await;
+        let written = tokio::task::spawn_blocking(move || journal.close());
+        for (what, ending) in [("local workers", ended), ("journal", written)] {
+            if !matches!(timeout(2 * LAST_WRITE, ending).await, Ok(Ok(()))) {
+                tracing::warn!("the {what} did not end in time");
+            }
+        }
+        Summary {
+            last,
+            replayed: self.replayed,
+            wall_s: now.as_secs_f64(),
+        }
+    }
+}
+
+async fn local_event(workers: &mut Option<LocalWorkers>) -> LocalEvent {
+    let event = match workers {
+        Some(workers) => workers.event().await,
+        None => None,
+    };
+    match event {
+        Some(event) => event,
+        None => std::future::pending().await,
+    }
+}

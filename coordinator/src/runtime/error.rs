@@ -1,0 +1,59 @@
+//! What can go wrong with a run, with the remedy where there is one.
+use super::locate::LocateError;
+use crate::{core::Stop, journal::JournalError};
+use link::LinkError;
+use protocol::{id::JobId, wire::WireError};
+
+/// Why a run cannot be opened or go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DispatchError {
+    /// The journal cannot be used.
+    #[error(transparent)]
+    Journal(#[from] JournalError),
+    /// The bus cannot be used.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The worker program is missing.
+    #[error(transparent)]
+    Locate(#[from] LocateError),
+    /// The case cannot be encoded.
+    #[error("the case cannot be sent to workers: {0}")]
+    Case(#[from] WireError),
+    /// A local worker cannot be started.
+    #[error("local workers cannot be started: {0}")]
+    Start(std::io::Error),
+    /// Neither local workers nor an address for others.
+    #[error(
+        "there are no workers to ask: start some with --workers N, or let others join with --listen LOCATOR"
+    )]
+    NobodyToAsk,
+    /// Local workers end again and again, and nobody else can join.
+    #[error(
+        "the local workers end as soon as they are started (the last one {how}): run horsehead-worker by hand to see why"
+    )]
+    LocalWorkers {
+        /// How the last one ended.
+        how: String,
+    },
+    /// The journal holds the result of another job under this name.
+    #[error(
+        "job {job} of this run was another one when its result was recorded: this build asks other questions than the one that began the run; choose another run folder"
+    )]
+    JobDiffers {
+        /// The job.
+        job: JobId,
+    },
+    /// The core gave up.
+    #[error("{0}")]
+    Stopped(Stop),
+    /// The run has been closed or stopped before.
+    #[error("the run is closed")]
+    Closed,
+}
+
+impl From<Stop> for DispatchError {
+    fn from(stop: Stop) -> Self {
+        Self::Stopped(stop)
+    }
+}

@@ -1,0 +1,151 @@
+//! Scores and curves of chosen parameter sets under chosen conditions.
+use super::{Evaluator, Stop, StudyError, calibrate::or_stop};
+use protocol::{
+    case::Case,
+    job::{Evaluation, Job, Outcome, ScoreSpec, SimulateSpec, Simulation},
+};
+use std::collections::BTreeMap;
+
+/// Ids of comparison jobs begin here: beyond every proposal of a search.
+const FIRST_ID: u64 = 1 << 40;
+
+/// What is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wanted {
+    /// Index of the condition in the case.
+    pub condition: usize,
+    /// Parameter sets, by name; gene values in declared units.
+    pub individuals: Vec<(String, Vec<f64>)>,
+    /// Spacing of the returned rope shapes on crank angle (deg); 0 for none.
+    pub motion_step_deg: f64,
+}
+
+/// One parameter set under one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// Its name.
+    pub name: String,
+    /// Gene values in declared units.
+    pub genes: Vec<f64>,
+    /// Agreement with the record; none where the condition has no record.
+    pub evaluation: Option<Evaluation>,
+    /// The curves, as far as the simulation got.
+    pub simulation: Simulation,
+}
+
+/// All parameter sets under one condition.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// Index of the condition in the case.
+    pub condition: usize,
+    /// In the order in which they were wanted.
+    pub individuals: Vec<Curves>,
+}
+
+/// The two results of one parameter set, as they come in.
+#[derive(Default)]
+struct Pair {
+    evaluation: Option<Evaluation>,
+    simulation: Option<Simulation>,
+}
+
+/// Has every parameter set scored, where there is a record, and simulated. The id of each job
+/// depends only on condition and position, so a run that is opened again finds its results.
+///
+/// # Errors
+/// If a job cannot be done, nobody evaluates any more, or the user stops it. A simulation that
+/// ends early is a result, not an error.
+pub async fn compare<E: Evaluator>(
+    evaluator: &mut E,
+    case: &Case,
+    wanted: &[Wanted],
+    stop: &mut Stop,
+) -> Result<Vec<Compared>, StudyError> {
+    let mut open: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
+    for (group, one) in wanted.iter().enumerate() {
+        let recorded = case
+            .conditions
+            .get(one.condition)
+            .is_some_and(|c| c.record.is_some());
+        for (position, (_, genes)) in one.individuals.iter().enumerate() {
+            let first = first_id(one.condition, position);
+            if recorded {
+                let (condition, genes) = (one.condition, genes.clone());
+                let spec = ScoreSpec {
+                    condition,
+                    genes,
+                    with_residual: false,
+                };
+                evaluator.submit(first, Job::Score(spec))?;
+                open.insert(first, (group, position));
+            }
+            let spec = SimulateSpec {
+                condition: one.condition,
+                genes: genes.clone(),
+                motion_step_deg: one.motion_step_deg,
+            };
+            evaluator.submit(first + 1, Job::Simulate(spec))?;
+            open.insert(first + 1, (group, position));
+        }
+    }
+    let mut pairs: BTreeMap<(usize, usize), Pair> = BTreeMap::new();
+    while !open.is_empty() {
+        let completed = or_stop(evaluator.next(), stop).await??;
+        let Some(place) = open.remove(&completed.id) else {
+            continue;
+        };
+        let pair = pairs.entry(place).or_default();
+        match completed.outcome {
+            Outcome::Scored(evaluation) => pair.evaluation = Some(evaluation),
+            Outcome::Simulated(simulation) => pair.simulation = Some(*simulation),
+            Outcome::Nothing(_) => return Err(StudyError::WrongKind { id: completed.id }),
+            Outcome::Failed(failure) => {
+                return Err(StudyError::Unavailable {
+                    what: name(case, wanted, place),
+                    failure,
+                });
+            }
+        }
+    }
+    let groups = wanted.iter().enumerate();
+    groups
+        .map(|(group, one)| collect(one, group, &mut pairs))
+        .collect()
+}
+
+/// Eight bits of position and two jobs each; results of different conditions never meet.
+fn first_id(condition: usize, position: usize) -> u64 {
+    FIRST_ID + ((condition as u64) << 9) + 2 * position as u64
+}
+
+fn name(case: &Case, wanted: &[Wanted], (group, position): (usize, usize)) -> String {
+    let one = wanted.get(group);
+    let condition = one.and_then(|one| case.conditions.get(one.condition));
+    let individual = one.and_then(|one| one.individuals.get(position));
+    let condition = condition.map_or("?", |condition| condition.name.as_str());
+    let individual = individual.map_or("?", |(name, _)| name.as_str());
+    format!("the {individual} individual at {condition}")
+}
+
+fn collect(
+    one: &Wanted,
+    group: usize,
+    pairs: &mut BTreeMap<(usize, usize), Pair>,
+) -> Result<Compared, StudyError> {
+    let mut individuals = Vec::with_capacity(one.individuals.len());
+    for (position, (name, genes)) in one.individuals.iter().enumerate() {
+        let pair = pairs.remove(&(group, position)).unwrap_or_default();
+        let id = first_id(one.condition, position) + 1;
+        let simulation = pair.simulation.ok_or(StudyError::WrongKind { id })?;
+        individuals.push(Curves {
+            name: name.clone(),
+            genes: genes.clone(),
+            evaluation: pair.evaluation,
+            simulation,
+        });
+    }
+    Ok(Compared {
+        condition: one.condition,
+        individuals,
+    })
+}

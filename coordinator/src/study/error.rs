@@ -1,0 +1,109 @@
+//! Why a study stopped without a result.
+use super::EvaluatorError;
+use protocol::job::{Failure, PhysicsFailure};
+use search::strategy::SettingsError;
+
+/// Why a study stopped without a result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// Nobody evaluates any more.
+    #[error(transparent)]
+    Evaluator(#[from] EvaluatorError),
+    /// The search was set up with numbers that make no search.
+    #[error("the search cannot be set up: {0}")]
+    Settings(#[from] SettingsError),
+    /// The case cannot be built into a model.
+    #[error("the workers cannot build this case: {field}: {problem}")]
+    Misconfigured {
+        /// Field of the case.
+        field: String,
+        /// What is wrong with it.
+        problem: String,
+    },
+    /// The workers do not do this kind of job.
+    #[error("the workers refuse this job: {reason}")]
+    Refused {
+        /// What they say.
+        reason: String,
+    },
+    /// The whole initial population failed.
+    #[error("all {count} individuals of the initial population failed: {how}")]
+    AllFailed {
+        /// How many.
+        count: usize,
+        /// Which failures, the most frequent first.
+        how: String,
+        /// The most frequent failure of the physics, if any was.
+        physics: Option<PhysicsFailure>,
+    },
+    /// A parameter set that is to be compared could not be evaluated.
+    #[error("{what} could not be evaluated: {}", describe(failure))]
+    Unavailable {
+        /// Which.
+        what: String,
+        /// What happened.
+        failure: Failure,
+    },
+    /// A worker answered a job with the result of another kind of job.
+    #[error("job {id} was answered with the result of another kind of job")]
+    WrongKind {
+        /// The job.
+        id: u64,
+    },
+    /// The user asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl StudyError {
+    /// The error of a failure that every other job would meet too; none for one that concerns
+    /// one job alone.
+    pub(super) fn hopeless(failure: &Failure) -> Option<Self> {
+        match failure.clone() {
+            Failure::Misconfigured { field, problem } => {
+                Some(Self::Misconfigured { field, problem })
+            }
+            Failure::Refused { reason } => Some(Self::Refused { reason }),
+            Failure::Deadline { .. } | Failure::Crashed { .. } | Failure::Lost { .. } => None,
+        }
+    }
+
+    /// What to do about it.
+    pub fn help(&self) -> Option<String> {
+        let text = match self {
+            Self::Evaluator(error) => return error.help.clone(),
+            Self::Settings(_) => "correct that setting; `--preset paper` is always valid",
+            Self::Misconfigured { .. } => {
+                "`horsehead case check CASE` checks what can be checked without a worker"
+            }
+            Self::Refused { .. } => "start workers of the same version as this program",
+            Self::AllFailed {
+                physics: Some(_), ..
+            } => {
+                "`horsehead simulate CASE` shows how the recommended individual ends; narrower \
+                 bounds in the case, or another --seed, may help"
+            }
+            Self::AllFailed { physics: None, .. } => {
+                "no simulation was even finished: look at the workers' own messages"
+            }
+            Self::Unavailable { .. } => "the same command tries again",
+            Self::WrongKind { .. } => "the worker is of another version: replace it",
+            Self::Interrupted => return None,
+        };
+        Some(text.to_owned())
+    }
+}
+
+/// A failure of the infrastructure, in words.
+pub(super) fn describe(failure: &Failure) -> String {
+    match failure {
+        Failure::Deadline { limit_ms } => {
+            format!("it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
+        }
+        Failure::Crashed { how } => format!("the process that computed it ended: {how}"),
+        Failure::Lost { workers } => format!("{workers} workers were lost over it"),
+        Failure::Refused { reason } => format!("the worker refused it: {reason}"),
+        Failure::Misconfigured { field, problem } => format!("{field}: {problem}"),
+    }
+}

@@ -1,0 +1,24 @@
+//! A calibration from the first proposal to the comparison of its result.
+//!
+//! [`calibrate()`] asks a search strategy for individuals, has them scored and tells the strategy
+//! the results; [`compare()`] then scores and simulates chosen parameter sets under chosen
+//! conditions. Both see workers only through the trait [`Evaluator`], in whatever order results
+//! arrive: what they return is a function of the case, the settings and the seed.
+mod calibrate;
+mod compare;
+mod digest;
+mod error;
+mod evaluator;
+mod log;
+mod progress;
+
+pub use calibrate::{Calibrated, Observe, Stop, calibrate};
+pub use compare::{Compared, Curves, Wanted, compare};
+pub use digest::simulation_digest;
+pub use error::StudyError;
+pub use evaluator::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus};
+pub use log::{Ending, Entry, EvaluationLog};
+pub use progress::ProgressView;
+
+#[cfg(test)]
+mod tests;

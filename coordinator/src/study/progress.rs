@@ -1,0 +1,62 @@
+//! How far a calibration has come, as a fold over completed evaluations in the order of arrival.
+//!
+//! It is for people to watch: unlike the log it depends on arrival, and decides nothing.
+use super::{Ending, Entry};
+use search::strategy::Progress;
+use std::time::Duration;
+
+/// What a progress display shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ProgressView {
+    /// Generation the search is in.
+    pub generation: u32,
+    /// Generations it plans.
+    pub generations: u32,
+    /// Evaluations that came back.
+    pub completed: u64,
+    /// Evaluations to expect in all.
+    pub expected: u64,
+    /// Of those that came back, how many failed.
+    pub failed: u64,
+    /// How many came from an earlier session.
+    pub replayed: u64,
+    /// Smallest fitness of a complete individual so far `MPa^2`.
+    pub best: Option<f64>,
+}
+
+impl ProgressView {
+    /// Takes one completed evaluation.
+    pub fn apply(&mut self, entry: &Entry, replayed: bool) {
+        self.completed += 1;
+        self.replayed += u64::from(replayed);
+        if entry.ending == Ending::Complete {
+            let better = self.best.is_none_or(|best| entry.fitness < best);
+            if better {
+                self.best = Some(entry.fitness);
+            }
+        } else {
+            self.failed += 1;
+        }
+    }
+
+    /// Takes what the search plans.
+    pub fn plan(&mut self, progress: &Progress) {
+        self.generation = progress.generation;
+        self.generations = progress.generations;
+        self.expected = progress.expected_evaluations.max(self.completed);
+    }
+
+    /// Evaluations per second of this session; none before the first.
+    pub fn rate(&self, elapsed: Duration) -> Option<f64> {
+        let fresh = self.completed - self.replayed;
+        let seconds = elapsed.as_secs_f64();
+        (fresh > 0 && seconds > 0.0).then(|| fresh as f64 / seconds)
+    }
+
+    /// Time to the expected end; none before the first evaluation of this session.
+    pub fn remaining(&self, elapsed: Duration) -> Option<Duration> {
+        let rate = self.rate(elapsed)?;
+        let ahead = self.expected.saturating_sub(self.completed) as f64;
+        Some(Duration::from_secs_f64((ahead / rate).min(1e9)))
+    }
+}

@@ -1,0 +1,369 @@
+//! The loop against an evaluator that answers from a test function, in any order.
+use super::*;
+use protocol::{
+    case::Case,
+    job::{
+        ChannelScore, Counters, Energy, Evaluation, Failure, Job, Outcome, PhysicsFailure, Reached,
+        ScoreSpec, Simulation, Verdict,
+    },
+};
+use search::{
+    random::{Phase, Stream, Streams},
+    space::Space,
+    strategy::{Settings, memetic::MemeticSettings},
+    test_function::RESONANCE,
+};
+use std::{collections::BTreeMap, path::Path};
+use tokio::sync::watch;
+
+/// Answers jobs in a random order; `known` are results of an earlier session.
+struct Oracle {
+    space: Space,
+    open: Vec<(u64, Job)>,
+    order: Stream,
+    answer: fn(&Space, u64, &ScoreSpec) -> Outcome,
+    known: BTreeMap<u64, Outcome>,
+    answered: BTreeMap<u64, Outcome>,
+    computed: usize,
+}
+
+impl Oracle {
+    fn new(case: &Case, order: u64, answer: fn(&Space, u64, &ScoreSpec) -> Outcome) -> Self {
+        Self {
+            space: Space::new(&case.genes).unwrap(),
+            open: Vec::new(),
+            order: Streams::new(order, 0).at(0, Phase::Initial, 0),
+            answer,
+            known: BTreeMap::new(),
+            answered: BTreeMap::new(),
+            computed: 0,
+        }
+    }
+}
+
+impl Evaluator for Oracle {
+    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError> {
+        assert!(
+            self.open.iter().all(|(other, _)| *other != id),
+            "{id} submitted twice"
+        );
+        assert!(!self.answered.contains_key(&id), "{id} submitted twice");
+        self.open.push((id, job));
+        Ok(())
+    }
+
+    async fn next(&mut self) -> Result<Completed, EvaluatorError> {
+        if self.open.is_empty() {
+            std::future::pending::<()>().await;
+        }
+        let (id, job) = self.open.swap_remove(self.order.index(self.open.len()));
+        let known = self.known.get(&id).cloned();
+        let replayed = known.is_some();
+        self.computed += usize::from(!replayed);
+        let outcome = known.unwrap_or_else(|| match &job {
+            Job::Score(spec) => (self.answer)(&self.space, id, spec),
+            Job::Simulate(spec) => Outcome::Simulated(Box::new(curves(spec.genes[0]))),
+            Job::Nothing { .. } => Outcome::Nothing(Vec::new()),
+        });
+        self.answered.insert(id, outcome.clone());
+        Ok(Completed {
+            id,
+            outcome,
+            replayed,
+        })
+    }
+
+    fn crew(&self) -> Crew {
+        Crew {
+            queued: self.open.len(),
+            ..Crew::default()
+        }
+    }
+}
+
+struct Quiet(Vec<ProgressView>);
+
+impl Observe for Quiet {
+    fn progress(&mut self, view: &ProgressView, _crew: &dyn Fn() -> Crew) {
+        self.0.push(view.clone());
+    }
+}
+
+fn case() -> Case {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
+}
+
+fn curves(first_gene: f64) -> Simulation {
+    Simulation {
+        verdict: Verdict::Complete,
+        counters: Counters::default(),
+        wall_s: 0.0,
+        turn_deg: vec![0.0, 180.0],
+        gauge_mpa: [
+            vec![first_gene, 2.0],
+            vec![0.0; 2],
+            vec![1.0; 2],
+            vec![0.0; 2],
+        ],
+        back_rope_tension_n: vec![1e5; 2],
+        front_rope_tension_n: vec![9e4; 2],
+        beam_deg: vec![0.0; 2],
+        suspension_m: vec![0.0; 2],
+        suspension_velocity_m_s: vec![0.0; 2],
+        suspension_acceleration_m_s2: vec![0.0; 2],
+        crank_torque_n_m: vec![0.0; 2],
+        modal: Vec::new(),
+        energy: Energy::default(),
+        motion: Vec::new(),
+    }
+}
+
+fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
+    let channel = ChannelScore {
+        gauge: 1,
+        mse_mpa2: fitness,
+        mse_fixed_offset_mpa2: fitness,
+        offset_mpa: 0.0,
+        rmse_over_half_range: 0.1,
+        relative_error: 0.1,
+        peak_to_peak_error: 0.1,
+    };
+    Evaluation {
+        verdict,
+        fitness,
+        channels: vec![channel],
+        residual_mpa: Vec::new(),
+        counters: Counters::default(),
+    }
+}
+
+fn physics(space: &Space, _id: u64, spec: &ScoreSpec) -> Outcome {
+    let told = RESONANCE.tell(space, &spec.genes);
+    let kind = PhysicsFailure::LoadNotLifted;
+    let verdict = if told.complete {
+        Verdict::Complete
+    } else {
+        Verdict::Failed {
+            kind,
+            reached: Reached::LoadFraction(0.5),
+        }
+    };
+    Outcome::Scored(evaluation(told.fitness, verdict))
+}
+
+fn settings() -> Settings {
+    Settings::Memetic(MemeticSettings {
+        generations: 4,
+        population: 30,
+        ..MemeticSettings::paper()
+    })
+}
+
+async fn run(oracle: &mut Oracle, case: &Case) -> Result<(Calibrated, Quiet), StudyError> {
+    let mut strategy = settings().build(&oracle.space, 3)?;
+    let (_sender, mut stop) = watch::channel(false);
+    let mut observer = Quiet(Vec::new());
+    let found = calibrate(oracle, case, &mut strategy, &mut observer, &mut stop).await?;
+    Ok((found, observer))
+}
+
+#[tokio::test]
+async fn the_result_and_its_digest_do_not_depend_on_arrival() {
+    let case = case();
+    let (first, watched) = run(&mut Oracle::new(&case, 1, physics), &case)
+        .await
+        .unwrap();
+    for order in 2..5 {
+        let (other, _) = run(&mut Oracle::new(&case, order, physics), &case)
+            .await
+            .unwrap();
+        assert_eq!(first, other);
+        assert_eq!(first.log.digest(), other.log.digest());
+    }
+    assert_eq!(first.log.digest().len(), 64);
+    let last = watched.0.last().unwrap();
+    assert_eq!(last.completed, first.log.len() as u64);
+    assert_eq!(last.failed, first.log.failed() as u64);
+    assert_eq!(last.expected, last.completed);
+    assert_eq!(last.best, Some(first.best.fitness));
+    assert!(
+        first.log.failed() > 0,
+        "the test function must fail sometimes"
+    );
+}
+
+#[tokio::test]
+async fn a_run_that_is_opened_again_computes_nothing_twice() {
+    let case = case();
+    let mut oracle = Oracle::new(&case, 1, physics);
+    let (first, _) = run(&mut oracle, &case).await.unwrap();
+    let mut again = Oracle::new(&case, 9, physics);
+    again.known = oracle
+        .answered
+        .iter()
+        .take(80)
+        .map(|(id, o)| (*id, o.clone()))
+        .collect();
+    let (second, watched) = run(&mut again, &case).await.unwrap();
+    assert_eq!(first, second);
+    assert_eq!(again.computed, first.log.len() - 80);
+    assert_eq!(watched.0.last().unwrap().replayed, 80);
+}
+
+#[test]
+fn the_digest_sees_every_part_of_an_entry() {
+    let proposal = |id, gene| search::strategy::Proposal {
+        id,
+        genes: vec![gene, 2.0],
+        generation: 0,
+        purpose: search::strategy::Purpose::Initial,
+    };
+    let digest = |id, gene, fitness| {
+        let mut log = EvaluationLog::default();
+        log.insert(Entry::scored(
+            proposal(id, gene),
+            &evaluation(fitness, Verdict::Complete),
+        ));
+        log.digest()
+    };
+    let base = digest(0, 1.0, 0.5);
+    assert_ne!(base, digest(1, 1.0, 0.5));
+    assert_ne!(base, digest(0, 1.0 + f64::EPSILON, 0.5));
+    assert_ne!(base, digest(0, 1.0, 0.5 + f64::EPSILON));
+    assert_eq!(base, digest(0, 1.0, 0.5));
+}
+
+#[tokio::test]
+async fn a_case_that_cannot_be_built_ends_the_study_with_its_field() {
+    let case = case();
+    let answer = |_: &Space, _: u64, _: &ScoreSpec| {
+        let (field, problem) = ("run.modes".to_owned(), "7 of 6 modes".to_owned());
+        Outcome::Failed(Failure::Misconfigured { field, problem })
+    };
+    let error = run(&mut Oracle::new(&case, 1, answer), &case)
+        .await
+        .err()
+        .unwrap();
+    assert_eq!(
+        error.to_string(),
+        "the workers cannot build this case: run.modes: 7 of 6 modes"
+    );
+    assert!(error.help().unwrap().contains("case check"));
+}
+
+#[tokio::test]
+async fn if_the_whole_initial_population_fails_the_study_says_how() {
+    let case = case();
+    let answer = |_: &Space, id: u64, _: &ScoreSpec| {
+        let kind = if id < 4 {
+            PhysicsFailure::Budget
+        } else {
+            PhysicsFailure::LoadNotLifted
+        };
+        let verdict = Verdict::Failed {
+            kind,
+            reached: Reached::LoadFraction(0.1),
+        };
+        Outcome::Scored(evaluation(1e6, verdict))
+    };
+    let error = run(&mut Oracle::new(&case, 1, answer), &case)
+        .await
+        .err()
+        .unwrap();
+    assert_eq!(
+        error.to_string(),
+        "all 30 individuals of the initial population failed: 26 x load not lifted, 4 x budget"
+    );
+    assert!(error.help().unwrap().contains("simulate"));
+}
+
+#[tokio::test]
+async fn an_individual_that_is_lost_is_the_worst_and_the_search_goes_on() {
+    let case = case();
+    let answer = |space: &Space, id: u64, spec: &ScoreSpec| {
+        if id.is_multiple_of(7) {
+            return Outcome::Failed(Failure::Lost { workers: 2 });
+        }
+        physics(space, id, spec)
+    };
+    let (found, _) = run(&mut Oracle::new(&case, 1, answer), &case)
+        .await
+        .unwrap();
+    assert!(!found.best.id.is_multiple_of(7) && found.best.complete);
+    let lost = found
+        .log
+        .entries()
+        .filter(|entry| entry.fitness.is_infinite());
+    assert!(lost.count() >= found.log.len() / 7);
+}
+
+#[tokio::test]
+async fn the_user_can_stop_while_nothing_comes_back() {
+    let case = case();
+    let mut oracle = Oracle::new(&case, 1, physics);
+    let (sender, mut stop) = watch::channel(false);
+    let stopped = async { calibrate::or_stop(oracle.next(), &mut stop).await.err() };
+    let stopper = async { sender.send(true).unwrap() };
+    assert_eq!(
+        tokio::join!(stopped, stopper).0,
+        Some(StudyError::Interrupted)
+    );
+}
+
+#[tokio::test]
+async fn a_comparison_keeps_its_order_whatever_arrives_first() {
+    let case = case();
+    let best: Vec<f64> = case.recommended().iter().map(|gene| 2.0 * gene).collect();
+    let individuals = vec![
+        ("recommended".to_owned(), case.recommended()),
+        ("optimised".to_owned(), best),
+    ];
+    let wanted = |condition| Wanted {
+        condition,
+        individuals: individuals.clone(),
+        motion_step_deg: 0.0,
+    };
+    for order in 1..6 {
+        let mut oracle = Oracle::new(&case, order, physics);
+        let (_sender, mut stop) = watch::channel(false);
+        let compared = compare(&mut oracle, &case, &[wanted(0), wanted(1)], &mut stop).await;
+        let compared = compared.unwrap();
+        assert_eq!(compared.len(), 2);
+        for (condition, group) in compared.iter().enumerate() {
+            assert_eq!(group.condition, condition);
+            for (curves, (name, genes)) in group.individuals.iter().zip(&individuals) {
+                assert_eq!(&curves.name, name);
+                assert_eq!(
+                    curves.simulation.gauge_mpa[0][0].to_bits(),
+                    genes[0].to_bits()
+                );
+                assert!(curves.evaluation.is_some());
+            }
+        }
+        assert_eq!(oracle.computed, 8);
+    }
+}
+
+#[tokio::test]
+async fn a_comparison_that_cannot_be_made_names_the_individual() {
+    let case = case();
+    let answer =
+        |_: &Space, _: u64, _: &ScoreSpec| Outcome::Failed(Failure::Deadline { limit_ms: 1500 });
+    let mut oracle = Oracle::new(&case, 1, answer);
+    let (_sender, mut stop) = watch::channel(false);
+    let individuals = vec![("recommended".to_owned(), case.recommended())];
+    let wanted = [Wanted {
+        condition: 0,
+        individuals,
+        motion_step_deg: 0.0,
+    }];
+    let error = compare(&mut oracle, &case, &wanted, &mut stop)
+        .await
+        .err()
+        .unwrap();
+    assert_eq!(
+        error.to_string(),
+        "the recommended individual at 5rpm could not be evaluated: it ran longer than 1.5 s"
+    );
+}

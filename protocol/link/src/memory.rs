@@ -1,0 +1,265 @@
+//! A link within one process that misbehaves on purpose: seeded loss, duplication, delay.
+//!
+//! Reordering needs no rule of its own: each copy of a frame waits its own time.
+use crate::{Blob, CoordinatorEnd, Heard, LinkError, WorkerEnd};
+use protocol::{
+    id::{ContentHash, RunId, WorkerId},
+    key::Lane,
+};
+use std::{
+    collections::BTreeMap,
+    future::Future,
+    sync::{Arc, Mutex, PoisonError},
+    time::Duration,
+};
+use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
+
+/// How the link misbehaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Faults {
+    /// Where the draws begin.
+    pub seed: u64,
+    /// Share of frames that are lost [1].
+    pub loss: f64,
+    /// Share of frames that arrive twice [1].
+    pub duplication: f64,
+    /// Longest delay of a frame.
+    pub delay: Duration,
+}
+
+impl Faults {
+    /// A link that does what it should.
+    pub const NONE: Self = Self {
+        seed: 0,
+        loss: 0.0,
+        duplication: 0.0,
+        delay: Duration::ZERO,
+    };
+}
+
+/// What the ends share.
+#[derive(Debug)]
+struct Shared {
+    faults: Faults,
+    state: Mutex<u64>,
+    blob: Blob,
+    to_coordinator: UnboundedSender<Heard>,
+    workers: Mutex<BTreeMap<WorkerId, UnboundedSender<Vec<u8>>>>,
+}
+
+impl Shared {
+    /// A uniform number in [0, 1): SplitMix64.
+    fn draw(&self) -> f64 {
+        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
+        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = *state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Hands something on as often and as late as the faults say.
+    fn pass(&self, deliver: impl Fn() + Send + Clone + 'static) {
+        let copies = if self.draw() < self.faults.loss {
+            0
+        } else if self.draw() < self.faults.duplication {
+            2
+        } else {
+            1
+        };
+        for _ in 0..copies {
+            let delay = self.faults.delay.mul_f64(self.draw());
+            if delay.is_zero() {
+                deliver();
+            } else {
+                let deliver = deliver.clone();
+                tokio::spawn(async move {
+                    tokio::time::sleep(delay).await;
+                    deliver();
+                });
+            }
+        }
+    }
+}
+
+/// Where workers join.
+#[derive(Clone, Debug)]
+pub struct Hub(Arc<Shared>);
+
+impl Hub {
+    /// A coordinator's end, and the place where workers join it.
+    pub fn new(faults: Faults, blob: Blob) -> (MemoryCoordinator, Self) {
+        let (to_coordinator, heard) = unbounded_channel();
+        let shared = Arc::new(Shared {
+            faults,
+            state: Mutex::new(faults.seed),
+            blob,
+            to_coordinator,
+            workers: Mutex::default(),
+        });
+        let coordinator = MemoryCoordinator {
+            shared: Arc::clone(&shared),
+            heard,
+        };
+        (coordinator, Self(shared))
+    }
+
+    /// A worker's end.
+    pub fn worker(&self, id: WorkerId) -> MemoryWorker {
+        let (sender, frames) = unbounded_channel();
+        self.0
+            .workers
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(id, sender);
+        MemoryWorker {
+            id,
+            shared: Arc::clone(&self.0),
+            frames,
+        }
+    }
+}
+
+/// The coordinator's end of a memory link.
+#[derive(Debug)]
+pub struct MemoryCoordinator {
+    shared: Arc<Shared>,
+    heard: UnboundedReceiver<Heard>,
+}
+
+impl CoordinatorEnd for MemoryCoordinator {
+    fn send(&mut self, to: WorkerId, _lane: Lane, frame: Vec<u8>) {
+        let worker = {
+            let workers = self
+                .shared
+                .workers
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            workers.get(&to).cloned()
+        };
+        if let Some(worker) = worker {
+            self.shared.pass(move || {
+                // a worker that is gone hears nothing
+                drop(worker.send(frame.clone()));
+            });
+        }
+    }
+
+    async fn receive(&mut self) -> Option<Heard> {
+        self.heard.recv().await
+    }
+
+    async fn close(self) {
+        self.shared
+            .workers
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clear();
+    }
+}
+
+/// A worker's end of a memory link; dropping it is seen as a loss.
+#[derive(Debug)]
+pub struct MemoryWorker {
+    id: WorkerId,
+    shared: Arc<Shared>,
+    frames: UnboundedReceiver<Vec<u8>>,
+}
+
+impl WorkerEnd for MemoryWorker {
+    fn send(&mut self, _run: RunId, _lane: Lane, frame: Vec<u8>) {
+        let (to, id) = (self.shared.to_coordinator.clone(), self.id);
+        self.shared.pass(move || {
+            // a coordinator that is gone hears nothing
+            drop(to.send(Heard::Frame(id, frame.clone())));
+        });
+    }
+
+    async fn receive(&mut self) -> Option<Vec<u8>> {
+        self.frames.recv().await
+    }
+
+    async fn appear(&mut self, _run: RunId) -> Result<(), LinkError> {
+        Ok(())
+    }
+
+    fn fetch(
+        &self,
+        _run: RunId,
+        hash: ContentHash,
+        chunk: u32,
+    ) -> impl Future<Output = Result<Vec<u8>, LinkError>> + Send + 'static {
+        let missing = |reason: &str| LinkError::Piece {
+            hash,
+            chunk,
+            reason: reason.to_owned(),
+        };
+        let lost = self.shared.draw() < self.shared.faults.loss;
+        let piece = if lost {
+            Err(missing("lost on the way"))
+        } else {
+            let piece = self.shared.blob.chunk(hash, chunk);
+            piece
+                .map(<[u8]>::to_vec)
+                .ok_or_else(|| missing("not known here"))
+        };
+        std::future::ready(piece)
+    }
+
+    async fn close(self) {}
+}
+
+impl Drop for MemoryWorker {
+    fn drop(&mut self) {
+        self.shared
+            .workers
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .remove(&self.id);
+        // a coordinator that is gone hears nothing
+        drop(self.shared.to_coordinator.send(Heard::Gone(self.id)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    async fn count(faults: Faults) -> usize {
+        let (mut coordinator, hub) = Hub::new(faults, Blob::new(vec![1]));
+        let mut worker = hub.worker(WorkerId(1));
+        for n in 0..1000_u16 {
+            worker.send(RunId(0), Lane::Data, n.to_le_bytes().to_vec());
+        }
+        tokio::time::sleep(faults.delay * 2).await;
+        drop(worker);
+        let mut frames = 0;
+        while coordinator.receive().await != Some(Heard::Gone(WorkerId(1))) {
+            frames += 1;
+        }
+        frames
+    }
+
+    #[tokio::test]
+    async fn faults_are_what_was_asked_for_and_repeat_with_the_seed() {
+        assert_eq!(count(Faults::NONE).await, 1000);
+        let faults = Faults {
+            seed: 4,
+            loss: 0.2,
+            duplication: 0.2,
+            delay: Duration::ZERO,
+        };
+        let frames = count(faults).await;
+        assert_eq!(count(faults).await, frames);
+        assert!((900..1020).contains(&frames), "{frames} of 960 expected");
+        assert!(
+            (700..900).contains(
+                &count(Faults {
+                    duplication: 0.0,
+                    ..faults
+                })
+                .await
+            )
+        );
+    }
+}

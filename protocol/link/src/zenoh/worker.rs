@@ -1,0 +1,141 @@
+//! A worker's end: a client with one address.
+use super::{INBOX, TlsFiles, close, common, open, sender::Sender, tls_for, transport};
+use crate::{LinkError, WorkerEnd, locator::Locator};
+use protocol::{
+    id::{ContentHash, RunId, WorkerId},
+    key::{self, Lane},
+};
+use serde_json::json;
+use std::{future::Future, time::Duration};
+use tokio::sync::mpsc;
+use zenoh::{
+    Session,
+    liveliness::LivelinessToken,
+    qos::{CongestionControl, Priority},
+    query::ConsolidationMode,
+};
+
+/// How long one piece of a blob may take.
+const PIECE: Duration = Duration::from_secs(10);
+
+/// A worker on the bus.
+#[derive(Debug)]
+pub struct ZenohWorker {
+    id: WorkerId,
+    session: Session,
+    sender: Sender,
+    frames: mpsc::Receiver<Vec<u8>>,
+    token: Option<LivelinessToken>,
+}
+
+impl ZenohWorker {
+    /// Connects; later interruptions are repaired by the session itself.
+    ///
+    /// # Errors
+    /// [`LinkError::Transport`] if nobody listens there within 10 s: try again.
+    pub async fn open(
+        connect: &Locator,
+        tls: Option<&TlsFiles>,
+        id: WorkerId,
+    ) -> Result<Self, LinkError> {
+        let mut config = common(&tls_for(&[connect], tls, TlsFiles::connecting)?);
+        config["mode"] = json!("client");
+        config["listen"] = json!({ "endpoints": [] });
+        config["connect"] = json!({
+            "endpoints": [connect.to_string()], "timeout_ms": 10_000, "exit_on_failure": false,
+            "retry": { "period_init_ms": 500, "period_max_ms": 2000, "period_increase_factor": 1.5 },
+        });
+        let session = open(&config, &format!("connect to {connect}")).await?;
+        let (to, frames) = mpsc::channel(INBOX);
+        session
+            .declare_subscriber(key::all_to_worker(id))
+            .callback(move |sample| {
+                if to
+                    .try_send(sample.payload().to_bytes().into_owned())
+                    .is_err()
+                {
+                    tracing::debug!("a frame was dropped: too many are waiting");
+                }
+            })
+            .background()
+            .await
+            .map_err(|error| transport("subscribe to jobs", &error))?;
+        let sender = Sender::start(session.clone())
+            .map_err(|error| transport("start the sending thread", &error))?;
+        Ok(Self {
+            id,
+            session,
+            sender,
+            frames,
+            token: None,
+        })
+    }
+}
+
+impl WorkerEnd for ZenohWorker {
+    fn send(&mut self, run: RunId, lane: Lane, frame: Vec<u8>) {
+        self.sender
+            .send(key::from_worker(run, self.id, lane), lane, frame);
+    }
+
+    async fn receive(&mut self) -> Option<Vec<u8>> {
+        self.frames.recv().await
+    }
+
+    async fn appear(&mut self, run: RunId) -> Result<(), LinkError> {
+        self.token = None;
+        let token = self
+            .session
+            .liveliness()
+            .declare_token(key::alive(run, self.id))
+            .await
+            .map_err(|error| transport("show presence", &error))?;
+        self.token = Some(token);
+        Ok(())
+    }
+
+    fn fetch(
+        &self,
+        run: RunId,
+        hash: ContentHash,
+        chunk: u32,
+    ) -> impl Future<Output = Result<Vec<u8>, LinkError>> + Send + 'static {
+        let session = self.session.clone();
+        async move {
+            let missing = |reason: String| LinkError::Piece {
+                hash,
+                chunk,
+                reason,
+            };
+            let replies = session
+                .get(key::blob(run, hash, chunk))
+                .consolidation(ConsolidationMode::None)
+                .congestion_control(CongestionControl::Block)
+                .priority(Priority::DataLow)
+                .timeout(PIECE)
+                .await
+                .map_err(|error| missing(error.to_string()))?;
+            let reply = replies.recv_async().await;
+            match reply
+                .map_err(|_| missing("nobody answered".to_owned()))?
+                .into_result()
+            {
+                Ok(sample) => Ok(sample.payload().to_bytes().into_owned()),
+                Err(refused) => {
+                    let reason = refused
+                        .payload()
+                        .try_to_string()
+                        .unwrap_or_default()
+                        .into_owned();
+                    Err(missing(reason))
+                }
+            }
+        }
+    }
+
+    async fn close(self) {
+        self.sender.finish().await;
+        drop(self.token);
+        close(self.session).await;
+    }
+}

@@ -1,0 +1,133 @@
+//! The names under which messages travel, and nothing else.
+//!
+//! ```text
+//! horsehead/1/RUN/w/WORKER/job     coordinator -> worker: jobs, cancellations
+//! horsehead/1/RUN/w/WORKER/ack     coordinator -> worker: admission, stored results, the end
+//! horsehead/1/RUN/res/WORKER       worker -> coordinator: results
+//! horsehead/1/RUN/hb/WORKER        worker -> coordinator: announcements, heartbeats
+//! horsehead/1/RUN/alive/WORKER     presence
+//! horsehead/1/RUN/blob/HASH/CHUNK  worker asks coordinator: content, piece by piece
+//! ```
+//!
+//! `RUN` and `WORKER` are 16 hexadecimal digits; `RUN` is all zeros until a coordinator has told
+//! the worker. Access control grants a worker only keys with its own name in them.
+use crate::id::{ContentHash, RunId, WorkerId};
+
+/// What every key begins with; the number is the wire version.
+pub const ROOT: &str = "horsehead/1";
+
+/// Which of a coordinator's lanes a message takes: a long job must not hold up an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Lane {
+    /// Jobs and results.
+    Data,
+    /// Everything that is short and must not wait.
+    Control,
+}
+
+/// Where the coordinator puts a message for a worker.
+pub fn to_worker(run: RunId, worker: WorkerId, lane: Lane) -> String {
+    let lane = match lane {
+        Lane::Data => "job",
+        Lane::Control => "ack",
+    };
+    format!("{ROOT}/{run}/w/{worker}/{lane}")
+}
+
+/// Where a worker puts a message for the coordinator.
+pub fn from_worker(run: RunId, worker: WorkerId, lane: Lane) -> String {
+    let lane = match lane {
+        Lane::Data => "res",
+        Lane::Control => "hb",
+    };
+    format!("{ROOT}/{run}/{lane}/{worker}")
+}
+
+/// Everything for one worker, of any run: it learns the run from the first admission.
+pub fn all_to_worker(worker: WorkerId) -> String {
+    format!("{ROOT}/*/w/{worker}/*")
+}
+
+/// Everything from any worker in one lane, of any run: newcomers do not know the run.
+pub fn all_from_workers(lane: Lane) -> String {
+    match lane {
+        Lane::Data => format!("{ROOT}/*/res/*"),
+        Lane::Control => format!("{ROOT}/*/hb/*"),
+    }
+}
+
+/// Presence of a worker in a run.
+pub fn alive(run: RunId, worker: WorkerId) -> String {
+    format!("{ROOT}/{run}/alive/{worker}")
+}
+
+/// Presence of any worker in a run.
+pub fn all_alive(run: RunId) -> String {
+    format!("{ROOT}/{run}/alive/*")
+}
+
+/// One piece of some content.
+pub fn blob(run: RunId, hash: ContentHash, chunk: u32) -> String {
+    format!("{ROOT}/{run}/blob/{hash}/{chunk}")
+}
+
+/// Any piece of any content of a run.
+pub fn all_blobs(run: RunId) -> String {
+    format!("{ROOT}/{run}/blob/*/*")
+}
+
+/// The worker that a key ends with, if it does.
+pub fn worker_of(key: &str) -> Option<WorkerId> {
+    let (_, name) = key.rsplit_once('/')?;
+    (name.len() == 16).then_some(())?;
+    u64::from_str_radix(name, 16).ok().map(WorkerId)
+}
+
+/// The content and piece that a key asks for, if it does.
+pub fn blob_of(key: &str) -> Option<(ContentHash, u32)> {
+    let (rest, chunk) = key.rsplit_once('/')?;
+    let (_, hash) = rest.rsplit_once('/')?;
+    let digits: Vec<u8> = hash
+        .chars()
+        .map(|digit| {
+            digit
+                .to_digit(16)
+                .and_then(|value| u8::try_from(value).ok())
+        })
+        .collect::<Option<_>>()?;
+    (digits.len() == 64).then_some(())?;
+    let mut bytes = [0; 32];
+    for (byte, pair) in bytes.iter_mut().zip(digits.chunks_exact(2)) {
+        *byte = pair[0] << 4 | pair[1];
+    }
+    Some((ContentHash(bytes), chunk.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_key_names_can_be_read_back() {
+        let (run, worker) = (RunId(0x1f), WorkerId(0xfeed_0000_1234_5678));
+        let hash = ContentHash::of(b"case");
+        for lane in [Lane::Data, Lane::Control] {
+            assert_eq!(worker_of(&from_worker(run, worker, lane)), Some(worker));
+        }
+        assert_eq!(worker_of(&alive(run, worker)), Some(worker));
+        assert_eq!(blob_of(&blob(run, hash, 7)), Some((hash, 7)));
+    }
+
+    #[test]
+    fn foreign_keys_name_nothing() {
+        for key in [
+            "",
+            "horsehead/1/x/res/12",
+            "horsehead/1/0/hb/zzzzzzzzzzzzzzzz",
+        ] {
+            assert_eq!(worker_of(key), None, "{key}");
+            assert_eq!(blob_of(key), None, "{key}");
+        }
+        assert_eq!(blob_of("horsehead/1/0/blob/abcd/0"), None);
+    }
+}

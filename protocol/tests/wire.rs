@@ -1,0 +1,192 @@
+//! The codec against its two promises: what goes in comes out, and nothing makes it panic.
+use proptest::{collection::vec, option, prelude::*};
+use protocol::{
+    event::Event,
+    id::{AttemptId, ContentHash, JobId, RunId},
+    job::{Failure, Job, Outcome, ScoreSpec},
+    message::{Attempt, Beat, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
+    wire::{self, Kind, WireError},
+};
+
+fn attempt() -> impl Strategy<Value = Attempt> {
+    (any::<u64>(), any::<u32>()).prop_map(|(job, attempt)| Attempt {
+        job: JobId(job),
+        attempt: AttemptId(attempt),
+    })
+}
+
+fn bytes() -> impl Strategy<Value = Vec<u8>> {
+    vec(any::<u8>(), 0..200)
+}
+
+fn job() -> impl Strategy<Value = Job> {
+    prop_oneof![
+        (bytes(), any::<u32>(), any::<u32>()).prop_map(|(payload, reply_bytes, delay_ms)| {
+            Job::Nothing {
+                payload,
+                reply_bytes,
+                delay_ms,
+            }
+        }),
+        (0..9_usize, vec(-1e9..1e9, 0..12), any::<bool>()).prop_map(
+            |(condition, genes, with_residual)| {
+                Job::Score(ScoreSpec {
+                    condition,
+                    genes,
+                    with_residual,
+                })
+            }
+        ),
+    ]
+}
+
+fn outcome() -> impl Strategy<Value = Outcome> {
+    prop_oneof![
+        bytes().prop_map(Outcome::Nothing),
+        ".{0,40}".prop_map(|how| Outcome::Failed(Failure::Crashed { how })),
+        any::<u64>().prop_map(|limit_ms| Outcome::Failed(Failure::Deadline { limit_ms })),
+    ]
+}
+
+fn to_worker() -> impl Strategy<Value = ToWorker> {
+    prop_oneof![
+        Just(ToWorker::Identify),
+        Just(ToWorker::Ended),
+        (any::<u32>(), any::<[u8; 32]>(), any::<u64>()).prop_map(|(epoch, case, case_bytes)| {
+            ToWorker::Admitted {
+                epoch,
+                case: ContentHash(case),
+                case_bytes,
+            }
+        }),
+        (attempt(), any::<u64>(), job()).prop_map(|(attempt, deadline_ms, job)| {
+            ToWorker::Run(Box::new(Order {
+                attempt,
+                deadline_ms,
+                job,
+            }))
+        }),
+        attempt().prop_map(ToWorker::Cancel),
+        vec(attempt(), 0..20).prop_map(ToWorker::Stored),
+    ]
+}
+
+fn from_worker() -> impl Strategy<Value = FromWorker> {
+    prop_oneof![
+        (
+            any::<u64>(),
+            option::of(any::<[u8; 32]>()),
+            vec(attempt(), 0..9),
+            vec(attempt(), 0..9)
+        )
+            .prop_map(|(number, case, running, waiting)| {
+                FromWorker::Beat(Beat {
+                    number,
+                    case: case.map(ContentHash),
+                    finished: running.iter().rev().copied().collect(),
+                    running,
+                    waiting,
+                })
+            }),
+        (attempt(), any::<[u8; 32]>(), any::<u64>(), outcome()).prop_map(
+            |(attempt, work, wall_us, outcome)| {
+                FromWorker::Done(Box::new(Done {
+                    attempt,
+                    work: ContentHash(work),
+                    wall_us,
+                    outcome,
+                }))
+            }
+        ),
+        ".{0,40}".prop_map(|reason| FromWorker::Leaving { reason }),
+    ]
+}
+
+proptest! {
+    #[test]
+    fn every_message_survives_the_wire(run: u64, down in to_worker(), up in from_worker()) {
+        let frame = wire::seal(Kind::ToWorker, RunId(run), &down).unwrap();
+        prop_assert_eq!(wire::unseal(Kind::ToWorker, &frame), Ok((RunId(run), down)));
+        let frame = wire::seal(Kind::FromWorker, RunId(run), &up).unwrap();
+        prop_assert_eq!(wire::unseal(Kind::FromWorker, &frame), Ok((RunId(run), up)));
+    }
+
+    #[test]
+    fn a_frame_cut_anywhere_is_refused_as_cut(message in to_worker()) {
+        let frame = wire::seal(Kind::ToWorker, RunId(3), &message).unwrap();
+        for length in 0..frame.len() {
+            let cut = wire::unseal::<ToWorker>(Kind::ToWorker, &frame[..length]);
+            prop_assert!(matches!(cut, Err(WireError::Cut { .. })), "{length}: {cut:?}");
+        }
+    }
+
+    #[test]
+    fn one_flipped_bit_in_the_body_or_its_length_is_seen(message in from_worker(), at: usize, bit in 0..8) {
+        let mut frame = wire::seal(Kind::FromWorker, RunId(3), &message).unwrap();
+        let from = 12;
+        let at = from + at % (frame.len() - from);
+        frame[at] ^= 1_u8 << bit;
+        prop_assert!(wire::unseal::<FromWorker>(Kind::FromWorker, &frame).is_err());
+    }
+
+    #[test]
+    fn arbitrary_bytes_never_panic(noise in vec(any::<u8>(), 0..400), kind in 0..Kind::ALL.len()) {
+        let kind = Kind::ALL[kind];
+        let mut framed = wire::seal(kind, RunId(0), &()).unwrap();
+        framed.extend_from_slice(&noise);
+        framed[12..16].copy_from_slice(&u32::try_from(noise.len()).unwrap().to_le_bytes());
+        framed[16..20].copy_from_slice(&crc32fast::hash(&noise).to_le_bytes());
+        for frame in [&noise, &framed] {
+            drop(wire::unseal::<ToWorker>(kind, frame));
+            drop(wire::unseal::<FromWorker>(kind, frame));
+            drop(wire::unseal::<ToSlot>(kind, frame));
+            drop(wire::unseal::<FromSlot>(kind, frame));
+        }
+        drop(wire::decode::<Event>(&noise));
+        drop(wire::decode::<protocol::case::Case>(&noise));
+    }
+}
+
+#[test]
+fn what_does_not_belong_is_named() {
+    let good = wire::seal(Kind::ToWorker, RunId(7), &ToWorker::Identify).unwrap();
+    let with = |at: usize, value: u8| {
+        let mut frame = good.clone();
+        frame[at] = value;
+        wire::unseal::<ToWorker>(Kind::ToWorker, &frame).unwrap_err()
+    };
+    assert_eq!(with(0, b'X'), WireError::Magic { found: *b"XH" });
+    assert_eq!(with(2, 9), WireError::Version { found: 9 });
+    assert_eq!(
+        with(3, 2),
+        WireError::Kind {
+            found: 2,
+            expected: 1
+        }
+    );
+    assert!(matches!(with(15, 0xff), WireError::TooLong { .. }));
+    assert!(matches!(with(16, good[16] ^ 1), WireError::Checksum { .. }));
+    let mut longer = good;
+    longer.push(0);
+    assert_eq!(
+        wire::unseal::<ToWorker>(Kind::ToWorker, &longer).unwrap_err(),
+        WireError::Leftover { bytes: 1 }
+    );
+    let body = wire::encode(&(ToWorker::Identify, 0_u8)).unwrap();
+    assert_eq!(
+        wire::decode::<ToWorker>(&body).unwrap_err(),
+        WireError::Leftover { bytes: 1 }
+    );
+}
+
+/// A hostile length must cost nothing: the decoder would otherwise reserve what it promises.
+#[test]
+fn a_promise_of_more_than_there_is_is_refused() {
+    let mut body = wire::encode(&ToWorker::Stored(Vec::new())).unwrap();
+    let end = body.len();
+    body[end - 8..].copy_from_slice(&u64::MAX.to_le_bytes());
+    assert!(matches!(
+        wire::decode::<ToWorker>(&body),
+        Err(WireError::Malformed { .. })
+    ));
+}

@@ -1,0 +1,150 @@
+//! Workers that are killed, frozen or told to end.
+use super::{collect, submit};
+use coordinator::runtime::{Dispatch, bench};
+use rustix::process::Signal;
+use std::time::{Duration, Instant};
+use tests::{
+    expect_results, options,
+    process::{Process, children, free_locator, is_alive, wait_until},
+};
+
+const LIMIT: Duration = Duration::from_mins(1);
+
+#[tokio::test(flavor = "multi_thread")]
+async fn local_workers_do_all_jobs_and_are_gone_afterwards() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut dispatch = Dispatch::open(options(folder.path(), None, 3))
+        .await
+        .unwrap();
+    submit(&mut dispatch, 500, 0);
+    let results = collect(&mut dispatch, 500, LIMIT).await.unwrap();
+    expect_results(&results, 500);
+    let snapshot = dispatch.snapshot();
+    assert_eq!(
+        (snapshot.workers.len(), snapshot.lost, snapshot.failed),
+        (3, 0, 0)
+    );
+    let workers = children(rustix::process::getpid());
+    let slots: Vec<_> = workers
+        .iter()
+        .flat_map(|worker| children(*worker))
+        .collect();
+    assert!(slots.len() >= 3, "{slots:?}");
+    let begun = Instant::now();
+    let summary = dispatch.close().await.unwrap();
+    assert!(
+        begun.elapsed() < Duration::from_secs(3),
+        "closing took {:?}",
+        begun.elapsed()
+    );
+    assert_eq!(summary.last.done, 500);
+    let spent = summary.last.spent;
+    assert!(
+        spent.useful_us > 0 && spent.useful_us < spent.connected_us,
+        "{spent:?}"
+    );
+    wait_until("the slots are gone", Duration::from_secs(1), || {
+        slots.iter().all(|slot| !is_alive(*slot))
+    });
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_killed_worker_costs_nothing_but_time() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    let mut victim = Process::worker(&locator, &["--slots", "2"]);
+    let other = Process::worker(&locator, &["--slots", "2"]);
+    submit(&mut dispatch, 60, 50);
+    let first = collect(&mut dispatch, 12, LIMIT).await.unwrap();
+    wait_until("the victim is busy", LIMIT, || {
+        dispatch.snapshot().workers.len() == 2
+    });
+    let slots = children(victim.pid());
+    assert_eq!(slots.len(), 2);
+    victim.signal(Signal::KILL);
+    let mut results = collect(&mut dispatch, 48, LIMIT).await.unwrap();
+    results.extend(first);
+    expect_results(&results, 60);
+    let summary = dispatch.close().await.unwrap();
+    assert_eq!(summary.last.lost, 1);
+    assert!(summary.last.repeated > 0, "{:?}", summary.last);
+    assert_eq!(summary.last.failed, 0);
+    assert_eq!(victim.wait(LIMIT), None);
+    wait_until("its slots are gone", Duration::from_secs(1), || {
+        slots.iter().all(|slot| !is_alive(*slot))
+    });
+    drop(other);
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_frozen_worker_is_replaced_within_six_seconds() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    let frozen = Process::worker(&locator, &["--slots", "1"]);
+    submit(&mut dispatch, 3, 300);
+    wait_until("it is busy", LIMIT, || dispatch.snapshot().running > 0);
+    frozen.signal(Signal::STOP);
+    let begun = Instant::now();
+    let _other = Process::worker(&locator, &["--slots", "3"]);
+    let results = collect(&mut dispatch, 3, LIMIT).await.unwrap();
+    let took = begun.elapsed();
+    expect_results(&results, 3);
+    assert!(
+        took < Duration::from_secs(6),
+        "all jobs were done after {took:?}"
+    );
+    // it wakes up, comes back and is of use again
+    frozen.signal(Signal::CONT);
+    wait_until("it is back", LIMIT, || {
+        dispatch.snapshot().workers.len() == 2
+    });
+    let summary = dispatch.close().await.unwrap();
+    assert_eq!((summary.last.lost, summary.last.done), (1, 3));
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn a_worker_that_is_told_to_end_gives_its_jobs_back_and_says_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    // the worker is there before the coordinator
+    let mut first = Process::worker(&locator, &["--slots", "2"]);
+    let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    submit(&mut dispatch, 20, 100);
+    let early = collect(&mut dispatch, 4, LIMIT).await.unwrap();
+    first.signal(Signal::TERM);
+    assert_eq!(first.wait(Duration::from_secs(4)), Some(0));
+    let mut idle = Process::worker(&locator, &["--slots", "4", "--idle-timeout", "2"]);
+    let mut results = collect(&mut dispatch, 16, LIMIT).await.unwrap();
+    results.extend(early);
+    expect_results(&results, 20);
+    assert_eq!(
+        idle.wait(Duration::from_secs(6)),
+        Some(0),
+        "ends by itself without work"
+    );
+    let summary = dispatch.close().await.unwrap();
+    assert_eq!(
+        summary.last.lost, 0,
+        "nobody was lost: both said that they leave"
+    );
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn the_bench_measures_the_bus() {
+    let folder = tempfile::tempdir().unwrap();
+    let result = bench(options(folder.path(), None, 2), 400).await.unwrap();
+    eprintln!("{result:?}");
+    assert!(result.rtt_median_ms > 0.0 && result.rtt_median_ms <= result.rtt_p99_ms);
+    assert!(
+        result.jobs_per_s > 50.0 && result.coordinator_rss_mib > 1.0,
+        "{result:?}"
+    );
+}

@@ -1,0 +1,45 @@
+//! Real processes on loopback: killed, frozen, restarted; nothing may be lost.
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "helpers of a test suite: to panic is to fail the test"
+)]
+mod faults;
+mod resume;
+mod slots;
+
+use coordinator::runtime::{Dispatch, DispatchError};
+use protocol::{id::JobId, job::Outcome};
+use std::{collections::BTreeMap, time::Duration};
+
+/// Collects results until there are `jobs` of them.
+async fn collect(
+    dispatch: &mut Dispatch,
+    jobs: usize,
+    limit: Duration,
+) -> Result<BTreeMap<JobId, Outcome>, DispatchError> {
+    let mut results = BTreeMap::new();
+    let all = async {
+        while results.len() < jobs {
+            let completed = dispatch.next().await?;
+            let before = results.insert(completed.id, completed.outcome);
+            assert_eq!(before, None, "job {} was delivered twice", completed.id);
+        }
+        Ok(())
+    };
+    let in_time = tokio::time::timeout(limit, all).await;
+    match in_time {
+        Ok(ended) => ended.map(|()| results),
+        Err(_) => panic!(
+            "{} of {jobs} results within {limit:?}: {:?}",
+            results.len(),
+            dispatch.snapshot()
+        ),
+    }
+}
+
+fn submit(dispatch: &mut Dispatch, jobs: u64, delay_ms: u32) {
+    for n in 0..jobs {
+        dispatch.submit(JobId(n), tests::job(n, delay_ms)).unwrap();
+    }
+}

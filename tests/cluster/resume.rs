@@ -1,0 +1,101 @@
+//! A coordinator that is killed, and the same command again.
+use coordinator::journal;
+use protocol::{event::Event, id::JobId, job::Outcome};
+use rustix::process::Signal;
+use std::{
+    collections::BTreeMap,
+    fs,
+    io::{BufRead, BufReader, Read},
+    path::Path,
+    process::Command,
+    time::Duration,
+};
+use tests::{
+    expect_results,
+    process::{Process, children, free_locator, is_alive, wait_until},
+};
+
+const LIMIT: Duration = Duration::from_mins(1);
+
+fn coordinator(run_dir: &Path, locator: &str, jobs: u64, local: usize) -> Process {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
+    let (jobs, local) = (jobs.to_string(), local.to_string());
+    command.arg(run_dir).args([locator, &jobs, "20", &local]);
+    Process::start(command)
+}
+
+/// Results in the journal, and how often each job is there.
+fn recorded(run_dir: &Path) -> (BTreeMap<JobId, Outcome>, usize) {
+    let (mut results, mut records) = (BTreeMap::new(), 0);
+    journal::fold(&run_dir.join(journal::FILE), |_, event| {
+        if let Event::Finished(finished) = event {
+            records += 1;
+            results.insert(finished.job(), finished.outcome);
+        }
+    })
+    .unwrap();
+    (results, records)
+}
+
+/// Kills a coordinator again and again; its workers stay. No recorded result is computed again,
+/// and the end is what it would have been.
+#[test]
+fn a_killed_coordinator_goes_on_where_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let workers: Vec<Process> = (0..2)
+        .map(|_| Process::worker(&locator, &["--slots", "2"]))
+        .collect();
+    let mut known = 0;
+    for round in 0..3_usize {
+        let mut process = coordinator(folder.path(), &locator, 200, 0);
+        let mut lines = BufReader::new(process.output()).lines();
+        // kill it after as many new results, wherever it is then
+        for _ in 0..known + 30 + 7 * round {
+            lines.next().unwrap().unwrap();
+        }
+        process.signal(Signal::KILL);
+        drop(process);
+        let (results, records) = recorded(folder.path());
+        assert_eq!(results.len(), records, "no job was recorded twice");
+        assert!(records > known, "round {round}");
+        known = records;
+    }
+    let mut last = coordinator(folder.path(), &locator, 200, 0);
+    let mut said = String::new();
+    last.output().read_to_string(&mut said).unwrap();
+    assert_eq!(last.wait(LIMIT), Some(0), "{said}");
+    let (results, records) = recorded(folder.path());
+    assert_eq!(records, 200, "no job was recorded twice");
+    expect_results(&results, 200);
+    let replayed = said.lines().filter(|line| line.ends_with(" true")).count();
+    assert_eq!(replayed, known, "every recorded result was used");
+    drop(workers);
+}
+
+/// Local workers die with their coordinator, even when it is killed, and so do their slots.
+#[test]
+fn a_killed_coordinator_leaves_no_process_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut process = coordinator(folder.path(), "tcp/127.0.0.1:0", 100_000, 2);
+    let mut lines = BufReader::new(process.output()).lines();
+    for _ in 0..20 {
+        lines.next().unwrap().unwrap();
+    }
+    let workers = children(process.pid());
+    let slots: Vec<_> = workers
+        .iter()
+        .flat_map(|worker| children(*worker))
+        .collect();
+    assert_eq!((workers.len(), slots.len()), (2, 2));
+    process.signal(Signal::KILL);
+    wait_until("all are gone", Duration::from_secs(2), || {
+        workers.iter().chain(&slots).all(|pid| !is_alive(*pid))
+    });
+    assert!(
+        fs::metadata(folder.path().join(journal::FILE))
+            .unwrap()
+            .len()
+            > 0
+    );
+}

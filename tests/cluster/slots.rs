@@ -1,0 +1,180 @@
+//! Slots: jobs that never return, slots that crash, and a link that misbehaves.
+use super::{collect, submit};
+use coordinator::runtime::Dispatch;
+use link::memory::{Faults, Hub};
+use protocol::{
+    id::{JobId, WorkerId},
+    job::{Failure, Job},
+    message::Attempt,
+};
+use rustix::process::{Signal, getpid, kill_process};
+use std::{
+    collections::BTreeSet,
+    time::{Duration, Instant},
+};
+use tests::{
+    expect_results, options,
+    process::{children, is_alive, wait_until, worker_program},
+};
+use tokio::sync::mpsc::unbounded_channel;
+use worker::{
+    pool::{Freed, Pool, Task},
+    session::{self, Ending, SessionOptions},
+};
+
+const LIMIT: Duration = Duration::from_mins(1);
+
+fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
+    let attempt = Attempt {
+        job: JobId(job),
+        ..Attempt {
+            job: JobId(0),
+            attempt: protocol::id::AttemptId(1),
+        }
+    };
+    let job = Box::new(Job::Nothing {
+        payload: Vec::new(),
+        reply_bytes: 3,
+        delay_ms,
+    });
+    Task {
+        attempt,
+        deadline,
+        job,
+        case: None,
+    }
+}
+
+/// Slot processes of this process: other tests of the suite have theirs in processes of workers.
+fn slots() -> BTreeSet<i32> {
+    children(getpid())
+        .into_iter()
+        .map(|pid| pid.as_raw_nonzero().get())
+        .collect()
+}
+
+fn failure(freed: Freed) -> Failure {
+    match freed.outcome {
+        Some(protocol::job::Outcome::Failed(failure)) => failure,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
+    let (to, mut freed) = unbounded_channel();
+    let pool = Pool::start(1, &worker_program(), &to).unwrap();
+    let before = slots();
+    pool.run(0, task(1, 600_000, Duration::from_millis(400)));
+    let begun = Instant::now();
+    wait_until("the slot's process is there", LIMIT, || {
+        slots().difference(&before).count() == 1
+    });
+    let ended = failure(freed.blocking_recv().unwrap());
+    assert_eq!(ended, Failure::Deadline { limit_ms: 400 });
+    assert!(
+        begun.elapsed() < Duration::from_millis(1400),
+        "{:?}",
+        begun.elapsed()
+    );
+    wait_until("it is gone", LIMIT, || {
+        slots().difference(&before).count() == 0
+    });
+
+    pool.run(0, task(2, 600_000, LIMIT));
+    wait_until("the next one is there", LIMIT, || {
+        slots().difference(&before).count() == 1
+    });
+    let pid = *slots().difference(&before).next().unwrap();
+    let pid = rustix::process::Pid::from_raw(pid).unwrap();
+    kill_process(pid, Signal::SEGV).unwrap();
+    let crashed = failure(freed.blocking_recv().unwrap());
+    assert!(
+        matches!(&crashed, Failure::Crashed { how } if how.contains("ended by signal 11")),
+        "{crashed:?}"
+    );
+
+    pool.run(0, task(3, 600_000, LIMIT));
+    pool.cancel(0, task(3, 0, LIMIT).attempt);
+    assert_eq!(freed.blocking_recv().unwrap().outcome, None, "cancelled");
+    pool.run(0, task(4, 0, LIMIT));
+    let done = freed.blocking_recv().unwrap();
+    assert_eq!(
+        done.outcome,
+        Some(protocol::job::Outcome::Nothing(vec![0; 3]))
+    );
+    assert!(pool.is_alive());
+    drop(pool);
+    assert!(!is_alive(pid));
+    assert_eq!(slots().difference(&before).count(), 0);
+}
+
+async fn over_memory(
+    faults: Faults,
+    jobs: u64,
+) -> (
+    Vec<(JobId, protocol::job::Outcome)>,
+    coordinator::runtime::Summary,
+) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut hub = None;
+    let made = Dispatch::over(&options(folder.path(), None, 0), |_, blob| {
+        let (end, place) = Hub::new(faults, blob);
+        hub = Some(place);
+        end
+    });
+    let mut dispatch = made.unwrap();
+    let hub = hub.unwrap();
+    let mut workers = Vec::new();
+    for id in 1..=3 {
+        let options = SessionOptions {
+            id: WorkerId(id),
+            slots: 2,
+            program: worker_program(),
+            idle_timeout: None,
+            embedded: true,
+        };
+        workers.push(tokio::spawn(session::run(
+            hub.worker(WorkerId(id)),
+            options,
+            tokio::time::sleep(LIMIT),
+        )));
+    }
+    submit(&mut dispatch, jobs, 1);
+    let results = collect(&mut dispatch, usize::try_from(jobs).unwrap(), LIMIT)
+        .await
+        .unwrap();
+    expect_results(&results, jobs);
+    let summary = dispatch.close().await.unwrap();
+    for worker in workers {
+        let ending = worker.await.unwrap().unwrap();
+        assert!(
+            matches!(ending, Ending::RunOver | Ending::Unlinked),
+            "{ending:?}"
+        );
+    }
+    (results.into_iter().collect(), summary)
+}
+
+/// A fifth of all messages lost, a fifth doubled, all in disorder: the same results.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_link_that_loses_doubles_and_reorders_changes_nothing() {
+    let (clean, summary) = over_memory(Faults::NONE, 300).await;
+    assert_eq!((summary.last.repeated, summary.last.duplicates), (0, 0));
+    for seed in [1, 2] {
+        let delay = Duration::from_millis(30);
+        let faults = Faults {
+            seed,
+            loss: 0.2,
+            duplication: 0.2,
+            delay,
+        };
+        let (faulty, summary) = over_memory(faults, 300).await;
+        assert_eq!(faulty, clean, "seed {seed}");
+        assert!(
+            summary.last.duplicates > 0,
+            "seed {seed}: {:?}",
+            summary.last
+        );
+    }
+}

@@ -1,0 +1,143 @@
+//! Real processes under test: found, started, disturbed, and gone at the end.
+use coordinator::runtime::locate;
+use rustix::process::{Pid, Signal, kill_process};
+use std::{
+    fs,
+    path::PathBuf,
+    process::{Child, Command, Stdio},
+    sync::OnceLock,
+    thread,
+    time::{Duration, Instant},
+};
+
+/// The worker program, built with the cargo that runs the tests: under `cargo test` a program of
+/// another package is not built by itself.
+///
+/// # Panics
+/// If it cannot be built.
+pub fn worker_program() -> PathBuf {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM
+        .get_or_init(|| locate::worker_program().expect("the worker program"))
+        .clone()
+}
+
+/// A free port on loopback, as a locator.
+///
+/// # Panics
+/// If the machine has none.
+pub fn free_locator() -> String {
+    let any = link::locator::Locator::parse("tcp/127.0.0.1:0").expect("a locator");
+    any.with_free_port().expect("a free port").to_string()
+}
+
+/// A process that is killed when dropped.
+#[derive(Debug)]
+pub struct Process(Child);
+
+impl Process {
+    /// Starts a worker.
+    ///
+    /// # Panics
+    /// If it does not start.
+    pub fn worker(connect: &str, arguments: &[&str]) -> Self {
+        let mut command = Command::new(worker_program());
+        command.args(["--connect", connect]).args(arguments);
+        Self::start(command)
+    }
+
+    /// Starts any program, with its standard output to be read.
+    ///
+    /// # Panics
+    /// If it does not start.
+    pub fn start(mut command: Command) -> Self {
+        let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn();
+        Self(child.expect("the program starts"))
+    }
+
+    /// Its process id.
+    ///
+    /// # Panics
+    /// Never: ids are positive.
+    pub fn pid(&self) -> Pid {
+        i32::try_from(self.0.id())
+            .ok()
+            .and_then(Pid::from_raw)
+            .expect("a process id")
+    }
+
+    /// Sends a signal.
+    ///
+    /// # Panics
+    /// If the process has been waited for.
+    pub fn signal(&self, signal: Signal) {
+        kill_process(self.pid(), signal).expect("the process is there");
+    }
+
+    /// Its standard output.
+    ///
+    /// # Panics
+    /// The second time.
+    pub fn output(&mut self) -> std::process::ChildStdout {
+        self.0.stdout.take().expect("the output is read once")
+    }
+
+    /// Waits for its end and returns its exit code, if it was not killed.
+    ///
+    /// # Panics
+    /// If it does not end within `limit`.
+    pub fn wait(&mut self, limit: Duration) -> Option<i32> {
+        let mut status = None;
+        wait_until("the process ends", limit, || {
+            status = self.0.try_wait().expect("the process can be waited for");
+            status.is_some()
+        });
+        status.and_then(|status| status.code())
+    }
+}
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        // fails only if it has ended by itself
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+/// Processes whose parent is `parent`.
+pub fn children(parent: Pid) -> Vec<Pid> {
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    processes
+        .filter_map(|entry| {
+            let pid = Pid::from_raw(entry.file_name().to_str()?.parse().ok()?)?;
+            let stat = fs::read_to_string(entry.path().join("stat")).ok()?;
+            // the name, in parentheses, may hold anything
+            let (_, rest) = stat.rsplit_once(')')?;
+            let of: i32 = rest.split_whitespace().nth(1)?.parse().ok()?;
+            (of == parent.as_raw_nonzero().get()).then_some(pid)
+        })
+        .collect()
+}
+
+/// Whether a process is there and not just waiting to be reaped.
+pub fn is_alive(pid: Pid) -> bool {
+    let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero()));
+    stat.is_ok_and(|stat| {
+        let state = stat
+            .rsplit_once(')')
+            .and_then(|(_, rest)| rest.split_whitespace().next());
+        state != Some("Z")
+    })
+}
+
+/// Waits for something to become true.
+///
+/// # Panics
+/// If it does not within `limit`.
+pub fn wait_until(what: &str, limit: Duration, mut is_true: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_true() {
+        assert!(begun.elapsed() < limit, "not within {limit:?}: {what}");
+        thread::sleep(Duration::from_millis(5));
+    }
+}

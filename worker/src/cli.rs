@@ -1,0 +1,52 @@
+//! The command line of `horsehead-worker`.
+use clap::{Parser, Subcommand};
+
+/// Computes simulations for a Horsehead coordinator.
+///
+/// Start any number of workers, before or after the coordinator, and stop them whenever you like:
+/// what they hold is computed by others. A worker stays when the coordinator goes away and
+/// returns what it finished meanwhile; it keeps no files.
+#[derive(Clone, Debug, Parser)]
+#[command(
+    name = "horsehead-worker",
+    version,
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    after_help = "Examples:\n  \
+        horsehead-worker --connect tcp/127.0.0.1:7447\n  \
+        HORSEHEAD_TLS_CA=ca.pem HORSEHEAD_TLS_CERTIFICATE=worker.pem HORSEHEAD_TLS_KEY=worker.key \\\n    \
+        horsehead-worker --connect quic/head.example:7447 --slots 8 --idle-timeout 600\n\n\
+        Exit status: 0 ended in good order, 1 could not work, 2 wrong command line, \
+        3 refused by the coordinator.\n\
+        HORSEHEAD_LOG sets what is logged, as in \"debug\" or \"worker=debug\"."
+)]
+pub struct Cli {
+    /// Address of the coordinator: tcp/HOST:PORT, or quic/HOST:PORT with certificates
+    #[arg(
+        long,
+        value_name = "LOCATOR",
+        env = "HORSEHEAD_CONNECT",
+        required = true
+    )]
+    pub connect: Option<String>,
+    /// Simulations computed at a time [default: one per hardware thread]
+    #[arg(long, value_name = "N", env = "HORSEHEAD_SLOTS", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub slots: Option<u16>,
+    /// End after so long without work [default: never]
+    #[arg(long, value_name = "SECONDS", env = "HORSEHEAD_IDLE_TIMEOUT", value_parser = clap::value_parser!(u64).range(1..))]
+    pub idle_timeout: Option<u64>,
+    /// Belong to the process that started this one: end with it and with its run
+    #[arg(long, hide = true)]
+    pub embedded: bool,
+    /// What else this program can be
+    #[command(subcommand)]
+    pub role: Option<Role>,
+}
+
+/// Roles that only the program itself uses.
+#[derive(Clone, Copy, Debug, Subcommand)]
+pub enum Role {
+    /// Compute what standard input says
+    #[command(hide = true)]
+    Slot,
+}

@@ -1,0 +1,172 @@
+//! The thread that keeps one slot busy and within its deadlines.
+use super::{Freed, Task, child::Child};
+use protocol::{
+    job::{Failure, Outcome},
+    message::{Attempt, FromSlot},
+};
+use std::{
+    path::PathBuf,
+    sync::mpsc::{Receiver, RecvTimeoutError, Sender},
+    time::{Duration, Instant},
+};
+use tokio::sync::mpsc::UnboundedSender;
+
+/// How often a keeper shows that it lives.
+const PULSE: Duration = Duration::from_millis(500);
+
+#[derive(Debug)]
+pub(super) enum ToKeeper {
+    Run(Task),
+    Cancel(Attempt),
+    /// From the process of this number.
+    Said(u64, Option<FromSlot>),
+    End,
+}
+
+#[derive(Debug)]
+pub(super) struct Keeper {
+    slot: usize,
+    program: PathBuf,
+    to_self: Sender<ToKeeper>,
+    freed: UnboundedSender<Freed>,
+    child: Option<Child>,
+    /// Counts the processes, so that the last words of an ended one are not taken for another's.
+    number: u64,
+    current: Option<Current>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Current {
+    attempt: Attempt,
+    begun: Instant,
+    deadline: Duration,
+}
+
+impl Keeper {
+    pub(super) const fn new(
+        slot: usize,
+        program: PathBuf,
+        to_self: Sender<ToKeeper>,
+        freed: UnboundedSender<Freed>,
+    ) -> Self {
+        Self {
+            slot,
+            program,
+            to_self,
+            freed,
+            child: None,
+            number: 0,
+            current: None,
+        }
+    }
+
+    pub(super) fn keep(&mut self, messages: &Receiver<ToKeeper>, pulse: impl Fn()) {
+        loop {
+            pulse();
+            match messages.recv_timeout(self.patience()) {
+                Ok(ToKeeper::Run(task)) => self.begin(task),
+                Ok(ToKeeper::Cancel(attempt)) => self.cancel(attempt),
+                Ok(ToKeeper::Said(number, message)) if number == self.number => self.said(message),
+                Ok(ToKeeper::Said(..)) | Err(RecvTimeoutError::Timeout) => {}
+                Ok(ToKeeper::End) | Err(RecvTimeoutError::Disconnected) => {
+                    self.child = None;
+                    return;
+                }
+            }
+            self.check_deadline();
+        }
+    }
+
+    fn patience(&self) -> Duration {
+        self.current.map_or(PULSE, |current| {
+            current
+                .deadline
+                .saturating_sub(current.begun.elapsed())
+                .min(PULSE)
+        })
+    }
+
+    fn begin(&mut self, task: Task) {
+        let Task {
+            attempt,
+            deadline,
+            job,
+            case,
+        } = task;
+        self.current = Some(Current {
+            attempt,
+            begun: Instant::now(),
+            deadline,
+        });
+        let started = self.start_if_needed();
+        let given = started.and_then(|()| match &mut self.child {
+            Some(child) => child.run(job, case.as_ref()),
+            None => Ok(()),
+        });
+        if let Err(error) = given {
+            let end = self.child.take().map_or_else(String::new, Child::ended);
+            let how = format!("the slot's process takes no job: {error} {end}");
+            self.finish(Some(Outcome::Failed(Failure::Crashed { how })));
+        }
+    }
+
+    fn start_if_needed(&mut self) -> std::io::Result<()> {
+        if self.child.is_none() {
+            self.number += 1;
+            let (number, to_self) = (self.number, self.to_self.clone());
+            let child = Child::start(&self.program, move |message| {
+                // a keeper that has ended needs no news
+                drop(to_self.send(ToKeeper::Said(number, message)));
+            });
+            self.child = Some(child?);
+        }
+        Ok(())
+    }
+
+    fn cancel(&mut self, attempt: Attempt) {
+        if self
+            .current
+            .is_some_and(|current| current.attempt == attempt)
+        {
+            self.child = None;
+            self.finish(None);
+        }
+    }
+
+    fn said(&mut self, message: Option<FromSlot>) {
+        match message {
+            Some(FromSlot::Ready) => {}
+            Some(FromSlot::Done(outcome)) => self.finish(Some(*outcome)),
+            None => {
+                let how = self.child.take().map_or_else(String::new, Child::ended);
+                self.finish(Some(Outcome::Failed(Failure::Crashed { how })));
+            }
+        }
+    }
+
+    fn check_deadline(&mut self) {
+        let overdue = self
+            .current
+            .filter(|current| current.begun.elapsed() >= current.deadline);
+        if let Some(current) = overdue {
+            self.child = None;
+            let limit_ms = super::millis(current.deadline);
+            self.finish(Some(Outcome::Failed(Failure::Deadline { limit_ms })));
+        }
+    }
+
+    fn finish(&mut self, outcome: Option<Outcome>) {
+        let Some(current) = self.current.take() else {
+            return;
+        };
+        let wall = current.begun.elapsed();
+        let freed = Freed {
+            slot: self.slot,
+            attempt: current.attempt,
+            wall,
+            outcome,
+        };
+        // a session that has ended needs no results
+        drop(self.freed.send(freed));
+    }
+}

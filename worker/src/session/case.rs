@@ -1,0 +1,52 @@
+//! The case of a run: fetched once, piece by piece, checked against its name.
+use crate::pool::CaseBytes;
+use protocol::id::ContentHash;
+
+/// A case on its way.
+#[derive(Debug)]
+pub(super) struct Incoming {
+    hash: ContentHash,
+    length: u64,
+    bytes: Vec<u8>,
+    next: u32,
+}
+
+impl Incoming {
+    pub(super) const fn new(hash: ContentHash, length: u64) -> Self {
+        Self {
+            hash,
+            length,
+            bytes: Vec::new(),
+            next: 0,
+        }
+    }
+
+    pub(super) const fn hash(&self) -> ContentHash {
+        self.hash
+    }
+
+    /// The piece that is needed next.
+    pub(super) const fn next(&self) -> u32 {
+        self.next
+    }
+
+    /// Takes the next piece; the case once it is whole. What is whole but wrong is begun again.
+    pub(super) fn take(&mut self, piece: &[u8]) -> Option<CaseBytes> {
+        self.bytes.extend_from_slice(piece);
+        self.next += 1;
+        if (self.bytes.len() as u64) < self.length {
+            return None;
+        }
+        let bytes = std::mem::take(&mut self.bytes);
+        self.next = 0;
+        let found = ContentHash::of(&bytes);
+        if found != self.hash {
+            tracing::warn!(expected = %self.hash, %found, "the case arrived damaged: again");
+            return None;
+        }
+        Some(CaseBytes {
+            hash: found,
+            bytes: bytes.into(),
+        })
+    }
+}

@@ -1,0 +1,347 @@
+//! What a worker holds, and what it does with each message.
+use super::{Ending, SessionOptions, case::Incoming};
+use crate::{
+    outbox::Outbox,
+    pool::{CaseBytes, Freed, Pool, Task},
+};
+use link::{LinkError, WorkerEnd};
+use protocol::{
+    announce::Announcement,
+    id::{ContentHash, RunId},
+    job::Job,
+    key::Lane,
+    message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
+    wire::{self, Kind, WireError},
+};
+use std::{
+    collections::{BTreeMap, VecDeque},
+    time::Duration,
+};
+use tokio::task::{JoinError, JoinSet};
+
+/// How often a worker speaks.
+const BEAT: Duration = Duration::from_secs(1);
+
+/// What follows from a message.
+#[derive(Debug)]
+pub(super) enum Step {
+    Go,
+    End(Ending),
+}
+
+#[derive(Debug)]
+pub(super) struct State {
+    options: SessionOptions,
+    announcement: Announcement,
+    pool: Pool,
+    /// 0 until a coordinator has said it.
+    run: RunId,
+    admitted: bool,
+    case: Option<CaseBytes>,
+    incoming: Option<Incoming>,
+    pub(super) fetching: JoinSet<Result<Vec<u8>, LinkError>>,
+    waiting: VecDeque<Order>,
+    /// By slot; with the hash of the work.
+    running: BTreeMap<usize, (Attempt, ContentHash)>,
+    outbox: Outbox,
+    beats: u64,
+    next_beat: Duration,
+    last_work: Duration,
+}
+
+impl State {
+    pub(super) fn new(
+        options: SessionOptions,
+        announcement: fn(usize) -> Announcement,
+        pool: Pool,
+    ) -> Self {
+        Self {
+            announcement: announcement(options.slots),
+            options,
+            pool,
+            run: RunId::default(),
+            admitted: false,
+            case: None,
+            incoming: None,
+            fetching: JoinSet::new(),
+            waiting: VecDeque::new(),
+            running: BTreeMap::new(),
+            outbox: Outbox::default(),
+            beats: 0,
+            next_beat: Duration::ZERO,
+            last_work: Duration::ZERO,
+        }
+    }
+
+    pub(super) async fn hear<L: WorkerEnd>(
+        &mut self,
+        link: &mut L,
+        frame: &[u8],
+        now: Duration,
+    ) -> Step {
+        let (run, message) = match wire::unseal::<ToWorker>(Kind::ToWorker, frame) {
+            Ok(heard) => heard,
+            Err(error @ WireError::Version { .. }) => {
+                return Step::End(Ending::Refused(error.to_string()));
+            }
+            Err(error) => {
+                tracing::debug!(%error, "a frame was dropped");
+                return Step::Go;
+            }
+        };
+        let ours = self.admitted && run == self.run;
+        match message {
+            ToWorker::Identify => self.announce(link),
+            ToWorker::Admitted {
+                case, case_bytes, ..
+            } => {
+                self.join(link, run, case, case_bytes).await;
+                self.beat(link, now);
+            }
+            ToWorker::Refused { reason } => return Step::End(Ending::Refused(reason)),
+            ToWorker::Run(order) if ours => self.take(link, *order, now),
+            ToWorker::Cancel(attempt) if ours => self.cancel(attempt),
+            ToWorker::Stored(attempts) if ours => self.outbox.settle(&attempts),
+            ToWorker::Ended if ours => {
+                tracing::info!(run = %self.run, "the run is over");
+                if self.options.embedded {
+                    return Step::End(Ending::RunOver);
+                }
+                self.forget();
+            }
+            ToWorker::Run(_) | ToWorker::Cancel(_) | ToWorker::Stored(_) | ToWorker::Ended => {
+                tracing::debug!(%run, "a message of another run was dropped");
+            }
+        }
+        Step::Go
+    }
+
+    async fn join<L: WorkerEnd>(
+        &mut self,
+        link: &mut L,
+        run: RunId,
+        case: ContentHash,
+        case_bytes: u64,
+    ) {
+        let again = self.admitted && run == self.run;
+        if run != self.run {
+            self.forget();
+            self.run = run;
+        }
+        if !again {
+            tracing::info!(%run, "admitted");
+            if let Err(error) = link.appear(run).await {
+                // the heartbeat alone will do
+                tracing::warn!(%error, "presence is not shown");
+            }
+        }
+        self.admitted = true;
+        self.outbox.hurry();
+        let known = self.case.as_ref().is_some_and(|held| held.hash == case)
+            || self
+                .incoming
+                .as_ref()
+                .is_some_and(|incoming| incoming.hash() == case);
+        if !known {
+            self.incoming = Some(Incoming::new(case, case_bytes));
+            self.fetching.abort_all();
+        }
+        self.fetch(link);
+    }
+
+    /// Asks for the next piece of the case, unless one is on its way.
+    fn fetch<L: WorkerEnd>(&mut self, link: &L) {
+        if let (Some(incoming), true) = (&self.incoming, self.fetching.is_empty()) {
+            self.fetching
+                .spawn(link.fetch(self.run, incoming.hash(), incoming.next()));
+        }
+    }
+
+    pub(super) fn piece<L: WorkerEnd>(
+        &mut self,
+        link: &mut L,
+        piece: Result<Result<Vec<u8>, LinkError>, JoinError>,
+    ) -> Step {
+        match (piece, &mut self.incoming) {
+            (Ok(Ok(piece)), Some(incoming)) => {
+                if let Some(case) = incoming.take(&piece) {
+                    tracing::debug!(hash = %case.hash, bytes = case.bytes.len(), "the case is here");
+                    self.case = Some(case);
+                    self.incoming = None;
+                    self.next_beat = Duration::ZERO;
+                    self.send_beat(link);
+                }
+                self.fetch(link);
+            }
+            // asked for again at the next tick
+            (Ok(Err(error)), _) => tracing::debug!(%error, "a piece is missing"),
+            (Ok(Ok(_)) | Err(_), _) => {}
+        }
+        Step::Go
+    }
+
+    fn take<L: WorkerEnd>(&mut self, link: &mut L, order: Order, now: Duration) {
+        self.last_work = now;
+        let attempt = order.attempt;
+        if let Some(done) = self.outbox.get(attempt) {
+            let message = FromWorker::Done(Box::new(done.clone()));
+            self.send(link, Lane::Data, &message);
+        } else if !self.holds(attempt) && !self.outbox.is_settled(attempt) {
+            self.waiting.push_back(order);
+            self.fill();
+        }
+    }
+
+    fn holds(&self, attempt: Attempt) -> bool {
+        self.running.values().any(|(held, _)| *held == attempt)
+            || self.waiting.iter().any(|order| order.attempt == attempt)
+    }
+
+    fn fill(&mut self) {
+        for slot in 0..self.pool.len() {
+            if self.running.contains_key(&slot) {
+                continue;
+            }
+            let Some(Order {
+                attempt,
+                deadline_ms,
+                job,
+            }) = self.waiting.pop_front()
+            else {
+                return;
+            };
+            let work = work_hash(&job);
+            self.running.insert(slot, (attempt, work));
+            let deadline = Duration::from_millis(deadline_ms);
+            let case = self.case.clone();
+            self.pool.run(
+                slot,
+                Task {
+                    attempt,
+                    deadline,
+                    job: Box::new(job),
+                    case,
+                },
+            );
+        }
+    }
+
+    fn cancel(&mut self, attempt: Attempt) {
+        self.waiting.retain(|order| order.attempt != attempt);
+        self.outbox.settle(&[attempt]);
+        self.outbox.remember(attempt);
+        for (slot, (held, _)) in &self.running {
+            if *held == attempt {
+                self.pool.cancel(*slot, attempt);
+            }
+        }
+    }
+
+    pub(super) fn freed<L: WorkerEnd>(
+        &mut self,
+        link: &mut L,
+        freed: Freed,
+        now: Duration,
+    ) -> Step {
+        self.last_work = now;
+        let held = self.running.remove(&freed.slot);
+        if let (Some(outcome), Some((attempt, work))) = (freed.outcome, held) {
+            let wall_us = u64::try_from(freed.wall.as_micros()).unwrap_or(u64::MAX);
+            let done = Done {
+                attempt,
+                work,
+                wall_us,
+                outcome,
+            };
+            if !self.outbox.is_settled(attempt) {
+                self.send(link, Lane::Data, &FromWorker::Done(Box::new(done.clone())));
+                self.outbox.put(done, now);
+            }
+        }
+        self.fill();
+        Step::Go
+    }
+
+    pub(super) fn tick<L: WorkerEnd>(&mut self, link: &mut L, now: Duration) -> Step {
+        for done in self.outbox.due(now) {
+            self.send(link, Lane::Data, &FromWorker::Done(Box::new(done)));
+        }
+        self.fetch(link);
+        if now >= self.next_beat {
+            self.beat(link, now);
+        }
+        let idle = self.waiting.is_empty() && self.running.is_empty();
+        match self.options.idle_timeout {
+            Some(timeout) if idle && now.saturating_sub(self.last_work) >= timeout => {
+                Step::End(Ending::Idle)
+            }
+            _ => Step::Go,
+        }
+    }
+
+    fn beat<L: WorkerEnd>(&mut self, link: &mut L, now: Duration) {
+        self.next_beat = now + BEAT;
+        if self.admitted {
+            self.send_beat(link);
+        } else {
+            self.announce(link);
+        }
+    }
+
+    /// Proof of life, if there is life in the slots.
+    fn send_beat<L: WorkerEnd>(&mut self, link: &mut L) {
+        if !self.pool.is_alive() {
+            tracing::error!("a slot is stuck: no sign of life is sent");
+            return;
+        }
+        let beat = Beat {
+            number: self.beats,
+            case: self.case.as_ref().map(|case| case.hash),
+            running: self.running.values().map(|(attempt, _)| *attempt).collect(),
+            waiting: self.waiting.iter().map(|order| order.attempt).collect(),
+            finished: self.outbox.attempts(),
+        };
+        self.beats += 1;
+        self.send(link, Lane::Control, &FromWorker::Beat(beat));
+    }
+
+    fn announce<L: WorkerEnd>(&self, link: &mut L) {
+        let message = FromWorker::Announce(Box::new(self.announcement.clone()));
+        self.send(link, Lane::Control, &message);
+    }
+
+    pub(super) fn leave<L: WorkerEnd>(&self, link: &mut L, ending: &Ending) {
+        let reason = match ending {
+            Ending::Asked => "it was asked to end",
+            Ending::Idle => "there was no work",
+            Ending::RunOver | Ending::Refused(_) | Ending::Unlinked => return,
+        };
+        let message = FromWorker::Leaving {
+            reason: reason.to_owned(),
+        };
+        self.send(link, Lane::Control, &message);
+    }
+
+    fn send<L: WorkerEnd>(&self, link: &mut L, lane: Lane, message: &FromWorker) {
+        match wire::seal(Kind::FromWorker, self.run, message) {
+            Ok(frame) => link.send(self.run, lane, frame),
+            Err(error) => tracing::error!(%error, "a message cannot be sent"),
+        }
+    }
+
+    /// Drops everything of a run that is over.
+    fn forget(&mut self) {
+        self.admitted = false;
+        self.waiting.clear();
+        self.outbox.clear();
+        for (slot, (attempt, _)) in &self.running {
+            self.outbox.remember(*attempt);
+            self.pool.cancel(*slot, *attempt);
+        }
+    }
+}
+
+/// The name of a piece of work: the hash of its encoded job.
+fn work_hash(job: &Job) -> ContentHash {
+    ContentHash::of(&wire::encode(job).unwrap_or_default())
+}

@@ -1,0 +1,76 @@
+//! The process of one slot: reads jobs from standard input, writes outcomes to standard output.
+//!
+//! It ends with its worker: at the end of its input even in the middle of a job, and by the
+//! parent-death signal should the worker be killed while this process does not read.
+use crate::{handler, handler::Prepared, stream};
+use protocol::{
+    case::Case,
+    job::{Failure, Job, Outcome},
+    message::{FromSlot, ToSlot},
+    wire::{self, Kind},
+};
+use rustix::process::{Signal, set_parent_process_death_signal};
+use std::{
+    io::{self, BufReader},
+    sync::mpsc,
+    thread,
+};
+
+/// Serves until the input ends.
+///
+/// # Errors
+/// If standard output is closed or a message cannot be read.
+pub fn serve() -> io::Result<()> {
+    set_parent_process_death_signal(Some(Signal::KILL))?;
+    let (to, messages) = mpsc::channel();
+    thread::Builder::new()
+        .name("slot-input".to_owned())
+        .spawn(move || listen(&to))?;
+    let mut out = io::stdout().lock();
+    stream::write(&mut out, Kind::FromSlot, &FromSlot::Ready)?;
+    let mut prepared = None;
+    for message in messages {
+        match message {
+            ToSlot::Case(bytes) => prepared = Some(prepare(&bytes)),
+            ToSlot::Run(job) => {
+                let outcome = evaluate(prepared.as_ref(), &job);
+                stream::write(&mut out, Kind::FromSlot, &FromSlot::Done(Box::new(outcome)))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+#[expect(
+    clippy::exit,
+    reason = "the end of the input must end a computation that goes on"
+)]
+fn listen(to: &mpsc::Sender<ToSlot>) {
+    let mut input = BufReader::new(io::stdin().lock());
+    loop {
+        match stream::read(&mut input, Kind::ToSlot) {
+            Ok(Some(message)) => drop(to.send(message)),
+            Ok(None) => std::process::exit(0),
+            Err(error) => {
+                tracing::error!(%error, "the slot cannot read its jobs");
+                std::process::exit(1);
+            }
+        }
+    }
+}
+
+fn prepare(bytes: &[u8]) -> Result<Prepared, Failure> {
+    let case: Case = wire::decode(bytes).map_err(|error| Failure::Misconfigured {
+        field: "case".to_owned(),
+        problem: error.to_string(),
+    })?;
+    Prepared::new(&case)
+}
+
+fn evaluate(prepared: Option<&Result<Prepared, Failure>>, job: &Job) -> Outcome {
+    match (job, prepared) {
+        (Job::Nothing { .. }, _) | (_, None) => handler::nothing(job),
+        (_, Some(Ok(prepared))) => prepared.evaluate(job),
+        (_, Some(Err(failure))) => Outcome::Failed(failure.clone()),
+    }
+}
