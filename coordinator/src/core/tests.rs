@@ -458,13 +458,16 @@ fn another_model_is_refused_by_name() {
     let mut scene = Scene::new();
     scene.join(1, 1);
     scene.announce(2, 1, "another");
-    let refused = scene.other.iter().find_map(|command| match command {
-        Command::Send {
+    let mut refused = None;
+    for command in &scene.other {
+        if let Command::Send {
             to: WorkerId(2),
             message: ToWorker::Refused { reason },
-        } => Some(reason),
-        _ => None,
-    });
+        } = command
+        {
+            refused = Some(reason);
+        }
+    }
     let reason = refused.unwrap();
     assert!(
         reason.contains("model_digest is another, this run's is m"),
@@ -578,4 +581,27 @@ fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
     assert_eq!(scene.cancelled, []);
     scene.wait(4, &[1]);
     assert_eq!(scene.cancelled, [(WorkerId(1), attempt)]);
+}
+
+/// A worker that leaves in good order is not counted as lost, even if its connection ends next.
+#[test]
+fn leaving_blames_no_job() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    scene.given();
+    let reason = "it was asked to end".to_owned();
+    scene.hear(1, FromWorker::Leaving { reason });
+    let answer = Command::Send {
+        to: WorkerId(1),
+        message: ToWorker::Ended,
+    };
+    assert!(scene.other.contains(&answer), "it waits for an answer");
+    scene.tell(Input::Gone {
+        worker: WorkerId(1),
+    });
+    assert_eq!(scene.core.snapshot(scene.now).lost, 0);
+    assert_eq!(scene.core.jobs[&JobId(0)].failures.losses, 0);
+    scene.join(2, 1);
+    assert_eq!(scene.given().len(), 1);
 }
