@@ -16,14 +16,14 @@ async fn local_workers_do_all_jobs_and_are_gone_afterwards() {
     let mut dispatch = Dispatch::open(options(folder.path(), None, 3))
         .await
         .unwrap();
-    submit(&mut dispatch, 500, 0);
+    submit(&mut dispatch, 500, 3);
     let results = collect(&mut dispatch, 500, LIMIT).await.unwrap();
     expect_results(&results, 500);
+    wait_until("all are shown", LIMIT, || {
+        dispatch.snapshot().workers.len() == 3
+    });
     let snapshot = dispatch.snapshot();
-    assert_eq!(
-        (snapshot.workers.len(), snapshot.lost, snapshot.failed),
-        (3, 0, 0)
-    );
+    assert_eq!((snapshot.lost, snapshot.failed), (0, 0));
     let workers = children(rustix::process::getpid());
     let slots: Vec<_> = workers
         .iter()

@@ -30,8 +30,8 @@ async fn collect(
     let in_time = tokio::time::timeout(limit, all).await;
     match in_time {
         Ok(ended) => ended.map(|()| results),
-        Err(_) => panic!(
-            "{} of {jobs} results within {limit:?}: {:?}",
+        Err(elapsed) => panic!(
+            "{elapsed}: {} of {jobs} results within {limit:?}: {:?}",
             results.len(),
             dispatch.snapshot()
         ),

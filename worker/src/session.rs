@@ -18,6 +18,9 @@ use tokio::sync::mpsc::unbounded_channel;
 /// How often the session looks after itself.
 const TICK: Duration = Duration::from_millis(250);
 
+/// How long a worker waits to be told that its leaving was heard.
+const FAREWELL: Duration = Duration::from_millis(500);
+
 /// How a session is set up.
 #[derive(Clone, Debug)]
 pub struct SessionOptions {
@@ -79,7 +82,10 @@ pub async fn run<L: WorkerEnd>(
             break ending;
         }
     };
-    state.leave(&mut link, &ending);
+    if state.leave(&mut link, &ending) {
+        let heard = tokio::time::timeout(FAREWELL, state.dismissed(&mut link)).await;
+        tracing::debug!(answered = heard.is_ok(), "left");
+    }
     // ends the slots, which takes a moment and would hold up the link
     let ended = tokio::task::spawn_blocking(move || drop(state));
     link.close().await;

@@ -153,6 +153,8 @@ fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {
         // nobody is to blame
         assign::release(core, worker, lease.attempt.job);
     }
+    // it waits for this, lest the end of its connection be heard first and taken for a loss
+    core.send(worker, ToWorker::Ended);
     core.notice(Notice::Left { worker, reason });
 }
 

@@ -48,7 +48,7 @@ struct Shared {
 }
 
 impl Shared {
-    /// A uniform number in [0, 1): SplitMix64.
+    /// A uniform number in [0, 1): `SplitMix64`.
     fn draw(&self) -> f64 {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);

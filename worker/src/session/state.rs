@@ -310,16 +310,30 @@ impl State {
         self.send(link, Lane::Control, &message);
     }
 
-    pub(super) fn leave<L: WorkerEnd>(&self, link: &mut L, ending: &Ending) {
+    /// Says goodbye where that makes a difference; `true` if an answer is to be expected.
+    pub(super) fn leave<L: WorkerEnd>(&self, link: &mut L, ending: &Ending) -> bool {
         let reason = match ending {
             Ending::Asked => "it was asked to end",
             Ending::Idle => "there was no work",
-            Ending::RunOver | Ending::Refused(_) | Ending::Unlinked => return,
+            Ending::RunOver | Ending::Refused(_) | Ending::Unlinked => return false,
         };
         let message = FromWorker::Leaving {
             reason: reason.to_owned(),
         };
         self.send(link, Lane::Control, &message);
+        self.admitted
+    }
+
+    /// Waits until the coordinator has heard that the worker leaves.
+    pub(super) async fn dismissed<L: WorkerEnd>(&self, link: &mut L) {
+        while let Some(frame) = link.receive().await {
+            if matches!(
+                wire::unseal(Kind::ToWorker, &frame),
+                Ok((_, ToWorker::Ended))
+            ) {
+                return;
+            }
+        }
     }
 
     fn send<L: WorkerEnd>(&self, link: &mut L, lane: Lane, message: &FromWorker) {
