@@ -67,7 +67,7 @@ pub struct Finished {
     pub work: ContentHash,
     /// Who did it; none for a failure that the coordinator states itself.
     pub worker: Option<WorkerId>,
-    /// Time in the slot [us].
+    /// Time in the slot \[us\].
     pub wall_us: u64,
     /// What came out.
     pub outcome: Outcome,

@@ -26,7 +26,7 @@ pub enum ToWorker {
         epoch: u32,
         /// Name of the case, to be fetched as a blob before any job.
         case: ContentHash,
-        /// Its length [bytes].
+        /// Its length (bytes).
         case_bytes: u64,
     },
     /// The worker may not take part.
@@ -49,7 +49,7 @@ pub enum ToWorker {
 pub struct Order {
     /// Which try at which job.
     pub attempt: Attempt,
-    /// From start to forced end [ms].
+    /// From start to forced end \[ms\].
     pub deadline_ms: u64,
     /// What to do.
     pub job: Job,
@@ -93,7 +93,7 @@ pub struct Done {
     pub attempt: Attempt,
     /// Hash of the job that was done, so that a result never answers another question.
     pub work: ContentHash,
-    /// Time in the slot [us].
+    /// Time in the slot \[us\].
     pub wall_us: u64,
     /// What came out.
     pub outcome: Outcome,

@@ -14,7 +14,7 @@ use serde::{Serialize, de::DeserializeOwned};
 
 /// Version of the frame and of everything in it; both ends must have the same.
 pub const VERSION: u8 = 1;
-/// The most a body may hold [bytes]: a long simulation with its rope shapes fits.
+/// The most a body may hold (bytes): a long simulation with its rope shapes fits.
 pub const BODY_LIMIT: usize = 16 << 20;
 /// Bytes before the body.
 pub const HEADER_BYTES: usize = 20;
@@ -221,7 +221,7 @@ pub fn unseal<T: DeserializeOwned>(kind: Kind, frame: &[u8]) -> Result<(RunId, T
     Ok((opened.run, decode(opened.body)?))
 }
 
-/// The length of the body that follows a header on a stream [bytes].
+/// The length of the body that follows a header on a stream (bytes).
 ///
 /// # Errors
 /// What [`open`] finds wrong with a header.

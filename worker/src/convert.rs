@@ -133,7 +133,7 @@ fn head(case: &Case) -> Result<Head, Failure> {
     })
 }
 
-/// Start and spacing [rad] of a table that must be equally spaced.
+/// Start and spacing \[rad\] of a table that must be equally spaced.
 fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
     let [first, second, ..] = degrees else {
         return Err(misconfigured(
@@ -155,7 +155,7 @@ fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
     Ok((first.to_radians(), step.to_radians()))
 }
 
-/// The load card after smoothing [N].
+/// The load card after smoothing \[N\].
 fn card(condition: &Condition) -> Vec<f64> {
     let load = &condition.card.load_n;
     let n = load.len();

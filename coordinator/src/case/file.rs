@@ -2,7 +2,7 @@
 use super::error::{CaseError, damaged};
 use std::{fs, io, io::Read, path::Path};
 
-/// Largest file, unpacked [bytes]: 40 hours of a 100 Hz record; a larger one is a mistake or a
+/// Largest file, unpacked (bytes): 40 hours of a 100 Hz record; a larger one is a mistake or a
 /// compression bomb.
 const LIMIT: u64 = 1 << 30;
 

@@ -71,7 +71,7 @@ fn widen([low, high]: &mut [f64; 2], value: f64) {
     *high = high.max(value);
 }
 
-/// Beam angle and contact normal for a crank-pin angle [rad]; none where Newton does not converge.
+/// Beam angle and contact normal for a crank-pin angle \[rad\]; none where Newton does not converge.
 fn close(case: &CaseFile, phi: f64, guess: [f64; 2], length: f64) -> Option<[f64; 2]> {
     let head = &case.back_head;
     let pin = [

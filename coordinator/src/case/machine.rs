@@ -147,7 +147,7 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     Ok(())
 }
 
-/// The divisor of 360 with few decimals that is nearest to a step [deg].
+/// The divisor of 360 with few decimals that is nearest to a step \[deg\].
 fn plain_step(step: f64) -> f64 {
     let plain = [
         0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,

@@ -49,7 +49,7 @@ pub struct CoreOptions {
     pub epoch: u32,
     /// The case that workers must hold.
     pub case: ContentHash,
-    /// Its length [bytes].
+    /// Its length (bytes).
     pub case_bytes: u64,
     /// Numerics that all workers of this run must have; none before the first.
     pub model_digest: Option<String>,

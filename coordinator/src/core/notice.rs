@@ -65,7 +65,7 @@ pub enum Notice {
     },
     /// The coordinator itself did not run for a while.
     Stalled {
-        /// For how long [ms].
+        /// For how long \[ms\].
         ms: u64,
     },
 }

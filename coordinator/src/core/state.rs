@@ -70,7 +70,7 @@ impl Member {
     }
 }
 
-/// Slot time by use [us].
+/// Slot time by use \[us\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spent {
     /// Slots times the time they were connected.
@@ -84,7 +84,7 @@ pub struct Spent {
 }
 
 impl Spent {
-    /// Slot time without a job, or with one that was lost [us].
+    /// Slot time without a job, or with one that was lost \[us\].
     pub const fn idle_us(&self) -> u64 {
         self.connected_us
             .saturating_sub(self.useful_us)

@@ -14,9 +14,9 @@ use std::{
 /// A stretch of a journal that could not be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Damage {
-    /// Where it begins [bytes].
+    /// Where it begins (bytes).
     pub at: u64,
-    /// How long it is [bytes].
+    /// How long it is (bytes).
     pub bytes: u64,
     /// Whether nothing readable follows: a record that was being written at a crash.
     pub torn: bool,
@@ -44,7 +44,7 @@ impl fmt::Display for Damage {
 pub struct Entry {
     /// Its body [bytes from the start of the file].
     pub at: u64,
-    /// Length of the body [bytes].
+    /// Length of the body (bytes).
     pub length: u32,
 }
 
@@ -55,7 +55,7 @@ pub struct ReadReport {
     pub records: u64,
     /// Stretches skipped.
     pub damage: Vec<Damage>,
-    /// End of the last readable record [bytes].
+    /// End of the last readable record (bytes).
     pub end: u64,
 }
 

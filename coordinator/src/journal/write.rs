@@ -22,7 +22,7 @@ use std::{
 /// Pause between attempts to write to a full disk.
 const RETRY: Duration = Duration::from_secs(1);
 
-/// More unreadable bytes than this [bytes] are not just a first record cut short, but a journal of
+/// More unreadable bytes than this (bytes) are not just a first record cut short, but a journal of
 /// something else: it is left alone.
 const UNFINISHED: u64 = 4096;
 

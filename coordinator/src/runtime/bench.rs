@@ -20,15 +20,15 @@ pub struct BenchResult {
     pub workers: usize,
     /// Jobs done as fast as possible.
     pub jobs: u64,
-    /// Median round trip of one job at a time [ms].
+    /// Median round trip of one job at a time \[ms\].
     pub rtt_median_ms: f64,
-    /// 99th percentile of the same [ms].
+    /// 99th percentile of the same \[ms\].
     pub rtt_p99_ms: f64,
     /// Jobs per second with all workers busy.
     pub jobs_per_s: f64,
-    /// Processor time of this process per job, with all workers busy [us].
+    /// Processor time of this process per job, with all workers busy \[us\].
     pub coordinator_cpu_us_per_job: f64,
-    /// Memory of this process at the end [MiB].
+    /// Memory of this process at the end (MiB).
     pub coordinator_rss_mib: f64,
 }
 

@@ -75,7 +75,7 @@ pub struct Summary {
     pub last: Snapshot,
     /// Results taken from the journal instead of being computed.
     pub replayed: u64,
-    /// Time between opening and closing [s].
+    /// Time between opening and closing \[s\].
     pub wall_s: f64,
 }
 

@@ -3,11 +3,11 @@
 use protocol::case::Case;
 use protocol::job::Motion;
 
-/// Length of rod and rope along the path, from the crank pin to the anchor [m].
+/// Length of rod and rope along the path, from the crank pin to the anchor \[m\].
 const PATH_M: f64 = 6.476;
-/// Length of the front rope [m].
+/// Length of the front rope \[m\].
 const FRONT_ROPE_M: f64 = 5.70;
-/// Crank-pin angle at bottom dead centre [deg].
+/// Crank-pin angle at bottom dead centre \[deg\].
 const PIN_AT_BOTTOM_DEG: f64 = 86.78;
 
 /// Pose of the machine at a crank angle.
@@ -15,11 +15,11 @@ pub(crate) struct Pose {
     pub turn_deg: f64,
     pub pin: [f64; 2],
     pub beam_rad: f64,
-    /// Direction of the contact normal where the rope leaves the arc, ground frame [rad].
+    /// Direction of the contact normal where the rope leaves the arc, ground frame \[rad\].
     pub normal_rad: f64,
-    /// Distance of the rope's line from the pivot [m].
+    /// Distance of the rope's line from the pivot \[m\].
     pub arm_m: f64,
-    /// Straight rope between crossbeam and arc [m].
+    /// Straight rope between crossbeam and arc \[m\].
     pub free_m: f64,
 }
 
@@ -92,7 +92,7 @@ pub(crate) fn revolution(case: &Case, count: usize) -> Vec<Pose> {
         .collect()
 }
 
-/// Height of the suspension point in the ground frame [m].
+/// Height of the suspension point in the ground frame \[m\].
 pub(crate) fn suspension_y_m(case: &Case, pose: &Pose) -> f64 {
     let anchor = case.front_head.rope_anchor_deg.to_radians();
     case.front_head.radius_m * (anchor + pose.beam_rad) - FRONT_ROPE_M
@@ -106,7 +106,7 @@ fn short([x, y]: [f64; 2]) -> [f32; 2] {
     [x as f32, y as f32]
 }
 
-/// A snapshot with ropes under the given tensions [N].
+/// A snapshot with ropes under the given tensions \[N\].
 #[expect(
     clippy::cast_possible_truncation,
     reason = "snapshots are stored short"

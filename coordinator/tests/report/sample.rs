@@ -15,7 +15,7 @@ use protocol::unit::Unit;
 
 /// Output points per revolution.
 const GRID: usize = 720;
-/// Harmonics of the polished-rod load [kN]: cosine, sine.
+/// Harmonics of the polished-rod load \[kN\]: cosine, sine.
 const LOAD_KN: [(f64, f64); 10] = [
     (-8.017, 14.245),
     (0.473, 0.671),
@@ -180,7 +180,7 @@ pub(crate) fn case() -> Case {
     case
 }
 
-/// Rope tension at the crossbeam [N].
+/// Rope tension at the crossbeam \[N\].
 fn tension_n(case: &Case, pose: &Pose) -> f64 {
     load_n(pose.turn_deg) * case.front_head.radius_m / pose.arm_m
 }

@@ -19,9 +19,9 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 pub struct Faults {
     /// Where the draws begin.
     pub seed: u64,
-    /// Share of frames that are lost [1].
+    /// Share of frames that are lost \[1\].
     pub loss: f64,
-    /// Share of frames that arrive twice [1].
+    /// Share of frames that arrive twice \[1\].
     pub duplication: f64,
     /// Longest delay of a frame.
     pub delay: Duration,

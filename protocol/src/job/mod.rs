@@ -26,7 +26,7 @@ pub enum Job {
         payload: Vec<u8>,
         /// Bytes that travel back.
         reply_bytes: u32,
-        /// How long the slot is held [ms].
+        /// How long the slot is held \[ms\].
         delay_ms: u32,
     },
 }
@@ -60,7 +60,7 @@ pub enum Outcome {
 pub enum Failure {
     /// It ran longer than its deadline and was ended.
     Deadline {
-        /// The deadline [ms].
+        /// The deadline \[ms\].
         limit_ms: u64,
     },
     /// The process that computed it ended by itself.

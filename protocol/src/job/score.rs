@@ -23,7 +23,7 @@ pub struct Evaluation {
     pub fitness: f64,
     /// One entry per gauge of the record; empty unless complete.
     pub channels: Vec<ChannelScore>,
-    /// Measured minus simulated stress after offset removal [MPa], gauges of the objective one
+    /// Measured minus simulated stress after offset removal \[MPa\], gauges of the objective one
     /// after the other on the output grid; empty unless asked for and complete.
     pub residual_mpa: Vec<f64>,
     /// What it cost.
@@ -39,13 +39,13 @@ pub struct ChannelScore {
     pub mse_mpa2: f64,
     /// Mean squared error of absolute values [MPa^2].
     pub mse_fixed_offset_mpa2: f64,
-    /// Measured minus simulated mean [MPa].
+    /// Measured minus simulated mean \[MPa\].
     pub offset_mpa: f64,
-    /// Root mean squared error over half the measured range [1].
+    /// Root mean squared error over half the measured range \[1\].
     pub rmse_over_half_range: f64,
     /// Mean absolute error over the mean absolute deviation of the measured curve from its mean
-    /// [1].
+    /// \[1\].
     pub relative_error: f64,
-    /// Simulated minus measured peak-to-peak stress, over the measured one [1].
+    /// Simulated minus measured peak-to-peak stress, over the measured one \[1\].
     pub peak_to_peak_error: f64,
 }

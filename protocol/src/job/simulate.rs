@@ -9,7 +9,7 @@ pub struct SimulateSpec {
     pub condition: usize,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Spacing of the returned rope shapes on crank angle [deg]; 0 for none.
+    /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
     pub motion_step_deg: f64,
 }
 
@@ -20,19 +20,19 @@ pub struct Simulation {
     pub verdict: Verdict,
     /// What it cost.
     pub counters: Counters,
-    /// Wall time on the worker [s]; not part of the digest.
+    /// Wall time on the worker \[s\]; not part of the digest.
     pub wall_s: f64,
-    /// Crank angle from bottom dead centre [deg].
+    /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: Vec<f64>,
-    /// Stress at gauges 1 to 4 [MPa].
+    /// Stress at gauges 1 to 4 \[MPa\].
     pub gauge_mpa: [Vec<f64>; 4],
-    /// Axial force in the back rope's first joint, at the crossbeam [N].
+    /// Axial force in the back rope's first joint, at the crossbeam \[N\].
     pub back_rope_tension_n: Vec<f64>,
-    /// Axial force in the front rope's joint at the suspension [N].
+    /// Axial force in the front rope's joint at the suspension \[N\].
     pub front_rope_tension_n: Vec<f64>,
-    /// Beam angle [deg].
+    /// Beam angle \[deg\].
     pub beam_deg: Vec<f64>,
-    /// Suspension height above its lowest design position [m].
+    /// Suspension height above its lowest design position \[m\].
     pub suspension_m: Vec<f64>,
     /// Suspension velocity [m/s].
     pub suspension_velocity_m_s: Vec<f64>,
@@ -48,7 +48,7 @@ pub struct Simulation {
     pub motion: Vec<Motion>,
 }
 
-/// Where the energy of the recorded revolution went [J].
+/// Where the energy of the recorded revolution went \[J\].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Work of the crank pin on the rod.
@@ -66,26 +66,26 @@ pub struct Energy {
 /// One snapshot of the machine in the ground frame.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
-    /// Crank angle from bottom dead centre [deg].
+    /// Crank angle from bottom dead centre \[deg\].
     pub turn_deg: f64,
-    /// Crank pin x, y [m].
+    /// Crank pin x, y \[m\].
     pub crank_pin_m: [f32; 2],
-    /// Beam angle [deg].
+    /// Beam angle \[deg\].
     pub beam_deg: f32,
-    /// Crossbeam end of the rod x, y [m].
+    /// Crossbeam end of the rod x, y \[m\].
     pub crossbeam_m: [f32; 2],
-    /// Suspension point x, y [m].
+    /// Suspension point x, y \[m\].
     pub suspension_m: [f32; 2],
-    /// Centres of the back rope's cylinders from the crossbeam on, x, y [m].
+    /// Centres of the back rope's cylinders from the crossbeam on, x, y \[m\].
     pub back_rope_m: Vec<[f32; 2]>,
-    /// Axial force in the joint before each of those cylinders [N].
+    /// Axial force in the joint before each of those cylinders \[N\].
     pub back_tension_n: Vec<f32>,
-    /// Contact force on each of those cylinders [N].
+    /// Contact force on each of those cylinders \[N\].
     pub back_contact_n: Vec<f32>,
-    /// Centres of the front rope's cylinders from the suspension on, x, y [m].
+    /// Centres of the front rope's cylinders from the suspension on, x, y \[m\].
     pub front_rope_m: Vec<[f32; 2]>,
-    /// Axial force in the joint before each of those cylinders [N].
+    /// Axial force in the joint before each of those cylinders \[N\].
     pub front_tension_n: Vec<f32>,
-    /// Contact force on each of those cylinders [N].
+    /// Contact force on each of those cylinders \[N\].
     pub front_contact_n: Vec<f32>,
 }

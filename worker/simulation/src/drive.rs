@@ -8,9 +8,9 @@ type V2 = Vector2<f64>;
 /// How the crank is brought from rest to full speed and from where.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// Turn angle at rest [rad]; bottom dead centre is 0.
+    /// Turn angle at rest \[rad\]; bottom dead centre is 0.
     pub start: f64,
-    /// Time to full speed [s].
+    /// Time to full speed \[s\].
     pub ramp: f64,
     /// Full speed [rad/s].
     pub speed: f64,
@@ -19,15 +19,15 @@ pub struct Drive {
 /// Crank and load at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriveState {
-    /// Turn angle from bottom dead centre [rad].
+    /// Turn angle from bottom dead centre \[rad\].
     pub turn: f64,
-    /// Crank pin in W [m], its velocity and acceleration.
+    /// Crank pin in W \[m\], its velocity and acceleration.
     pub pin: [V2; 3],
-    /// Angle of the pin [rad].
+    /// Angle of the pin \[rad\].
     pub pin_angle: f64,
     /// Rate of the pin angle, signed [rad/s].
     pub pin_rate: f64,
-    /// Load at the suspension point, positive downwards [N].
+    /// Load at the suspension point, positive downwards \[N\].
     pub load: f64,
 }
 
@@ -52,7 +52,7 @@ impl Drive {
         ]
     }
 
-    /// Time at which a turn angle beyond the ramp is reached [s].
+    /// Time at which a turn angle beyond the ramp is reached \[s\].
     pub fn time_at(&self, turn: f64) -> f64 {
         (turn - self.start) / self.speed + 0.5 * self.ramp
     }

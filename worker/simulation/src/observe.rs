@@ -7,7 +7,7 @@ use crate::model::{Instant, Machine};
 use crate::run::Observe;
 use crate::system::System;
 
-/// Stress at the four gauges [Pa] of a state whose joint loads are in the system.
+/// Stress at the four gauges \[Pa\] of a state whose joint loads are in the system.
 ///
 /// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
 /// the base acceleration, plus what the modes move beyond their own static answer,
@@ -83,21 +83,21 @@ pub fn crank_torque(machine: &Machine, drive: &DriveState, pin: &nalgebra::Vecto
     // the counterweight hangs opposite the pin and falls while the rope is pulled
     let weight = crank.counterweight_moment
         * sin_cos(drive.pin_angle + crank.sense * crank.counterweight_phase).1;
-    rope - crank.sense * weight
+    rope + crank.sense * weight
 }
 
 /// Curves of one revolution, one entry per sample reached.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Curves {
-    /// Stress at gauges 1 to 4 [Pa].
+    /// Stress at gauges 1 to 4 \[Pa\].
     pub gauge: [Vec<f64>; 4],
-    /// Tension of the back rope at the crossbeam [N].
+    /// Tension of the back rope at the crossbeam \[N\].
     pub back_tension: Vec<f64>,
-    /// Tension of the front rope at the suspension point [N].
+    /// Tension of the front rope at the suspension point \[N\].
     pub front_tension: Vec<f64>,
-    /// Beam angle [rad].
+    /// Beam angle \[rad\].
     pub beam: Vec<f64>,
-    /// Height of the suspension point in W [m], its velocity and acceleration.
+    /// Height of the suspension point in W \[m\], its velocity and acceleration.
     pub suspension: [Vec<f64>; 3],
     /// Net crank torque [N m].
     pub torque: Vec<f64>,
@@ -112,19 +112,19 @@ pub struct Curves {
 pub struct Shape {
     /// Index of the sample.
     pub sample: usize,
-    /// Crank pin [m].
+    /// Crank pin \[m\].
     pub pin: [f64; 2],
-    /// Rope end of the rod [m].
+    /// Rope end of the rod \[m\].
     pub crossbeam: [f64; 2],
-    /// Beam angle [rad].
+    /// Beam angle \[rad\].
     pub beam: f64,
-    /// Suspension point [m].
+    /// Suspension point \[m\].
     pub suspension: [f64; 2],
-    /// Cylinder centres of both chains from the free end on [m].
+    /// Cylinder centres of both chains from the free end on \[m\].
     pub centers: [Vec<[f64; 2]>; 2],
-    /// Tension in the joint before each cylinder [N].
+    /// Tension in the joint before each cylinder \[N\].
     pub tension: [Vec<f64>; 2],
-    /// Contact force on each cylinder [N].
+    /// Contact force on each cylinder \[N\].
     pub contact: [Vec<f64>; 2],
 }
 

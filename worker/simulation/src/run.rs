@@ -15,9 +15,9 @@ use std::f64::consts::TAU;
 pub struct RunSettings {
     /// Method of integration.
     pub method: &'static Tableau,
-    /// Turn angle before bottom dead centre at which the crank starts [rad].
+    /// Turn angle before bottom dead centre at which the crank starts \[rad\].
     pub lead_in: f64,
-    /// Time to full speed [s].
+    /// Time to full speed \[s\].
     pub ramp: f64,
     /// Number of samples over the recorded revolution.
     pub samples: usize,
@@ -59,9 +59,9 @@ pub struct RunResult {
     pub verdict: Verdict,
     /// What it cost.
     pub statistics: Statistics,
-    /// Work over the recorded revolution [J].
+    /// Work over the recorded revolution \[J\].
     pub work: Powers,
-    /// Gain of kinetic and potential energy over the recorded revolution [J].
+    /// Gain of kinetic and potential energy over the recorded revolution \[J\].
     pub stored: f64,
 }
 
@@ -99,7 +99,7 @@ pub fn simulate(
     revolve(&mut system, settings, swing, start, observer)
 }
 
-/// Range of the beam on the inextensible mechanism [rad].
+/// Range of the beam on the inextensible mechanism \[rad\].
 fn swing(machine: &Machine) -> [f64; 2] {
     let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
     let mut at = machine.bottom;

@@ -194,7 +194,7 @@ impl<'a> System<'a> {
     }
 }
 
-/// Newton's accuracy: cylinder place [m], cylinder angle [rad], beam and rod angle [rad], modal
+/// Newton's accuracy: cylinder place \[m\], cylinder angle \[rad\], beam and rod angle \[rad\], modal
 /// coordinate [kg^1/2 m].
 const LENGTH: f64 = 2e-6;
 const TURN: f64 = 2e-5;

@@ -49,9 +49,9 @@ pub enum Verdict {
 pub struct Limits {
     /// Largest extension of a joint, in pitches.
     pub extension: f64,
-    /// Deepest penetration of the rope into a head [m].
+    /// Deepest penetration of the rope into a head \[m\].
     pub penetration: f64,
-    /// How far the beam may leave the swing of the inextensible mechanism [rad].
+    /// How far the beam may leave the swing of the inextensible mechanism \[rad\].
     pub beam_margin: f64,
     /// Largest sine of a cylinder's angle out of the machine's plane.
     pub tilt: f64,
@@ -71,7 +71,7 @@ impl Default for Limits {
 impl Limits {
     /// The first limit that a state with loads in `scratch` breaks.
     ///
-    /// `swing` is the beam's range on the inextensible mechanism [rad].
+    /// `swing` is the beam's range on the inextensible mechanism \[rad\].
     pub fn broken(
         &self,
         machine: &Machine,

@@ -78,7 +78,7 @@ fn graded(reached: Reached) -> f64 {
 /// One gauge compared with its record.
 struct Compared {
     score: ChannelScore,
-    /// Measured minus simulated after offset removal [MPa].
+    /// Measured minus simulated after offset removal \[MPa\].
     residual: Vec<f64>,
 }
 

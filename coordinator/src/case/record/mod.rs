@@ -56,7 +56,7 @@ pub(super) struct Read {
     pub(super) notes: Vec<Note>,
 }
 
-/// Largest difference of speeds that is no contradiction [1]: belt creep and slip reach 3 %.
+/// Largest difference of speeds that is no contradiction \[1\]: belt creep and slip reach 3 %.
 const SPEED_TOLERANCE: f64 = 0.05;
 
 /// Reads a record and the data sheet beside it.

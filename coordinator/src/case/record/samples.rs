@@ -18,17 +18,17 @@ pub(super) const COLUMNS: [&str; 6] = [
 /// A record as it was sampled.
 #[derive(Debug)]
 pub(super) struct Samples {
-    /// Crank angle, counted on over the cycles: cycle x 360 + angle [deg]; never falls.
+    /// Crank angle, counted on over the cycles: cycle x 360 + angle \[deg\]; never falls.
     pub(super) angle_deg: Vec<f64>,
-    /// Stress of gauges 1 to 4 [MPa].
+    /// Stress of gauges 1 to 4 \[MPa\].
     pub(super) stress_mpa: Vec<Vec<f64>>,
-    /// Time of the first sample after each index pulse [s].
+    /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
-    /// Usual time between samples [s].
+    /// Usual time between samples \[s\].
     pub(super) step_s: f64,
     /// Samples that are lost: steps that are missing in the time column.
     pub(super) lost: u64,
-    /// Usual crank angle between samples [deg].
+    /// Usual crank angle between samples \[deg\].
     pub(super) step_deg: f64,
 }
 

@@ -12,19 +12,19 @@ fn xy(x_m: f64, y_m: f64) -> String {
     format!("{:.1},{:.1}", 100.0 * x_m, -100.0 * y_m)
 }
 
-/// A closed path through points [m].
+/// A closed path through points \[m\].
 fn closed(points: &[(f64, f64)]) -> String {
     let corners: Vec<_> = points.iter().map(|&(x, y)| xy(x, y)).collect();
     format!("M{}Z", corners.join("L"))
 }
 
-/// A point on a circle [m].
+/// A point on a circle \[m\].
 fn on_circle((x, y): (f64, f64), radius: f64, deg: f64) -> (f64, f64) {
     let (sin, cos) = deg.to_radians().sin_cos();
     (x + radius * cos, y + radius * sin)
 }
 
-/// Points along an arc [m].
+/// Points along an arc \[m\].
 fn arc(center: (f64, f64), radius: f64, from_deg: f64, to_deg: f64) -> Vec<(f64, f64)> {
     (0..=48)
         .map(|i| {
@@ -37,7 +37,7 @@ fn arc(center: (f64, f64), radius: f64, from_deg: f64, to_deg: f64) -> Vec<(f64,
         .collect()
 }
 
-/// Lengths that frame the drawing [m].
+/// Lengths that frame the drawing \[m\].
 struct Frame {
     left: f64,
     right: f64,

@@ -28,39 +28,39 @@ pub(super) struct Readout {
 /// One rope in one frame.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct RopeFrame {
-    /// Centres of the cylinders: first x, y, then differences [mm].
+    /// Centres of the cylinders: first x, y, then differences \[mm\].
     pub path: Vec<i32>,
     /// Axial force in the joint before each cylinder [0.1 kN].
     pub tension: Vec<i32>,
-    /// Contact force on each cylinder, as height of the pressure diagram [mm].
+    /// Contact force on each cylinder, as height of the pressure diagram \[mm\].
     pub contact: Vec<i32>,
 }
 
 /// Everything the player needs.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct Film {
-    /// Crank angle of each frame [deg].
+    /// Crank angle of each frame \[deg\].
     pub turn: Vec<f64>,
     /// Seconds per degree of the crank.
     pub seconds_per_deg: f64,
-    /// Beam angle [deg].
+    /// Beam angle \[deg\].
     pub beam: Vec<f64>,
-    /// Crank pin x, y [mm].
+    /// Crank pin x, y \[mm\].
     pub pin: Vec<[i32; 2]>,
-    /// Crossbeam end of the rod x, y [mm].
+    /// Crossbeam end of the rod x, y \[mm\].
     pub crossbeam: Vec<[i32; 2]>,
-    /// Suspension point x, y [mm].
+    /// Suspension point x, y \[mm\].
     pub suspension: Vec<[i32; 2]>,
     /// Back rope.
     pub back: Vec<RopeFrame>,
     /// Front rope.
     pub front: Vec<RopeFrame>,
-    /// Back head: arc centre x, y in the beam frame [mm], anchor x, y in the beam frame [mm].
+    /// Back head: arc centre x, y in the beam frame \[mm\], anchor x, y in the beam frame \[mm\].
     pub back_head: [i32; 4],
     /// Front head likewise.
     pub front_head: [i32; 4],
-    /// Crank centre [mm] and angle by which the counterweight follows the pin, counter-clockwise
-    /// [deg].
+    /// Crank centre \[mm\] and angle by which the counterweight follows the pin, counter-clockwise
+    /// \[deg\].
     pub crank: [f64; 3],
     /// Ends of the tension scale [0.1 kN].
     pub tension_range: [f64; 2],
@@ -130,7 +130,7 @@ impl RopeFrame {
         }
     }
 
-    /// Centres of the cylinders [mm].
+    /// Centres of the cylinders \[mm\].
     pub(super) fn points(&self) -> Vec<[i32; 2]> {
         let mut at = [0, 0];
         self.path
@@ -256,7 +256,7 @@ impl Film {
     }
 }
 
-/// Centre and anchor of a head in the beam frame [mm].
+/// Centre and anchor of a head in the beam frame \[mm\].
 fn head((x, y): (f64, f64), radius_m: f64, anchor_deg: f64) -> [i32; 4] {
     let (sin, cos) = anchor_deg.to_radians().sin_cos();
     [mm(x), mm(y), mm(x + radius_m * cos), mm(y + radius_m * sin)]

@@ -12,7 +12,7 @@ pub(super) fn ropes(film: &Film) -> Markup {
     }
 }
 
-/// Where a rope starts and ends in the first frame [mm]: crossbeam or suspension, and the anchor.
+/// Where a rope starts and ends in the first frame \[mm\]: crossbeam or suspension, and the anchor.
 fn rope_ends(film: &Film, back: bool) -> [[f64; 2]; 2] {
     let (start, head) = if back {
         (film.crossbeam[0], film.back_head)

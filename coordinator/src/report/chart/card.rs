@@ -10,7 +10,7 @@ use protocol::job::Simulation;
 
 const SIZE: (f64, f64) = (620.0, 330.0);
 
-/// Load of a periodic card at any crank angle [N].
+/// Load of a periodic card at any crank angle \[N\].
 fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
     let turn = turn_deg.rem_euclid(360.0);
     interpolated(&card.turn_deg, &card.load_n, turn).or_else(|| {

@@ -16,7 +16,7 @@ const COLUMNS: usize = 91;
 /// By how much cells overlap [px].
 const OVERLAP: f64 = 0.5;
 
-/// Angle of a point on the back head's arc, in the beam frame [deg].
+/// Angle of a point on the back head's arc, in the beam frame \[deg\].
 fn arc_deg(case: &Case, motion: &Motion, point: [f32; 2]) -> f64 {
     let beam = f64::from(motion.beam_deg).to_radians();
     let (sin, cos) = beam.sin_cos();
@@ -30,9 +30,9 @@ fn arc_deg(case: &Case, motion: &Motion, point: [f32; 2]) -> f64 {
 
 /// One cylinder in contact at one snapshot.
 struct Cell {
-    /// First and last crank angle it stands for [deg].
+    /// First and last crank angle it stands for \[deg\].
     turn_deg: (f64, f64),
-    /// Place on the arc [deg].
+    /// Place on the arc \[deg\].
     psi_deg: f64,
     /// Force per length [kN/m].
     force: f64,

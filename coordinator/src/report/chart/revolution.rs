@@ -69,7 +69,7 @@ pub fn gauges(
     )
 }
 
-/// Tension of both ropes [kN].
+/// Tension of both ropes \[kN\].
 fn tensions(simulation: &Simulation) -> Vec<Curve> {
     let turn = &simulation.turn_deg;
     let (back, front) = (

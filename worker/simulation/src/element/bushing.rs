@@ -30,9 +30,9 @@ pub struct Bushing {
 /// A marker: a frame fixed on a body, and the motion of that body.
 #[derive(Clone, Copy, Debug)]
 pub struct Marker {
-    /// Reference point of the body in W [m].
+    /// Reference point of the body in W \[m\].
     pub p: V3,
-    /// From there to the marker, in W [m].
+    /// From there to the marker, in W \[m\].
     pub rho: V3,
     /// Velocity of the reference point [m/s].
     pub v: V3,
@@ -55,15 +55,15 @@ impl Marker {
 /// Force and torque of a link on both bodies, torques about the bodies' reference points, in W.
 #[derive(Clone, Copy, Debug)]
 pub struct LinkLoad {
-    /// Force on body I [N]; body J feels the opposite.
+    /// Force on body I \[N\]; body J feels the opposite.
     pub force: V3,
     /// Torque on body I [N m].
     pub torque_i: V3,
     /// Torque on body J [N m].
     pub torque_j: V3,
-    /// Component of the force along J's axis; negative where the link pulls [N].
+    /// Component of the force along J's axis; negative where the link pulls \[N\].
     pub axial: f64,
-    /// Power that the damping takes [W].
+    /// Power that the damping takes \[W\].
     pub dissipated: f64,
 }
 
@@ -155,7 +155,7 @@ impl Bushing {
         }
     }
 
-    /// Stored energy [J]. Exact while torsion and bending do not mix (planar motion).
+    /// Stored energy \[J\]. Exact while torsion and bending do not mix (planar motion).
     pub fn energy(&self, i: &Marker, j: &Marker) -> f64 {
         let [k1, k2] = self.stiffness;
         let [k4, k5] = self.rotational_stiffness;

@@ -13,25 +13,25 @@ pub struct Impact {
     pub exponent: f64,
     /// Largest damping C [N s/m].
     pub damping: f64,
-    /// Penetration at which the damping is fully there, d_max [m].
+    /// Penetration at which the damping is fully there, d_max \[m\].
     pub full_damping_penetration: f64,
 }
 
 /// Contact force and its derivatives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ImpactForce {
-    /// Force that pushes apart, never negative [N].
+    /// Force that pushes apart, never negative \[N\].
     pub force: f64,
     /// Derivative by the penetration [N/m].
     pub by_penetration: f64,
     /// Derivative by its rate [N s/m].
     pub by_rate: f64,
-    /// Power that the damping takes [W]; negative on rebound only while the spring exceeds it.
+    /// Power that the damping takes \[W\]; negative on rebound only while the spring exceeds it.
     pub dissipated: f64,
 }
 
 impl Impact {
-    /// Force at penetration `depth` [m] and rate `rate` [m/s].
+    /// Force at penetration `depth` \[m\] and rate `rate` [m/s].
     #[inline]
     pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
         if depth <= 0.0 {
@@ -64,7 +64,7 @@ impl Impact {
         }
     }
 
-    /// Energy stored at penetration `depth` [J].
+    /// Energy stored at penetration `depth` \[J\].
     pub fn energy(&self, depth: f64) -> f64 {
         if depth <= 0.0 {
             return 0.0;
@@ -72,7 +72,7 @@ impl Impact {
         self.stiffness * power_law(depth, self.exponent) * depth / (self.exponent + 1.0)
     }
 
-    /// Penetration at which the spring alone carries `force` [m].
+    /// Penetration at which the spring alone carries `force` \[m\].
     pub fn depth_under(&self, force: f64) -> f64 {
         crate::math::elementary::powf(force.max(0.0) / self.stiffness, 1.0 / self.exponent)
     }

@@ -11,7 +11,7 @@ pub mod tableau;
 /// Coordinates, rates and accelerations at a time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Time [s].
+    /// Time \[s\].
     pub t: f64,
     /// Coordinates.
     pub q: Vec<f64>,

@@ -50,9 +50,9 @@ impl RefactorPolicy {
 /// One stage `q = base_q + c v`, `v = base_v + c a`, `M a = Q`, at time `t`.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
-    /// Time of the stage [s].
+    /// Time of the stage \[s\].
     pub t: f64,
-    /// Coefficient c [s].
+    /// Coefficient c \[s\].
     pub c: f64,
     /// What the coordinates are without this stage's rate.
     pub base_q: &'a [f64],

@@ -8,9 +8,9 @@ pub struct StepControl {
     pub order: f64,
     /// Error that is aimed at, in units of the error norm.
     pub tolerance: f64,
-    /// Longest step [s].
+    /// Longest step \[s\].
     pub longest: f64,
-    /// Shortest step; below it the run ends [s].
+    /// Shortest step; below it the run ends \[s\].
     pub shortest: f64,
 }
 

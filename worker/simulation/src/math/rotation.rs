@@ -8,7 +8,7 @@ pub fn skew(a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
 }
 
-/// Rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T`, in W [rad].
+/// Rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T`, in W \[rad\].
 ///
 /// Taken through the quaternion of the rotation, so that small angles keep full precision.
 pub fn rotation_vector(R_WI: &Matrix3<f64>, R_WJ: &Matrix3<f64>) -> Vector3<f64> {

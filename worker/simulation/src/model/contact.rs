@@ -21,19 +21,19 @@ pub const GAUSS: [(f64, f64); 3] = [
 /// An arc at an instant: rigid placement and deflection.
 #[derive(Clone, Debug)]
 pub struct Surface<'a> {
-    /// Centre [m].
+    /// Centre \[m\].
     pub center: V2,
-    /// Derivative of the centre by the beam angle [m].
+    /// Derivative of the centre by the beam angle \[m\].
     pub center_by_beam: V2,
-    /// Radius of the rope's centre line [m].
+    /// Radius of the rope's centre line \[m\].
     pub radius: f64,
-    /// Beam angle [rad] and rate [rad/s].
+    /// Beam angle \[rad\] and rate [rad/s].
     pub beam: [f64; 2],
     /// Modal coordinates.
     pub modal: &'a [f64],
     /// Their rates.
     pub modal_rate: &'a [f64],
-    /// Radial shapes over the arc angle [rad].
+    /// Radial shapes over the arc angle \[rad\].
     pub shapes: Option<&'a Splines>,
 }
 
@@ -61,17 +61,17 @@ fn small_angle(a: &V2, b: &V2) -> f64 {
 /// Penetration of one point with its first derivatives.
 #[derive(Clone, Copy, Debug)]
 pub struct Touch {
-    /// Penetration, positive inside [m].
+    /// Penetration, positive inside \[m\].
     pub depth: f64,
     /// Its rate [m/s].
     pub rate: f64,
-    /// Arc angle in the beam frame [rad].
+    /// Arc angle in the beam frame \[rad\].
     pub angle: f64,
     /// Outward normal and tangent (growing angle).
     pub normal: V2,
     /// Tangent.
     pub tangent: V2,
-    /// Distance from the centre [m].
+    /// Distance from the centre \[m\].
     pub distance: f64,
     /// Derivative by the point.
     pub by_point: V2,

@@ -17,7 +17,7 @@ pub struct Description {
     pub crank: Crank,
     /// Rods and crossbeam.
     pub rod: Rod,
-    /// Mass at the suspension point [kg].
+    /// Mass at the suspension point \[kg\].
     pub suspension_mass: f64,
     /// Rope geometry and mass.
     pub rope: Rope,
@@ -28,16 +28,16 @@ pub struct Description {
     /// Flexibility of the back head.
     pub head: Head,
     /// Load at the suspension point, positive downwards, equally spaced over one turn from bottom
-    /// dead centre [N].
+    /// dead centre \[N\].
     pub card: Vec<f64>,
 }
 
 /// A crank whose motion is prescribed.
 #[derive(Clone, Copy, Debug)]
 pub struct Crank {
-    /// Shaft centre [m].
+    /// Shaft centre \[m\].
     pub center: [f64; 2],
-    /// Radius of the pin [m].
+    /// Radius of the pin \[m\].
     pub radius: f64,
     /// +1 where the pin angle grows with time, -1 where it falls (clockwise).
     pub sense: f64,
@@ -45,18 +45,18 @@ pub struct Crank {
     pub speed: f64,
     /// Largest moment of the counterweight about the shaft [N m].
     pub counterweight_moment: f64,
-    /// Angle of the counterweight before the pin's opposite, in the sense of rotation [rad].
+    /// Angle of the counterweight before the pin's opposite, in the sense of rotation \[rad\].
     pub counterweight_phase: f64,
 }
 
 /// Connecting rods with crossbeam: one rigid body, pinned to the crank.
 #[derive(Clone, Copy, Debug)]
 pub struct Rod {
-    /// Pin to rope joint [m].
+    /// Pin to rope joint \[m\].
     pub length: f64,
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Pin to centre of mass [m].
+    /// Pin to centre of mass \[m\].
     pub center_of_mass: f64,
     /// Moment of inertia about the centre of mass [kg m2].
     pub inertia: f64,
@@ -65,13 +65,13 @@ pub struct Rod {
 /// A rope of equal cylinders.
 #[derive(Clone, Copy, Debug)]
 pub struct Rope {
-    /// Diameter of a cylinder [m].
+    /// Diameter of a cylinder \[m\].
     pub diameter: f64,
-    /// Length of a cylinder [m].
+    /// Length of a cylinder \[m\].
     pub pitch: f64,
     /// Density [kg/m3].
     pub density: f64,
-    /// Length that the rope coefficients belong to [m].
+    /// Length that the rope coefficients belong to \[m\].
     pub reference_pitch: f64,
     /// Length of rope that an end joint stands for, in pitches: 0.5 or 1.
     pub end_pitches: f64,
@@ -84,11 +84,11 @@ pub struct Rope {
 /// A circular arc fixed on the beam that a rope wraps.
 #[derive(Clone, Copy, Debug)]
 pub struct Arc {
-    /// Centre in the beam frame [m].
+    /// Centre in the beam frame \[m\].
     pub center: [f64; 2],
-    /// Radius of the rope's centre line on it [m].
+    /// Radius of the rope's centre line on it \[m\].
     pub radius: f64,
-    /// Angle of the rope's fixed end, seen from the centre, in the beam frame [rad].
+    /// Angle of the rope's fixed end, seen from the centre, in the beam frame \[rad\].
     pub anchor: f64,
     /// +1 where the rope runs towards its fixed end with growing angle, -1 where with falling.
     pub sense: f64,
@@ -99,17 +99,17 @@ pub struct Arc {
 pub struct Head {
     /// Angular frequencies [rad/s]; n.
     pub frequencies: Vec<f64>,
-    /// Damping ratio of every mode [1].
+    /// Damping ratio of every mode \[1\].
     pub damping_ratio: f64,
-    /// First station [rad].
+    /// First station \[rad\].
     pub start: f64,
-    /// Spacing of the stations [rad].
+    /// Spacing of the stations \[rad\].
     pub step: f64,
     /// Outward radial shape, mode by mode [kg^-1/2]; n x s.
     pub radial: Vec<Vec<f64>>,
     /// Tangential shape, towards growing angle; n x s.
     pub tangential: Vec<Vec<f64>>,
-    /// Gauge stress per unit modal coordinate [Pa]; n x 4.
+    /// Gauge stress per unit modal coordinate \[Pa\]; n x 4.
     pub gauge_stress: Vec<[f64; 4]>,
     /// Coupling with base acceleration in x, y and about the pivot; n x 3.
     pub participation: Vec<[f64; 3]>,
@@ -118,9 +118,9 @@ pub struct Head {
     pub weight_stress: [[f64; 4]; 2],
     /// Static gauge stress per unit angular acceleration about the pivot [Pa s2/rad].
     pub turning_stress: [f64; 4],
-    /// First station of the influence lines [rad].
+    /// First station of the influence lines \[rad\].
     pub influence_start: f64,
-    /// Spacing of the influence lines [rad].
+    /// Spacing of the influence lines \[rad\].
     pub influence_step: f64,
     /// Gauge stress per inward normal force [Pa/N], gauge by gauge; 4 x s'.
     pub normal_influence: Vec<Vec<f64>>,

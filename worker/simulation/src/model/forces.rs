@@ -14,11 +14,11 @@ type V3 = Vector3<f64>;
 /// Powers and energies at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Powers {
-    /// Of the crank pin on the rod [W].
+    /// Of the crank pin on the rod \[W\].
     pub input: f64,
-    /// Of the suspension point on the load [W].
+    /// Of the suspension point on the load \[W\].
     pub output: f64,
-    /// Lost in joints, contact and head [W].
+    /// Lost in joints, contact and head \[W\].
     pub dissipated: f64,
 }
 
@@ -234,7 +234,7 @@ impl Machine {
         rod.inertia + rod.mass * rod.center_of_mass * rod.center_of_mass
     }
 
-    /// Force that the crank pin exerts on the rod, given joint loads and accelerations [N].
+    /// Force that the crank pin exerts on the rod, given joint loads and accelerations \[N\].
     pub fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();

@@ -11,15 +11,15 @@ use crate::model::description::{Arc, Crank};
 /// One solved position.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
-    /// Angle of the crank pin [rad].
+    /// Angle of the crank pin \[rad\].
     pub pin: f64,
-    /// Beam angle [rad].
+    /// Beam angle \[rad\].
     pub beam: f64,
-    /// Tangent point on the back arc, in the beam frame [rad].
+    /// Tangent point on the back arc, in the beam frame \[rad\].
     pub tangent: f64,
-    /// Effective back arm [m].
+    /// Effective back arm \[m\].
     pub arm: f64,
-    /// Derivative of the beam angle by the pin angle [1].
+    /// Derivative of the beam angle by the pin angle \[1\].
     pub ratio: f64,
 }
 
@@ -30,7 +30,7 @@ pub struct Mechanism {
     pub crank: Crank,
     /// Back arc; its radius may be reduced by a penetration.
     pub arc: Arc,
-    /// Length from the crank pin to the rope's anchor along the path [m].
+    /// Length from the crank pin to the rope's anchor along the path \[m\].
     pub length: f64,
 }
 
@@ -38,12 +38,12 @@ pub struct Mechanism {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("rope and rod cannot reach from the crank pin to the head at pin angle {pin_deg:.1} deg")]
 pub struct DoesNotClose {
-    /// Pin angle [deg].
+    /// Pin angle \[deg\].
     pub pin_deg: f64,
 }
 
 impl Mechanism {
-    /// The crank pin at an angle [m].
+    /// The crank pin at an angle \[m\].
     pub fn pin(&self, angle: f64) -> [f64; 2] {
         let (s, c) = sin_cos(angle);
         [

@@ -18,9 +18,9 @@ type M3 = Matrix3<f64>;
 pub struct ChainLoads {
     /// Joint loads, chain by chain, from the free end on.
     pub joints: [Vec<LinkLoad>; 2],
-    /// Contact force of each cylinder, chain by chain [N].
+    /// Contact force of each cylinder, chain by chain \[N\].
     pub contact: [Vec<f64>; 2],
-    /// Deepest penetration [m].
+    /// Deepest penetration \[m\].
     pub deepest: f64,
 }
 
@@ -40,7 +40,7 @@ impl ChainLoads {
         }
     }
 
-    /// Tension in a joint, positive where it pulls [N].
+    /// Tension in a joint, positive where it pulls \[N\].
     pub fn tension(&self, chain: usize, joint: usize) -> f64 {
         -self.joints[chain][joint].axial
     }

@@ -14,7 +14,7 @@ pub struct Machine {
     pub layout: Layout,
     /// Bottom dead centre of the inextensible mechanism: where the turn angle is zero.
     pub bottom: Position,
-    /// Horizontal place of the guided suspension point [m].
+    /// Horizontal place of the guided suspension point \[m\].
     pub suspension_x: f64,
     pub(crate) radial: Splines,
     pub(crate) card: Splines,
@@ -137,7 +137,7 @@ impl Machine {
         }
     }
 
-    /// Length from crank pin to back anchor along rod and unstretched rope [m].
+    /// Length from crank pin to back anchor along rod and unstretched rope \[m\].
     pub fn back_length(&self) -> f64 {
         self.description.rope.back as f64 * self.description.rope.pitch
             + self.description.rod.length

@@ -12,7 +12,7 @@ type M3 = Matrix3<f64>;
 /// Everything about a cylinder that several forces need.
 #[derive(Clone, Copy, Debug)]
 pub struct Pose {
-    /// Centre [m].
+    /// Centre \[m\].
     pub p: V3,
     /// Velocity of the centre [m/s].
     pub v: V3,

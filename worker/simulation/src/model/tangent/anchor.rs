@@ -18,7 +18,7 @@ pub(super) struct Anchor<'a> {
     pub(super) block: usize,
     pub(super) by_head: &'a LinkTangent,
     pub(super) by_cylinder: &'a CylinderColumns,
-    /// Force on the head [N].
+    /// Force on the head \[N\].
     pub(super) force: V3,
     /// The last cylinder.
     pub(super) pose: &'a Pose,
