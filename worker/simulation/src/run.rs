@@ -3,7 +3,7 @@ use crate::drive::Drive;
 use crate::integrator::tableau::{ESDIRK4, Tableau};
 use crate::integrator::{State, dense::interpolate, esdirk::Esdirk, step_control::StepControl};
 use crate::model::description::RopeLaw;
-use crate::model::{Instant, Machine, Powers};
+use crate::model::{Machine, Powers};
 use crate::settle::{Settled, equilibrium, guess, overload};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -67,6 +67,8 @@ pub struct RunResult {
 
 /// Shortest step; a run that needs shorter ones ends \[s\].
 const SHORTEST_STEP: f64 = 1e-9;
+/// Times closer than this are the same \[s\].
+const MOMENT: f64 = 1e-9;
 
 /// Simulates one individual; never panics and never hangs.
 pub fn simulate(
@@ -175,9 +177,9 @@ fn revolve(
     let mut between = from.clone();
     let (begin, end) = (system.drive.time_at(0.0), system.drive.time_at(TAU));
     let (mut h, mut sample) = (1e-3, 0);
-    let mut ledger = Ledger::default();
+    let mut ledger = Ledger::between(begin, end);
     let verdict = loop {
-        if from.t >= end - 1e-9 {
+        if from.t >= end - MOMENT {
             break Verdict::Complete;
         }
         let reached = Reached::TimeFraction(from.t / end);
@@ -186,7 +188,7 @@ fn revolve(
             break failed(Failure::Budget);
         }
         // stop exactly where the recorded revolution begins and ends
-        let stop = if from.t < begin - 1e-9 { begin } else { end };
+        let stop = if from.t < begin - MOMENT { begin } else { end };
         let left = stop - from.t;
         let step = if h >= left {
             left
@@ -216,11 +218,11 @@ fn revolve(
                 ) {
                     break failed(kind);
                 }
-                ledger.add(system, &from, &to, &done.work, begin, end);
+                ledger.add(system, &from, &to, &done.work);
                 while sample < settings.samples {
                     let turn = TAU * sample as f64 / settings.samples as f64;
                     let t = system.drive.time_at(turn);
-                    if t > to.t + 1e-9 {
+                    if t > to.t + MOMENT {
                         break;
                     }
                     interpolate(&from, &to, t, &mut between);
@@ -247,43 +249,34 @@ fn revolve(
 /// Work and stored energy over the recorded revolution.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ledger {
+    begin: f64,
+    end: f64,
     work: Powers,
     first: Option<f64>,
     last: f64,
 }
 
 impl Ledger {
-    fn add(
-        &mut self,
-        system: &mut System<'_>,
-        from: &State,
-        to: &State,
-        work: &Powers,
-        begin: f64,
-        end: f64,
-    ) {
-        let mut energy = |state: &State| {
-            let drive = system.drive_state(state.t);
-            let machine = system.machine;
-            machine.pose(&state.q, &state.v, &mut system.scratch.poses);
-            let at = Instant {
-                ropes: &system.ropes,
-                drive: &drive,
-                q: &state.q,
-                v: &state.v,
-            };
-            machine.energy(&at, &system.scratch)
-        };
-        if from.t >= begin - 1e-9 {
-            if self.first.is_none() {
-                self.first = Some(energy(from));
-            }
-            self.work.input += work.input;
-            self.work.output += work.output;
-            self.work.dissipated += work.dissipated;
-            if to.t >= end - 1e-9 {
-                self.last = energy(to);
-            }
+    fn between(begin: f64, end: f64) -> Self {
+        Self {
+            begin,
+            end,
+            ..Self::default()
+        }
+    }
+
+    fn add(&mut self, system: &mut System<'_>, from: &State, to: &State, work: &Powers) {
+        if from.t < self.begin - MOMENT {
+            return;
+        }
+        if self.first.is_none() {
+            self.first = Some(system.energy(from));
+        }
+        self.work.input += work.input;
+        self.work.output += work.output;
+        self.work.dissipated += work.dissipated;
+        if to.t >= self.end - MOMENT {
+            self.last = system.energy(to);
         }
     }
 

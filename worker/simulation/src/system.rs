@@ -1,5 +1,6 @@
 //! The equations of motion of one individual as an integrator sees them.
 use crate::drive::{Drive, DriveState};
+use crate::integrator::State;
 use crate::linear::{BLOCK, Bordered, SingularPivot};
 use crate::model::{Instant, Machine, Powers, Ropes, Scratch};
 use crate::statistics::Statistics;
@@ -144,6 +145,16 @@ impl<'a> System<'a> {
         let ropes = &self.ropes;
         let at = Instant { ropes, drive, q, v };
         self.machine.powers(&at, a, &self.scratch)
+    }
+
+    /// Kinetic and potential energy at a state, without the load's \[J\].
+    pub fn energy(&mut self, state: &State) -> f64 {
+        let State { t, q, v, .. } = state;
+        let drive = &self.drive_state(*t);
+        self.machine.pose(q, v, &mut self.scratch.poses);
+        let ropes = &self.ropes;
+        self.machine
+            .energy(&Instant { ropes, drive, q, v }, &self.scratch)
     }
 
     /// Largest change over all coordinates, in units of Newton's accuracy.

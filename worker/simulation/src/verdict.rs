@@ -1,5 +1,6 @@
 //! How a simulation ended; every run ends in one of these, none hangs or panics.
 use crate::linear::BLOCK;
+use crate::math::elementary::sin_cos;
 use crate::model::{Machine, Scratch};
 
 /// What ended a simulation early.
@@ -95,15 +96,14 @@ impl Limits {
         if beam > swing[1] + self.beam_margin {
             return Some(Failure::BeamOvertravel);
         }
-        // written so that a state that is not a number fails here too
-        if !(beam >= swing[0] - self.beam_margin) {
+        if beam.is_nan() || beam < swing[0] - self.beam_margin {
             return Some(Failure::LoadNotLifted);
         }
         for chain in 0..2 {
             let first = machine.layout.base_block(chain) + 1;
             for j in 0..machine.cylinders(chain) {
                 let tilt = q[(first + j) * BLOCK + 4];
-                if !(crate::math::elementary::sin_cos(tilt).0.abs() < self.tilt) {
+                if tilt.is_nan() || sin_cos(tilt).0.abs() > self.tilt {
                     return Some(Failure::TumbledCylinder);
                 }
             }

@@ -45,8 +45,9 @@ mod tests {
             longest: 0.05,
             shortest: 1e-9,
         };
-        assert!(control.next(0.01, 1.0) == 0.01);
+        assert_eq!(control.next(0.01, 1.0).to_bits(), 0.01_f64.to_bits());
         assert!((control.next(0.01, 8.0) - 0.0045).abs() < 1e-12);
-        assert!(control.next(0.01, 1e-30) == 0.03 && control.next(0.04, 0.0) == 0.05);
+        assert!((control.next(0.01, 1e-30) - 0.03).abs() < 1e-15);
+        assert_eq!(control.next(0.04, 0.0).to_bits(), 0.05_f64.to_bits());
     }
 }

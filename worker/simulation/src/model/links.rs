@@ -46,6 +46,10 @@ impl ChainLoads {
     }
 }
 
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
 impl Machine {
     /// Number of cylinders of a chain.
     pub(crate) const fn cylinders(&self, chain: usize) -> usize {

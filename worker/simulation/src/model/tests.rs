@@ -1,6 +1,6 @@
 use super::{Instant, Machine, Scratch};
-use crate::drive::Drive;
-use crate::linear::Bordered;
+use crate::drive::{Drive, DriveState};
+use crate::linear::{BLOCK, Bordered};
 use crate::math::elementary::sin_cos;
 use crate::reference;
 
@@ -12,20 +12,10 @@ fn machine() -> Machine {
 fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
     let layout = machine.layout;
     let law = reference::law();
-    let drive = Drive {
-        start: 1.0,
-        ramp: 1.0,
-        speed: 0.5,
-    };
-    let mut q =
-        crate::settle::guess(machine, &machine.ropes(&law), &drive.state(machine, 0.0)).unwrap();
+    let drive = drive(0.0);
+    let mut q = crate::settle::guess(machine, &machine.ropes(&law), &drive).unwrap();
     let mut v = vec![0.0; layout.len()];
-    for i in 0..layout.len() {
-        let locked =
-            (i / 6 == 0 || i / 6 == layout.base_block(1)) && i % 6 > 0 && i < layout.beam();
-        if locked {
-            continue;
-        }
+    for i in free(machine) {
         let (s, c) = sin_cos(12.9898 * i as f64);
         q[i] += 1e-3 * s;
         v[i] += 0.05 * c;
@@ -37,105 +27,83 @@ fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
 fn tangent_is_the_derivative_of_the_forces() {
     let machine = machine();
     let ropes = machine.ropes(&reference::law());
+    let drive = drive(0.7);
     let layout = machine.layout;
     let (q, v) = disturbed(&machine);
-    let drive = Drive {
-        start: 1.0,
-        ramp: 1.0,
-        speed: 0.5,
-    }
-    .state(&machine, 0.7);
+    let at = Instant {
+        ropes: &ropes,
+        drive: &drive,
+        q: &q,
+        v: &v,
+    };
     let mut scratch = Scratch::new(&layout);
     let mut force = vec![0.0; layout.len()];
-    machine.forces(
-        &Instant {
-            ropes: &ropes,
-            drive: &drive,
-            q: &q,
-            v: &v,
-        },
-        &mut scratch,
-        &mut force,
-    );
-    assert!(
-        scratch
-            .loads
-            .contact
-            .iter()
-            .all(|c| c.iter().filter(|&&f| f > 0.0).count() > 3)
-    );
+    machine.forces(&at, &mut scratch, &mut force);
+    let touching = |c: &Vec<f64>| c.iter().filter(|&&f| f > 0.0).count() > 3;
+    assert!(scratch.loads.contact.iter().all(touching));
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
         let mut matrix = Bordered::new(&layout.chains(), 1 + layout.modes);
-        machine.tangent(
-            &Instant {
-                ropes: &ropes,
-                drive: &drive,
-                q: &q,
-                v: &v,
-            },
-            (mu, gamma),
-            &scratch,
-            &mut matrix,
-        );
-        // the derivative of Q along (dq, gamma dq), one coordinate at a time
-        let mut worst: (f64, String) = (0.0, String::new());
-        for i in 0..layout.len() {
-            if matrix
-                .product(&unit(layout.len(), i))
-                .iter()
-                .filter(|x| **x != 0.0)
-                .count()
-                == 1
-                && i < layout.beam()
-            {
-                continue; // locked
-            }
-            let h = 1e-7;
-            let step = |h: f64| {
-                let (mut q, mut v) = (q.clone(), v.clone());
-                q[i] += h;
-                v[i] += gamma * h;
-                let mut force = vec![0.0; layout.len()];
-                machine.forces(
-                    &Instant {
-                        ropes: &ropes,
-                        drive: &drive,
-                        q: &q,
-                        v: &v,
-                    },
-                    &mut Scratch::new(&layout),
-                    &mut force,
-                );
-                force
-            };
-            let (plus, minus) = (step(h), step(-h));
+        machine.tangent(&at, (mu, gamma), &scratch, &mut matrix);
+        for i in free(&machine) {
             let column = matrix.product(&unit(layout.len(), i));
+            let numeric = difference(&machine, &at, i, gamma);
             let mut inertia = vec![0.0; layout.len()];
             machine.subtract_inertia(&q, &unit(layout.len(), i), &mut inertia);
             let scale = column.iter().map(|x| x.abs()).fold(0.0, f64::max);
             for r in 0..layout.len() {
-                let numeric = -(plus[r] - minus[r]) / (2.0 * h) - mu * inertia[r];
-                let error = (numeric - column[r]).abs() / scale;
-                if error > worst.0 {
-                    worst = (
-                        error,
-                        format!(
-                            "row {} column {}: {numeric} {}",
-                            layout.describe(r),
-                            layout.describe(i),
-                            column[r]
-                        ),
-                    );
-                }
+                let expected = -numeric[r] - mu * inertia[r];
+                assert!(
+                    (expected - column[r]).abs() < 2e-6 * scale,
+                    "mu {mu} gamma {gamma} row {} column {}: {expected} {}",
+                    layout.describe(r),
+                    layout.describe(i),
+                    column[r]
+                );
             }
         }
-        assert!(
-            worst.0 < 2e-6,
-            "mu {mu} gamma {gamma}: {} {}",
-            worst.0,
-            worst.1
-        );
     }
+}
+
+fn drive(t: f64) -> DriveState {
+    let drive = Drive {
+        start: 1.0,
+        ramp: 1.0,
+        speed: 0.5,
+    };
+    drive.state(&machine(), t)
+}
+
+/// Coordinates that are not locked.
+fn free(machine: &Machine) -> impl Iterator<Item = usize> {
+    let layout = machine.layout;
+    (0..layout.len()).filter(move |&i| {
+        let block = i / BLOCK;
+        let base = block == layout.base_block(0) || block == layout.base_block(1);
+        i >= layout.beam() || !base || i % BLOCK == 0
+    })
+}
+
+/// Derivative of the forces along one coordinate, whose rate moves `gamma` times as far.
+fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<f64> {
+    let h = 1e-7;
+    let step = |h: f64| {
+        let (mut q, mut v) = (at.q.to_vec(), at.v.to_vec());
+        q[i] += h;
+        v[i] += gamma * h;
+        let mut force = vec![0.0; q.len()];
+        let moved = Instant {
+            q: &q,
+            v: &v,
+            ..*at
+        };
+        machine.forces(&moved, &mut Scratch::new(&machine.layout), &mut force);
+        force
+    };
+    let (plus, minus) = (step(h), step(-h));
+    plus.iter()
+        .zip(minus)
+        .map(|(p, m)| (p - m) / (2.0 * h))
+        .collect()
 }
 
 fn unit(n: usize, i: usize) -> Vec<f64> {
@@ -154,12 +122,7 @@ fn forces_are_the_gradient_of_the_potential() {
     let layout = machine.layout;
     let (q, _) = disturbed(&machine);
     let v = vec![0.0; layout.len()];
-    let mut drive = Drive {
-        start: 1.0,
-        ramp: 1.0,
-        speed: 0.5,
-    }
-    .state(&machine, 0.0);
+    let mut drive = drive(0.0);
     drive.load = 0.0;
     let mut scratch = Scratch::new(&layout);
     let mut force = vec![0.0; layout.len()];

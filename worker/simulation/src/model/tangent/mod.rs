@@ -27,6 +27,10 @@ struct CylinderColumns {
     angles: [M3; 3],
 }
 
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
 impl Machine {
     /// Fills `matrix` with `mu M - gamma D - K` at a state whose loads and poses are in `scratch`.
     pub fn tangent(
