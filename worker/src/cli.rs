@@ -1,5 +1,6 @@
 //! The command line of `horsehead-worker`.
 use clap::{Parser, Subcommand};
+use link::locator::Locator;
 
 /// Computes simulations for a Horsehead coordinator.
 ///
@@ -26,9 +27,10 @@ pub struct Cli {
         long,
         value_name = "LOCATOR",
         env = "HORSEHEAD_CONNECT",
-        required = true
+        required = true,
+        value_parser = Locator::parse
     )]
-    pub connect: Option<String>,
+    pub connect: Option<Locator>,
     /// Simulations computed at a time [default: one per hardware thread]
     #[arg(long, value_name = "N", env = "HORSEHEAD_SLOTS", value_parser = clap::value_parser!(u16).range(1..=4096))]
     pub slots: Option<u16>,

@@ -10,10 +10,10 @@ use rustix::process::{Signal, set_parent_process_death_signal};
 use std::{
     env,
     future::Future,
-    io::{self, Read},
+    io::{self, IsTerminal, Read},
     process::ExitCode,
     thread,
-    time::{Duration, SystemTime, UNIX_EPOCH},
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
 };
 use tokio::{
     signal::unix::{SignalKind, signal},
@@ -26,25 +26,32 @@ use worker::{
     slot,
 };
 
-fn main() -> anyhow::Result<ExitCode> {
+/// How often a coordinator that does not answer is complained about.
+const COMPLAINT: Duration = Duration::from_mins(5);
+
+fn main() -> ExitCode {
     let cli = Cli::parse();
     let filter = EnvFilter::try_from_env("HORSEHEAD_LOG")
         .unwrap_or_else(|_| EnvFilter::new("warn,zenoh=off,zenoh_link=off,zenoh_transport=off"));
     tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(io::stderr)
+        .with_ansi(io::stderr().is_terminal())
         .init();
-    match cli.role {
-        Some(worker::cli::Role::Slot) => {
-            slot::serve().context("the slot ended")?;
-            Ok(ExitCode::SUCCESS)
-        }
+    let ended = match cli.role {
+        Some(worker::cli::Role::Slot) => slot::serve()
+            .map(|()| ExitCode::SUCCESS)
+            .context("the slot ended"),
         None => serve(&cli),
-    }
+    };
+    ended.unwrap_or_else(|error| {
+        tracing::error!("{error:#}");
+        ExitCode::FAILURE
+    })
 }
 
 fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
-    let locator = Locator::parse(cli.connect.as_deref().unwrap_or_default())?;
+    let locator = cli.connect.as_ref().context("no coordinator was named")?;
     if cli.embedded {
         set_parent_process_death_signal(Some(Signal::KILL))?;
     }
@@ -61,7 +68,7 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
         .enable_all()
         .build()
         .context("the runtime did not start")?;
-    let ending = runtime.block_on(work(&locator, options));
+    let ending = runtime.block_on(work(locator, options));
     runtime.shutdown_timeout(Duration::from_millis(200));
     Ok(match ending? {
         Ending::Refused(reason) => {
@@ -76,12 +83,21 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
 async fn work(locator: &Locator, options: SessionOptions) -> anyhow::Result<Ending> {
     let mut asked = asked_to_end(options.embedded)?;
     let tls = TlsFiles::from_env();
+    let began = Instant::now();
+    let patience = options.idle_timeout;
+    let mut said: Option<Instant> = None;
     let link = loop {
         tokio::select! {
             opened = ZenohWorker::open(locator, tls.as_ref(), options.id) => match opened {
                 Ok(link) => break link,
                 Err(error @ link::LinkError::Transport { .. }) => {
-                    tracing::warn!("{error}; trying again");
+                    if patience.is_some_and(|patience| began.elapsed() > patience) {
+                        return Ok(Ending::Idle);
+                    }
+                    if said.is_none_or(|said| said.elapsed() > COMPLAINT) {
+                        tracing::warn!("{error}; trying again until it answers");
+                        said = Some(Instant::now());
+                    }
                     tokio::time::sleep(Duration::from_millis(500)).await;
                 }
                 Err(error) => return Err(error.into()),

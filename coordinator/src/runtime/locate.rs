@@ -33,9 +33,9 @@ pub enum LocateError {
     },
 }
 
-/// The worker program: the one named by [`WORKER_PROGRAM`]; under `cargo run` and `cargo test`
-/// the one built now, so that it is never older than this program; the one beside this program;
-/// the one on `PATH`.
+/// The worker program: the one named by [`WORKER_PROGRAM`]; under `cargo run` the one built now, so
+/// that it is never older than this program, and under `cargo test` the one in the target folder;
+/// the one beside this program; the one on `PATH`.
 ///
 /// # Errors
 /// [`LocateError::Missing`] with what to do, or [`LocateError::Build`].
@@ -48,6 +48,11 @@ pub fn worker_program() -> Result<PathBuf, LocateError> {
     if let Some(cargo) = env::var_os("CARGO")
         && let Some(target) = Target::of(&folder)
     {
+        let built = target.folder.join(PROGRAM);
+        // `cargo test --workspace` has just built it, for the worker's own tests
+        if folder.ends_with("deps") && built.is_file() {
+            return Ok(built);
+        }
         return build(Path::new(&cargo), &target);
     }
     let beside = folder.join(PROGRAM);

@@ -107,18 +107,20 @@ fn tls_for(
 }
 
 async fn open(config: &Value, doing: &str) -> Result<zenoh::Session, LinkError> {
-    let failed = |reason: &dyn std::fmt::Display| LinkError::Transport {
-        doing: doing.to_owned(),
-        reason: reason.to_string(),
-    };
-    let config = zenoh::Config::from_json5(&config.to_string()).map_err(|error| failed(&error))?;
-    zenoh::open(config).await.map_err(|error| failed(&error))
+    let config =
+        zenoh::Config::from_json5(&config.to_string()).map_err(|error| transport(doing, &error))?;
+    zenoh::open(config)
+        .await
+        .map_err(|error| transport(doing, &error))
 }
 
 fn transport(doing: &str, reason: &dyn std::fmt::Display) -> LinkError {
+    let reason = reason.to_string();
+    // the transport adds where in its own source it noticed, which helps nobody here
+    let words = reason.split(" at /").next().unwrap_or(&reason);
     LinkError::Transport {
         doing: doing.to_owned(),
-        reason: reason.to_string(),
+        reason: words.trim_end_matches('.').to_owned(),
     }
 }
 
