@@ -21,12 +21,14 @@ type V3 = Vector3<f64>;
 /// What happens at one end of the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// Nothing holds it; force \[N\] and torque [N m] keep their direction in W whatever it does.
+    /// Nothing holds it; what acts on it has a potential.
     Free {
-        /// Force on the cylinder's outer end.
+        /// Force on the cylinder's outer end that keeps its direction in W \[N\].
         force: V3,
-        /// Torque on the cylinder.
-        torque: V3,
+        /// Torque about the cylinder's own axis [N m].
+        twist: f64,
+        /// Torque about the z axis of W [N m].
+        turn: f64,
     },
     /// A joint to the ground.
     Held {
@@ -81,7 +83,8 @@ impl End {
     pub fn free() -> Self {
         Self::Free {
             force: V3::zeros(),
-            torque: V3::zeros(),
+            twist: 0.0,
+            turn: 0.0,
         }
     }
 
@@ -148,13 +151,13 @@ impl Rig {
         pose.p + pose.axis() * (0.5 * self.setup.chain.pitch)
     }
 
-    /// Kinetic plus potential energy, dead forces included, at a state \[J\].
+    /// Kinetic plus potential energy, that of the dead loads included, at a state \[J\].
     pub fn energy(&mut self, q: &[f64], v: &[f64]) -> f64 {
         self.setup.chain.pose(q, v, &mut self.state.poses);
         let mut momentum = vec![0.0; v.len()];
         self.subtract_inertia(q, v, &mut momentum);
         let kinetic: f64 = momentum.iter().zip(v).map(|(p, v)| -0.5 * p * v).sum();
-        kinetic + self.potential_energy()
+        kinetic + self.potential_energy(q)
     }
 
     fn surface(&self) -> Option<(Surface<'static>, Impact)> {
@@ -169,8 +172,9 @@ impl Rig {
         })
     }
 
-    /// Cylinder, place along its axis \[m\], force and torque of each end without a joint.
-    fn dead_loads(&self) -> impl Iterator<Item = (usize, f64, V3, V3)> {
+    /// Cylinder, place along its axis \[m\], force, and generalised torques on twist and plane angle
+    /// of each end without a joint.
+    fn dead_loads(&self) -> impl Iterator<Item = (usize, f64, V3, [f64; 2])> {
         let Chain { count, pitch, .. } = self.setup.chain;
         let place = [(0, -0.5 * pitch), (count - 1, 0.5 * pitch)];
         self.setup
@@ -178,12 +182,12 @@ impl Rig {
             .into_iter()
             .zip(place)
             .filter_map(|(end, (j, along))| match end {
-                End::Free { force, torque } => Some((j, along, force, torque)),
+                End::Free { force, twist, turn } => Some((j, along, force, [twist, turn])),
                 End::Held { .. } => None,
             })
     }
 
-    fn potential_energy(&self) -> f64 {
+    fn potential_energy(&self, q: &[f64]) -> f64 {
         let mut sum = 0.0;
         let surface = self.surface();
         self.setup.chain.add_potential(
@@ -193,9 +197,10 @@ impl Rig {
             surface.as_ref().map(|(surface, law)| (surface, law)),
             &self.state,
         );
-        for (j, along, force, _) in self.dead_loads() {
+        for (j, along, force, [twist, turn]) in self.dead_loads() {
             let pose = &self.state.poses[j];
             sum -= force.dot(&(pose.p + pose.axis() * along));
+            sum -= twist * q[j * BLOCK + 3] + turn * q[j * BLOCK + 5];
         }
         sum
     }
@@ -215,14 +220,14 @@ impl Equations for Rig {
         if let Some((surface, law)) = self.surface() {
             chain.add_contact(&surface, &law, &mut self.state, force, &mut []);
         }
-        for (j, along, dead, torque) in self.dead_loads() {
+        for (j, along, dead, [twist, turn]) in self.dead_loads() {
             let pose = &self.state.poses[j];
             let at = j * BLOCK;
-            let turning = pose.angular().tr_mul(&torque);
             for k in 0..3 {
                 force[at + k] += dead[k];
-                force[at + 3 + k] += turning[k];
             }
+            force[at + 3] += twist;
+            force[at + 5] += turn;
             for (k, axis) in pose.axis_by.iter().enumerate() {
                 force[at + 4 + k] += along * dead.dot(axis);
             }
@@ -247,16 +252,9 @@ impl Equations for Rig {
         if let Some((surface, law)) = self.surface() {
             chain.add_contact_tangent(&surface, &law, &self.state, gamma, matrix);
         }
-        for (j, along, force, torque) in self.dead_loads() {
-            let pose = &self.state.poses[j];
-            let bends = pose.axis_by_twice();
-            let turning = pose.torque_by_angles(&torque);
+        for (j, along, force, _) in self.dead_loads() {
+            let bends = self.state.poses[j].axis_by_twice();
             let block = matrix.diagonal_mut(j);
-            for r in 0..3 {
-                for c in 0..3 {
-                    block[(3 + r, 3 + c)] -= turning[(r, c)];
-                }
-            }
             for a in 0..2 {
                 for b in 0..2 {
                     block[(4 + a, 4 + b)] -= along * force.dot(&bends[a + b]);
@@ -273,7 +271,6 @@ impl Equations for Rig {
         cylinders_error(0.0, error)
     }
 
-    /// Dead torques have no potential, so their power is an input.
     fn powers(&mut self, _t: f64, _q: &[f64], _v: &[f64], _a: &[f64]) -> Powers {
         let mut dissipated = 0.0;
         Chain::add_joint_losses(&mut dissipated, &self.state);
@@ -281,21 +278,16 @@ impl Equations for Rig {
             let chain = self.setup.chain;
             chain.add_contact_losses(&mut dissipated, &surface, &law, &self.state);
         }
-        let input = self
-            .dead_loads()
-            .map(|(j, _, _, torque)| torque.dot(&self.state.poses[j].w))
-            .sum();
         Powers {
-            input,
-            output: 0.0,
             dissipated,
+            ..Powers::default()
         }
     }
 }
 
 impl Static for Rig {
-    fn potential(&mut self, _t: f64, _q: &[f64], _still: &[f64]) -> f64 {
-        self.potential_energy()
+    fn potential(&mut self, _t: f64, q: &[f64], _still: &[f64]) -> f64 {
+        self.potential_energy(q)
     }
 
     fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {

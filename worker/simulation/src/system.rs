@@ -104,6 +104,29 @@ impl<E: Equations> System<E> {
         self.matrix.factorize()
     }
 
+    /// Accelerations at a motion that does not start from equilibrium: `M a = Q`.
+    ///
+    /// Solved as `(mu M - K) x = Q`, `a = mu x` with a `mu` beside which `K` is below rounding.
+    ///
+    /// # Errors
+    /// The unknown whose inertia vanishes.
+    pub fn accelerations(
+        &mut self,
+        t: f64,
+        q: &[f64],
+        v: &[f64],
+        a: &mut [f64],
+    ) -> Result<(), SingularPivot> {
+        const MU: f64 = 1e30;
+        self.forces(t, q, v, a);
+        self.factorize(t, (q, v), (MU, 0.0))?;
+        self.solve(a);
+        for a in a {
+            *a *= MU;
+        }
+        Ok(())
+    }
+
     /// Solves with the last factorisation, in place.
     pub fn solve(&self, x: &mut [f64]) {
         self.matrix.solve(x);

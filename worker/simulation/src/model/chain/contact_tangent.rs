@@ -7,7 +7,7 @@ use super::{Chain, ChainState};
 use crate::element::impact::Impact;
 use crate::linear::{Block, Bordered};
 use crate::model::MAX_MODES;
-use crate::model::contact::{Curvature, GAUSS, Surface, Touch};
+use crate::model::contact::{Curvature, Surface, Touch};
 use crate::model::pose::Pose;
 use nalgebra::Vector2;
 
@@ -62,7 +62,7 @@ impl Chain {
             let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
                 continue;
             };
-            for (place, share) in GAUSS {
+            for &(place, share) in self.contact_points {
                 let along = place * half;
                 let g: V2 = (pose.p + pose.axis() * along).xy();
                 let velocity: V2 = (pose.v + pose.axis_velocity() * along).xy();

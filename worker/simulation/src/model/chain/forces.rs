@@ -3,7 +3,7 @@ use super::{Chain, ChainState, Joints};
 use crate::element::impact::Impact;
 use crate::linear::BLOCK;
 use crate::model::MAX_MODES;
-use crate::model::contact::{GAUSS, Surface, Touch};
+use crate::model::contact::{Surface, Touch};
 use crate::model::pose::Pose;
 use nalgebra::{Vector2, Vector3};
 
@@ -93,7 +93,7 @@ impl Chain {
             let mut total = 0.0;
             if let Some(bearing) = surface.bearing(&pose.p.xy(), half) {
                 let (axis, sweep) = (pose.axis(), pose.axis_velocity());
-                for (place, share) in GAUSS {
+                for &(place, share) in self.contact_points {
                     let along = place * half;
                     let g: V2 = (pose.p + axis * along).xy();
                     let velocity: V2 = (pose.v + sweep * along).xy();
@@ -137,7 +137,7 @@ impl Chain {
             let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
                 continue;
             };
-            for (place, share) in GAUSS {
+            for &(place, share) in self.contact_points {
                 let along = place * half;
                 let g = (pose.p + pose.axis() * along).xy();
                 let velocity = (pose.v + pose.axis_velocity() * along).xy();

@@ -12,6 +12,7 @@ mod tangent;
 
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::linear::BLOCK;
+use crate::model::contact::GAUSS;
 use crate::model::pose::Pose;
 use nalgebra::Vector3;
 
@@ -30,6 +31,9 @@ pub struct Chain {
     pub mass: f64,
     /// Moments of inertia of a cylinder along and across its axis [kg m2].
     pub inertia: [f64; 2],
+    /// Where along a cylinder its contact is evaluated, in half lengths, and the shares of its
+    /// coefficients.
+    pub contact_points: &'static [(f64, f64)],
 }
 
 /// An end of a chain that is held: the marker on the body that holds it, and the joint's law.
@@ -103,6 +107,7 @@ impl Chain {
                 0.5 * mass * radius * radius,
                 mass * (3.0 * radius * radius + pitch * pitch) / 12.0,
             ],
+            contact_points: &GAUSS,
         }
     }
 
