@@ -3,7 +3,8 @@ use crate::drive::DriveState;
 use crate::integrator::State;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
-use crate::model::{Instant, Machine};
+use crate::model::chain::ChainState;
+use crate::model::{Individual, Instant, Machine};
 use crate::run::Observe;
 use crate::system::System;
 
@@ -12,14 +13,16 @@ use crate::system::System;
 /// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
 /// the base acceleration, plus what the modes move beyond their own static answer,
 /// `sum_k s_k (q_k - f_k / w_k^2)`. So a truncated set of modes costs no static accuracy.
-pub fn gauge_stress(system: &System<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
+pub fn gauge_stress(system: &Individual<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
     let machine = system.machine;
     let head = &machine.description.head;
     let layout = machine.layout;
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    machine.each_touch(0, at, &system.scratch.poses, |share, touch, shape| {
+    let surface = machine.surface(0, at.q, at.v);
+    let back = &system.scratch.chains[0];
+    machine.chains[0].each_touch(&surface, &back.poses, |share, touch, shape| {
         let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
         let place = machine.normal_influence.place(touch.angle);
         for (gauge, stress) in stress.iter_mut().enumerate() {
@@ -33,7 +36,7 @@ pub fn gauge_stress(system: &System<'_>, at: &Instant<'_>, state: &State) -> [f6
     // the rope's end pulls at the anchor; in the beam frame
     let beam = layout.beam();
     let (s, c) = sin_cos(state.q[beam]);
-    let load = system.scratch.loads.joints[0][layout.back].force;
+    let load = back.joints[layout.back].force;
     let pull = [c * load.x + s * load.y, c * load.y - s * load.x];
     let anchor = machine.description.back_arc.anchor;
     let (sa, ca) = sin_cos(anchor);
@@ -157,9 +160,10 @@ impl Recorder {
 }
 
 impl Observe for Recorder {
-    fn sample(&mut self, index: usize, system: &mut System<'_>, state: &State) {
+    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
         self.force.resize(state.q.len(), 0.0);
         system.forces(state.t, &state.q, &state.v, &mut self.force);
+        let system = &mut system.equations;
         let drive = system.drive_state(state.t);
         let at = Instant {
             ropes: &system.ropes,
@@ -178,9 +182,9 @@ impl Observe for Recorder {
         let layout = machine.layout;
         let c = &mut self.curves;
         c.back_tension
-            .push(system.scratch.loads.joints[0][0].force.norm());
+            .push(system.scratch.chains[0].joints[0].force.norm());
         c.front_tension
-            .push(system.scratch.loads.joints[1][0].force.norm());
+            .push(system.scratch.chains[1].joints[0].force.norm());
         c.beam.push(state.q[layout.beam()]);
         let height = layout.suspension();
         for (curve, value) in
@@ -202,24 +206,19 @@ impl Observe for Recorder {
     }
 }
 
-fn shape(sample: usize, system: &System<'_>, drive: &DriveState, state: &State) -> Shape {
+fn shape(sample: usize, system: &Individual<'_>, drive: &DriveState, state: &State) -> Shape {
     let machine = system.machine;
     let layout = machine.layout;
     let (s, c) = sin_cos(state.q[layout.rod()]);
     let length = machine.description.rod.length;
     let [pin, ..] = drive.pin;
     let centers = [0, 1].map(|chain| {
-        let first = layout.base_block(chain) + 1;
-        (0..machine.cylinders(chain))
-            .map(|j| {
-                [
-                    state.q[(first + j) * BLOCK],
-                    state.q[(first + j) * BLOCK + 1],
-                ]
-            })
+        state.q[machine.chains[chain].range()]
+            .chunks_exact(BLOCK)
+            .map(|q| [q[0], q[1]])
             .collect()
     });
-    let loads = &system.scratch.loads;
+    let chains = &system.scratch.chains;
     Shape {
         sample,
         pin: pin.into(),
@@ -228,16 +227,17 @@ fn shape(sample: usize, system: &System<'_>, drive: &DriveState, state: &State) 
         suspension: [machine.suspension_x, state.q[layout.suspension()]],
         centers,
         tension: [0, 1].map(|chain| {
-            (0..machine.cylinders(chain))
+            let state: &ChainState = &chains[chain];
+            (0..machine.chains[chain].count)
                 .map(|joint| {
                     if joint == 0 {
-                        loads.joints[chain][0].force.norm()
+                        state.joints[0].force.norm()
                     } else {
-                        loads.tension(chain, joint)
+                        state.tension(joint)
                     }
                 })
                 .collect()
         }),
-        contact: loads.contact.clone(),
+        contact: [0, 1].map(|chain| chains[chain].contact.clone()),
     }
 }

@@ -1,9 +1,10 @@
 //! One simulation: settle, lead in, one recorded revolution.
 use crate::drive::Drive;
+use crate::integrator::adaptive::{Adaptive, StepUnderflow};
 use crate::integrator::tableau::{ESDIRK4, Tableau};
-use crate::integrator::{State, dense::interpolate, esdirk::Esdirk, step_control::StepControl};
+use crate::integrator::{State, dense::interpolate};
 use crate::model::description::RopeLaw;
-use crate::model::{Machine, Powers};
+use crate::model::{Individual, Machine, Powers};
 use crate::settle::{Settled, equilibrium, guess, overload};
 use crate::statistics::Statistics;
 use crate::system::System;
@@ -49,7 +50,7 @@ impl Default for RunSettings {
 /// Receives what happens at each sample of the recorded revolution.
 pub trait Observe {
     /// `state` is the interpolated state at sample `index`; the loads of `system` belong to it.
-    fn sample(&mut self, index: usize, system: &mut System<'_>, state: &State);
+    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
 }
 
 /// What a run gives besides its samples.
@@ -65,11 +66,6 @@ pub struct RunResult {
     pub stored: f64,
 }
 
-/// Shortest step; a run that needs shorter ones ends \[s\].
-const SHORTEST_STEP: f64 = 1e-9;
-/// Times closer than this are the same \[s\].
-const MOMENT: f64 = 1e-9;
-
 /// Simulates one individual; never panics and never hangs.
 pub fn simulate(
     machine: &Machine,
@@ -82,7 +78,7 @@ pub fn simulate(
         ramp: settings.ramp,
         speed: machine.description.crank.speed,
     };
-    let mut system = System::new(machine, machine.ropes(law), drive);
+    let mut system = System::new(Individual::new(machine, machine.ropes(law), drive));
     let swing = swing(machine);
     let start = match settle(&mut system, settings, swing) {
         Ok(q) => q,
@@ -122,21 +118,22 @@ fn swing(machine: &Machine) -> [f64; 2] {
 /// Static equilibrium at the start; on failure, the reason at full load and the share of the load
 /// that the machine carries.
 fn settle(
-    system: &mut System<'_>,
+    system: &mut System<Individual<'_>>,
     settings: &RunSettings,
     swing: [f64; 2],
 ) -> Result<Vec<f64>, (Failure, f64)> {
-    let full = system.drive_state(0.0);
-    if let Some(overload) = overload(system.machine, &system.ropes, &full, &settings.limits) {
+    let full = system.equations.drive_state(0.0);
+    let Individual { machine, ropes, .. } = system.equations;
+    if let Some(overload) = overload(machine, &ropes, &full, &settings.limits) {
         return Err(overload);
     }
     let mut attempt = |share: f64| {
-        let mut drive = full;
-        drive.load *= share;
-        let Ok(mut q) = guess(system.machine, &system.ropes, &drive) else {
+        system.equations.share_load(share);
+        let drive = system.equations.drive_state(0.0);
+        let Ok(mut q) = guess(machine, &ropes, &drive) else {
             return Err(Failure::OverstretchedRope);
         };
-        match equilibrium(system, &drive, &settings.limits, swing, &mut q) {
+        match equilibrium(system, &settings.limits, swing, &mut q) {
             Settled::Equilibrium => Ok(q),
             Settled::Failed(kind) => Err(kind),
         }
@@ -158,28 +155,24 @@ fn settle(
 }
 
 fn revolve(
-    system: &mut System<'_>,
+    system: &mut System<Individual<'_>>,
     settings: &RunSettings,
     swing: [f64; 2],
     start: Vec<f64>,
     observer: &mut dyn Observe,
 ) -> RunResult {
     let n = start.len();
-    let control = StepControl {
-        order: settings.method.error_order,
-        tolerance: settings.tolerance,
-        longest: settings.longest_step,
-        shortest: SHORTEST_STEP,
-    };
-    let mut method = Esdirk::new(settings.method, n);
+    let tolerance = settings.tolerance;
+    let mut method = Adaptive::new(settings.method, n, tolerance, settings.longest_step);
     let mut from = State::at_rest(0.0, start);
     let mut to = from.clone();
     let mut between = from.clone();
-    let (begin, end) = (system.drive.time_at(0.0), system.drive.time_at(TAU));
-    let (mut h, mut sample) = (1e-3, 0);
-    let mut ledger = Ledger::between(begin, end);
+    let drive = system.equations.drive;
+    let (begin, end) = (drive.time_at(0.0), drive.time_at(TAU));
+    let mut sample = 0;
+    let mut ledger = Ledger::default();
     let verdict = loop {
-        if from.t >= end - MOMENT {
+        if from.t >= end - 1e-9 {
             break Verdict::Complete;
         }
         let reached = Reached::TimeFraction(from.t / end);
@@ -188,55 +181,39 @@ fn revolve(
             break failed(Failure::Budget);
         }
         // stop exactly where the recorded revolution begins and ends
-        let stop = if from.t < begin - MOMENT { begin } else { end };
-        let left = stop - from.t;
-        let step = if h >= left {
-            left
-        } else if h > 0.5 * left {
-            0.5 * left
-        } else {
-            h
+        let stop = if from.t < begin - 1e-9 { begin } else { end };
+        let done = match method.attempt(system, &from, stop, &mut to) {
+            Err(StepUnderflow) => break failed(Failure::StepUnderflow),
+            Ok(None) => continue,
+            Ok(Some(done)) => done,
         };
-        match method.step(system, &from, step, &mut to) {
-            Err(_) => {
-                system.statistics.newton_rejections += 1;
-                h = 0.3 * step;
-            }
-            Ok(done) if done.error > settings.tolerance || !done.error.is_finite() => {
-                system.statistics.error_rejections += 1;
-                h = step * control.factor(done.error).min(0.7);
-            }
-            Ok(done) => {
-                system.statistics.steps += 1;
-                method.accept();
-                if let Some(kind) = settings.limits.broken(
-                    system.machine,
-                    system.ropes.joint.stiffness[0],
-                    &to.q,
-                    swing,
-                    &system.scratch,
-                ) {
-                    break failed(kind);
-                }
-                ledger.add(system, &from, &to, &done.work);
-                while sample < settings.samples {
-                    let turn = TAU * sample as f64 / settings.samples as f64;
-                    let t = system.drive.time_at(turn);
-                    if t > to.t + MOMENT {
-                        break;
-                    }
-                    interpolate(&from, &to, t, &mut between);
-                    observer.sample(sample, system, &between);
-                    sample += 1;
-                }
-                std::mem::swap(&mut from, &mut to);
-                let next = control.next(step, done.error);
-                h = if step < h { h.min(next.max(h)) } else { next };
-            }
+        let individual = &system.equations;
+        if let Some(kind) = settings.limits.broken(
+            individual.machine,
+            individual.ropes.joint.stiffness[0],
+            &to.q,
+            swing,
+            &individual.scratch,
+        ) {
+            break failed(kind);
         }
-        if h < control.shortest {
-            break failed(Failure::StepUnderflow);
+        ledger.add(
+            &mut system.equations,
+            [&from, &to],
+            &done.work,
+            [begin, end],
+        );
+        while sample < settings.samples {
+            let turn = TAU * sample as f64 / settings.samples as f64;
+            let t = drive.time_at(turn);
+            if t > to.t + 1e-9 {
+                break;
+            }
+            interpolate(&from, &to, t, &mut between);
+            observer.sample(sample, system, &between);
+            sample += 1;
         }
+        std::mem::swap(&mut from, &mut to);
     };
     RunResult {
         verdict,
@@ -249,34 +226,30 @@ fn revolve(
 /// Work and stored energy over the recorded revolution.
 #[derive(Clone, Copy, Debug, Default)]
 struct Ledger {
-    begin: f64,
-    end: f64,
     work: Powers,
     first: Option<f64>,
     last: f64,
 }
 
 impl Ledger {
-    fn between(begin: f64, end: f64) -> Self {
-        Self {
-            begin,
-            end,
-            ..Self::default()
-        }
-    }
-
-    fn add(&mut self, system: &mut System<'_>, from: &State, to: &State, work: &Powers) {
-        if from.t < self.begin - MOMENT {
+    fn add(
+        &mut self,
+        individual: &mut Individual<'_>,
+        [from, to]: [&State; 2],
+        work: &Powers,
+        [begin, end]: [f64; 2],
+    ) {
+        if from.t < begin - 1e-9 {
             return;
         }
         if self.first.is_none() {
-            self.first = Some(system.energy(from));
+            self.first = Some(individual.energy(from));
         }
         self.work.input += work.input;
         self.work.output += work.output;
         self.work.dissipated += work.dissipated;
-        if to.t >= self.end - MOMENT {
-            self.last = system.energy(to);
+        if to.t >= end - 1e-9 {
+            self.last = individual.energy(to);
         }
     }
 

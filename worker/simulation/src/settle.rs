@@ -6,9 +6,10 @@
 use crate::drive::DriveState;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
+use crate::model::chain::Chain;
 use crate::model::kinematics::{DoesNotClose, Position};
-use crate::model::{Instant, Machine, Ropes};
-use crate::system::System;
+use crate::model::{Individual, Machine, Ropes};
+use crate::system::{Static, System};
 use crate::verdict::{Failure, Limits};
 
 /// Iterations (factorisations) that one equilibrium may take.
@@ -138,8 +139,7 @@ impl Strand {
         q: &mut [f64],
     ) -> f64 {
         let pitch = machine.description.rope.pitch;
-        let count = machine.cylinders(chain);
-        let first = machine.layout.base_block(chain) + 1;
+        let Chain { first, count, .. } = machine.chains[chain];
         let sense = machine.arc(chain).sense;
         let wrapped = self.radius * (anchor - leave).abs();
         let end = self.extension * machine.description.rope.end_pitches;
@@ -175,46 +175,65 @@ pub enum Settled {
     Failed(Failure),
 }
 
-/// Minimises the potential from `q` on, under the crank and load of `drive`.
+/// Equilibrium of a machine at time 0 from `q` on, and whether it keeps inside the limits.
 pub fn equilibrium(
-    system: &mut System<'_>,
-    drive: &DriveState,
+    system: &mut System<Individual<'_>>,
     limits: &Limits,
     swing: [f64; 2],
     q: &mut [f64],
 ) -> Settled {
+    let converged = minimize(system, 0.0, q);
+    let individual = &system.equations;
+    let broken = limits.broken(
+        individual.machine,
+        individual.ropes.joint.stiffness[0],
+        q,
+        swing,
+        &individual.scratch,
+    );
+    match broken {
+        Some(kind) => Settled::Failed(kind),
+        None if converged => Settled::Equilibrium,
+        None => Settled::Failed(Failure::Budget),
+    }
+}
+
+/// Minimises the potential at time `t` from `q` on; the loads of the last trial are at hand.
+///
+/// Whether a minimum was reached within the budget.
+pub fn minimize<E: Static>(system: &mut System<E>, t: f64, q: &mut [f64]) -> bool {
     let n = q.len();
     let still = vec![0.0; n];
     let (mut force, mut step, mut trial) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    system.forces_under(drive, q, &still, &mut force);
-    let mut height = potential(system, drive, q, &still);
+    system.forces(t, q, &still, &mut force);
+    let mut height = system.equations.potential(t, q, &still);
     let mut lambda = 0.0;
     for _ in 0..BUDGET {
         system.statistics.newton_iterations += 1;
-        let solvable = system.factorize_static(drive, (q, &still), lambda).is_ok();
+        let solvable = system.factorize_static(t, (q, &still), lambda).is_ok();
         step.copy_from_slice(&force);
         if solvable {
             system.solve(&mut step);
         }
-        let norm = system.newton_norm(&step);
+        let norm = system.equations.newton_norm(&step);
         let slope: f64 = force.iter().zip(&step).map(|(f, s)| f * s).sum();
         if !(solvable && norm.is_finite() && slope > 0.0) {
             if solvable && norm < CONVERGED {
-                return within(system, limits, swing, q);
+                return true;
             }
             lambda = (lambda * 10.0).max(FIRST_DAMPING);
             if lambda > LAST_DAMPING {
                 break;
             }
-            system.forces_under(drive, q, &still, &mut force);
+            system.forces(t, q, &still, &mut force);
             continue;
         }
         let factor = (LARGEST_STEP / norm).min(1.0);
         for i in 0..n {
             trial[i] = q[i] + factor * step[i];
         }
-        system.forces_under(drive, &trial, &still, &mut force);
-        let next = potential(system, drive, &trial, &still);
+        system.forces(t, &trial, &still, &mut force);
+        let next = system.equations.potential(t, &trial, &still);
         // near the minimum the decrease drowns in rounding: then the step itself must be small
         if next < height - 1e-4 * factor * slope
             || (norm < ROUNDING && next < height + 1e-9 * height.abs())
@@ -222,7 +241,7 @@ pub fn equilibrium(
             q.copy_from_slice(&trial);
             height = next;
             if lambda == 0.0 && norm < CONVERGED {
-                return within(system, limits, swing, q);
+                return true;
             }
             lambda = if lambda <= FIRST_DAMPING {
                 0.0
@@ -234,13 +253,10 @@ pub fn equilibrium(
             if lambda > LAST_DAMPING {
                 break;
             }
-            system.forces_under(drive, q, &still, &mut force);
+            system.forces(t, q, &still, &mut force);
         }
     }
-    match within(system, limits, swing, q) {
-        Settled::Equilibrium => Settled::Failed(Failure::Budget),
-        failed @ Settled::Failed(_) => failed,
-    }
+    false
 }
 
 /// Damping [N/m] with which a failed step is tried again first, and beyond which none is tried.
@@ -251,26 +267,3 @@ const LAST_DAMPING: f64 = 1e14;
 const LARGEST_STEP: f64 = 2.5e4;
 const CONVERGED: f64 = 1e-5;
 const ROUNDING: f64 = 1.0;
-
-fn potential(system: &System<'_>, drive: &DriveState, q: &[f64], still: &[f64]) -> f64 {
-    let machine = system.machine;
-    let at = Instant {
-        ropes: &system.ropes,
-        drive,
-        q,
-        v: still,
-    };
-    machine.potential(&at, &system.scratch) + drive.load * q[machine.layout.suspension()]
-}
-
-fn within(system: &System<'_>, limits: &Limits, swing: [f64; 2], q: &[f64]) -> Settled {
-    limits
-        .broken(
-            system.machine,
-            system.ropes.joint.stiffness[0],
-            q,
-            swing,
-            &system.scratch,
-        )
-        .map_or(Settled::Equilibrium, Settled::Failed)
-}

@@ -1,6 +1,5 @@
 //! How a simulation ended; every run ends in one of these, none hangs or panics.
 use crate::linear::BLOCK;
-use crate::math::elementary::sin_cos;
 use crate::model::{Machine, Scratch};
 
 /// What ended a simulation early.
@@ -82,14 +81,14 @@ impl Limits {
         scratch: &Scratch,
     ) -> Option<Failure> {
         let longest = self.extension * machine.description.rope.pitch;
-        for chain in 0..2 {
-            for joint in 0..=machine.cylinders(chain) {
-                if scratch.loads.tension(chain, joint) > longest * joint_stiffness {
+        for state in &scratch.chains {
+            for joint in 0..state.joints.len() {
+                if state.tension(joint) > longest * joint_stiffness {
                     return Some(Failure::OverstretchedRope);
                 }
             }
         }
-        if scratch.loads.deepest > self.penetration {
+        if scratch.deepest() > self.penetration {
             return Some(Failure::RopeThroughHead);
         }
         let beam = q[machine.layout.beam()];
@@ -99,11 +98,10 @@ impl Limits {
         if beam.is_nan() || beam < swing[0] - self.beam_margin {
             return Some(Failure::LoadNotLifted);
         }
-        for chain in 0..2 {
-            let first = machine.layout.base_block(chain) + 1;
-            for j in 0..machine.cylinders(chain) {
-                let tilt = q[(first + j) * BLOCK + 4];
-                if tilt.is_nan() || sin_cos(tilt).0.abs() > self.tilt {
+        for chain in &machine.chains {
+            for j in 0..chain.count {
+                let tilt = q[(chain.first + j) * BLOCK + 4];
+                if tilt.is_nan() || crate::math::elementary::sin_cos(tilt).0.abs() > self.tilt {
                     return Some(Failure::TumbledCylinder);
                 }
             }

@@ -6,7 +6,7 @@
 use super::newton::{Newton, NotConverged, Stage};
 use super::{State, tableau::Tableau};
 use crate::model::Powers;
-use crate::system::System;
+use crate::system::{Equations, System};
 
 /// Result of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,9 +48,9 @@ impl Esdirk {
     ///
     /// # Errors
     /// [`NotConverged`] when a stage could not be solved; `to` is then meaningless.
-    pub fn step(
+    pub fn step<E: Equations>(
         &mut self,
-        system: &mut System<'_>,
+        system: &mut System<E>,
         from: &State,
         h: f64,
         to: &mut State,
@@ -71,7 +71,7 @@ impl Esdirk {
             };
             self.newton
                 .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
-            self.powers[i] = system.powers(stage.t, &to.q, &to.v, &to.a);
+            self.powers[i] = system.equations.powers(stage.t, &to.q, &to.v, &to.a);
             if i < last {
                 self.stages[i].0.copy_from_slice(&to.v);
                 self.stages[i].1.copy_from_slice(&to.a);
@@ -79,7 +79,7 @@ impl Esdirk {
         }
         to.t = from.t + h;
         self.estimate(h, to);
-        let error = system.error_norm(&self.error);
+        let error = system.equations.error_norm(&self.error);
         let work = self.work(h);
         Ok(Step { error, work })
     }

@@ -2,6 +2,7 @@
 //!
 //! A method advances a [`State`] by one step and knows nothing of what is recorded. Step size
 //! control and Newton's method with its refactorisation policy are small objects of their own.
+pub mod adaptive;
 pub mod dense;
 pub mod esdirk;
 pub mod newton;

@@ -1,5 +1,5 @@
 //! Newton's method for one implicit stage, with a factorisation that is kept while it serves.
-use crate::system::System;
+use crate::system::{Equations, System};
 
 /// When a factorisation is made anew: a small state machine without numerics of its own.
 #[derive(Clone, Copy, Debug, Default)]
@@ -88,9 +88,9 @@ impl Newton {
     ///
     /// # Errors
     /// [`NotConverged`] after a fresh factorisation did not help either.
-    pub fn solve(
+    pub fn solve<E: Equations>(
         &mut self,
-        system: &mut System<'_>,
+        system: &mut System<E>,
         stage: &Stage<'_>,
         (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
     ) -> Result<(), NotConverged> {
@@ -115,7 +115,7 @@ impl Newton {
                 a[i] += gamma * gamma * change;
                 self.change[i] = change;
             }
-            let norm = system.newton_norm(&self.change);
+            let norm = system.equations.newton_norm(&self.change);
             if let Some(last) = last {
                 rate = (0.3 * rate).max(norm / last);
             }
@@ -152,16 +152,15 @@ impl Newton {
         Err(NotConverged)
     }
 
-    fn factorize(
+    fn factorize<E: Equations>(
         &mut self,
-        system: &mut System<'_>,
+        system: &mut System<E>,
         stage: &Stage<'_>,
         q: &[f64],
         v: &[f64],
     ) -> Result<(), NotConverged> {
         let gamma = 1.0 / stage.c;
-        let drive = system.drive_state(stage.t);
-        let made = system.factorize(&drive, (q, v), (gamma * gamma, gamma));
+        let made = system.factorize(stage.t, (q, v), (gamma * gamma, gamma));
         if made.is_err() {
             self.policy.spoiled();
             return Err(NotConverged);

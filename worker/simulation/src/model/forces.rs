@@ -1,11 +1,13 @@
 //! Generalised forces, inertia, and the powers that the energy ledger adds up.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
-use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
-use crate::model::contact::{GAUSS, Surface, Touch};
+use crate::model::contact::Surface;
 use crate::model::links::Instant;
-use crate::model::{Machine, Scratch, pose::Pose};
+use crate::model::{
+    Machine, Scratch,
+    chain::{Chain, Joints},
+};
 use nalgebra::{Vector2, Vector3};
 
 type V2 = Vector2<f64>;
@@ -24,31 +26,42 @@ pub struct Powers {
 
 impl Machine {
     /// Fills the poses of all cylinders.
-    pub(crate) fn pose(&self, q: &[f64], v: &[f64], poses: &mut [Pose]) {
-        for chain in 0..2 {
-            let first = self.layout.base_block(chain) + 1;
-            let offset = if chain == 0 { 0 } else { self.layout.back };
-            for j in 0..self.cylinders(chain) {
-                let at = (first + j) * BLOCK..(first + j + 1) * BLOCK;
-                poses[offset + j] = Pose::new(&q[at.clone()], &v[at]);
-            }
+    pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
+        for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
+            chain.pose(q, v, &mut state.poses);
         }
     }
 
     /// Generalised forces `Q(q, v, t)` into `force`; joint and contact loads stay in `scratch`.
     pub fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
         force.fill(0.0);
-        self.pose(at.q, at.v, &mut scratch.poses);
-        scratch.loads.deepest = 0.0;
-        self.weights(at, &scratch.poses, force);
-        for chain in 0..2 {
-            self.joint_forces(chain, at, scratch, force);
-            self.contact_forces(chain, at, scratch, force);
+        self.pose(at.q, at.v, scratch);
+        self.weights(at, force);
+        for (k, chain) in self.chains.iter().enumerate() {
+            let state = &mut scratch.chains[k];
+            chain.add_weights(&self.gravity(), &state.poses, force);
+            let joints = self.joints(k, at);
+            chain.add_joints(&joints, state, force);
+            self.end_forces(k, at, &joints, scratch, force);
+            let surface = self.surface(k, at.q, at.v);
+            let (blocks, border) = force.split_at_mut(self.layout.beam());
+            chain.add_contact(
+                &surface,
+                &at.ropes.contact,
+                &mut scratch.chains[k],
+                blocks,
+                border,
+            );
         }
     }
 
-    /// Gravity, load, velocity terms, and the head's own stiffness and damping.
-    fn weights(&self, at: &Instant<'_>, poses: &[Pose], force: &mut [f64]) {
+    /// Acceleration of gravity as a vector [m/s2].
+    pub(crate) fn gravity(&self) -> V3 {
+        V3::new(0.0, -self.description.gravity, 0.0)
+    }
+
+    /// Weight of and load on the rigid bodies, and the head's own stiffness and damping.
+    fn weights(&self, at: &Instant<'_>, force: &mut [f64]) {
         let &Instant { q, v, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
@@ -70,69 +83,35 @@ impl Machine {
                 -g * (px * s + py * c) - w * w * q[i] - 2.0 * d.head.damping_ratio * w * v[i];
             force[beam] += q[i] * g * (py * s - px * c);
         }
-
-        let [along, across] = self.cylinder_inertia;
-        for chain in 0..2 {
-            let first = self.layout.base_block(chain) + 1;
-            for (j, pose) in self.chain_poses(chain, poses).iter().enumerate() {
-                let at = (first + j) * BLOCK;
-                force[at + 1] -= self.cylinder_mass * g;
-                let [s, c] = pose.tilt;
-                let (r1, r2, r3) = (pose.rate.x, pose.rate.y, pose.rate.z);
-                let spin = along * (r1 - s * r3);
-                force[at + 3] += along * c * r2 * r3;
-                force[at + 4] -= c * r3 * spin + across * c * s * r3 * r3;
-                force[at + 5] +=
-                    c * r2 * spin - along * s * c * r2 * r3 + 2.0 * across * c * s * r2 * r3;
-            }
-        }
     }
 
-    fn joint_forces(
+    /// What the end joints of a chain do to rod or suspension, to the beam and to the modes.
+    fn end_forces(
         &self,
         chain: usize,
         at: &Instant<'_>,
-        scratch: &mut Scratch,
+        joints: &Joints<'_>,
+        scratch: &Scratch,
         force: &mut [f64],
     ) {
-        let base = self.layout.base_block(chain);
-        let count = self.cylinders(chain);
-        for joint in 0..=count {
-            let [i, j] = self.markers(chain, joint, &scratch.poses, at);
-            let load = self.law(chain, joint, at.ropes).load(&i, &j);
-            if joint > 0 {
-                let pose = &self.chain_poses(chain, &scratch.poses)[joint - 1];
-                add_wrench(
-                    pose,
-                    &-load.force,
-                    &load.torque_j,
-                    &mut force[(base + joint) * BLOCK..],
-                );
-            } else if chain == 0 {
-                force[self.layout.rod()] += load.torque_j.z;
-            } else {
-                force[self.layout.suspension()] -= load.force.y;
+        let loads = &scratch.chains[chain].joints;
+        if chain == 0 {
+            force[self.layout.rod()] += loads[0].torque_j.z;
+        } else {
+            force[self.layout.suspension()] -= loads[0].force.y;
+        }
+        let (Some(load), Some(head)) = (loads.last(), joints.head) else {
+            return;
+        };
+        let i = head.marker;
+        let beam = self.layout.beam();
+        force[beam] += load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
+        if chain == 0 {
+            let (s, c) = sin_cos(at.q[beam]);
+            for (k, shape) in self.anchor_shape.iter().enumerate() {
+                force[self.layout.mode(k)] += load.force.x * (c * shape[0] - s * shape[1])
+                    + load.force.y * (s * shape[0] + c * shape[1]);
             }
-            if joint < count {
-                let pose = &self.chain_poses(chain, &scratch.poses)[joint];
-                add_wrench(
-                    pose,
-                    &load.force,
-                    &load.torque_i,
-                    &mut force[(base + joint + 1) * BLOCK..],
-                );
-            } else {
-                let beam = self.layout.beam();
-                force[beam] += load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
-                if chain == 0 {
-                    let (s, c) = sin_cos(at.q[beam]);
-                    for (k, shape) in self.anchor_shape.iter().enumerate() {
-                        force[self.layout.mode(k)] += load.force.x * (c * shape[0] - s * shape[1])
-                            + load.force.y * (s * shape[0] + c * shape[1]);
-                    }
-                }
-            }
-            scratch.loads.joints[chain][joint] = load;
         }
     }
 
@@ -146,53 +125,6 @@ impl Machine {
             (&q[modal.clone()], &v[modal]),
             (chain == 0).then_some(&self.radial),
         )
-    }
-
-    fn contact_forces(
-        &self,
-        chain: usize,
-        at: &Instant<'_>,
-        scratch: &mut Scratch,
-        force: &mut [f64],
-    ) {
-        let surface = self.surface(chain, at.q, at.v);
-        let half = 0.5 * self.description.rope.pitch;
-        let first = self.layout.base_block(chain) + 1;
-        let beam = self.layout.beam();
-        let modes = surface.modal.len();
-        let mut shape = [0.0; MAX_MODES];
-        for j in 0..self.cylinders(chain) {
-            let pose = &self.chain_poses(chain, &scratch.poses)[j];
-            let mut total = 0.0;
-            if let Some(bearing) = surface.bearing(&pose.p.xy(), half) {
-                let (axis, sweep) = (pose.axis(), pose.axis_velocity());
-                for (place, share) in GAUSS {
-                    let along = place * half;
-                    let g: V2 = (pose.p + axis * along).xy();
-                    let velocity: V2 = (pose.v + sweep * along).xy();
-                    let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
-                    scratch.loads.deepest = scratch.loads.deepest.max(touch.depth);
-                    let law = at.ropes.contact.force(touch.depth, touch.rate);
-                    let f = share * law.force;
-                    if f == 0.0 {
-                        continue;
-                    }
-                    total += f;
-                    let push = touch.by_point * -f;
-                    let own = (first + j) * BLOCK;
-                    force[own] += push.x;
-                    force[own + 1] += push.y;
-                    for k in 0..2 {
-                        force[own + 4 + k] += along * push.dot(&pose.axis_by[k].xy());
-                    }
-                    force[beam] -= f * touch.by_beam;
-                    for k in 0..modes {
-                        force[beam + 1 + k] -= f * shape[k];
-                    }
-                }
-            }
-            scratch.loads.contact[chain][j] = total;
-        }
     }
 
     /// `out -= M(q) a`.
@@ -210,21 +142,8 @@ impl Machine {
             out[i] -= a[i] + coupling * a[beam];
             out[beam] -= coupling * a[i];
         }
-        let [along, across] = self.cylinder_inertia;
-        let m = self.cylinder_mass;
-        for chain in 0..2 {
-            let first = self.layout.base_block(chain) + 1;
-            for j in 0..self.cylinders(chain) {
-                let at = (first + j) * BLOCK;
-                let (s, _) = sin_cos(q[at + 4]);
-                for k in 0..3 {
-                    out[at + k] -= m * a[at + k];
-                }
-                let (a1, a2, a3) = (a[at + 3], a[at + 4], a[at + 5]);
-                out[at + 3] -= along * (a1 - s * a3);
-                out[at + 4] -= across * a2;
-                out[at + 5] -= (across + (along - across) * s * s) * a3 - along * s * a1;
-            }
+        for chain in &self.chains {
+            chain.subtract_inertia(q, a, out);
         }
     }
 
@@ -242,7 +161,7 @@ impl Machine {
         let center = at.drive.pin[2] + V2::new(-s, c) * (rod.center_of_mass * a[i])
             - V2::new(c, s) * (rod.center_of_mass * at.v[i] * at.v[i]);
         // the joint pulls the rod with minus the force on the first cylinder
-        let rope = scratch.loads.joints[0][0].force;
+        let rope = scratch.chains[0].joints[0].force;
         V2::new(
             rod.mass * center.x + rope.x,
             rod.mass * (center.y + self.description.gravity) + rope.y,
@@ -253,16 +172,14 @@ impl Machine {
     pub fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
         let v = at.v;
         let pin = self.pin_force(at, a, scratch);
-        let mut dissipated: f64 = scratch
-            .loads
-            .joints
-            .iter()
-            .flat_map(|chain| chain.iter().map(|load| load.dissipated))
-            .sum();
-        for chain in 0..2 {
-            self.each_touch(chain, at, &scratch.poses, |share, touch, _| {
-                dissipated += share * at.ropes.contact.force(touch.depth, touch.rate).dissipated;
-            });
+        let mut dissipated = 0.0;
+        for state in &scratch.chains {
+            Chain::add_joint_losses(&mut dissipated, state);
+        }
+        for (k, chain) in self.chains.iter().enumerate() {
+            let surface = self.surface(k, at.q, v);
+            let state = &scratch.chains[k];
+            chain.add_contact_losses(&mut dissipated, &surface, &at.ropes.contact, state);
         }
         let head = &self.description.head;
         for k in 0..self.layout.modes {
@@ -273,34 +190,6 @@ impl Machine {
             input: pin.dot(&at.drive.pin[1]),
             output: at.drive.load * v[self.layout.suspension()],
             dissipated,
-        }
-    }
-
-    /// Calls `visit(share, touch, shapes)` for every Gauss point inside an arc.
-    pub(crate) fn each_touch(
-        &self,
-        chain: usize,
-        at: &Instant<'_>,
-        poses: &[Pose],
-        mut visit: impl FnMut(f64, &Touch, &[f64]),
-    ) {
-        let surface = self.surface(chain, at.q, at.v);
-        let half = 0.5 * self.description.rope.pitch;
-        let modes = surface.modal.len();
-        let mut shape = [0.0; MAX_MODES];
-        for pose in self.chain_poses(chain, poses) {
-            let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
-                continue;
-            };
-            for (place, share) in GAUSS {
-                let along = place * half;
-                let g = (pose.p + pose.axis() * along).xy();
-                let velocity = (pose.v + pose.axis_velocity() * along).xy();
-                let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
-                if touch.depth > 0.0 {
-                    visit(share, &touch, &shape[..modes]);
-                }
-            }
         }
     }
 
@@ -325,17 +214,15 @@ impl Machine {
             let w = d.head.frequencies[k];
             sum += 0.5 * w * w * x * x + g * x * (px * s + py * c);
         }
-        for chain in 0..2 {
-            for joint in 0..=self.cylinders(chain) {
-                let [i, j] = self.markers(chain, joint, &scratch.poses, at);
-                sum += self.law(chain, joint, at.ropes).energy(&i, &j);
-            }
-            self.each_touch(chain, at, &scratch.poses, |share, touch, _| {
-                sum += share * at.ropes.contact.energy(touch.depth);
-            });
-            for pose in self.chain_poses(chain, &scratch.poses) {
-                sum += self.cylinder_mass * g * pose.p.y;
-            }
+        for (k, chain) in self.chains.iter().enumerate() {
+            let surface = self.surface(k, q, at.v);
+            chain.add_potential(
+                &mut sum,
+                &self.gravity(),
+                &self.joints(k, at),
+                Some((&surface, &at.ropes.contact)),
+                &scratch.chains[k],
+            );
         }
         sum
     }
@@ -352,18 +239,5 @@ impl Machine {
         let pin = drive.pin[1];
         own + 0.5 * rod.mass * pin.norm_squared()
             + rod.mass * rod.center_of_mass * v[i] * (pin.y * c - pin.x * s)
-    }
-}
-
-/// Most modes a head may have in a simulation.
-pub(crate) const MAX_MODES: usize = 24;
-
-fn add_wrench(pose: &Pose, force: &V3, torque: &V3, at: &mut [f64]) {
-    for k in 0..3 {
-        at[k] += force[k];
-    }
-    let turning = pose.angular().tr_mul(torque);
-    for k in 0..3 {
-        at[3 + k] += turning[k];
     }
 }

@@ -1,71 +1,21 @@
-//! The joints of both rope chains: which markers they join.
-//!
-//! Joint 0 holds the first cylinder to the rod or the suspension point (revolute), joints 1..n-1
-//! join cylinders, joint n holds the last cylinder to the head. J is the marker nearer to the free
-//! end, I the one nearer to the head.
+//! Who holds the machine's two rope chains: rod or suspension point at the base (revolute), the
+//! heads at the other end.
 use crate::drive::DriveState;
-use crate::element::bushing::{Bushing, LinkLoad, Marker};
+use crate::element::bushing::Marker;
 use crate::math::elementary::sin_cos;
+use crate::model::chain::{Held, Joints};
 use crate::model::description::Arc;
-use crate::model::{Machine, Ropes, layout::Layout, pose::Pose};
+use crate::model::{Machine, Ropes};
 use nalgebra::{Matrix3, Vector3};
 
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
-
-/// Loads of every joint of both chains and contact forces of every cylinder.
-#[derive(Clone, Debug)]
-pub struct ChainLoads {
-    /// Joint loads, chain by chain, from the free end on.
-    pub joints: [Vec<LinkLoad>; 2],
-    /// Contact force of each cylinder, chain by chain \[N\].
-    pub contact: [Vec<f64>; 2],
-    /// Deepest penetration \[m\].
-    pub deepest: f64,
-}
-
-impl ChainLoads {
-    pub(crate) fn new(layout: &Layout) -> Self {
-        let none = LinkLoad {
-            force: V3::zeros(),
-            torque_i: V3::zeros(),
-            torque_j: V3::zeros(),
-            axial: 0.0,
-            dissipated: 0.0,
-        };
-        Self {
-            joints: [vec![none; layout.back + 1], vec![none; layout.front + 1]],
-            contact: [vec![0.0; layout.back], vec![0.0; layout.front]],
-            deepest: 0.0,
-        }
-    }
-
-    /// Tension in a joint, positive where it pulls \[N\].
-    pub fn tension(&self, chain: usize, joint: usize) -> f64 {
-        -self.joints[chain][joint].axial
-    }
-}
 
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Number of cylinders of a chain.
-    pub(crate) const fn cylinders(&self, chain: usize) -> usize {
-        if chain == 0 {
-            self.layout.back
-        } else {
-            self.layout.front
-        }
-    }
-
-    /// Poses of a chain among all poses.
-    pub(crate) fn chain_poses<'p>(&self, chain: usize, poses: &'p [Pose]) -> &'p [Pose] {
-        let (back, front) = poses.split_at(self.layout.back);
-        if chain == 0 { back } else { front }
-    }
-
     /// The arc that a chain wraps.
     pub(crate) const fn arc(&self, chain: usize) -> &Arc {
         if chain == 0 {
@@ -75,37 +25,19 @@ impl Machine {
         }
     }
 
-    /// Law of a joint.
-    pub(crate) fn law<'r>(&self, chain: usize, joint: usize, ropes: &'r Ropes) -> &'r Bushing {
-        if joint == 0 {
-            &ropes.base
-        } else if joint == self.cylinders(chain) {
-            &ropes.anchor
-        } else {
-            &ropes.joint
+    /// The joints of a chain at an instant.
+    pub(crate) fn joints<'a>(&self, chain: usize, at: &Instant<'a>) -> Joints<'a> {
+        Joints {
+            inner: &at.ropes.joint,
+            base: Some(Held {
+                marker: self.base_marker(chain, at),
+                law: &at.ropes.base,
+            }),
+            head: Some(Held {
+                marker: self.anchor_marker(chain, at),
+                law: &at.ropes.anchor,
+            }),
         }
-    }
-
-    /// Markers I and J of a joint.
-    pub(crate) fn markers(
-        &self,
-        chain: usize,
-        joint: usize,
-        poses: &[Pose],
-        at: &Instant<'_>,
-    ) -> [Marker; 2] {
-        let half = 0.5 * self.description.rope.pitch;
-        let poses = self.chain_poses(chain, poses);
-        let i = poses.get(joint).map_or_else(
-            || self.anchor_marker(chain, at),
-            |pose| on_cylinder(pose, -half),
-        );
-        let j = if joint == 0 {
-            self.base_marker(chain, at)
-        } else {
-            on_cylinder(&poses[joint - 1], half)
-        };
-        [i, j]
     }
 
     /// The joint on the crossbeam end of the rod, or on the suspension point.
@@ -135,7 +67,7 @@ impl Machine {
 
     /// The fixed end of a rope on its head. The reference point carries the head's deflection, so
     /// that the arm stays rigid.
-    fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
+    pub(crate) fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
         let beam = self.layout.beam();
         let (theta, rate) = (at.q[beam], at.v[beam]);
         let arc = self.arc(chain);
@@ -183,17 +115,7 @@ pub struct Instant<'a> {
     pub v: &'a [f64],
 }
 
-fn on_cylinder(pose: &Pose, along: f64) -> Marker {
-    Marker {
-        p: pose.p,
-        rho: pose.axis() * along,
-        v: pose.v,
-        w: pose.w,
-        R: pose.R,
-    }
-}
-
 /// Rotation about z whose x axis is `(cosine, sine)`.
-fn turned(sine: f64, cosine: f64) -> M3 {
+pub(crate) fn turned(sine: f64, cosine: f64) -> M3 {
     M3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
 }

@@ -1,9 +1,10 @@
 //! A machine ready to be simulated: constants derived once from a description.
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::math::{elementary::sin_cos, spline::Splines};
+use crate::model::chain::{Chain, ChainState};
 use crate::model::description::{Arc, Description, RopeLaw};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
-use crate::model::{layout::Layout, links::ChainLoads, pose::Pose};
+use crate::model::layout::Layout;
 
 /// A machine under one working condition; immutable and shared by every individual.
 #[derive(Clone, Debug)]
@@ -20,9 +21,8 @@ pub struct Machine {
     pub(crate) card: Splines,
     /// Shapes at the back anchor in the beam frame, mode by mode.
     pub(crate) anchor_shape: Vec<[f64; 2]>,
-    pub(crate) cylinder_mass: f64,
-    /// Moments of inertia of a cylinder along and across its axis [kg m2].
-    pub(crate) cylinder_inertia: [f64; 2],
+    /// Back rope and front rope.
+    pub(crate) chains: [Chain; 2],
     pub(crate) normal_influence: Splines,
     pub(crate) tangential_influence: Splines,
 }
@@ -92,8 +92,11 @@ impl Machine {
             length: d.rope.back as f64 * d.rope.pitch + d.rod.length,
         };
         let bottom = mechanism.bottom_dead_centre()?;
-        let radius = 0.5 * d.rope.diameter;
-        let mass = d.rope.density * std::f64::consts::PI * radius * radius * d.rope.pitch;
+        let chain = |k: usize, count: usize| {
+            let first = layout.base_block(k) + 1;
+            Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density)
+        };
+        let chains = [chain(0, d.rope.back), chain(1, d.rope.front)];
         let radial = Splines::natural(d.head.start, d.head.step, &d.head.radial[..modes]);
         let tangential = Splines::natural(d.head.start, d.head.step, &d.head.tangential[..modes]);
         let (s, c) = sin_cos(d.back_arc.anchor);
@@ -117,11 +120,7 @@ impl Machine {
                 std::slice::from_ref(&d.card),
             ),
             anchor_shape,
-            cylinder_mass: mass,
-            cylinder_inertia: [
-                0.5 * mass * radius * radius,
-                mass * (3.0 * radius * radius + d.rope.pitch * d.rope.pitch) / 12.0,
-            ],
+            chains,
             normal_influence: influence(&d.head.normal_influence),
             tangential_influence: influence(&d.head.tangential_influence),
             radial,
@@ -169,18 +168,21 @@ impl Machine {
 /// Buffers of a simulation, allocated once per machine size.
 #[derive(Clone, Debug)]
 pub struct Scratch {
-    pub(crate) poses: Vec<Pose>,
-    pub(crate) loads: ChainLoads,
+    /// Poses and loads of back rope and front rope.
+    pub chains: [ChainState; 2],
 }
 
 impl Scratch {
     /// Buffers for a layout.
     pub fn new(layout: &Layout) -> Self {
-        let still = Pose::new(&[0.0; 6], &[0.0; 6]);
         Self {
-            poses: vec![still; layout.back + layout.front],
-            loads: ChainLoads::new(layout),
+            chains: [ChainState::new(layout.back), ChainState::new(layout.front)],
         }
+    }
+
+    /// Deepest penetration of a rope into a head \[m\].
+    pub(crate) fn deepest(&self) -> f64 {
+        self.chains[0].deepest.max(self.chains[1].deepest)
     }
 }
 

@@ -1,8 +1,11 @@
 //! The machine as a model: what it is made of, where its coordinates live, its forces, its
 //! inertia and their tangent.
+mod anchor;
+pub mod chain;
 pub mod contact;
 pub mod description;
 mod forces;
+mod individual;
 pub mod kinematics;
 pub mod layout;
 mod links;
@@ -10,9 +13,13 @@ mod machine;
 pub mod pose;
 mod tangent;
 
-pub(crate) use forces::MAX_MODES;
+/// Most modes a head may have in a simulation.
+pub(crate) const MAX_MODES: usize = 24;
+
 pub use forces::Powers;
-pub use links::{ChainLoads, Instant};
+pub use individual::Individual;
+pub use links::Instant;
+pub(crate) use links::turned;
 pub use machine::{InvalidDescription, Machine, Ropes, Scratch};
 
 #[cfg(test)]

@@ -40,7 +40,7 @@ fn tangent_is_the_derivative_of_the_forces() {
     let mut force = vec![0.0; layout.len()];
     machine.forces(&at, &mut scratch, &mut force);
     let touching = |c: &Vec<f64>| c.iter().filter(|&&f| f > 0.0).count() > 3;
-    assert!(scratch.loads.contact.iter().all(touching));
+    assert!(scratch.chains.iter().all(|chain| touching(&chain.contact)));
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
         let mut matrix = Bordered::new(&layout.chains(), 1 + layout.modes);
         machine.tangent(&at, (mu, gamma), &scratch, &mut matrix);

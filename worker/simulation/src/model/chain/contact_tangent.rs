@@ -1,13 +1,14 @@
-//! Tangent of the rope's contact with the heads.
+//! Tangent of a chain's contact with an arc.
 //!
 //! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with
 //! `df = (f_d + gamma c) grad d + c H q'`: `f_d` and `c` are the law's derivatives by penetration
 //! and rate, `H` the second derivatives of the penetration.
+use super::{Chain, ChainState};
+use crate::element::impact::Impact;
 use crate::linear::{Block, Bordered};
-use crate::model::contact::{Curvature, GAUSS, Surface, Touch};
-use crate::model::forces::MAX_MODES;
-use crate::model::links::Instant;
-use crate::model::{Machine, Scratch, pose::Pose};
+use crate::model::MAX_MODES;
+use crate::model::contact::{Curvature, Surface, Touch};
+use crate::model::pose::Pose;
 use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
@@ -43,47 +44,49 @@ struct BorderColumn {
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
-impl Machine {
-    pub(super) fn contact_tangent(
+impl Chain {
+    /// Adds the contact's tangent to the cylinders' blocks and to the border, if there is one.
+    pub(crate) fn add_contact_tangent(
         &self,
-        chain: usize,
-        at: &Instant<'_>,
+        surface: &Surface<'_>,
+        law: &Impact,
+        state: &ChainState,
         gamma: f64,
-        scratch: &Scratch,
         matrix: &mut Bordered,
     ) {
-        let surface = self.surface(chain, at.q, at.v);
-        let half = 0.5 * self.description.rope.pitch;
-        let first = self.layout.base_block(chain) + 1;
+        let half = 0.5 * self.pitch;
         let modes = surface.modal.len();
         let mut shape = [0.0; MAX_MODES];
-        for (j, pose) in self.chain_poses(chain, &scratch.poses).iter().enumerate() {
+        for (j, pose) in state.poses.iter().enumerate() {
+            let block = self.first + j;
             let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
                 continue;
             };
-            for (place, share) in GAUSS {
+            for &(place, share) in self.contact_points {
                 let along = place * half;
                 let g: V2 = (pose.p + pose.axis() * along).xy();
                 let velocity: V2 = (pose.v + pose.axis_velocity() * along).xy();
                 let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
-                let law = at.ropes.contact.force(touch.depth, touch.rate);
-                if law.force == 0.0 {
+                let at = law.force(touch.depth, touch.rate);
+                if at.force == 0.0 {
                     continue;
                 }
-                let by_rate = share * law.by_rate;
-                let stiff = share * law.by_penetration + gamma * by_rate;
+                let by_rate = share * at.by_rate;
+                let stiff = share * at.by_penetration + gamma * by_rate;
                 let mut point = Point {
                     curvature: surface.curvature(&touch),
                     touch,
                     along,
-                    force: share * law.force,
+                    force: share * at.force,
                     by_rate,
                     by_place: V2::zeros(),
                     border: [BorderColumn::default(); MAX_MODES + 1],
                 };
-                point.differentiate(&surface, &velocity, stiff, &shape[..modes]);
-                point.add_cylinder(matrix.diagonal_mut(first + j), pose);
-                point.add_border(matrix, first + j, pose, modes);
+                point.differentiate(surface, &velocity, stiff, &shape[..modes]);
+                point.add_cylinder(matrix.diagonal_mut(block), pose);
+                if matrix.border() > 0 {
+                    point.add_border(matrix, block, pose, modes);
+                }
             }
         }
     }

@@ -1,12 +1,10 @@
 //! Tangent of the joint that holds a rope on its head: the one joint that couples a cylinder with the
 //! beam angle and the head's modes.
-use super::{Column, CylinderColumns, Side, subtract_own};
-use crate::element::bushing::LinkTangent;
 use crate::linear::{BLOCK, Bordered};
 use crate::math::elementary::sin_cos;
-use crate::model::forces::MAX_MODES;
+use crate::model::chain::{Column, EndTangent};
 use crate::model::links::Instant;
-use crate::model::{Machine, pose::Pose};
+use crate::model::{MAX_MODES, Machine, pose::Pose};
 use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
@@ -16,8 +14,7 @@ pub(super) struct Anchor<'a> {
     pub(super) chain: usize,
     /// Block of the last cylinder.
     pub(super) block: usize,
-    pub(super) by_head: &'a LinkTangent,
-    pub(super) by_cylinder: &'a CylinderColumns,
+    pub(super) end: &'a EndTangent,
     /// Force on the head \[N\].
     pub(super) force: V3,
     /// The last cylinder.
@@ -39,11 +36,11 @@ impl Machine {
         let &Anchor {
             chain,
             block,
-            by_head,
-            by_cylinder,
+            end,
             force: F,
             pose,
         } = anchor;
+        let (by_head, by_cylinder) = (&end.by_body, &end.by_cylinder);
         let beam = self.layout.beam();
         let (s, c) = sin_cos(at.q[beam]);
         let rate = at.v[beam];
@@ -101,6 +98,5 @@ impl Machine {
                 matrix.add_bottom(block, 1 + row, k, -column[0].dot(shape));
             }
         }
-        subtract_own(matrix.diagonal_mut(block), by_cylinder, &angular, Side::J);
     }
 }

@@ -1,0 +1,86 @@
+//! Steps of a size that follows the local error: tries one after the other, counts what fails.
+use super::esdirk::{Esdirk, Step};
+use super::step_control::StepControl;
+use super::{State, tableau::Tableau};
+use crate::system::{Equations, System};
+
+/// A method with its step size.
+#[derive(Clone, Debug)]
+pub struct Adaptive {
+    method: Esdirk,
+    control: StepControl,
+    /// Size of the next step \[s\].
+    step: f64,
+}
+
+/// The step size fell below its limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StepUnderflow;
+
+/// Shortest step; a run that needs shorter ones ends \[s\].
+const SHORTEST_STEP: f64 = 1e-9;
+
+impl Adaptive {
+    /// For `n` coordinates, local error `tolerance` and steps of at most `longest` \[s\].
+    pub fn new(tableau: &'static Tableau, n: usize, tolerance: f64, longest: f64) -> Self {
+        Self {
+            method: Esdirk::new(tableau, n),
+            control: StepControl {
+                order: tableau.error_order,
+                tolerance,
+                longest,
+                shortest: SHORTEST_STEP,
+            },
+            step: 1e-3_f64.min(longest),
+        }
+    }
+
+    /// Tries one step from `from` towards `stop`, which is met exactly; a failed try gives `None`
+    /// and leaves `to` meaningless.
+    ///
+    /// # Errors
+    /// [`StepUnderflow`] when failures have made the step too short.
+    pub fn attempt<E: Equations>(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        stop: f64,
+        to: &mut State,
+    ) -> Result<Option<Step>, StepUnderflow> {
+        if self.step < self.control.shortest {
+            return Err(StepUnderflow);
+        }
+        let left = stop - from.t;
+        let step = if self.step >= left {
+            left
+        } else if self.step > 0.5 * left {
+            0.5 * left
+        } else {
+            self.step
+        };
+        let tolerance = self.control.tolerance;
+        match self.method.step(system, from, step, to) {
+            Err(_) => {
+                system.statistics.newton_rejections += 1;
+                self.step = 0.3 * step;
+                Ok(None)
+            }
+            Ok(done) if done.error > tolerance || !done.error.is_finite() => {
+                system.statistics.error_rejections += 1;
+                self.step = step * self.control.factor(done.error).min(0.7);
+                Ok(None)
+            }
+            Ok(done) => {
+                system.statistics.steps += 1;
+                self.method.accept();
+                let next = self.control.next(step, done.error);
+                self.step = if step < self.step {
+                    self.step.min(next.max(self.step))
+                } else {
+                    next
+                };
+                Ok(Some(done))
+            }
+        }
+    }
+}

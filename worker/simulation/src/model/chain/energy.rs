@@ -1,0 +1,57 @@
+//! Energy of a chain and what it loses.
+use super::{Chain, ChainState, Joints};
+use crate::element::impact::Impact;
+use crate::model::contact::Surface;
+use nalgebra::Vector3;
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
+impl Chain {
+    /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders
+    /// to `sum` \[J\].
+    pub(crate) fn add_potential(
+        &self,
+        sum: &mut f64,
+        gravity: &Vector3<f64>,
+        joints: &Joints<'_>,
+        contact: Option<(&Surface<'_>, &Impact)>,
+        state: &ChainState,
+    ) {
+        for joint in 0..=self.count {
+            if let Some(([i, j], law)) = self.link(joint, joints, &state.poses) {
+                *sum += law.energy(&i, &j);
+            }
+        }
+        if let Some((surface, law)) = contact {
+            self.each_touch(surface, &state.poses, |share, touch, _| {
+                *sum += share * law.energy(touch.depth);
+            });
+        }
+        let weight = gravity * self.mass;
+        for pose in &state.poses {
+            *sum -= weight.dot(&pose.p);
+        }
+    }
+
+    /// Adds the power that the joints' damping takes to `sum` \[W\].
+    pub(crate) fn add_joint_losses(sum: &mut f64, state: &ChainState) {
+        for load in &state.joints {
+            *sum += load.dissipated;
+        }
+    }
+
+    /// Adds the power that the contact's damping takes to `sum` \[W\].
+    pub(crate) fn add_contact_losses(
+        &self,
+        sum: &mut f64,
+        surface: &Surface<'_>,
+        law: &Impact,
+        state: &ChainState,
+    ) {
+        self.each_touch(surface, &state.poses, |share, touch, _| {
+            *sum += share * law.force(touch.depth, touch.rate).dissipated;
+        });
+    }
+}

@@ -1,0 +1,148 @@
+//! A chain of equal cylinders: its joints, its weight, its contact with one arc, and their tangent.
+//!
+//! The kernels of every rope, in a machine or alone on a test rig. A chain knows the markers that
+//! hold its ends, not whose they are: what an end joint does to the body that holds it is that
+//! body's business. Joint 0 is before the first cylinder, joint n behind the last; J is the marker
+//! nearer to the chain's base, I the one nearer to its head.
+mod contact_tangent;
+mod energy;
+mod forces;
+mod inertia;
+mod tangent;
+
+use crate::element::bushing::{Bushing, LinkLoad, Marker};
+use crate::linear::BLOCK;
+use crate::model::contact::GAUSS;
+use crate::model::pose::Pose;
+use nalgebra::Vector3;
+
+pub(crate) use tangent::{Column, EndTangent};
+
+/// The blocks that a chain takes among the unknowns, and what its cylinders are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chain {
+    /// Block of the first cylinder.
+    pub first: usize,
+    /// Number of cylinders, at least one.
+    pub count: usize,
+    /// Length of a cylinder \[m\].
+    pub pitch: f64,
+    /// Mass of a cylinder \[kg\].
+    pub mass: f64,
+    /// Moments of inertia of a cylinder along and across its axis [kg m2].
+    pub inertia: [f64; 2],
+    /// Where along a cylinder its contact is evaluated, in half lengths, and the shares of its
+    /// coefficients.
+    pub contact_points: &'static [(f64, f64)],
+}
+
+/// An end of a chain that is held: the marker on the body that holds it, and the joint's law.
+#[derive(Clone, Copy, Debug)]
+pub struct Held<'a> {
+    /// Marker on the holding body.
+    pub marker: Marker,
+    /// Law of the joint.
+    pub law: &'a Bushing,
+}
+
+/// The joints of a chain at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Joints<'a> {
+    /// Law between two cylinders.
+    pub inner: &'a Bushing,
+    /// What holds the first cylinder, if anything does.
+    pub base: Option<Held<'a>>,
+    /// What holds the last cylinder, if anything does.
+    pub head: Option<Held<'a>>,
+}
+
+/// Poses and loads of a chain at the last evaluation of its forces; allocated once.
+#[derive(Clone, Debug)]
+pub struct ChainState {
+    /// Pose of each cylinder.
+    pub poses: Vec<Pose>,
+    /// Load of each joint, one more than cylinders; zero where an end is free.
+    pub joints: Vec<LinkLoad>,
+    /// Contact force of each cylinder \[N\].
+    pub contact: Vec<f64>,
+    /// Deepest penetration \[m\].
+    pub deepest: f64,
+}
+
+impl ChainState {
+    /// Buffers for `count` cylinders.
+    pub fn new(count: usize) -> Self {
+        let none = LinkLoad {
+            force: Vector3::zeros(),
+            torque_i: Vector3::zeros(),
+            torque_j: Vector3::zeros(),
+            axial: 0.0,
+            dissipated: 0.0,
+        };
+        Self {
+            poses: vec![Pose::new(&[0.0; 6], &[0.0; 6]); count],
+            joints: vec![none; count + 1],
+            contact: vec![0.0; count],
+            deepest: 0.0,
+        }
+    }
+
+    /// Tension in a joint, positive where it pulls \[N\].
+    pub fn tension(&self, joint: usize) -> f64 {
+        -self.joints[joint].axial
+    }
+}
+
+impl Chain {
+    /// Solid cylinders of a diameter \[m\], a length \[m\] and a density [kg/m3].
+    pub fn solid(first: usize, count: usize, diameter: f64, pitch: f64, density: f64) -> Self {
+        let radius = 0.5 * diameter;
+        let mass = density * std::f64::consts::PI * radius * radius * pitch;
+        Self {
+            first,
+            count,
+            pitch,
+            mass,
+            inertia: [
+                0.5 * mass * radius * radius,
+                mass * (3.0 * radius * radius + pitch * pitch) / 12.0,
+            ],
+            contact_points: &GAUSS,
+        }
+    }
+
+    /// Where the cylinders' coordinates lie in a vector of unknowns.
+    pub(crate) const fn range(&self) -> std::ops::Range<usize> {
+        self.first * BLOCK..(self.first + self.count) * BLOCK
+    }
+
+    /// Markers I and J of a joint and its law; nothing where an end is free.
+    fn link<'a>(
+        &self,
+        joint: usize,
+        joints: &Joints<'a>,
+        poses: &[Pose],
+    ) -> Option<([Marker; 2], &'a Bushing)> {
+        let half = 0.5 * self.pitch;
+        if joint == 0 {
+            let held = joints.base?;
+            return Some(([on_cylinder(&poses[0], -half), held.marker], held.law));
+        }
+        let j = on_cylinder(&poses[joint - 1], half);
+        if joint == self.count {
+            let held = joints.head?;
+            return Some(([held.marker, j], held.law));
+        }
+        Some(([on_cylinder(&poses[joint], -half), j], joints.inner))
+    }
+}
+
+fn on_cylinder(pose: &Pose, along: f64) -> Marker {
+    Marker {
+        p: pose.p,
+        rho: pose.axis() * along,
+        v: pose.v,
+        w: pose.w,
+        R: pose.R,
+    }
+}

@@ -1,0 +1,162 @@
+//! A machine with one individual's ropes under its drive: equations of motion.
+use crate::drive::{Drive, DriveState};
+use crate::integrator::State;
+use crate::linear::{BLOCK, Bordered};
+use crate::model::{Instant, Machine, Powers, Ropes, Scratch};
+use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, square, worst};
+use crate::system::{Equations, Static};
+
+/// Machine, ropes, drive and the loads of the last evaluation.
+#[derive(Debug)]
+pub struct Individual<'a> {
+    /// The machine.
+    pub machine: &'a Machine,
+    /// The individual's ropes.
+    pub ropes: Ropes,
+    /// Crank and load over time.
+    pub drive: Drive,
+    /// Loads and poses of the last evaluation.
+    pub scratch: Scratch,
+    load_share: f64,
+    at: (f64, DriveState),
+}
+
+impl<'a> Individual<'a> {
+    /// Joins machine, ropes and drive; allocates the loads.
+    pub fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
+        Self {
+            machine,
+            ropes,
+            drive,
+            scratch: Scratch::new(&machine.layout),
+            load_share: 1.0,
+            at: (0.0, drive.state(machine, 0.0)),
+        }
+    }
+
+    /// Crank and load at time `t`.
+    pub fn drive_state(&mut self, t: f64) -> DriveState {
+        if t.to_bits() != self.at.0.to_bits() {
+            let mut state = self.drive.state(self.machine, t);
+            state.load *= self.load_share;
+            self.at = (t, state);
+        }
+        self.at.1
+    }
+
+    /// From now on only a share of the load hangs at the suspension point.
+    pub fn share_load(&mut self, share: f64) {
+        self.load_share = share;
+        let mut state = self.drive.state(self.machine, self.at.0);
+        state.load *= share;
+        self.at.1 = state;
+    }
+
+    /// Kinetic plus potential energy without the load's \[J\].
+    pub fn energy(&mut self, state: &State) -> f64 {
+        let drive = &self.drive_state(state.t);
+        self.machine.pose(&state.q, &state.v, &mut self.scratch);
+        let at = Instant {
+            ropes: &self.ropes,
+            drive,
+            q: &state.q,
+            v: &state.v,
+        };
+        self.machine.energy(&at, &self.scratch)
+    }
+}
+
+impl Equations for Individual<'_> {
+    fn matrix(&self) -> Bordered {
+        let layout = self.machine.layout;
+        Bordered::new(&layout.chains(), 1 + layout.modes)
+    }
+
+    fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
+        let drive = &self.drive_state(t);
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine.forces(&at, &mut self.scratch, force);
+    }
+
+    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+        self.machine.subtract_inertia(q, a, out);
+    }
+
+    fn tangent(
+        &mut self,
+        t: f64,
+        (q, v): (&[f64], &[f64]),
+        coefficients: (f64, f64),
+        matrix: &mut Bordered,
+    ) {
+        let drive = &self.drive_state(t);
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine
+            .tangent(&at, coefficients, &self.scratch, matrix);
+    }
+
+    fn newton_norm(&self, change: &[f64]) -> f64 {
+        let layout = self.machine.layout;
+        let mut norm: f64 = 0.0;
+        for (k, chain) in self.machine.chains.iter().enumerate() {
+            let unit = if k == 0 { ANGLE } else { LENGTH };
+            norm = worst(norm, change[layout.base_block(k) * BLOCK] / unit);
+            norm = cylinders_newton(norm, &change[chain.range()]);
+        }
+        norm = worst(norm, change[layout.beam()] / ANGLE);
+        for k in 0..layout.modes {
+            norm = worst(norm, change[layout.mode(k)] / MODAL);
+        }
+        norm
+    }
+
+    /// Root mean square over what is measured, largest over the cylinders (loosely).
+    fn error_norm(&self, error: &[f64]) -> f64 {
+        let layout = self.machine.layout;
+        let mut sum = square(error[layout.rod()] / 5e-5)
+            + square(error[layout.suspension()] / 5e-5)
+            + square(error[layout.beam()] / 1e-5);
+        for k in 0..layout.modes {
+            sum += square(error[layout.mode(k)] / 2e-5);
+        }
+        let norm = (sum / (3 + layout.modes) as f64).sqrt();
+        self.machine.chains.iter().fold(norm, |norm, chain| {
+            cylinders_error(norm, &error[chain.range()])
+        })
+    }
+
+    fn powers(&mut self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Powers {
+        let drive = &self.drive_state(t);
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine.powers(&at, a, &self.scratch)
+    }
+}
+
+impl Static for Individual<'_> {
+    fn potential(&mut self, t: f64, q: &[f64], still: &[f64]) -> f64 {
+        let drive = &self.drive_state(t);
+        let ropes = &self.ropes;
+        let at = Instant {
+            ropes,
+            drive,
+            q,
+            v: still,
+        };
+        self.machine.potential(&at, &self.scratch)
+            + drive.load * q[self.machine.layout.suspension()]
+    }
+
+    /// A metre of a cylinder, of the beam's tip or of the suspension count alike.
+    fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
+        let layout = self.machine.layout;
+        for (k, chain) in self.machine.chains.iter().enumerate() {
+            matrix.diagonal_mut(layout.base_block(k))[(0, 0)] += lambda;
+            chain.add_static_weight(lambda, matrix);
+        }
+        let arm = self.machine.description.front_arc.radius;
+        matrix.add_corner(0, 0, lambda * arm * arm);
+    }
+}

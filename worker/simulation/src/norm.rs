@@ -1,0 +1,44 @@
+//! What counts as small: Newton's accuracy, and the local error that a step may make.
+//!
+//! What is measured (beam, rod, suspension, modes) is held tightly, the cylinders of a rope loosely.
+use crate::linear::BLOCK;
+
+/// Newton's accuracy: cylinder place \[m\], cylinder angle \[rad\], beam and rod angle \[rad\], modal
+/// coordinate [kg^1/2 m].
+pub(crate) const LENGTH: f64 = 2e-6;
+const TURN: f64 = 2e-5;
+pub(crate) const ANGLE: f64 = 1e-6;
+pub(crate) const MODAL: f64 = 2e-6;
+
+/// Square of `x`.
+pub(crate) fn square(x: f64) -> f64 {
+    x * x
+}
+
+/// The larger absolute value; not a number wins, so that it cannot hide.
+pub(crate) fn worst(norm: f64, x: f64) -> f64 {
+    let x = x.abs();
+    if x <= norm { norm } else { x }
+}
+
+/// Largest change of cylinders' coordinates, in units of Newton's accuracy, or `norm` if that is
+/// larger.
+pub(crate) fn cylinders_newton(norm: f64, change: &[f64]) -> f64 {
+    cylinders(norm, change, LENGTH, TURN)
+}
+
+/// Largest local error of cylinders' coordinates, in units of what is tolerated, or `norm` if that
+/// is larger.
+pub(crate) fn cylinders_error(norm: f64, error: &[f64]) -> f64 {
+    cylinders(norm, error, 2e-4, 5e-3)
+}
+
+fn cylinders(mut norm: f64, x: &[f64], length: f64, turn: f64) -> f64 {
+    for x in x.chunks_exact(BLOCK) {
+        for k in 0..3 {
+            norm = worst(norm, x[k] / length);
+            norm = worst(norm, x[3 + k] / turn);
+        }
+    }
+    norm
+}

@@ -1,0 +1,296 @@
+//! A single rope on a test rig: the machine's chain with other ends.
+//!
+//! Every proof of the rope's physics (cantilever, catenary, vibration, a rope on a drum, a bounce)
+//! is this model with another pair of ends: the forces, the tangent, the solver and the integrator
+//! are the machine's own. There is no beam, so there is no border.
+use crate::element::{
+    bushing::{Bushing, Marker},
+    impact::Impact,
+};
+use crate::linear::{BLOCK, Bordered};
+use crate::model::chain::{Chain, ChainState, Held, Joints};
+use crate::model::contact::Surface;
+use crate::model::description::Arc;
+use crate::model::{Powers, turned};
+use crate::norm::{cylinders_error, cylinders_newton};
+use crate::system::{Equations, Static};
+use nalgebra::Vector3;
+
+type V3 = Vector3<f64>;
+
+/// What happens at one end of the chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// Nothing holds it; what acts on it has a potential.
+    Free {
+        /// Force on the cylinder's outer end that keeps its direction in W \[N\].
+        force: V3,
+        /// Torque about the cylinder's own axis [N m].
+        twist: f64,
+        /// Torque about the z axis of W [N m].
+        turn: f64,
+    },
+    /// A joint to the ground.
+    Held {
+        /// Place of the joint in W \[m\].
+        place: V3,
+        /// Direction of the chain's axis there, in the plane, from +x \[rad\].
+        angle: f64,
+        /// Law of the joint: clamped, or revolute by [`Bushing::revolute`].
+        law: Bushing,
+    },
+}
+
+/// A drum that is fixed in W, about the z axis, and the law of one cylinder's contact with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drum {
+    /// Centre \[m\].
+    pub center: [f64; 2],
+    /// Radius of the rope's centre line on it \[m\].
+    pub radius: f64,
+    /// Law of one cylinder's contact.
+    pub law: Impact,
+}
+
+/// What a rig is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setup {
+    /// Cylinders, in blocks from 0 on.
+    pub chain: Chain,
+    /// Acceleration of gravity [m/s2].
+    pub gravity: V3,
+    /// Law between two cylinders.
+    pub joint: Bushing,
+    /// Ends before the first and behind the last cylinder.
+    pub ends: [End; 2],
+    /// What the chain may lie on.
+    pub drum: Option<Drum>,
+    /// Newton's accuracy as a part of the machine's: a study of errors needs a small one.
+    pub accuracy: f64,
+}
+
+/// A rig and the loads of its last evaluation: equations of motion.
+#[derive(Clone, Debug)]
+pub struct Rig {
+    /// What it is made of.
+    pub setup: Setup,
+    /// Poses and loads of the last evaluation.
+    pub state: ChainState,
+}
+
+impl End {
+    /// Free of all forces.
+    pub fn free() -> Self {
+        Self::Free {
+            force: V3::zeros(),
+            twist: 0.0,
+            turn: 0.0,
+        }
+    }
+
+    fn held(&self) -> Option<Held<'_>> {
+        let Self::Held { place, angle, law } = self else {
+            return None;
+        };
+        let (s, c) = crate::math::elementary::sin_cos(*angle);
+        Some(Held {
+            marker: Marker {
+                p: *place,
+                rho: V3::zeros(),
+                v: V3::zeros(),
+                w: V3::zeros(),
+                R: turned(s, c),
+            },
+            law,
+        })
+    }
+}
+
+impl Setup {
+    fn joints(&self) -> Joints<'_> {
+        let [base, head] = &self.ends;
+        Joints {
+            inner: &self.joint,
+            base: base.held(),
+            head: head.held(),
+        }
+    }
+}
+
+impl Rig {
+    /// Allocates the loads.
+    pub fn new(setup: Setup) -> Self {
+        Self {
+            setup,
+            state: ChainState::new(setup.chain.count),
+        }
+    }
+
+    /// Coordinates of a straight, unstretched chain from `start` on, in the plane.
+    pub fn straight(&self, start: V3, angle: f64) -> Vec<f64> {
+        let Chain { count, pitch, .. } = self.setup.chain;
+        let (s, c) = crate::math::elementary::sin_cos(angle);
+        (0..count)
+            .flat_map(|j| {
+                let along = (j as f64 + 0.5) * pitch;
+                [
+                    start.x + along * c,
+                    start.y + along * s,
+                    start.z,
+                    0.0,
+                    0.0,
+                    angle,
+                ]
+            })
+            .collect()
+    }
+
+    /// Outer end of cylinder `j` on the head's side, in W \[m\].
+    pub fn outer_end(&self, j: usize) -> V3 {
+        let pose = &self.state.poses[j];
+        pose.p + pose.axis() * (0.5 * self.setup.chain.pitch)
+    }
+
+    /// Kinetic plus potential energy, that of the dead loads included, at a state \[J\].
+    pub fn energy(&mut self, q: &[f64], v: &[f64]) -> f64 {
+        self.setup.chain.pose(q, v, &mut self.state.poses);
+        let mut momentum = vec![0.0; v.len()];
+        self.subtract_inertia(q, v, &mut momentum);
+        let kinetic: f64 = momentum.iter().zip(v).map(|(p, v)| -0.5 * p * v).sum();
+        kinetic + self.potential_energy(q)
+    }
+
+    fn surface(&self) -> Option<(Surface<'static>, Impact)> {
+        self.setup.drum.map(|drum| {
+            let arc = Arc {
+                center: drum.center,
+                radius: drum.radius,
+                anchor: 0.0,
+                sense: 1.0,
+            };
+            (Surface::new(&arc, [0.0; 2], (&[], &[]), None), drum.law)
+        })
+    }
+
+    /// Cylinder, place along its axis \[m\], force, and generalised torques on twist and plane angle
+    /// of each end without a joint.
+    fn dead_loads(&self) -> impl Iterator<Item = (usize, f64, V3, [f64; 2])> {
+        let Chain { count, pitch, .. } = self.setup.chain;
+        let place = [(0, -0.5 * pitch), (count - 1, 0.5 * pitch)];
+        self.setup
+            .ends
+            .into_iter()
+            .zip(place)
+            .filter_map(|(end, (j, along))| match end {
+                End::Free { force, twist, turn } => Some((j, along, force, [twist, turn])),
+                End::Held { .. } => None,
+            })
+    }
+
+    fn potential_energy(&self, q: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        let surface = self.surface();
+        self.setup.chain.add_potential(
+            &mut sum,
+            &self.setup.gravity,
+            &self.setup.joints(),
+            surface.as_ref().map(|(surface, law)| (surface, law)),
+            &self.state,
+        );
+        for (j, along, force, [twist, turn]) in self.dead_loads() {
+            let pose = &self.state.poses[j];
+            sum -= force.dot(&(pose.p + pose.axis() * along));
+            sum -= twist * q[j * BLOCK + 3] + turn * q[j * BLOCK + 5];
+        }
+        sum
+    }
+}
+
+impl Equations for Rig {
+    fn matrix(&self) -> Bordered {
+        Bordered::new(&[self.setup.chain.count], 0)
+    }
+
+    fn forces(&mut self, _t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
+        let chain = self.setup.chain;
+        force.fill(0.0);
+        chain.pose(q, v, &mut self.state.poses);
+        chain.add_weights(&self.setup.gravity, &self.state.poses, force);
+        chain.add_joints(&self.setup.joints(), &mut self.state, force);
+        if let Some((surface, law)) = self.surface() {
+            chain.add_contact(&surface, &law, &mut self.state, force, &mut []);
+        }
+        for (j, along, dead, [twist, turn]) in self.dead_loads() {
+            let pose = &self.state.poses[j];
+            let at = j * BLOCK;
+            for k in 0..3 {
+                force[at + k] += dead[k];
+            }
+            force[at + 3] += twist;
+            force[at + 5] += turn;
+            for (k, axis) in pose.axis_by.iter().enumerate() {
+                force[at + 4 + k] += along * dead.dot(axis);
+            }
+        }
+    }
+
+    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+        self.setup.chain.subtract_inertia(q, a, out);
+    }
+
+    fn tangent(
+        &mut self,
+        _t: f64,
+        (q, _): (&[f64], &[f64]),
+        (mu, gamma): (f64, f64),
+        matrix: &mut Bordered,
+    ) {
+        let chain = self.setup.chain;
+        matrix.clear();
+        chain.add_inertia_blocks(q, mu, matrix);
+        chain.add_joint_tangent(&self.setup.joints(), &self.state, gamma, matrix);
+        if let Some((surface, law)) = self.surface() {
+            chain.add_contact_tangent(&surface, &law, &self.state, gamma, matrix);
+        }
+        for (j, along, force, _) in self.dead_loads() {
+            let bends = self.state.poses[j].axis_by_twice();
+            let block = matrix.diagonal_mut(j);
+            for a in 0..2 {
+                for b in 0..2 {
+                    block[(4 + a, 4 + b)] -= along * force.dot(&bends[a + b]);
+                }
+            }
+        }
+    }
+
+    fn newton_norm(&self, change: &[f64]) -> f64 {
+        cylinders_newton(0.0, change) / self.setup.accuracy
+    }
+
+    fn error_norm(&self, error: &[f64]) -> f64 {
+        cylinders_error(0.0, error)
+    }
+
+    fn powers(&mut self, _t: f64, _q: &[f64], _v: &[f64], _a: &[f64]) -> Powers {
+        let mut dissipated = 0.0;
+        Chain::add_joint_losses(&mut dissipated, &self.state);
+        if let Some((surface, law)) = self.surface() {
+            let chain = self.setup.chain;
+            chain.add_contact_losses(&mut dissipated, &surface, &law, &self.state);
+        }
+        Powers {
+            dissipated,
+            ..Powers::default()
+        }
+    }
+}
+
+impl Static for Rig {
+    fn potential(&mut self, _t: f64, q: &[f64], _still: &[f64]) -> f64 {
+        self.potential_energy(q)
+    }
+
+    fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
+        self.setup.chain.add_static_weight(lambda, matrix);
+    }
+}

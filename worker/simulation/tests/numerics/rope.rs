@@ -1,0 +1,169 @@
+//! Rope rigs that the proofs share, and how they are settled and run.
+use nalgebra::Vector3;
+use simulation::element::{bushing::Bushing, impact::Impact};
+use simulation::integrator::adaptive::Adaptive;
+use simulation::integrator::tableau::{ESDIRK4, Tableau};
+use simulation::integrator::{State, esdirk::Step};
+use simulation::model::chain::Chain;
+use simulation::model::description::RopeLaw;
+use simulation::rig::{End, Rig, Setup};
+use simulation::settle::minimize;
+use simulation::system::System;
+
+pub(crate) type V3 = Vector3<f64>;
+
+const PER_DEGREE: f64 = 180.0 / std::f64::consts::PI;
+
+/// Table 3's recommended coefficients (paper).
+pub(crate) fn recommended() -> RopeLaw {
+    RopeLaw {
+        bushing: Bushing {
+            stiffness: [3.14e8, 1.25e8],
+            damping: [400.0, 400.0],
+            rotational_stiffness: [110.0 * PER_DEGREE, 137.0 * PER_DEGREE],
+            rotational_damping: [40.0 * PER_DEGREE, 40.0 * PER_DEGREE],
+        },
+        contact: Impact {
+            stiffness: 1.0e6,
+            exponent: 1.5,
+            damping: 50.0,
+            full_damping_penetration: 1e-4,
+        },
+    }
+}
+
+/// Table 3's optimised coefficients (paper).
+pub(crate) fn optimised() -> RopeLaw {
+    RopeLaw {
+        bushing: Bushing {
+            stiffness: [7.81e8, 2.26e8],
+            damping: [5201.0, 4287.0],
+            rotational_stiffness: [204.0 * PER_DEGREE, 308.0 * PER_DEGREE],
+            rotational_damping: [45.0 * PER_DEGREE, 56.0 * PER_DEGREE],
+        },
+        contact: Impact {
+            stiffness: 4.01e8,
+            exponent: 1.5,
+            damping: 1020.0,
+            full_damping_penetration: 1e-4,
+        },
+    }
+}
+
+/// The recommended rope with a thousandth of its rotational coefficients.
+pub(crate) fn soft() -> RopeLaw {
+    let mut law = recommended();
+    law.bushing.rotational_stiffness = law.bushing.rotational_stiffness.map(|k| 1e-3 * k);
+    law.bushing.rotational_damping = law.bushing.rotational_damping.map(|c| 1e-3 * c);
+    law
+}
+
+/// A rope with next to no bending stiffness and no damping: a string.
+pub(crate) fn string() -> Bushing {
+    Bushing {
+        stiffness: [3.14e8, 1.25e8],
+        damping: [0.0; 2],
+        rotational_stiffness: [1e-3; 2],
+        rotational_damping: [0.0; 2],
+    }
+}
+
+/// The unit's cylinders: 10 mm thick, 50 mm long, steel.
+pub(crate) fn chain(count: usize) -> Chain {
+    Chain::solid(0, count, 0.01, 0.05, 7850.0)
+}
+
+pub(crate) fn clamped(law: Bushing) -> End {
+    End::Held {
+        place: V3::zeros(),
+        angle: 0.0,
+        law,
+    }
+}
+
+/// A chain with a clamped base at the origin, a free end, and neither gravity nor drum.
+pub(crate) fn cantilever(count: usize, law: Bushing) -> Setup {
+    Setup {
+        chain: chain(count),
+        gravity: V3::zeros(),
+        joint: law,
+        ends: [clamped(law), End::free()],
+        drum: None,
+        accuracy: 1.0,
+    }
+}
+
+/// Static equilibrium from coordinates `q` on.
+pub(crate) fn settled(setup: Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) {
+    let mut system = System::new(Rig::new(setup));
+    assert!(minimize(&mut system, 0.0, &mut q), "no equilibrium");
+    let mut force = vec![0.0; q.len()];
+    let still = vec![0.0; q.len()];
+    system.forces(0.0, &q, &still, &mut force);
+    (system, q)
+}
+
+/// Static equilibrium from a straight chain along +x.
+pub(crate) fn settled_straight(setup: Setup) -> (System<Rig>, Vec<f64>) {
+    let q = Rig::new(setup).straight(V3::zeros(), 0.0);
+    settled(setup, q)
+}
+
+/// How a rig is integrated.
+#[derive(Clone, Copy)]
+pub(crate) struct Course {
+    pub(crate) method: &'static Tableau,
+    pub(crate) tolerance: f64,
+    pub(crate) longest: f64,
+}
+
+impl Course {
+    pub(crate) fn accurate(tolerance: f64) -> Self {
+        Self {
+            method: &ESDIRK4,
+            tolerance,
+            longest: 0.01,
+        }
+    }
+}
+
+/// A state with its accelerations.
+pub(crate) fn started(system: &mut System<Rig>, q: Vec<f64>, v: Vec<f64>) -> State {
+    let mut state = State::at_rest(0.0, q);
+    state.v = v;
+    system
+        .accelerations(0.0, &state.q, &state.v, &mut state.a)
+        .unwrap();
+    state
+}
+
+/// Integrates from `state` to `until`; `each` sees the ends of every accepted step.
+pub(crate) fn advance(
+    system: &mut System<Rig>,
+    course: &Course,
+    state: &mut State,
+    until: f64,
+    mut each: impl FnMut(&State, &State, &Step),
+) {
+    let mut method = Adaptive::new(
+        course.method,
+        state.q.len(),
+        course.tolerance,
+        course.longest,
+    );
+    let mut to = state.clone();
+    while state.t < until - 1e-12 {
+        if let Some(step) = method.attempt(system, state, until, &mut to).unwrap() {
+            each(state, &to, &step);
+            std::mem::swap(state, &mut to);
+        }
+    }
+}
+
+/// The numbers of a table, row by row; `#` opens a comment line, the first line names the columns.
+pub(crate) fn table(text: &str) -> Vec<Vec<f64>> {
+    csv::Reader::from_reader(text.as_bytes())
+        .records()
+        .map(|row| row.unwrap().iter().map(|x| x.parse().unwrap()).collect())
+        .collect()
+}
