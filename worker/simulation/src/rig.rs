@@ -272,14 +272,8 @@ impl Equations for Rig {
     }
 
     fn powers(&mut self, _t: f64, _q: &[f64], _v: &[f64], _a: &[f64]) -> Powers {
-        let mut dissipated = 0.0;
-        Chain::add_joint_losses(&mut dissipated, &self.state);
-        if let Some((surface, law)) = self.surface() {
-            let chain = self.setup.chain;
-            chain.add_contact_losses(&mut dissipated, &surface, &law, &self.state);
-        }
         Powers {
-            dissipated,
+            dissipated: self.state.losses(),
             ..Powers::default()
         }
     }

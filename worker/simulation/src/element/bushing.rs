@@ -124,6 +124,7 @@ impl Bushing {
         of.fold(0.0, |sum, x| sum + x) > 0.0
     }
 
+    #[inline]
     fn deformation(&self, i: &Marker, j: &Marker) -> Deformation {
         let d = i.position() - j.position();
         Deformation {
@@ -140,6 +141,7 @@ impl Bushing {
     }
 
     /// Force and torques at a motion.
+    #[inline]
     pub fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
         let [k1, k2] = self.stiffness;
         let [c1, c2] = self.damping;

@@ -65,7 +65,7 @@ pub struct Touch {
     pub depth: f64,
     /// Its rate [m/s].
     pub rate: f64,
-    /// Arc angle in the beam frame \[rad\].
+    /// Arc angle in the beam frame \[rad\]; 0 where the surface has no shapes.
     pub angle: f64,
     /// Outward normal and tangent (growing angle).
     pub normal: V2,
@@ -130,25 +130,25 @@ impl<'a> Surface<'a> {
 
     /// Penetration of the point `g` that moves with `velocity`; `shape` receives the modes' radial
     /// shapes there.
+    #[inline]
     pub fn touch(&self, bearing: &Bearing, g: &V2, velocity: &V2, shape: &mut [f64]) -> Touch {
         let w = g - self.center;
         let distance = w.norm();
-        let normal = w / distance;
+        let inverse = 1.0 / distance;
+        let normal = w * inverse;
         let tangent = V2::new(-normal.y, normal.x);
-        let angle = bearing.angle + small_angle(&bearing.toward, &w);
+        let mut angle = bearing.angle;
         let (mut bulge, mut rate, mut slope) = (0.0, 0.0, [0.0; 2]);
         if let Some(shapes) = self.shapes {
-            let place = shapes.place(angle);
-            for (k, value) in shape.iter_mut().enumerate() {
-                let jet = shapes.jet(&place, k);
-                *value = jet.value;
-                bulge += self.modal[k] * jet.value;
-                rate += self.modal_rate[k] * jet.value;
-                slope[0] += self.modal[k] * jet.first;
-                slope[1] += self.modal[k] * jet.second;
+            angle += small_angle(&bearing.toward, &w);
+            let deflected = shapes.weighted(&shapes.place(angle), self.modal, shape);
+            bulge = deflected.value;
+            slope = [deflected.first, deflected.second];
+            for (shape, modal_rate) in shape.iter().zip(self.modal_rate) {
+                rate += modal_rate * shape;
             }
         }
-        let by_point = tangent * (slope[0] / distance) - normal;
+        let by_point = tangent * (slope[0] * inverse) - normal;
         let by_beam = -by_point.dot(&self.center_by_beam) - slope[0];
         Touch {
             depth: self.radius + bulge - distance,

@@ -6,7 +6,7 @@ use crate::model::contact::Surface;
 use crate::model::links::Instant;
 use crate::model::{
     Machine, Scratch,
-    chain::{Chain, Joints},
+    chain::{ChainState, Joints},
 };
 use nalgebra::{Vector2, Vector3};
 
@@ -172,15 +172,7 @@ impl Machine {
     pub fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
         let v = at.v;
         let pin = self.pin_force(at, a, scratch);
-        let mut dissipated = 0.0;
-        for state in &scratch.chains {
-            Chain::add_joint_losses(&mut dissipated, state);
-        }
-        for (k, chain) in self.chains.iter().enumerate() {
-            let surface = self.surface(k, at.q, v);
-            let state = &scratch.chains[k];
-            chain.add_contact_losses(&mut dissipated, &surface, &at.ropes.contact, state);
-        }
+        let mut dissipated: f64 = scratch.chains.iter().map(ChainState::losses).sum();
         let head = &self.description.head;
         for k in 0..self.layout.modes {
             let rate = v[self.layout.mode(k)];

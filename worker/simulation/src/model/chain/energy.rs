@@ -34,24 +34,4 @@ impl Chain {
             *sum -= weight.dot(&pose.p);
         }
     }
-
-    /// Adds the power that the joints' damping takes to `sum` \[W\].
-    pub(crate) fn add_joint_losses(sum: &mut f64, state: &ChainState) {
-        for load in &state.joints {
-            *sum += load.dissipated;
-        }
-    }
-
-    /// Adds the power that the contact's damping takes to `sum` \[W\].
-    pub(crate) fn add_contact_losses(
-        &self,
-        sum: &mut f64,
-        surface: &Surface<'_>,
-        law: &Impact,
-        state: &ChainState,
-    ) {
-        self.each_touch(surface, &state.poses, |share, touch, _| {
-            *sum += share * law.force(touch.depth, touch.rate).dissipated;
-        });
-    }
 }

@@ -86,6 +86,7 @@ impl Chain {
         border: &mut [f64],
     ) {
         state.deepest = 0.0;
+        state.dissipated = 0.0;
         let half = 0.5 * self.pitch;
         let modes = surface.modal.len();
         let mut shape = [0.0; MAX_MODES];
@@ -99,7 +100,9 @@ impl Chain {
                     let velocity: V2 = (pose.v + sweep * along).xy();
                     let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
                     state.deepest = state.deepest.max(touch.depth);
-                    let f = share * law.force(touch.depth, touch.rate).force;
+                    let law = law.force(touch.depth, touch.rate);
+                    state.dissipated += share * law.dissipated;
+                    let f = share * law.force;
                     if f == 0.0 {
                         continue;
                     }

@@ -67,6 +67,8 @@ pub struct ChainState {
     pub contact: Vec<f64>,
     /// Deepest penetration \[m\].
     pub deepest: f64,
+    /// Power that the contact's damping takes \[W\].
+    pub dissipated: f64,
 }
 
 impl ChainState {
@@ -84,7 +86,14 @@ impl ChainState {
             joints: vec![none; count + 1],
             contact: vec![0.0; count],
             deepest: 0.0,
+            dissipated: 0.0,
         }
+    }
+
+    /// Power that the damping of joints and contact takes \[W\].
+    pub fn losses(&self) -> f64 {
+        let joints = self.joints.iter().map(|load| load.dissipated);
+        joints.sum::<f64>() + self.dissipated
     }
 
     /// Tension in a joint, positive where it pulls \[N\].
