@@ -31,8 +31,17 @@ const COMPLAINT: Duration = Duration::from_mins(5);
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    let filter = EnvFilter::try_from_env("HORSEHEAD_LOG")
-        .unwrap_or_else(|_| EnvFilter::new("warn,zenoh=off,zenoh_link=off,zenoh_transport=off"));
+    // a worker of somebody's own says when it is connected; a local one leaves that to its coordinator
+    let own = if cli.embedded || cli.role.is_some() {
+        "warn"
+    } else {
+        "info"
+    };
+    let filter = EnvFilter::try_from_env("HORSEHEAD_LOG").unwrap_or_else(|_| {
+        EnvFilter::new(format!(
+            "warn,horsehead_worker={own},zenoh=off,zenoh_link=off,zenoh_transport=off"
+        ))
+    });
     tracing_subscriber::fmt()
         .with_env_filter(filter)
         .with_writer(io::stderr)
@@ -76,7 +85,10 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
             ExitCode::from(3)
         }
         Ending::Unlinked => ExitCode::FAILURE,
-        Ending::Asked | Ending::RunOver | Ending::Idle => ExitCode::SUCCESS,
+        ending @ (Ending::Asked | Ending::RunOver | Ending::Idle) => {
+            tracing::info!("ended in good order: {ending:?}");
+            ExitCode::SUCCESS
+        }
     })
 }
 
@@ -87,13 +99,13 @@ async fn work(locator: &Locator, options: SessionOptions) -> anyhow::Result<Endi
     let patience = options.idle_timeout;
     let mut said: Option<Instant> = None;
     let link = loop {
+        // in a task of its own: opening may hold its thread for seconds, and a signal must not wait
+        let (to, tls, id) = (locator.clone(), tls.clone(), options.id);
+        let opening = tokio::spawn(async move { ZenohWorker::open(&to, tls.as_ref(), id).await });
         tokio::select! {
-            opened = ZenohWorker::open(locator, tls.as_ref(), options.id) => match opened {
+            opened = opening => match opened.context("the connection's task ended")? {
                 Ok(link) => break link,
                 Err(error @ link::LinkError::Transport { .. }) => {
-                    if patience.is_some_and(|patience| began.elapsed() > patience) {
-                        return Ok(Ending::Idle);
-                    }
                     if said.is_none_or(|said| said.elapsed() > COMPLAINT) {
                         tracing::warn!("{error}; trying again until it answers");
                         said = Some(Instant::now());
@@ -103,9 +115,22 @@ async fn work(locator: &Locator, options: SessionOptions) -> anyhow::Result<Endi
                 Err(error) => return Err(error.into()),
             },
             () = &mut asked => return Ok(Ending::Asked),
+            () = out_of_patience(began, patience) => return Ok(Ending::Idle),
         }
     };
+    tracing::info!(
+        "connected to {locator}; {} simulations at a time",
+        options.slots
+    );
     Ok(session::run(link, options, asked).await?)
+}
+
+/// Completes when a worker that may idle for so long has waited for it since `began`.
+async fn out_of_patience(began: Instant, patience: Option<Duration>) {
+    match patience {
+        Some(patience) => tokio::time::sleep(patience.saturating_sub(began.elapsed())).await,
+        None => std::future::pending().await,
+    }
 }
 
 /// Completes when the worker is to end: by SIGTERM, SIGINT or, embedded, the end of its input.
