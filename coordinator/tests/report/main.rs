@@ -154,7 +154,8 @@ fn a_calibration_is_written_with_its_data() {
     let page = std::fs::read_to_string(&written[0]).unwrap();
     check_page(&page);
     let sections = page.matches("<section id=").count();
-    assert_eq!(sections, 10, "every section has something to say here");
+    assert_eq!(sections, 11, "every section has something to say here");
+    assert!(page.contains("What remains unexplained under condition 5rpm"));
     let text = words(&page);
     for gene in &calibration.case.genes {
         assert!(text.contains(gene.name.as_str()), "{:?}", gene.name);

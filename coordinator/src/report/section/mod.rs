@@ -5,6 +5,7 @@
 mod agreement;
 mod convergence;
 mod curves;
+mod gap;
 mod gene;
 mod machine;
 mod notes;
@@ -45,6 +46,7 @@ pub(super) const SECTIONS: &[Section] = &[
     summary::SECTION,
     table::SECTION,
     agreement::SECTION,
+    gap::SECTION,
     curves::SECTION,
     convergence::SECTION,
     gene::SECTION,

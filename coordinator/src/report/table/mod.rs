@@ -2,9 +2,11 @@
 //!
 //! Here is only how a table is set; `compare` and `single` fill it.
 mod compare;
+mod gap;
 mod single;
 
 pub use compare::{table_3, table_4, workers};
+pub use gap::gap;
 pub use single::{balance, genes, simulation};
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};

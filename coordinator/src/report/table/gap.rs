@@ -1,0 +1,77 @@
+//! What the parameters leave unexplained, gauge by gauge.
+use super::super::data::{ConditionResult, Run};
+use super::super::number::{fixed, percent};
+use super::super::words::condition_name;
+use super::{Row, Table};
+use discrepancy::gap::{Gap, SECTOR_DEG};
+use protocol::case::{Case, GaugeRecord};
+
+/// The gap of both parameter sets under one condition, and where the optimised ones leave it;
+/// nothing without a record or without a complete run.
+pub fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
+    let record = case.conditions.get(result.condition)?.record.as_ref()?;
+    let before = gaps(record, &result.recommended);
+    let after = gaps(record, &result.optimised);
+    if after.is_empty() {
+        return None;
+    }
+    let rows = after
+        .iter()
+        .map(|gap| {
+            let earlier = before.iter().find(|before| before.gauge == gap.gauge);
+            let (begin, of_sector) = gap.worst_sector();
+            let (band, of_band) = gap.worst_band();
+            Row::new(
+                format!("gauge {}", gap.gauge),
+                [
+                    earlier.map_or_else(|| "–".to_owned(), |gap| percent(gap.share())),
+                    percent(gap.share()),
+                    gap.over_noise().map_or_else(
+                        || "unknown".to_owned(),
+                        |ratio| format!("{} ×", fixed(ratio, 1)),
+                    ),
+                    format!(
+                        "{begin:.0} to {:.0} deg: {}",
+                        begin + SECTOR_DEG,
+                        percent(of_sector)
+                    ),
+                    format!("{band}: {}", percent(of_band)),
+                ],
+            )
+        })
+        .collect();
+    Some(Table {
+        title: format!(
+            "What remains unexplained under condition {}",
+            condition_name(case, result.condition)
+        ),
+        head: [
+            "",
+            "gap, recommended",
+            "gap, optimised",
+            "residual over noise",
+            "worst sector",
+            "worst band of crank orders",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows,
+        notes: vec![
+            "Gap: mean squared residual above the noise of the averaged record, over the variance of \
+             the measured curve; means removed. A gap that stays far above the noise after a fit is a \
+             sign of something the model lacks; this table says where to look, not what it is."
+                .to_owned(),
+        ],
+    })
+}
+
+fn gaps(record: &GaugeRecord, run: &Run) -> Vec<Gap> {
+    record
+        .gauges
+        .iter()
+        .filter_map(|trace| {
+            let simulated = run.simulation.gauge_mpa.get(usize::from(trace.gauge) - 1)?;
+            Gap::between(trace, record.cycles, simulated)
+        })
+        .collect()
+}
