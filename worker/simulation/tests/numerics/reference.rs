@@ -172,12 +172,11 @@ fn drum_setup(law: &RopeLaw, pull: f64) -> Setup {
             radius: 1.205,
             law: law.contact,
         }),
-        accuracy: 1.0,
     }
 }
 
 /// Joints on the drum from its top clockwise, then straight down.
-fn laid_on_drum(count: usize) -> Vec<f64> {
+pub(crate) fn laid_on_drum(count: usize) -> Vec<f64> {
     let (pitch, radius) = (0.05_f64, 1.205_f64);
     let turn = 2.0 * (0.5 * pitch / radius).asin();
     let (mut at, mut q) = ([0.0, radius], Vec::new());

@@ -89,7 +89,6 @@ pub(crate) fn cantilever(count: usize, law: Bushing) -> Setup {
         joint: law,
         ends: [clamped(law), End::free()],
         drum: None,
-        accuracy: 1.0,
     }
 }
 
