@@ -71,8 +71,13 @@ fn tangent_is_the_derivative_of_the_forces() {
             let scale = column.iter().map(|x| x.abs()).fold(0.0, f64::max);
             for r in 0..n {
                 let numeric = -(plus[r] - minus[r]) / (2.0 * h) - mu * inertia[r];
-                let error = (numeric - column[r]).abs() / scale;
-                assert!(error < 2e-6, "row {r} column {i}: {numeric} {}", column[r]);
+                // forces of 3e5 N are rounded to 1e-10 N, and divided by 2e-7
+                let error = (numeric - column[r]).abs();
+                assert!(
+                    error < 2e-6 * scale + 1e-3,
+                    "row {r} column {i}: {numeric} {}",
+                    column[r]
+                );
             }
         }
     }

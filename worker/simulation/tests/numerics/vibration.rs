@@ -42,20 +42,21 @@ fn modes(system: &mut System<Rig>, q: &[f64], count: usize, along: usize) -> Vec
 }
 
 fn hanging(count: usize) -> (System<Rig>, Vec<f64>) {
+    // the same rope of 3 m whatever the number of cylinders
+    let pitch = 3.0 / count as f64;
+    let law = string().scaled(0.05 / pitch);
     let mut setup = Setup {
         gravity: V3::new(0.0, -9.81, 0.0),
         ends: [
             End::Held {
                 place: V3::zeros(),
                 angle: -0.5 * PI,
-                law: string().revolute(),
+                law: pinned(&law),
             },
             End::free(),
         ],
-        ..cantilever(count, string())
+        ..cantilever(count, law)
     };
-    // the same rope of 3 m whatever the number of cylinders
-    let pitch = 3.0 / count as f64;
     setup.chain = simulation::model::chain::Chain::solid(0, count, 0.01, pitch, 7850.0);
     let q = Rig::new(setup).straight(V3::zeros(), -0.5 * PI);
     settled(setup, q)
@@ -79,13 +80,17 @@ fn hanging_rope_swings_at_the_bessel_zeros() {
             .map(|((w, _), j)| w / (0.5 * j * (9.81_f64 / 3.0).sqrt()) - 1.0)
             .collect()
     };
-    let (coarse, fine) = (errors(30), errors(60));
-    eprintln!("hanging rope: {coarse:?} {fine:?}");
-    for k in 0..zeros.len() {
-        assert!(fine[k].abs() < 2e-3, "mode {k}: {}", fine[k]);
+    let [coarse, middle, fine] = [15, 30, 60].map(errors);
+    eprintln!("hanging rope: {coarse:?} {middle:?} {fine:?}");
+    // what 60 cylinders leave, mode by mode, and the rope's own stretch of 1e-4
+    for (k, allowed) in [2e-4, 5e-4, 2e-3, 5e-3].into_iter().enumerate() {
+        assert!(fine[k].abs() < allowed, "mode {k}: {}", fine[k]);
     }
-    let order = (coarse[3] / fine[3]).log2();
-    assert!((order - 2.0).abs() < 0.3, "spatial order {order}");
+    for k in 1..zeros.len() {
+        let order = ((coarse[k] - middle[k]) / (middle[k] - fine[k])).log2();
+        eprintln!("mode {k}: spatial order {order:.3}");
+        assert!((order - 2.0).abs() < 0.3, "mode {k}: spatial order {order}");
+    }
 }
 
 /// The same swing in time: half a period from one zero crossing to the next.
@@ -104,7 +109,7 @@ fn hanging_rope_keeps_its_period_in_time() {
     let until = 3.2 * PI / w;
     advance(&mut system, &course, &mut state, until, |from, to, _| {
         let (a, b) = (from.q[tip], to.q[tip]);
-        if a * b < 0.0 {
+        if a * b < 0.0 && from.t > 0.0 {
             crossings.push(from.t + (to.t - from.t) * a / (a - b));
         }
     });
@@ -119,14 +124,14 @@ fn hanging_rope_keeps_its_period_in_time() {
 /// A string under tension: `f_n = n / (2 L) sqrt(T / m)` with m its mass per length.
 #[test]
 fn taut_string_sounds_its_harmonics() {
-    let (count, tension) = (80_usize, 2e4);
+    let (count, tension) = (80_usize, 200.0);
     let law = string();
     let stretch = tension / law.stiffness[0] * (count + 1) as f64;
     let length = 0.05 * count as f64 + stretch;
     let pin = |x: f64| End::Held {
         place: V3::new(x, 0.0, 0.0),
         angle: 0.0,
-        law: law.revolute(),
+        law: pinned(&law),
     };
     let setup = Setup {
         ends: [pin(0.0), pin(length)],
