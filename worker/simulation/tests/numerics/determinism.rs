@@ -20,8 +20,11 @@ fn digest() -> String {
 fn child_prints_its_digest() {
     println!("{}", digest());
     // how the C library's own functions fare: they may well differ
-    let sum: f64 = (0..10_000).map(|i| (0.37 * f64::from(i)).sin()).sum();
-    println!("libc {:016x}", sum.to_bits());
+    let sines = (0..10_000).map(|i| (0.37 * f64::from(i)).sin().to_bits());
+    println!(
+        "libc {:016x}",
+        sines.fold(0_u64, |fold, bits| fold.rotate_left(5) ^ bits)
+    );
 }
 
 /// glibc told that the processor has neither AVX2 nor FMA takes other variants of sine and power,

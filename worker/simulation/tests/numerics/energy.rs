@@ -54,8 +54,8 @@ fn examples() -> Vec<Example> {
     ]
 }
 
-/// Defect of the ledger over the energy that was moved, and that energy \[J\].
-fn defect(example: &Example, method: &'static Tableau, tolerance: f64) -> (f64, f64) {
+/// Defect of the ledger over the energy that was moved: largest kinetic energy and losses.
+fn defect(example: &Example, method: &'static Tableau, tolerance: f64) -> f64 {
     let setup = example.setup;
     let mut system = System::new(Rig::new(setup));
     let q = system.equations.straight(example.start, 0.0);
@@ -81,27 +81,40 @@ fn defect(example: &Example, method: &'static Tableau, tolerance: f64) -> (f64, 
         },
     );
     let last = system.equations.energy(&state.q, &state.v);
-    let moved = kinetic + lost;
-    ((last - first + lost).abs() / moved, moved)
+    (last - first + lost).abs() / (kinetic + lost)
 }
 
 /// Every example rig, both methods: the ledger closes, and the tighter the tolerance the better.
+///
+/// A rig has nothing but loosely held cylinders (2e-4 m a step), so it is judged from a tenth of the
+/// default tolerance on. What remains is what Newton's method leaves in joints of 3e8 N/m.
 #[test]
 fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
     for example in examples() {
         for method in CATALOGUE {
-            let defects = [1.0, 1e-1, 1e-2, 1e-3].map(|t| defect(&example, method, t));
+            let defects = [1e-1, 1e-2, 1e-3].map(|t| defect(&example, method, t));
             eprintln!("{} {}: {defects:?}", example.name, method.name);
+            let [first, _, last] = defects;
+            assert!(
+                last < 1e-3 && (last < 0.5 * first || last < 1e-4),
+                "{} {}: {defects:?}",
+                example.name,
+                method.name
+            );
         }
     }
 }
 
 /// The reference machine over one revolution: crank work in, load work out, losses, stored energy.
+///
+/// Its long cylinders on a stiff contact are harder than the real unit's (tests/machine closes to
+/// 1e-5): at the default tolerance Newton's method leaves 6e-7 m in joints of 3e8 N/m, and so 0.2 %
+/// of the work; the ledger closes as soon as the tolerance asks for it.
 #[test]
 fn ledger_of_the_reference_machine_closes() {
     let machine = Machine::new(reference::description(), 2).unwrap();
     for method in CATALOGUE {
-        for tolerance in [1.0, 0.1, 0.01] {
+        for (tolerance, allowed) in [(1.0, 3e-3), (0.1, 1e-4), (0.01, 3e-5)] {
             let settings = RunSettings {
                 method,
                 tolerance,
@@ -111,15 +124,10 @@ fn ledger_of_the_reference_machine_closes() {
             let mut recorder = Recorder::gauges_only();
             let run = simulate(&machine, &reference::law(), &settings, &mut recorder);
             assert_eq!(run.verdict, Verdict::Complete);
-            let defect = run.stored - run.work.input + run.work.output + run.work.dissipated;
-            eprintln!(
-                "machine {} tolerance {tolerance}: {:.2e} of {:.0} J, {:?} {:?}",
-                method.name,
-                defect / run.work.input,
-                run.work.input,
-                run.work,
-                run.statistics
-            );
+            let gained = run.work.input - run.work.output - run.work.dissipated;
+            let defect = (run.stored - gained).abs() / run.work.input;
+            eprintln!("machine {} {tolerance}: {defect:.2e}", method.name);
+            assert!(defect < allowed, "{} {tolerance}: {defect}", method.name);
         }
     }
 }

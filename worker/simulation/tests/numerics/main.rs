@@ -12,3 +12,4 @@ mod rope;
 mod statics;
 mod tangent;
 mod vibration;
+mod work;

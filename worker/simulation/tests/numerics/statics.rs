@@ -4,50 +4,58 @@ use simulation::rig::{Drum, End, Setup};
 
 /// A string of 100 cylinders hangs between two pins at one height.
 ///
-/// `y = a cosh(x / a)` with `S = 2 a sinh(b / 2 a)` for length S and span b: its sag, and the
-/// horizontal pull `H = w a` of its weight w per length.
+/// `y = a cosh(x / a)` with `S = 2 a sinh(b / 2 a)` for the stretched length S and the span b, and
+/// the horizontal pull `H = w a` of its weight w per length.
 #[test]
 fn hanging_string_is_a_catenary() {
     let (count, span, length) = (100, 4.0_f64, 5.0_f64);
+    let law = string();
     let pin = |x: f64| End::Held {
         place: V3::new(x, 0.0, 0.0),
         angle: 0.0,
-        law: pinned(&string()),
+        law: pinned(&law),
     };
     let setup = Setup {
         gravity: V3::new(0.0, -9.81, 0.0),
         ends: [pin(0.0), pin(span)],
-        ..cantilever(count, string())
+        ..cantilever(count, law)
     };
-    // from two straight halves of the right length
-    let (c, s) = (0.8, 0.6);
+    // from an arc of the right length: sin(bow) / bow = b / S
+    let bow = 1.131_102_f64;
+    let arc = 0.5 * length / bow;
     let q = (0..count)
         .flat_map(|j| {
-            let along = (j as f64 + 0.5) * 0.05;
-            let (x, y, angle) = if j < count / 2 {
-                (c * along, -s * along, -s.atan2(c))
-            } else {
-                (
-                    span - c * (length - along),
-                    -s * (length - along),
-                    s.atan2(c),
-                )
-            };
-            [x, y, 0.0, 0.0, 0.0, angle]
+            let angle = bow * ((2 * j + 1) as f64 / count as f64 - 1.0);
+            let (s, c) = angle.sin_cos();
+            [
+                0.5 * span + arc * s,
+                arc * (bow.cos() - c),
+                0.0,
+                0.0,
+                0.0,
+                angle,
+            ]
         })
         .collect();
     let (system, q) = settled(setup, q);
 
-    let (mut low, mut high) = (0.1, 10.0);
-    for _ in 0..200 {
-        let a = 0.5 * (low + high);
-        if 2.0 * a * f64::sinh(span / (2.0 * a)) > length {
-            low = a;
-        } else {
-            high = a;
+    // the string stretches by the mean of its tension, w sqrt(a^2 + s^2): 2e-4 of its length
+    let weight = setup.chain.mass * 9.81 / 0.05;
+    let (mut a, mut stretched) = (1.0_f64, length);
+    for _ in 0..20 {
+        let (mut low, mut high) = (0.1, 10.0);
+        for _ in 0..200 {
+            a = 0.5 * (low + high);
+            if 2.0 * a * f64::sinh(span / (2.0 * a)) > stretched {
+                low = a;
+            } else {
+                high = a;
+            }
         }
+        let s = 0.5 * length;
+        let tension = weight * (s * s.hypot(a) + a * a * (s / a).asinh());
+        stretched = length + tension / (0.05 * law.stiffness[0]);
     }
-    let a = low;
     let height = |x: f64| a * (((x - 0.5 * span) / a).cosh() - (0.5 * span / a).cosh());
     let sag = -height(0.5 * span);
     // joints lie on the curve of the string; a cylinder's middle lies above its chord's ends
@@ -58,7 +66,6 @@ fn hanging_string_is_a_catenary() {
         })
         .fold(0.0, f64::max);
     let pull = system.equations.state.joints[count / 2].force.x.abs();
-    let weight = setup.chain.mass * 9.81 / 0.05;
     eprintln!(
         "catenary: {worst:.2e} of {sag:.4} m, pull {:.2e}",
         pull / (weight * a) - 1.0
