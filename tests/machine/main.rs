@@ -126,8 +126,9 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
     mean(&square).sqrt() / (high - low)
 }
 
-/// Cutting the rope into cylinders of 25 mm instead of 50 mm changes no gauge by much: the same
-/// rope, its coefficients scaled with the length they stand for.
+/// Cutting the rope into cylinders of 25 mm instead of 50 mm changes no gauge by more than
+/// 0.5 % of its range (measured: 0.25 % and 0.13 %): the same rope, its coefficients scaled with the
+/// length they stand for.
 #[test]
 fn gauges_converge_with_shorter_cylinders() {
     let coarse = case();
@@ -149,6 +150,6 @@ fn gauges_converge_with_shorter_cylinders() {
             .map(|k| difference(&coarse.curves.gauge[k], &fine.curves.gauge[k]))
             .fold(0.0, f64::max);
         eprintln!("{name}: 50 to 25 mm changes a gauge by {worst:.2e} of its range");
-        assert!(worst < 0.05, "{name}: {worst}");
+        assert!(worst < 5e-3, "{name}: {worst}");
     }
 }
