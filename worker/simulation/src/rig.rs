@@ -65,8 +65,6 @@ pub struct Setup {
     pub ends: [End; 2],
     /// What the chain may lie on.
     pub drum: Option<Drum>,
-    /// Newton's accuracy as a part of the machine's: a study of errors needs a small one.
-    pub accuracy: f64,
 }
 
 /// A rig and the loads of its last evaluation: equations of motion.
@@ -264,7 +262,7 @@ impl Equations for Rig {
     }
 
     fn newton_norm(&self, change: &[f64]) -> f64 {
-        cylinders_newton(0.0, change) / self.setup.accuracy
+        cylinders_newton(0.0, change)
     }
 
     fn error_norm(&self, error: &[f64]) -> f64 {

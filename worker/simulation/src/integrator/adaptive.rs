@@ -24,7 +24,7 @@ impl Adaptive {
     /// For `n` coordinates, local error `tolerance` and steps of at most `longest` \[s\].
     pub fn new(tableau: &'static Tableau, n: usize, tolerance: f64, longest: f64) -> Self {
         Self {
-            method: Esdirk::new(tableau, n),
+            method: Esdirk::new(tableau, n, tolerance),
             control: StepControl {
                 order: tableau.error_order,
                 tolerance,

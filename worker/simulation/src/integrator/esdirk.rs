@@ -31,11 +31,11 @@ pub struct Esdirk {
 }
 
 impl Esdirk {
-    /// For `n` coordinates.
-    pub fn new(tableau: &'static Tableau, n: usize) -> Self {
+    /// For `n` coordinates and the local error that steps may make.
+    pub fn new(tableau: &'static Tableau, n: usize, tolerance: f64) -> Self {
         Self {
             tableau,
-            newton: Newton::new(n),
+            newton: Newton::new(n, tolerance),
             stages: vec![(vec![0.0; n], vec![0.0; n]); tableau.stages() - 1],
             powers: vec![Powers::default(); tableau.stages()],
             base_q: vec![0.0; n],

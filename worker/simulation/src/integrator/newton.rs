@@ -68,18 +68,21 @@ pub struct NotConverged;
 #[derive(Clone, Debug)]
 pub struct Newton {
     policy: RefactorPolicy,
+    accuracy: f64,
     change: Vec<f64>,
 }
 
-/// Accuracy of a stage in units of the Newton norm.
+/// Accuracy of a stage in units of the Newton norm, at a tolerance of 1.
 const ACCURACY: f64 = 0.3;
 const ITERATIONS: u32 = 10;
 
 impl Newton {
-    /// For `n` coordinates.
-    pub fn new(n: usize) -> Self {
+    /// For `n` coordinates and a step tolerance: what Newton's method leaves must stay below what
+    /// a step may err.
+    pub fn new(n: usize, tolerance: f64) -> Self {
         Self {
             policy: RefactorPolicy::default(),
+            accuracy: ACCURACY * tolerance.min(1.0),
             change: vec![0.0; n],
         }
     }
@@ -120,9 +123,9 @@ impl Newton {
                 rate = (0.3 * rate).max(norm / last);
             }
             let converged = if iteration == 0 {
-                norm < 0.1 * ACCURACY
+                norm < 0.1 * self.accuracy
             } else {
-                rate < 1.0 && norm * rate / (1.0 - rate) < ACCURACY
+                rate < 1.0 && norm * rate / (1.0 - rate) < self.accuracy
             };
             if converged {
                 self.policy.observed(rate);

@@ -54,10 +54,9 @@ fn examples() -> Vec<Example> {
     ]
 }
 
-/// Defect of the ledger over the energy that was moved, and that energy \[J\].
-fn defect(example: &Example, method: &'static Tableau, tolerance: f64) -> (f64, f64) {
-    let mut setup = example.setup;
-    setup.accuracy = tolerance.min(1.0);
+/// Defect of the ledger over the energy that was moved: largest kinetic energy and losses.
+fn defect(example: &Example, method: &'static Tableau, tolerance: f64) -> f64 {
+    let setup = example.setup;
     let mut system = System::new(Rig::new(setup));
     let q = system.equations.straight(example.start, 0.0);
     let v = vec![0.0; q.len()];
@@ -82,27 +81,40 @@ fn defect(example: &Example, method: &'static Tableau, tolerance: f64) -> (f64, 
         },
     );
     let last = system.equations.energy(&state.q, &state.v);
-    let moved = kinetic + lost;
-    ((last - first + lost).abs() / moved, moved)
+    (last - first + lost).abs() / (kinetic + lost)
 }
 
 /// Every example rig, both methods: the ledger closes, and the tighter the tolerance the better.
+///
+/// A rig has nothing but loosely held cylinders (2e-4 m a step), so it is judged from a tenth of the
+/// default tolerance on. What remains is what Newton's method leaves in joints of 3e8 N/m.
 #[test]
 fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
     for example in examples() {
         for method in CATALOGUE {
-            let defects = [1.0, 1e-1, 1e-2, 1e-3].map(|t| defect(&example, method, t));
+            let defects = [1e-1, 1e-2, 1e-3].map(|t| defect(&example, method, t));
             eprintln!("{} {}: {defects:?}", example.name, method.name);
+            let [first, _, last] = defects;
+            assert!(
+                last < 1e-3 && (last < 0.5 * first || last < 1e-4),
+                "{} {}: {defects:?}",
+                example.name,
+                method.name
+            );
         }
     }
 }
 
 /// The reference machine over one revolution: crank work in, load work out, losses, stored energy.
+///
+/// Its long cylinders on a stiff contact are harder than the real unit's (tests/machine closes to
+/// 1e-5): at the default tolerance Newton's method leaves 6e-7 m in joints of 3e8 N/m, and so 0.2 %
+/// of the work; the ledger closes as soon as the tolerance asks for it.
 #[test]
 fn ledger_of_the_reference_machine_closes() {
     let machine = Machine::new(reference::description(), 2).unwrap();
     for method in CATALOGUE {
-        for tolerance in [1.0, 0.1, 0.01] {
+        for (tolerance, allowed) in [(1.0, 3e-3), (0.1, 1e-4), (0.01, 3e-5)] {
             let settings = RunSettings {
                 method,
                 tolerance,
@@ -112,15 +124,109 @@ fn ledger_of_the_reference_machine_closes() {
             let mut recorder = Recorder::gauges_only();
             let run = simulate(&machine, &reference::law(), &settings, &mut recorder);
             assert_eq!(run.verdict, Verdict::Complete);
-            let defect = run.stored - run.work.input + run.work.output + run.work.dissipated;
-            eprintln!(
-                "machine {} tolerance {tolerance}: {:.2e} of {:.0} J, {:?} {:?}",
-                method.name,
-                defect / run.work.input,
-                run.work.input,
-                run.work,
-                run.statistics
-            );
+            let gained = run.work.input - run.work.output - run.work.dissipated;
+            let defect = (run.stored - gained).abs() / run.work.input;
+            eprintln!("machine {} {tolerance}: {defect:.2e}", method.name);
+            assert!(defect < allowed, "{} {tolerance}: {defect}", method.name);
         }
     }
+}
+
+/// A chain without damping, thrown out of its plane and twisted: its energy stays, the tighter the
+/// tolerance the better. (With equal torsional and bending stiffness the bushing has a potential.)
+#[test]
+fn chain_out_of_plane_keeps_its_energy() {
+    let law = Bushing {
+        stiffness: [4e4, 2e4],
+        damping: [0.0; 2],
+        rotational_stiffness: [3.0; 2],
+        rotational_damping: [0.0; 2],
+    };
+    let setup = Setup {
+        gravity: V3::new(0.0, -9.81, 0.0),
+        ..cantilever(12, law)
+    };
+    let drift = |tolerance: f64| {
+        let mut system = System::new(Rig::new(setup));
+        let q = system.equations.straight(V3::zeros(), 0.0);
+        let mut v = vec![0.0; q.len()];
+        for (j, v) in v.chunks_exact_mut(6).enumerate() {
+            let along = (j as f64 + 0.5) * 0.05;
+            // turning about the y axis, and about its own
+            (v[2], v[4], v[3]) = (-2.0 * along, 2.0, 5.0 * along);
+        }
+        let mut state = started(&mut system, q, v);
+        let first = system.equations.energy(&state.q, &state.v);
+        let course = Course {
+            longest: 0.01,
+            ..Course::accurate(tolerance)
+        };
+        let mut tilt: f64 = 0.0;
+        advance(&mut system, &course, &mut state, 0.4, |_, to, _| {
+            tilt = to.q.chunks(6).map(|q| q[4].abs()).fold(tilt, f64::max);
+        });
+        assert!(tilt > 0.2, "stayed in its plane: {tilt}");
+        ((system.equations.energy(&state.q, &state.v) - first) / first).abs()
+    };
+    let drifts = [1e-1, 1e-2, 1e-3, 1e-4].map(drift);
+    eprintln!("out of plane: {drifts:?}");
+    assert!(drifts[3] < 1e-5, "{drifts:?}");
+    assert!(drifts[3] < 0.1 * drifts[1], "{drifts:?}");
+}
+
+/// A free chain with damping tumbles in space: nothing outside acts on it, so its momentum and its
+/// moment of momentum stay whatever happens inside (`F_J = -F_I`, `T_J = -T_I - d x F_I`).
+#[test]
+fn tumbling_chain_keeps_its_moment_of_momentum() {
+    let law = Bushing {
+        stiffness: [4e4, 2e4],
+        damping: [30.0, 20.0],
+        rotational_stiffness: [0.2, 0.3],
+        rotational_damping: [0.004, 0.003],
+    };
+    let mut setup = cantilever(8, law);
+    setup.ends = [simulation::rig::End::free(); 2];
+    let chain = setup.chain;
+    let mut system = System::new(Rig::new(setup));
+    let q = system.equations.straight(V3::zeros(), 0.3);
+    let mut v = vec![0.0; q.len()];
+    for (j, v) in v.chunks_exact_mut(6).enumerate() {
+        let along = (j as f64 - 3.5) * 0.05;
+        (v[0], v[1], v[2]) = (
+            0.4 - 1.2 * along,
+            0.2 + 4.0 * along + 40.0 * along * along,
+            0.1 - 2.0 * along * along,
+        );
+        (v[3], v[4], v[5]) = (1.0 + 7.0 * along, 0.6, 4.0);
+    }
+    let mut state = started(&mut system, q, v);
+    let momenta = |system: &mut System<Rig>, q: &[f64], v: &[f64]| {
+        let mut force = vec![0.0; q.len()];
+        system.forces(0.0, q, v, &mut force);
+        let mut sums = [V3::zeros(); 2];
+        for pose in &system.equations.state.poses {
+            let e = pose.axis();
+            let [along, across] = chain.inertia;
+            sums[0] += pose.v * chain.mass;
+            sums[1] += pose.p.cross(&pose.v) * chain.mass
+                + pose.w * across
+                + e * ((along - across) * e.dot(&pose.w));
+        }
+        sums
+    };
+    let first = momenta(&mut system, &state.q, &state.v);
+    let before = system.equations.energy(&state.q, &state.v);
+    advance(
+        &mut system,
+        &Course::accurate(1e-5),
+        &mut state,
+        0.5,
+        |_, _, _| {},
+    );
+    let last = momenta(&mut system, &state.q, &state.v);
+    let after = system.equations.energy(&state.q, &state.v);
+    let errors = [0, 1].map(|k| (last[k] - first[k]).norm() / first[k].norm());
+    eprintln!("momenta {errors:?}, energy {before} to {after}");
+    assert!(after < 0.99 * before, "nothing happened inside");
+    assert!(errors.iter().all(|&e| e < 1e-6), "{errors:?}");
 }

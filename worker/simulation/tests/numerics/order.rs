@@ -16,13 +16,12 @@ fn swung(method: &'static Tableau, steps: u32) -> Vec<f64> {
     };
     let mut setup = cantilever(5, law);
     setup.gravity = V3::new(1.3, -9.81, 0.0);
-    setup.accuracy = 1e-7;
     let mut system = System::new(Rig::new(setup));
     let q = system.equations.straight(V3::zeros(), 0.0);
     let v = vec![0.0; q.len()];
     let mut from = started(&mut system, q, v);
     let mut to = from.clone();
-    let mut method = Esdirk::new(method, from.q.len());
+    let mut method = Esdirk::new(method, from.q.len(), 1e-7);
     let h = 0.2 / f64::from(steps);
     for _ in 0..steps {
         method.step(&mut system, &from, h, &mut to).unwrap();

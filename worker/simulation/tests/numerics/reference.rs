@@ -172,18 +172,17 @@ fn drum_setup(law: &RopeLaw, pull: f64) -> Setup {
             radius: 1.205,
             law: law.contact,
         }),
-        accuracy: 1.0,
     }
 }
 
-/// Joints on the drum from its top clockwise, then straight down.
-fn laid_on_drum(count: usize) -> Vec<f64> {
+/// Joints on the drum from its top clockwise over an angle, then straight on.
+pub(crate) fn laid_on_drum(count: usize, wrap: f64) -> Vec<f64> {
     let (pitch, radius) = (0.05_f64, 1.205_f64);
     let turn = 2.0 * (0.5 * pitch / radius).asin();
     let (mut at, mut q) = ([0.0, radius], Vec::new());
     for j in 0..count {
         let angle = -turn * (j as f64 + 0.5);
-        let angle = angle.max(-0.5 * std::f64::consts::PI);
+        let angle = angle.max(-wrap);
         let (s, c) = angle.sin_cos();
         q.extend([
             at[0] + 0.5 * pitch * c,
@@ -229,7 +228,10 @@ fn rope_on_a_drum_has_the_references_forces() {
         ),
     ];
     for (name, law, pull, text) in cases {
-        let (system, q) = settled(drum_setup(&law, pull), laid_on_drum(60));
+        let (system, q) = settled(
+            drum_setup(&law, pull),
+            laid_on_drum(60, 0.5 * std::f64::consts::PI),
+        );
         let state = &system.equations.state;
         let largest = |column: usize| {
             table(text)

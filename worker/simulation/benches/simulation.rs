@@ -1,0 +1,132 @@
+//! What the kernels and whole runs cost on the machine of the moment: advice, not a gate (the work
+//! snapshots of tests/numerics are the gate).
+#![expect(
+    missing_docs,
+    reason = "criterion's macros make undocumented functions"
+)]
+use criterion::{Criterion, criterion_group, criterion_main};
+use nalgebra::Vector3;
+use simulation::drive::Drive;
+use simulation::integrator::tableau::CATALOGUE;
+use simulation::model::{Individual, Machine};
+use simulation::observe::Recorder;
+use simulation::reference;
+use simulation::rig::{End, Rig, Setup};
+use simulation::run::{RunSettings, simulate};
+use simulation::settle::{guess, minimize};
+use simulation::system::{Equations, System};
+
+/// The reference machine with the real unit's 72 + 114 cylinders of 50 mm.
+fn machine() -> Machine {
+    let mut description = reference::description();
+    description.rope.pitch = 0.05;
+    description.rope.back = 72;
+    description.rope.front = 114;
+    Machine::new(description, 2).expect("the description is complete")
+}
+
+/// Table 3's recommended and optimised coefficients.
+fn laws() -> [(&'static str, simulation::model::description::RopeLaw); 2] {
+    let optimised = reference::law();
+    let mut recommended = optimised;
+    let deg = 180.0 / std::f64::consts::PI;
+    recommended.bushing.stiffness = [3.14e8, 1.25e8];
+    recommended.bushing.damping = [400.0; 2];
+    recommended.bushing.rotational_stiffness = [110.0 * deg, 137.0 * deg];
+    recommended.bushing.rotational_damping = [40.0 * deg; 2];
+    recommended.contact.stiffness = 1e6;
+    recommended.contact.damping = 50.0;
+    [("recommended", recommended), ("optimised", optimised)]
+}
+
+/// Force, tangent with factorisation, and solution at the start of a run under load.
+fn kernels(criterion: &mut Criterion) {
+    let machine = machine();
+    let drive = Drive {
+        start: 1.0,
+        ramp: 1.0,
+        speed: 0.5,
+    };
+    let ropes = machine.ropes(&reference::law());
+    let mut system = System::new(Individual::new(&machine, ropes, drive));
+    let state = system.equations.drive_state(0.0);
+    let q = guess(&machine, &ropes, &state).expect("the mechanism closes");
+    let v = vec![0.0; q.len()];
+    let mut force = vec![0.0; q.len()];
+    let mut group = criterion.benchmark_group("kernel, 186 cylinders");
+    group.bench_function("forces", |b| {
+        b.iter(|| system.forces(0.0, &q, &v, &mut force));
+    });
+    let mut matrix = system.equations.matrix();
+    let coefficients = (1600.0, 40.0);
+    group.bench_function("tangent", |b| {
+        b.iter(|| {
+            system
+                .equations
+                .tangent(0.0, (&q, &v), coefficients, &mut matrix);
+        });
+    });
+    group.bench_function("tangent and factorisation", |b| {
+        b.iter(|| system.factorize(0.0, (&q, &v), coefficients));
+    });
+    group.bench_function("solution", |b| {
+        b.iter(|| {
+            force.fill(1.0);
+            system.solve(&mut force);
+        });
+    });
+    group.finish();
+}
+
+/// Settle, lead in and one revolution: what one evaluation of a search costs.
+fn runs(criterion: &mut Criterion) {
+    let machine = machine();
+    let mut group = criterion.benchmark_group("run, 186 cylinders");
+    group.sample_size(10);
+    for (name, law) in laws() {
+        for method in CATALOGUE {
+            let settings = RunSettings {
+                method,
+                longest_step: 0.03,
+                ..RunSettings::default()
+            };
+            group.bench_function(format!("{name}, {}", method.name), |b| {
+                b.iter(|| simulate(&machine, &law, &settings, &mut Recorder::gauges_only()));
+            });
+        }
+    }
+    group.finish();
+}
+
+/// Static equilibrium of a strongly bent rig.
+fn settles(criterion: &mut Criterion) {
+    let law = reference::law().bushing;
+    let setup = Setup {
+        chain: simulation::model::chain::Chain::solid(0, 40, 0.01, 0.05, 7850.0),
+        gravity: Vector3::zeros(),
+        joint: law,
+        ends: [
+            End::Held {
+                place: Vector3::zeros(),
+                angle: 0.0,
+                law,
+            },
+            End::Free {
+                force: Vector3::new(0.0, -100.0, 0.0),
+                twist: 0.0,
+                turn: 0.0,
+            },
+        ],
+        drum: None,
+    };
+    criterion.bench_function("cantilever of 40 cylinders settles", |b| {
+        b.iter(|| {
+            let mut system = System::new(Rig::new(setup));
+            let mut q = system.equations.straight(Vector3::zeros(), 0.0);
+            minimize(&mut system, 0.0, &mut q)
+        });
+    });
+}
+
+criterion_group!(benches, kernels, runs, settles);
+criterion_main!(benches);

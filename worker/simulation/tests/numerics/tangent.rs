@@ -1,0 +1,84 @@
+//! The tangent of a rig against differences of its forces.
+use crate::rope::*;
+use simulation::rig::{Drum, End, Rig, Setup};
+use simulation::system::{Equations, System};
+
+/// A disturbed, moving chain on a drum with a revolute base and a loaded free end:
+/// `mu M - gamma D - K` against central differences, coordinate by coordinate.
+#[test]
+fn tangent_is_the_derivative_of_the_forces() {
+    let setup = Setup {
+        gravity: V3::new(0.4, -9.81, 0.7),
+        ends: [
+            End::Held {
+                place: V3::zeros(),
+                angle: 0.2,
+                law: soft().bushing.revolute(),
+            },
+            End::Free {
+                force: V3::new(300.0, -700.0, 110.0),
+                twist: 0.4,
+                turn: -0.3,
+            },
+        ],
+        drum: Some(Drum {
+            center: [0.2, -1.9],
+            radius: 1.902,
+            law: optimised().contact,
+        }),
+        ..cantilever(8, soft().bushing)
+    };
+    let mut system = System::new(Rig::new(setup));
+    let n = 48;
+    let mut q = system.equations.straight(V3::zeros(), 0.0);
+    let mut v = vec![0.0; n];
+    for i in 0..n {
+        q[i] += 1e-3 * (12.9898 * i as f64).sin();
+        v[i] = 0.05 * (78.233 * i as f64).cos();
+    }
+    let mut force = vec![0.0; n];
+    for (mu, gamma) in [(0.0, 0.0), (1600.0, 40.0)] {
+        system.forces(0.0, &q, &v, &mut force);
+        assert!(
+            system
+                .equations
+                .state
+                .contact
+                .iter()
+                .filter(|&&f| f > 0.0)
+                .count()
+                > 2
+        );
+        let mut matrix = system.equations.matrix();
+        system
+            .equations
+            .tangent(0.0, (&q, &v), (mu, gamma), &mut matrix);
+        for i in 0..n {
+            let mut unit = vec![0.0; n];
+            unit[i] = 1.0;
+            let column = matrix.product(&unit);
+            let mut at = |h: f64| {
+                let (mut q, mut v, mut force) = (q.clone(), v.clone(), vec![0.0; n]);
+                q[i] += h;
+                v[i] += gamma * h;
+                system.forces(0.0, &q, &v, &mut force);
+                force
+            };
+            let h = 1e-7;
+            let (plus, minus) = (at(h), at(-h));
+            let mut inertia = vec![0.0; n];
+            system.equations.subtract_inertia(&q, &unit, &mut inertia);
+            let scale = column.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            for r in 0..n {
+                let numeric = -(plus[r] - minus[r]) / (2.0 * h) - mu * inertia[r];
+                // forces of 3e5 N are rounded to 1e-10 N, and divided by 2e-7
+                let error = (numeric - column[r]).abs();
+                assert!(
+                    error < 2e-6 * scale + 1e-3,
+                    "row {r} column {i}: {numeric} {}",
+                    column[r]
+                );
+            }
+        }
+    }
+}

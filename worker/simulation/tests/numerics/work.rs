@@ -1,0 +1,108 @@
+//! Work snapshots: what named runs cost, in counters that do not depend on the machine.
+//!
+//! Any change of method, tolerance, refactorisation policy or law shows here before it shows in
+//! seconds. To update: run the test, read in the message what a run cost before and now, decide
+//! that the change is wanted, and copy the new numbers here.
+use crate::rope::*;
+use simulation::integrator::tableau::{CATALOGUE, ESDIRK4, TR_BDF2};
+use simulation::model::Machine;
+use simulation::observe::Recorder;
+use simulation::reference;
+use simulation::rig::{End, Rig};
+use simulation::run::{RunSettings, simulate};
+use simulation::statistics::Statistics;
+use simulation::system::System;
+
+/// Steps, rejections by error and by Newton, Newton iterations, Jacobians, factorisations.
+fn counters(statistics: &Statistics) -> [u64; 6] {
+    let Statistics {
+        steps,
+        error_rejections,
+        newton_rejections,
+        newton_iterations,
+        jacobians,
+        factorizations,
+        ..
+    } = *statistics;
+    [
+        steps,
+        error_rejections,
+        newton_rejections,
+        newton_iterations,
+        jacobians,
+        factorizations,
+    ]
+}
+
+fn machine(method: &'static simulation::integrator::tableau::Tableau) -> Statistics {
+    let machine = Machine::new(reference::description(), 2).unwrap();
+    let settings = RunSettings {
+        method,
+        ..RunSettings::default()
+    };
+    let mut recorder = Recorder::gauges_only();
+    simulate(&machine, &reference::law(), &settings, &mut recorder).statistics
+}
+
+fn falling(law: simulation::element::bushing::Bushing, course: Course) -> Statistics {
+    let mut setup = cantilever(60, law);
+    setup.gravity = V3::new(0.0, -9.81, 0.0);
+    let mut system = System::new(Rig::new(setup));
+    let q = system.equations.straight(V3::zeros(), 0.0);
+    let v = vec![0.0; q.len()];
+    let mut state = started(&mut system, q, v);
+    advance(&mut system, &course, &mut state, 1.0, |_, _, _| {});
+    system.statistics
+}
+
+fn settling() -> Statistics {
+    let mut setup = cantilever(40, recommended().bushing);
+    setup.ends[1] = End::Free {
+        force: V3::new(0.0, -100.0, 0.0),
+        twist: 0.0,
+        turn: 0.0,
+    };
+    settled_straight(setup).0.statistics
+}
+
+#[test]
+fn named_runs_cost_what_they_did() {
+    assert_eq!(CATALOGUE.len(), 2, "a new method wants a run of its own");
+    let course = |method| Course {
+        method,
+        ..Course::accurate(1.0)
+    };
+    let runs = [
+        (
+            "reference machine, ESDIRK4",
+            machine(&ESDIRK4),
+            [346, 0, 58, 5272, 579, 579],
+        ),
+        (
+            "reference machine, TR-BDF2",
+            machine(&TR_BDF2),
+            [362, 11, 56, 2780, 419, 419],
+        ),
+        (
+            "optimised rope falls, ESDIRK4",
+            falling(optimised().bushing, course(&ESDIRK4)),
+            [102, 0, 0, 596, 10, 10],
+        ),
+        (
+            "soft rope falls, ESDIRK4",
+            falling(soft().bushing, course(&ESDIRK4)),
+            [111, 0, 11, 1960, 377, 377],
+        ),
+        (
+            "soft rope falls, TR-BDF2",
+            falling(soft().bushing, course(&TR_BDF2)),
+            [118, 0, 20, 1129, 212, 212],
+        ),
+        ("cantilever settles", settling(), [0, 0, 0, 40, 40, 40]),
+    ];
+    for (name, statistics, before) in runs {
+        let now = counters(&statistics);
+        eprintln!("{name} {now:?}");
+        assert_eq!(now, before, "{name}");
+    }
+}
