@@ -109,12 +109,14 @@ fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
 ///
 /// Its long cylinders on a stiff contact are harder than the real unit's (tests/machine closes to
 /// 1e-5): at the default tolerance Newton's method leaves 6e-7 m in joints of 3e8 N/m, and so 0.2 %
-/// of the work; the ledger closes as soon as the tolerance asks for it.
+/// of the work; the ledger closes as soon as the tolerance asks for it. (At a tenth of the default
+/// the defect was 4e-5 and 4e-4 in two builds that differ by rounding alone: which steps Newton's
+/// method accepts early is luck there, so only the order of magnitude is asserted.)
 #[test]
 fn ledger_of_the_reference_machine_closes() {
     let machine = Machine::new(reference::description(), 2).unwrap();
     for method in CATALOGUE {
-        for (tolerance, allowed) in [(1.0, 3e-3), (0.1, 1e-4), (0.01, 3e-5)] {
+        for (tolerance, allowed) in [(1.0, 3e-3), (0.1, 1e-3), (0.01, 3e-5)] {
             let settings = RunSettings {
                 method,
                 tolerance,

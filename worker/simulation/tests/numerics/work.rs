@@ -81,7 +81,7 @@ fn named_runs_cost_what_they_did() {
         (
             "reference machine, TR-BDF2",
             machine(&TR_BDF2),
-            [362, 11, 56, 2780, 419, 419],
+            [360, 13, 51, 2724, 402, 402],
         ),
         (
             "optimised rope falls, ESDIRK4",
