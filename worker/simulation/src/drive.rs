@@ -102,7 +102,10 @@ mod tests {
             );
         }
         let [turn, rate, _] = drive.turn(0.0);
-        assert!(turn == -1.0 && rate == 0.0);
+        assert_eq!(
+            [turn, rate].map(f64::to_bits),
+            [-1.0_f64, 0.0].map(f64::to_bits)
+        );
         assert!((drive.turn(drive.time_at(3.0))[0] - 3.0).abs() < 1e-14);
     }
 }

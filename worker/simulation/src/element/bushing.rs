@@ -17,13 +17,13 @@ type M3 = Matrix3<f64>;
 /// Coefficients of a transversely isotropic bushing, SI, angles in radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bushing {
-    /// Axial and shear stiffness K_11, K_22 = K_33 [N/m].
+    /// Axial and shear stiffness `K_11`, `K_22` = `K_33` [N/m].
     pub stiffness: [f64; 2],
-    /// Axial and shear damping C_11, C_22 = C_33 [N s/m].
+    /// Axial and shear damping `C_11`, `C_22` = `C_33` [N s/m].
     pub damping: [f64; 2],
-    /// Torsional and bending stiffness K_44, K_55 = K_66 [N m/rad].
+    /// Torsional and bending stiffness `K_44`, `K_55` = `K_66` [N m/rad].
     pub rotational_stiffness: [f64; 2],
-    /// Torsional and bending damping C_44, C_55 = C_66 [N m s/rad].
+    /// Torsional and bending damping `C_44`, `C_55` = `C_66` [N m s/rad].
     pub rotational_damping: [f64; 2],
 }
 
@@ -117,7 +117,10 @@ impl Bushing {
     }
 
     fn turns(&self) -> bool {
-        self.rotational_stiffness != [0.0; 2] || self.rotational_damping != [0.0; 2]
+        self.rotational_stiffness
+            .iter()
+            .chain(&self.rotational_damping)
+            .any(|x| x.abs() > 0.0)
     }
 
     fn deformation(&self, i: &Marker, j: &Marker) -> Deformation {

@@ -13,7 +13,7 @@ pub struct Impact {
     pub exponent: f64,
     /// Largest damping C [N s/m].
     pub damping: f64,
-    /// Penetration at which the damping is fully there, d_max \[m\].
+    /// Penetration at which the damping is fully there, `d_max` \[m\].
     pub full_damping_penetration: f64,
 }
 

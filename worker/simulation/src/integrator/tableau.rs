@@ -24,7 +24,7 @@ const GAMMA: f64 = 2.0 - std::f64::consts::SQRT_2;
 const W: f64 = 0.25 * std::f64::consts::SQRT_2;
 
 /// TR-BDF2: trapezoidal to `t + (2 - sqrt 2) h`, then BDF2; L-stable, second order, third-order
-/// estimate. \[HoseaShampine1996\].
+/// estimate. `[HoseaShampine1996]`.
 pub static TR_BDF2: Tableau = Tableau {
     name: "tr-bdf2",
     order: 2,
@@ -36,7 +36,7 @@ pub static TR_BDF2: Tableau = Tableau {
 };
 
 /// The implicit part of ARK4(3)6L\[2\]SA: L-stable, fourth order, third-order estimate.
-/// \[KennedyCarpenter2003\].
+/// `[KennedyCarpenter2003]`.
 pub static ESDIRK4: Tableau = Tableau {
     name: "esdirk4",
     order: 4,

@@ -235,9 +235,9 @@ mod tests {
                 let mut g = g;
                 let mut theta = theta;
                 if k < 2 {
-                    g[k] += h
+                    g[k] += h;
                 } else {
-                    theta += h
+                    theta += h;
                 }
                 at(g, theta).0
             };

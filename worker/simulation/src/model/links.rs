@@ -11,6 +11,10 @@ use nalgebra::{Matrix3, Vector3};
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
 
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
 impl Machine {
     /// The arc that a chain wraps.
     pub(crate) const fn arc(&self, chain: usize) -> &Arc {

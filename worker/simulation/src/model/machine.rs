@@ -67,6 +67,10 @@ pub enum InvalidDescription {
     Mechanism(#[from] DoesNotClose),
 }
 
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
 impl Machine {
     /// Checks a description and derives the constants.
     ///

@@ -14,6 +14,10 @@ use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
 
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
 impl Machine {
     /// Fills `matrix` with `mu M - gamma D - K` at a state whose loads and poses are in `scratch`.
     pub fn tangent(

@@ -23,7 +23,7 @@ struct Point {
     /// Derivative of the force by the penetration's rate.
     by_rate: f64,
     /// Derivative of the force by the point and by the border's coordinates.
-    by_point: V2,
+    by_place: V2,
     border: [BorderColumn; MAX_MODES + 1],
 }
 
@@ -79,7 +79,7 @@ impl Chain {
                     along,
                     force: share * at.force,
                     by_rate,
-                    by_point: V2::zeros(),
+                    by_place: V2::zeros(),
                     border: [BorderColumn::default(); MAX_MODES + 1],
                 };
                 point.differentiate(surface, &velocity, stiff, &shape[..modes]);
@@ -119,7 +119,7 @@ impl Point {
         let beam_gradient_rate = self.curvature.mixed.dot(velocity)
             + self.curvature.beam * beam_rate
             + angle_by_beam * drift;
-        self.by_point = self.touch.by_point * stiff + point_rate * self.by_rate;
+        self.by_place = self.touch.by_point * stiff + point_rate * self.by_rate;
         self.border[0] = BorderColumn {
             gradient: self.touch.by_beam,
             force_by: self.touch.by_beam * stiff + beam_gradient_rate * self.by_rate,
@@ -140,7 +140,7 @@ impl Point {
 
     fn add_cylinder(&self, block: &mut Block, pose: &Pose) {
         let gradient = self.touch.by_point;
-        let core = gradient * self.by_point.transpose() + self.curvature.point * self.force;
+        let core = gradient * self.by_place.transpose() + self.curvature.point * self.force;
         let (arms, turning) = (self.arms(pose), self.turning(pose));
         let bends = pose.axis_by_twice();
         for r in 0..2 {
@@ -170,7 +170,7 @@ impl Point {
         let border = &self.border[..=modes];
         for (k, of) in border.iter().enumerate() {
             let column = self.touch.by_point * of.force_by + of.mixed * self.force;
-            let row = self.by_point * of.gradient + of.mixed * self.force;
+            let row = self.by_place * of.gradient + of.mixed * self.force;
             for r in 0..2 {
                 matrix.add_right(block, r, k, column[r]);
                 matrix.add_bottom(block, k, r, row[r]);
