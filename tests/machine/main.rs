@@ -100,8 +100,9 @@ fn kinematics_agree_with_the_table_to_its_last_digit() {
     }
     eprintln!("beam, stroke, arm: {worst:?}; bottom dead centre {offset:.1e} deg");
     assert!(worst[0] < 8e-6, "beam {} deg", worst[0]);
-    assert!(worst[1] < 6e-7, "stroke {} m", worst[1]);
-    assert!(worst[2] < 6e-7, "arm {} m", worst[2]);
+    // 5e-7 m, and 0.48 times the first pin angle's 5e-6 deg on an arm of 3.6 m
+    assert!(worst[1] < 6.6e-7, "stroke {} m", worst[1]);
+    assert!(worst[2] < 6.6e-7, "arm {} m", worst[2]);
     assert!(offset.abs() < 1e-5, "bottom dead centre {offset} deg");
 }
 
