@@ -1,9 +1,5 @@
 //! What the kernels and whole runs cost on the machine of the moment: advice, not a gate (the work
 //! snapshots of tests/numerics are the gate).
-#![expect(
-    missing_docs,
-    reason = "criterion's macros make undocumented functions"
-)]
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use simulation::drive::Drive;

@@ -105,31 +105,42 @@ fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
     }
 }
 
+/// Defect of the reference machine's ledger over the crank's work in one revolution.
+fn machine_defect(method: &'static Tableau, tolerance: f64, stiffer: f64) -> f64 {
+    let machine = Machine::new(reference::description(), 2).unwrap();
+    let settings = RunSettings {
+        method,
+        tolerance,
+        budget: 10_000_000,
+        ..RunSettings::default()
+    };
+    let mut law = reference::law();
+    law.bushing.stiffness[0] *= 1.0 + stiffer;
+    let run = simulate(&machine, &law, &settings, &mut Recorder::gauges_only());
+    assert_eq!(run.verdict, Verdict::Complete);
+    let gained = run.work.input - run.work.output - run.work.dissipated;
+    (run.stored - gained).abs() / run.work.input
+}
+
 /// The reference machine over one revolution: crank work in, load work out, losses, stored energy.
 ///
-/// Its long cylinders on a stiff contact are harder than the real unit's (tests/machine closes to
-/// 1e-5): at the default tolerance Newton's method leaves 6e-7 m in joints of 3e8 N/m, and so 0.2 %
-/// of the work; the ledger closes as soon as the tolerance asks for it. (At a tenth of the default
-/// the defect was 4e-5 and 4e-4 in two builds that differ by rounding alone: which steps Newton's
-/// method accepts early is luck there, so only the order of magnitude is asserted.)
+/// Its long cylinders chatter on a stiff contact (the real unit's do not: tests/machine closes to
+/// 1e-5), so a rope stiffer by 1e-9 moves the defect by a factor of ten; the median of five such
+/// ropes is judged. At the default tolerance Newton's method leaves 6e-7 m in joints of 8e8 N/m and
+/// so 0.2 % of the work; with the tolerance the ledger closes to rounding.
 #[test]
-fn ledger_of_the_reference_machine_closes() {
-    let machine = Machine::new(reference::description(), 2).unwrap();
+fn ledger_of_the_reference_machine_closes_with_the_tolerance() {
     for method in CATALOGUE {
-        for (tolerance, allowed) in [(1.0, 3e-3), (0.1, 1e-3), (0.01, 3e-5)] {
-            let settings = RunSettings {
-                method,
-                tolerance,
-                budget: 10_000_000,
-                ..RunSettings::default()
-            };
-            let mut recorder = Recorder::gauges_only();
-            let run = simulate(&machine, &reference::law(), &settings, &mut recorder);
-            assert_eq!(run.verdict, Verdict::Complete);
-            let gained = run.work.input - run.work.output - run.work.dissipated;
-            let defect = (run.stored - gained).abs() / run.work.input;
-            eprintln!("machine {} {tolerance}: {defect:.2e}", method.name);
-            assert!(defect < allowed, "{} {tolerance}: {defect}", method.name);
+        for (tolerance, allowed) in [(1.0, 3e-3), (0.1, 1e-3), (0.01, 3e-5), (0.001, 2e-6)] {
+            let mut defects =
+                [0.0, 1e-9, 2e-9, 3e-9, 4e-9].map(|x| machine_defect(method, tolerance, x));
+            defects.sort_by(f64::total_cmp);
+            eprintln!("machine {} {tolerance}: {defects:?}", method.name);
+            assert!(
+                defects[2] < allowed,
+                "{} {tolerance}: {defects:?}",
+                method.name
+            );
         }
     }
 }

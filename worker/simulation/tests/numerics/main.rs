@@ -2,6 +2,13 @@
 //!
 //! Expected values come from closed forms, from other programs' results or from conservation laws,
 //! never through the code under test.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    clippy::print_stderr,
+    clippy::disallowed_methods,
+    reason = "helpers of tests; what was measured is printed; closed forms use the C library's functions"
+)]
 mod bounce;
 mod determinism;
 mod energy;

@@ -38,7 +38,7 @@ fn cantilever_bends_twists_and_stretches_as_in_exudyn() {
         let force = if turning { V3::zeros() } else { load };
         let [twist, turn] = if turning { [load.x, load.z] } else { [0.0; 2] };
         setup.ends[1] = End::Free { force, twist, turn };
-        let (system, q) = settled_straight(setup);
+        let (system, q) = settled_straight(&setup);
         let tip = system.equations.outer_end(39);
         let last = &q[39 * 6..];
         let found = match case {
@@ -83,7 +83,7 @@ fn strongly_bent_cantilever_has_exudyns_shape() {
             twist: 0.0,
             turn: 0.0,
         };
-        let (system, _) = settled_straight(setup);
+        let (system, _) = settled_straight(&setup);
         let shape = table(text);
         let bend = shape[39][2].abs();
         for (j, row) in shape.iter().enumerate() {
@@ -229,7 +229,7 @@ fn rope_on_a_drum_has_the_references_forces() {
     ];
     for (name, law, pull, text) in cases {
         let (system, q) = settled(
-            drum_setup(&law, pull),
+            &drum_setup(&law, pull),
             laid_on_drum(60, 0.5 * std::f64::consts::PI),
         );
         let state = &system.equations.state;

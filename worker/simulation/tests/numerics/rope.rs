@@ -104,8 +104,8 @@ pub(crate) fn cantilever(count: usize, law: Bushing) -> Setup {
 }
 
 /// Static equilibrium from coordinates `q` on.
-pub(crate) fn settled(setup: Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) {
-    let mut system = System::new(Rig::new(setup));
+pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) {
+    let mut system = System::new(Rig::new(*setup));
     assert!(minimize(&mut system, 0.0, &mut q), "no equilibrium");
     let mut force = vec![0.0; q.len()];
     let still = vec![0.0; q.len()];
@@ -114,8 +114,8 @@ pub(crate) fn settled(setup: Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) 
 }
 
 /// Static equilibrium from a straight chain along +x.
-pub(crate) fn settled_straight(setup: Setup) -> (System<Rig>, Vec<f64>) {
-    let q = Rig::new(setup).straight(V3::zeros(), 0.0);
+pub(crate) fn settled_straight(setup: &Setup) -> (System<Rig>, Vec<f64>) {
+    let q = Rig::new(*setup).straight(V3::zeros(), 0.0);
     settled(setup, q)
 }
 

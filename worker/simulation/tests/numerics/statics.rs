@@ -37,7 +37,7 @@ fn hanging_string_is_a_catenary() {
             ]
         })
         .collect();
-    let (system, q) = settled(setup, q);
+    let (system, q) = settled(&setup, q);
 
     // the string stretches by the mean of its tension, w sqrt(a^2 + s^2): 2e-4 of its length
     let weight = setup.chain.mass * 9.81 / 0.05;
@@ -108,7 +108,7 @@ fn wrapped_rope_presses_with_tension_over_radius() {
             ..cantilever(100, law.bushing)
         };
         let (system, q) = settled(
-            setup,
+            &setup,
             crate::reference::laid_on_drum(100, std::f64::consts::PI),
         );
         let state = &system.equations.state;

@@ -29,10 +29,14 @@ fn modes(system: &mut System<Rig>, q: &[f64], count: usize, along: usize) -> Vec
             system.solve(&mut next);
             for (_, shape) in &found {
                 let part = dot(&mass(&next), shape);
-                next.iter_mut().zip(shape).for_each(|(x, s)| *x -= part * s);
+                for (x, s) in next.iter_mut().zip(shape) {
+                    *x -= part * s;
+                }
             }
             let size = dot(&mass(&next), &next).sqrt();
-            next.iter_mut().for_each(|x| *x /= size);
+            for x in &mut next {
+                *x /= size;
+            }
             square = 1.0 / size;
             x = next;
         }
@@ -59,10 +63,10 @@ fn hanging(count: usize) -> (System<Rig>, Vec<f64>) {
     };
     setup.chain = simulation::model::chain::Chain::solid(0, count, 0.01, pitch, 7850.0);
     let q = Rig::new(setup).straight(V3::zeros(), -0.5 * PI);
-    settled(setup, q)
+    settled(&setup, q)
 }
 
-/// A hanging rope swings with `w_n = j_n / 2 sqrt(g / L)`, `j_n` the zeros of Bessel's J_0; cutting
+/// A hanging rope swings with `w_n = j_n / 2 sqrt(g / L)`, `j_n` the zeros of Bessel's `J_0`; cutting
 /// the rope into twice as many cylinders divides the error by four.
 #[test]
 fn hanging_rope_swings_at_the_bessel_zeros() {
@@ -137,7 +141,7 @@ fn taut_string_sounds_its_harmonics() {
         ends: [pin(0.0), pin(length)],
         ..cantilever(count, law)
     };
-    let (mut system, q) = settled_straight(setup);
+    let (mut system, q) = settled_straight(&setup);
     assert!((system.equations.state.tension(40) / tension - 1.0).abs() < 1e-9);
     let per_length = setup.chain.mass * count as f64 / length;
     for (n, (w, _)) in modes(&mut system, &q, 5, 1).iter().enumerate() {

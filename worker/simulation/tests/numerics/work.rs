@@ -62,7 +62,7 @@ fn settling() -> Statistics {
         twist: 0.0,
         turn: 0.0,
     };
-    settled_straight(setup).0.statistics
+    settled_straight(&setup).0.statistics
 }
 
 #[test]
