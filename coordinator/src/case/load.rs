@@ -11,6 +11,7 @@ use super::{
     schema::{CaseFile, ConditionEntry, ObjectiveEntry},
 };
 use protocol::case::{Case, Condition, ModalHead, Objective};
+use protocol::job::HeadGauge;
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -53,6 +54,10 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
     let file: CaseFile = document.parse()?;
     let envelope = machine::check(&document, &file)?;
     let modal_head = flexible_head(folder, &document, &file)?;
+    if let Some(stale) = modal_head.stale {
+        return Err(stale);
+    }
+    let modal_head = modal_head.head;
     machine::check_arc(&document, &file, &modal_head.arc_deg, &envelope)?;
     check_names(&document, &file.conditions)?;
     let objective = objective(&document, &file.objective, &file.conditions)?;
@@ -97,27 +102,45 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
     })
 }
 
+/// The flexible head as its files have it.
+struct ReadHead {
+    head: ModalHead,
+    provenance: head::Provenance,
+    mesh: Option<(PathBuf, mesh::Mesh, String)>,
+    /// The tables were computed from another mesh.
+    stale: Option<CaseError>,
+}
+
 /// Modes, influence lines and, where there is one, the mesh they belong to.
 fn flexible_head(
     folder: &Path,
     document: &Document,
     file: &CaseFile,
-) -> Result<ModalHead, CaseError> {
+) -> Result<ReadHead, CaseError> {
     let flexible = &file.flexible_head;
     let modes_file = folder.join(&flexible.modes_file);
-    let mut head = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
+    let (mut head, provenance) =
+        head::read(&modes_file, &folder.join(&flexible.influence_file))?;
     head.weight_axes = flexible.weight_axes;
+    head.stress = flexible.stress;
+    let mut read = ReadHead {
+        head,
+        provenance,
+        mesh: None,
+        stale: None,
+    };
     if let Some(name) = &flexible.mesh_file {
         let path = folder.join(name);
-        let mesh = mesh::read(&path)?;
-        mesh::check_mass(
-            &path,
-            &mesh,
-            flexible.density_kg_m3,
-            (&modes_file, head.mass_kg),
-        )?;
+        let (mesh, hash) = mesh::read_hashed(&path)?;
+        read.stale = mesh::check_hash(&path, &hash, &read.provenance, &modes_file).err();
+        // what belongs to another mesh has another mass: the hash says it better
+        if read.stale.is_none() {
+            let mass = (modes_file.as_path(), read.head.mass_kg);
+            mesh::check_mass(&path, &mesh, flexible.density_kg_m3, mass)?;
+        }
+        read.mesh = Some((path, mesh, hash));
     }
-    let available = head.frequencies_hz.len();
+    let available = read.head.frequencies_hz.len();
     if file.run.modes > available {
         return Err(document.field(
             &[Step::Key("run"), Step::Key("modes")],
@@ -129,7 +152,72 @@ fn flexible_head(
             "take fewer modes, or reduce the head with more",
         ));
     }
-    Ok(head)
+    Ok(read)
+}
+
+/// What a reduction of the back head starts from, and where its tables are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadSource {
+    /// The mesh.
+    pub mesh: mesh::Mesh,
+    /// Content hash of its file, in hexadecimal digits.
+    pub mesh_blake3: String,
+    /// Young's modulus \[Pa\].
+    pub young_pa: f64,
+    /// Poisson's ratio \[1\].
+    pub poisson: f64,
+    /// Density [kg/m3].
+    pub density_kg_m3: f64,
+    /// Where stress is read.
+    pub gauges: [HeadGauge; 4],
+    /// Modes and influence lines as they are now.
+    pub tables: ModalHead,
+    /// Whether they were computed from another mesh.
+    pub stale: bool,
+    /// The file of the modes.
+    pub modes_file: PathBuf,
+    /// The file of the influence lines.
+    pub influence_file: PathBuf,
+}
+
+/// Reads what the back head of a case is reduced from. Tables of another mesh are no error here.
+///
+/// # Errors
+/// As [`load`] for the head's files; a case without mesh or gauge places.
+pub fn load_head(folder: &Path) -> Result<HeadSource, CaseError> {
+    let document = Document::read(&folder.join("case.toml"), "the description of the case")?;
+    let file: CaseFile = document.parse()?;
+    machine::check(&document, &file)?;
+    let read = flexible_head(folder, &document, &file)?;
+    let flexible = &file.flexible_head;
+    let Some((_, mesh, mesh_blake3)) = read.mesh else {
+        return Err(document.field(
+            &[Step::Key("flexible_head")],
+            "without mesh_file",
+            "the mesh to reduce",
+            "add mesh_file = \"FILE.msh\" (Gmsh 4.1)",
+        ));
+    };
+    let modes_file = folder.join(&flexible.modes_file);
+    let Some(gauges) = read.provenance.gauges else {
+        return Err(damaged(
+            &modes_file,
+            "`gauges` does not place the gauges 1 to 4",
+            "add \"gauges\": {\"1\": {\"x_m\": .., \"y_m\": .., \"z_m\": .., \"length_m\": ..}, ..}",
+        ));
+    };
+    Ok(HeadSource {
+        mesh,
+        mesh_blake3,
+        young_pa: flexible.young_gpa * 1e9,
+        poisson: flexible.poisson,
+        density_kg_m3: flexible.density_kg_m3,
+        gauges,
+        tables: read.head,
+        stale: read.stale.is_some(),
+        influence_file: folder.join(&flexible.influence_file),
+        modes_file,
+    })
 }
 
 /// Where conditions come from.

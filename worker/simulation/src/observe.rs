@@ -3,7 +3,7 @@ use crate::drive::DriveState;
 use crate::integrator::State;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
-use crate::model::{Instant, Machine};
+use crate::model::{Instant, Machine, description::StressRecovery};
 use crate::run::Observe;
 use crate::system::System;
 
@@ -12,7 +12,30 @@ use crate::system::System;
 /// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
 /// the base acceleration, plus what the modes move beyond their own static answer,
 /// `sum_k s_k (q_k - f_k / w_k^2)`. So a truncated set of modes costs no static accuracy.
+///
+/// Mode displacement: `sum_k s_k q_k` alone. The strain beside a pin is local, and six modes miss
+/// much of it; it is here to compare with programs that recover stress so.
 pub fn gauge_stress(system: &System<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
+    match system.machine.description.head.recovery {
+        StressRecovery::ModeAcceleration => mode_acceleration(system, at, state),
+        StressRecovery::ModeDisplacement => mode_displacement(system.machine, state),
+    }
+}
+
+fn mode_displacement(machine: &Machine, state: &State) -> [f64; 4] {
+    let mut stress = [0.0; 4];
+    for (k, row) in machine.description.head.gauge_stress[..machine.layout.modes]
+        .iter()
+        .enumerate()
+    {
+        for (stress, per_unit) in stress.iter_mut().zip(row) {
+            *stress += state.q[machine.layout.mode(k)] * per_unit;
+        }
+    }
+    stress
+}
+
+fn mode_acceleration(system: &System<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
     let machine = system.machine;
     let head = &machine.description.head;
     let layout = machine.layout;

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 
 /// Which displacements are unknown, and their numbers.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Unknowns {
+pub(super) struct Unknowns {
     /// Number of each node's displacements in x, y, z; none where it is held.
     numbers: Vec<[Option<usize>; 3]>,
     count: usize,
@@ -24,7 +24,7 @@ pub struct Unknowns {
 
 impl Unknowns {
     /// Numbers every displacement of `nodes` nodes for which `free(node, axis)` holds.
-    pub fn new(nodes: usize, free: impl Fn(usize, usize) -> bool) -> Self {
+    pub(super) fn new(nodes: usize, free: impl Fn(usize, usize) -> bool) -> Self {
         let mut count = 0;
         let numbers = (0..nodes)
             .map(|node| {
@@ -40,22 +40,17 @@ impl Unknowns {
     }
 
     /// How many there are.
-    pub const fn len(&self) -> usize {
+    pub(super) const fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether everything is held.
-    pub const fn is_empty(&self) -> bool {
-        self.count == 0
-    }
-
     /// The number of a node's displacement; none where it is held.
-    pub fn number(&self, node: usize, axis: usize) -> Option<usize> {
+    pub(super) fn number(&self, node: usize, axis: usize) -> Option<usize> {
         self.numbers[node][axis]
     }
 
     /// A vector of unknowns as displacements of all nodes, zero where held.
-    pub fn spread(&self, vector: &[f64]) -> Vec<[f64; 3]> {
+    pub(super) fn spread(&self, vector: &[f64]) -> Vec<[f64; 3]> {
         let value = |number: &Option<usize>| number.map_or(0.0, |number| vector[number]);
         self.numbers
             .iter()
@@ -64,7 +59,7 @@ impl Unknowns {
     }
 
     /// The unknown ones of a field over all nodes.
-    pub fn gather(&self, field: &[[f64; 3]]) -> Vec<f64> {
+    pub(super) fn gather(&self, field: &[[f64; 3]]) -> Vec<f64> {
         let pairs = self.numbers.iter().flatten().zip(field.iter().flatten());
         pairs
             .filter(|(number, _)| number.is_some())
@@ -75,7 +70,7 @@ impl Unknowns {
 
 /// A sparse symmetric matrix: the lower triangle, column by column, rows ascending.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Symmetric {
+pub(super) struct Symmetric {
     starts: Vec<usize>,
     rows: Vec<usize>,
     values: Vec<f64>,
@@ -83,22 +78,13 @@ pub struct Symmetric {
 
 impl Symmetric {
     /// Order.
-    pub const fn len(&self) -> usize {
+    pub(super) const fn len(&self) -> usize {
         self.starts.len() - 1
     }
 
-    /// Whether it has no rows.
-    pub const fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
-
-    /// Entries kept.
-    pub const fn entries(&self) -> usize {
-        self.rows.len()
-    }
 
     /// `self * vector`.
-    pub fn times(&self, vector: &[f64]) -> Vec<f64> {
+    pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; vector.len()];
         for column in 0..self.len() {
             let mut sum = 0.0;
@@ -124,11 +110,11 @@ impl Symmetric {
 
 /// Stiffness [N/m] and mass \[kg\] over the unknowns.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Assembly {
+pub(super) struct Assembly {
     /// Stiffness.
-    pub stiffness: Symmetric,
+    pub(super) stiffness: Symmetric,
     /// Consistent mass.
-    pub mass: Symmetric,
+    pub(super) mass: Symmetric,
 }
 
 impl Assembly {
@@ -136,7 +122,11 @@ impl Assembly {
     ///
     /// # Errors
     /// [`ReductionError::InsideOut`] naming the element.
-    pub fn new(mesh: &Mesh, steel: &Steel, unknowns: &Unknowns) -> Result<Self, ReductionError> {
+    pub(super) fn new(
+        mesh: &Mesh,
+        steel: &Steel,
+        unknowns: &Unknowns,
+    ) -> Result<Self, ReductionError> {
         let mut stiffness = pattern(mesh, unknowns);
         let mut mass = stiffness.clone();
         for (element, nodes) in mesh.hexahedra.iter().enumerate() {
@@ -195,7 +185,7 @@ fn pattern(mesh: &Mesh, unknowns: &Unknowns) -> Symmetric {
 
 /// Cholesky factor of a positive definite matrix.
 #[derive(Debug)]
-pub struct Factor {
+pub(super) struct Factor {
     factor: Llt<usize, f64>,
     order: usize,
 }
@@ -205,15 +195,10 @@ impl Factor {
     ///
     /// # Errors
     /// [`ReductionError::NotHeld`] if the matrix is not positive definite.
-    pub fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
+    pub(super) fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
         let order = matrix.len();
-        let symbolic = SymbolicSparseColMatRef::new_checked(
-            order,
-            order,
-            &matrix.starts,
-            None,
-            &matrix.rows,
-        );
+        let symbolic =
+            SymbolicSparseColMatRef::new_checked(order, order, &matrix.starts, None, &matrix.rows);
         let plan = SymbolicLlt::try_new(symbolic, Side::Lower)
             .map_err(|_| ReductionError::TooLarge { unknowns: order })?;
         let values = SparseColMatRef::new(symbolic, &matrix.values[..]);
@@ -223,7 +208,7 @@ impl Factor {
     }
 
     /// Overwrites a right-hand side by its solution.
-    pub fn solve(&self, vector: &mut [f64]) {
+    pub(super) fn solve(&self, vector: &mut [f64]) {
         let order = self.order;
         self.factor
             .solve_in_place(MatMut::from_column_major_slice_mut(vector, order, 1));

@@ -16,20 +16,20 @@ const LOOK_EVERY: usize = 8;
 
 /// Modes in ascending order.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Modes {
+pub(super) struct Modes {
     /// Squared angular frequencies [rad2/s2]; n.
-    pub eigenvalues: Vec<f64>,
+    pub(super) eigenvalues: Vec<f64>,
     /// Shapes with unit modal mass, over the unknowns; n.
-    pub shapes: Vec<Vec<f64>>,
+    pub(super) shapes: Vec<Vec<f64>>,
     /// Solves that it took.
-    pub steps: usize,
+    pub(super) steps: usize,
 }
 
 /// Finds the `count` lowest modes.
 ///
 /// # Errors
 /// [`ReductionError::Modes`] if the body has fewer, or if they do not converge.
-pub fn lowest(
+pub(super) fn lowest(
     assembly: &Assembly,
     factor: &Factor,
     count: usize,
@@ -161,6 +161,6 @@ impl Space {
 }
 
 /// Inner product, summed in order.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }

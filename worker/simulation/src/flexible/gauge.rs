@@ -28,7 +28,7 @@ impl Gauge {
     ///
     /// # Errors
     /// [`ReductionError::Gauge`], with `number`, if an end is not on the steel.
-    pub fn row(
+    pub(super) fn row(
         &self,
         mesh: &Mesh,
         young: f64,

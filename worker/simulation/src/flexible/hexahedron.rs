@@ -8,11 +8,11 @@
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Displacements of one element, node by node.
-pub const DOFS: usize = 24;
+pub(super) const DOFS: usize = 24;
 /// Amplitudes of the incompatible modes.
 const INNER: usize = 9;
 /// Stiffness of one element [N/m]; rows and columns node by node, x y z.
-pub type Stiffness = SMatrix<f64, DOFS, DOFS>;
+pub(super) type Stiffness = SMatrix<f64, DOFS, DOFS>;
 
 /// Isotropic, linear elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Steel {
 }
 
 /// Corners of the reference cube, in Gmsh's order of nodes.
-pub const CORNERS: [[f64; 3]; 8] = [
+pub(super) const CORNERS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -49,7 +49,7 @@ pub const CORNERS: [[f64; 3]; 8] = [
 ];
 
 /// Shape functions at a point of the reference cube.
-pub fn shape(point: &[f64; 3]) -> [f64; 8] {
+pub(super) fn shape(point: &[f64; 3]) -> [f64; 8] {
     CORNERS.map(|corner| {
         0.125
             * (1.0 + corner[0] * point[0])
@@ -59,7 +59,7 @@ pub fn shape(point: &[f64; 3]) -> [f64; 8] {
 }
 
 /// Their slopes in the reference cube.
-pub fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
+pub(super) fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
     CORNERS.map(|[a, b, c]| {
         let [r, s, t] = [1.0 + a * point[0], 1.0 + b * point[1], 1.0 + c * point[2]];
         Vector3::new(a * s * t, b * r * t, c * r * s) * 0.125
@@ -67,7 +67,7 @@ pub fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
 }
 
 /// `d x_column / d xi_row` at a point.
-pub fn jacobian(nodes: &[[f64; 3]; 8], point: &[f64; 3]) -> Matrix3<f64> {
+pub(super) fn jacobian(nodes: &[[f64; 3]; 8], point: &[f64; 3]) -> Matrix3<f64> {
     let mut jacobian = Matrix3::zeros();
     for (slope, node) in slopes(point).iter().zip(nodes) {
         jacobian += slope * Vector3::from(*node).transpose();
@@ -77,17 +77,17 @@ pub fn jacobian(nodes: &[[f64; 3]; 8], point: &[f64; 3]) -> Matrix3<f64> {
 
 /// An element whose volume vanishes or is negative somewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct InsideOut;
+pub(super) struct InsideOut;
 
 /// One element with its nodes in place.
 #[derive(Clone, Copy, Debug)]
-pub struct Hexahedron {
+pub(super) struct Hexahedron {
     nodes: [[f64; 3]; 8],
 }
 
 impl Hexahedron {
     /// An element by its nodes \[m\], in Gmsh's order.
-    pub const fn new(nodes: [[f64; 3]; 8]) -> Self {
+    pub(super) const fn new(nodes: [[f64; 3]; 8]) -> Self {
         Self { nodes }
     }
 
@@ -101,7 +101,7 @@ impl Hexahedron {
     ///
     /// # Errors
     /// [`InsideOut`] if the Jacobian is not positive at an integration point or the centre.
-    pub fn stiffness(&self, steel: &Steel) -> Result<Stiffness, InsideOut> {
+    pub(super) fn stiffness(&self, steel: &Steel) -> Result<Stiffness, InsideOut> {
         const ALL: usize = DOFS + INNER;
         let lame = steel.lame();
         let center = jacobian(&self.nodes, &[0.0; 3]);
@@ -135,7 +135,7 @@ impl Hexahedron {
     ///
     /// # Errors
     /// [`InsideOut`] if the Jacobian is not positive at an integration point.
-    pub fn mass(&self, steel: &Steel) -> Result<[[f64; 8]; 8], InsideOut> {
+    pub(super) fn mass(&self, steel: &Steel) -> Result<[[f64; 8]; 8], InsideOut> {
         let mut mass = [[0.0; 8]; 8];
         for point in Self::gauss() {
             let volume = jacobian(&self.nodes, &point).determinant();
@@ -154,7 +154,7 @@ impl Hexahedron {
 
     /// Stress at the centre \[Pa\]: xx, yy, zz, xy, yz, zx. The incompatible modes have no slope
     /// there.
-    pub fn center_stress(&self, steel: &Steel, displacement: &[[f64; 3]; 8]) -> [f64; 6] {
+    pub(super) fn center_stress(&self, steel: &Steel, displacement: &[[f64; 3]; 8]) -> [f64; 6] {
         let (first, shear) = steel.lame();
         let Some(inverse) = jacobian(&self.nodes, &[0.0; 3]).try_inverse() else {
             return [0.0; 6];

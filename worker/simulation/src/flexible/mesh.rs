@@ -27,7 +27,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`ReductionError::Mesh`] saying what is missing.
-    pub fn check(&self) -> Result<(), ReductionError> {
+    pub(super) fn check(&self) -> Result<(), ReductionError> {
         let count = self.nodes.len();
         let inside = |node: &usize| *node < count;
         let wrong = |what| Err(ReductionError::Mesh { what });
@@ -47,20 +47,20 @@ impl Mesh {
     }
 
     /// Positions of an element's nodes.
-    pub fn corners(&self, element: &[usize; 8]) -> [[f64; 3]; 8] {
+    pub(super) fn corners(&self, element: &[usize; 8]) -> [[f64; 3]; 8] {
         element.map(|node| self.nodes[node])
     }
 }
 
 /// The half of a mesh with z >= 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Half {
+pub(super) struct Half {
     /// The half.
-    pub mesh: Mesh,
+    pub(super) mesh: Mesh,
     /// Whether a node of the half lies on the plane.
-    pub on_plane: Vec<bool>,
+    pub(super) on_plane: Vec<bool>,
     /// For every node of the whole mesh its node of the half, and whether it is an image.
-    pub source: Vec<(usize, bool)>,
+    pub(super) source: Vec<(usize, bool)>,
 }
 
 impl Half {
@@ -69,7 +69,7 @@ impl Half {
     /// # Errors
     /// [`ReductionError::Mesh`] as [`Mesh::check`] does; [`ReductionError::NotMirrored`] if the
     /// mesh is not its own mirror image.
-    pub fn new(whole: &Mesh) -> Result<Self, ReductionError> {
+    pub(super) fn new(whole: &Mesh) -> Result<Self, ReductionError> {
         whole.check()?;
         let here = |node: &usize| whole.nodes[*node][2] > -TOLERANCE;
         let kept: Vec<usize> = (0..whole.nodes.len()).filter(here).collect();
@@ -144,7 +144,7 @@ impl Half {
     }
 
     /// A displacement field of the whole mesh from that of its half.
-    pub fn unfold(&self, half: &[[f64; 3]], image: [f64; 3]) -> Vec<[f64; 3]> {
+    pub(super) fn unfold(&self, half: &[[f64; 3]], image: [f64; 3]) -> Vec<[f64; 3]> {
         let unfolded = |&(node, is_image): &(usize, bool)| {
             let [x, y, z] = half[node];
             if is_image {

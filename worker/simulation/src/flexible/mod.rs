@@ -4,11 +4,11 @@
 //! head: natural modes seen along the rope arc, gauge stress, inertial coupling, exact statics.
 //! Plain numbers in SI units come in and go out; nothing here knows of files or of the machine.
 mod arc;
-pub mod assembly;
-pub mod eigen;
+mod assembly;
+mod eigen;
 mod error;
 mod gauge;
-pub mod hexahedron;
+mod hexahedron;
 mod mesh;
 mod reduction;
 #[cfg(test)]

@@ -188,11 +188,7 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(
-        request: &Request<'_>,
-        half: &'a Half,
-        family: Family,
-    ) -> Result<Self, ReductionError> {
+    fn new(request: &Request<'_>, half: &'a Half, family: Family) -> Result<Self, ReductionError> {
         let mesh = &half.mesh;
         let mut held = vec![false; mesh.nodes.len()];
         for &node in &mesh.held {
@@ -248,7 +244,11 @@ impl<'a> Problem<'a> {
         let mut gauge_stress = read(&field);
         // a mode has no sign of its own: the gauge that feels it most reads tension
         let most = gauge_stress.iter().fold(0.0_f64, |most, stress| {
-            if stress.abs() > most.abs() { *stress } else { most }
+            if stress.abs() > most.abs() {
+                *stress
+            } else {
+                most
+            }
         });
         if most < 0.0 {
             field.iter_mut().flatten().for_each(|u| *u = -*u);
