@@ -7,8 +7,8 @@ use protocol::case::{
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
-use simulation::model::{Machine, description};
 use simulation::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
+use simulation::model::{Machine, description};
 use simulation::run::RunSettings;
 use simulation::statistics::Statistics;
 use simulation::verdict;

@@ -70,10 +70,7 @@ impl Provenance {
 /// # Errors
 /// Ragged tables, frequencies or stations that do not ascend, values out of range, an influence
 /// table that does not cover the modes' arc.
-pub(super) fn read(
-    modes: &Path,
-    influence: &Path,
-) -> Result<(ModalHead, Provenance), CaseError> {
+pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provenance), CaseError> {
     let bytes = file::read(
         modes,
         "the modes of the back head, `flexible_head.modes_file`",

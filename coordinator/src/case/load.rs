@@ -8,7 +8,7 @@ use super::{
     head, machine, mesh,
     note::Note,
     record::{self, Expected, RecordFacts},
-    schema::{CaseFile, ConditionEntry, ObjectiveEntry},
+    schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry},
 };
 use protocol::case::{Case, Condition, ModalHead, Objective};
 use protocol::job::HeadGauge;
@@ -47,18 +47,26 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
+    let (loaded, head, _) = resolve(folder, overrides)?;
+    match head.stale {
+        Some(stale) => Err(stale),
+        None => Ok(loaded),
+    }
+}
+
+/// A case with the head's files; tables of another mesh are no error yet.
+fn resolve(
+    folder: &Path,
+    overrides: &Overrides,
+) -> Result<(Loaded, ReadHead, FlexibleHead), CaseError> {
     let document = Document::read(
         &folder.join("case.toml"),
         "the description of the case; `horsehead case new` writes a template",
     )?;
     let file: CaseFile = document.parse()?;
     let envelope = machine::check(&document, &file)?;
-    let modal_head = flexible_head(folder, &document, &file)?;
-    if let Some(stale) = modal_head.stale {
-        return Err(stale);
-    }
-    let modal_head = modal_head.head;
-    machine::check_arc(&document, &file, &modal_head.arc_deg, &envelope)?;
+    let read = flexible_head(folder, &document, &file)?;
+    machine::check_arc(&document, &file, &read.head.arc_deg, &envelope)?;
     check_names(&document, &file.conditions)?;
     let objective = objective(&document, &file.objective, &file.conditions)?;
     let mut notes = Vec::new();
@@ -88,25 +96,27 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
         contact: file.contact,
         front_head: file.front_head,
         back_head: file.back_head,
-        modal_head,
+        modal_head: read.head.clone(),
         genes,
         conditions,
         objective,
         run: file.run,
     };
-    Ok(Loaded {
+    let loaded = Loaded {
         case,
         notes,
         records,
         envelope,
-    })
+    };
+    Ok((loaded, read, file.flexible_head))
 }
 
 /// The flexible head as its files have it.
 struct ReadHead {
     head: ModalHead,
     provenance: head::Provenance,
-    mesh: Option<(PathBuf, mesh::Mesh, String)>,
+    /// With the content hash of its file.
+    mesh: Option<(mesh::Mesh, String)>,
     /// The tables were computed from another mesh.
     stale: Option<CaseError>,
 }
@@ -119,8 +129,7 @@ fn flexible_head(
 ) -> Result<ReadHead, CaseError> {
     let flexible = &file.flexible_head;
     let modes_file = folder.join(&flexible.modes_file);
-    let (mut head, provenance) =
-        head::read(&modes_file, &folder.join(&flexible.influence_file))?;
+    let (mut head, provenance) = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
     head.weight_axes = flexible.weight_axes;
     head.stress = flexible.stress;
     let mut read = ReadHead {
@@ -138,7 +147,7 @@ fn flexible_head(
             let mass = (modes_file.as_path(), read.head.mass_kg);
             mesh::check_mass(&path, &mesh, flexible.density_kg_m3, mass)?;
         }
-        read.mesh = Some((path, mesh, hash));
+        read.mesh = Some((mesh, hash));
     }
     let available = read.head.frequencies_hz.len();
     if file.run.modes > available {
@@ -170,9 +179,7 @@ pub struct HeadSource {
     pub density_kg_m3: f64,
     /// Where stress is read.
     pub gauges: [HeadGauge; 4],
-    /// Modes and influence lines as they are now.
-    pub tables: ModalHead,
-    /// Whether they were computed from another mesh.
+    /// Whether the case's tables were computed from another mesh.
     pub stale: bool,
     /// The file of the modes.
     pub modes_file: PathBuf,
@@ -180,21 +187,16 @@ pub struct HeadSource {
     pub influence_file: PathBuf,
 }
 
-/// Reads what the back head of a case is reduced from. Tables of another mesh are no error here.
+/// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
 ///
 /// # Errors
-/// As [`load`] for the head's files; a case without mesh or gauge places.
-pub fn load_head(folder: &Path) -> Result<HeadSource, CaseError> {
-    let document = Document::read(&folder.join("case.toml"), "the description of the case")?;
-    let file: CaseFile = document.parse()?;
-    machine::check(&document, &file)?;
-    let read = flexible_head(folder, &document, &file)?;
-    let flexible = &file.flexible_head;
-    let Some((_, mesh, mesh_blake3)) = read.mesh else {
-        return Err(document.field(
-            &[Step::Key("flexible_head")],
-            "without mesh_file",
-            "the mesh to reduce",
+/// As [`load`]; a case without mesh or gauge places.
+pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
+    let (loaded, read, flexible) = resolve(folder, &Overrides::default())?;
+    let Some((mesh, mesh_blake3)) = read.mesh else {
+        return Err(damaged(
+            &folder.join("case.toml"),
+            "`flexible_head` names no mesh_file: there is nothing to reduce",
             "add mesh_file = \"FILE.msh\" (Gmsh 4.1)",
         ));
     };
@@ -206,18 +208,18 @@ pub fn load_head(folder: &Path) -> Result<HeadSource, CaseError> {
             "add \"gauges\": {\"1\": {\"x_m\": .., \"y_m\": .., \"z_m\": .., \"length_m\": ..}, ..}",
         ));
     };
-    Ok(HeadSource {
+    let source = HeadSource {
         mesh,
         mesh_blake3,
         young_pa: flexible.young_gpa * 1e9,
         poisson: flexible.poisson,
         density_kg_m3: flexible.density_kg_m3,
         gauges,
-        tables: read.head,
         stale: read.stale.is_some(),
         influence_file: folder.join(&flexible.influence_file),
         modes_file,
-    })
+    };
+    Ok((loaded.case, source))
 }
 
 /// Where conditions come from.

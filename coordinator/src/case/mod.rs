@@ -24,7 +24,7 @@ pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, tem
 pub use error::CaseError;
 pub use genes::read_genes;
 pub use geometry::Envelope;
-pub use load::{HeadSource, Loaded, Overrides, load, load_head, load_with_notes};
 pub use geometry::{QuasiStatic, quasi_static};
+pub use load::{HeadSource, Loaded, Overrides, load, load_head, load_with_notes};
 pub use note::Note;
 pub use record::RecordFacts;

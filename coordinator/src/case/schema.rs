@@ -3,8 +3,7 @@
 use protocol::{
     case::{
         BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
-        StressRecovery, Suspension,
-        WeightAxes,
+        StressRecovery, Suspension, WeightAxes,
     },
     unit::Unit,
 };

@@ -5,7 +5,9 @@
 //! arithmetic; a changed law, tolerance or elementary function shows.
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
-use crate::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery};
+use crate::model::description::{
+    Arc, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery,
+};
 use crate::observe::Recorder;
 use crate::run::{RunSettings, simulate};
 use crate::statistics::Statistics;

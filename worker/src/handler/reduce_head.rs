@@ -60,7 +60,13 @@ fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
     let positive = [
         ("young_pa", spec.young_pa),
         ("density_kg_m3", spec.density_kg_m3),
-        ("gauges.length_m", spec.gauges.iter().map(|g| g.length_m).fold(f64::MAX, f64::min)),
+        (
+            "gauges.length_m",
+            spec.gauges
+                .iter()
+                .map(|g| g.length_m)
+                .fold(f64::MAX, f64::min),
+        ),
     ];
     for (field, value) in positive {
         if !(value > 0.0 && value.is_finite()) {
@@ -98,7 +104,12 @@ fn mesh(spec: &ReduceHeadSpec) -> Mesh {
         nodes: spec.mesh.nodes_m.clone(),
         hexahedra: spec.mesh.hexahedra.iter().map(|e| e.map(index)).collect(),
         held: spec.mesh.held.iter().map(|&node| index(node)).collect(),
-        rim: spec.mesh.rope_surface.iter().map(|f| f.map(index)).collect(),
+        rim: spec
+            .mesh
+            .rope_surface
+            .iter()
+            .map(|f| f.map(index))
+            .collect(),
     }
 }
 

@@ -82,7 +82,6 @@ impl Symmetric {
         self.starts.len() - 1
     }
 
-
     /// `self * vector`.
     pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; vector.len()];
