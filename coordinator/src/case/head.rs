@@ -32,6 +32,10 @@ struct ModesFile {
 
 /// Place of a gauge in the modes file.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "keys of the file, with their unit"
+)]
 struct GaugePlace {
     x_m: f64,
     y_m: f64,

@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     #[arg(value_name = "CASE")]
     case: PathBuf,
     /// How many modes; as many as the case's table by default.
-    #[arg(long, value_name = "N", env = "HORSEHEAD_HEAD_MODES")]
+    #[arg(long, value_name = "N", env = "HORSEHEAD_MODES")]
     modes: Option<usize>,
     /// Which modes: a rope over the whole width drives only symmetric ones.
     #[arg(
@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
     condition: Option<String>,
     /// Replace the case's modes file and influence file.
-    #[arg(long)]
+    #[arg(long, env = "HORSEHEAD_WRITE")]
     write: bool,
     /// Folder for `head.vtu`: all modes, and displacement and stress under the largest tension.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_VTU")]

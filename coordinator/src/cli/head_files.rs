@@ -38,6 +38,10 @@ struct ModesFile<'a> {
 }
 
 #[derive(Debug, Serialize)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "keys of the file, with their unit"
+)]
 struct GaugePlace {
     x_m: f64,
     y_m: f64,

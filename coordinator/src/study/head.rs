@@ -57,7 +57,7 @@ pub struct ModeMatch {
     /// Its frequency \[Hz\].
     pub frequency_hz: f64,
     /// The table's frequency \[Hz\] and the modal assurance criterion of the two shapes along the
-    /// rope arc; none for a mode that does not move it.
+    /// rope arc; none for a mode that does not move it or that the table lacks.
     pub table: Option<(f64, f64)>,
 }
 
@@ -92,25 +92,40 @@ pub fn compare_head(
         .collect();
     let (moving, inert): (Vec<_>, Vec<_>) = known.iter().partition(|(_, shape)| moves(shape));
     let comparable = new.influence.psi_deg == table.arc_deg;
-    let matches = new.modes.iter().map(|mode| {
-        let shape = [&mode.radial[..], &mode.tangential[..]].concat();
-        let alike = moving.iter().map(|(hz, other)| (*hz, mac(&shape, other)));
+    let shapes: Vec<Vec<f64>> = new
+        .modes
+        .iter()
+        .map(|mode| [&mode.radial[..], &mode.tangential[..]].concat())
+        .collect();
+    let best = |shape: &[f64], others: &mut dyn Iterator<Item = &Vec<f64>>| {
+        let alike = others.map(|other| mac(shape, other)).enumerate();
+        alike.max_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let matches = new.modes.iter().zip(&shapes).enumerate();
+    let matches = matches.map(|(k, (mode, shape))| {
+        let found = (comparable && moves(shape))
+            .then(|| best(shape, &mut moving.iter().map(|(_, other)| other)))
+            .flatten();
+        // each the other's best: a mode that the table lacks is like none of it
+        let mutual = found.and_then(|(at, mac)| {
+            let (hz, other) = moving.get(at)?;
+            let (back, _) = best(other, &mut shapes.iter())?;
+            (back == k).then_some((*hz, mac))
+        });
         ModeMatch {
             frequency_hz: mode.frequency_hz,
-            table: alike
-                .filter(|_| comparable && moves(&shape))
-                .max_by(|a, b| a.1.total_cmp(&b.1)),
+            table: mutual,
         }
     });
-    let shapes = new.modes.iter().take(modes).map(|mode| Shape {
+    let simulated = new.modes.iter().take(modes).map(|mode| Shape {
         frequency_hz: mode.frequency_hz,
         radial: &mode.radial,
         tangential: &mode.tangential,
         gauge_stress_mpa: mode.gauge_stress_mpa,
     });
-    let shapes: Vec<Shape<'_>> = shapes.collect();
+    let simulated: Vec<Shape<'_>> = simulated.collect();
     let exact = turn.exact(&new.influence);
-    let displacement = turn.displacement(&new.influence.psi_deg, &shapes);
+    let displacement = turn.displacement(&new.influence.psi_deg, &simulated);
     let mean = |curve: &[f64]| curve.iter().sum::<f64>() / curve.len().max(1) as f64;
     HeadComparison {
         modes: matches.collect(),
@@ -128,10 +143,15 @@ pub fn compare_head(
     }
 }
 
-/// Modal assurance criterion: squared cosine of the angle between two shapes.
+/// Modal assurance criterion: squared cosine of the angle between two shapes; 0 for no shape.
 fn mac(a: &[f64], b: &[f64]) -> f64 {
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    dot(a, b).powi(2) / (dot(a, a) * dot(b, b))
+    let sizes = dot(a, a) * dot(b, b);
+    if sizes > 0.0 {
+        dot(a, b).powi(2) / sizes
+    } else {
+        0.0
+    }
 }
 
 fn half_range(curve: &[f64]) -> f64 {

@@ -10,6 +10,7 @@ mod error;
 mod gauge;
 mod hexahedron;
 mod mesh;
+mod problem;
 mod reduction;
 #[cfg(test)]
 mod tests;
