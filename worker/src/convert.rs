@@ -1,13 +1,14 @@
 //! From a case, as it travels, to a machine as the dynamics take it, and back: the only file that
 //! names both vocabularies. Degrees become radians and megapascals pascals here.
 use protocol::case::{
-    Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, TurnSense, WeightAxes,
+    Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, StressRecovery, TurnSense,
+    WeightAxes,
 };
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
-use simulation::model::Machine;
 use simulation::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
+use simulation::model::{Machine, description};
 use simulation::run::RunSettings;
 use simulation::statistics::Statistics;
 use simulation::verdict;
@@ -111,6 +112,10 @@ fn head(case: &Case) -> Result<Head, Failure> {
             .map(|f| f * std::f64::consts::TAU)
             .collect(),
         damping_ratio: head.damping_ratio,
+        recovery: match head.stress {
+            StressRecovery::ModeAcceleration => description::StressRecovery::ModeAcceleration,
+            StressRecovery::ModeDisplacement => description::StressRecovery::ModeDisplacement,
+        },
         start,
         step,
         radial: head.radial.clone(),

@@ -116,7 +116,7 @@ fn announcement(slots: usize) -> Announcement {
         slots: u32::try_from(slots).unwrap_or(u32::MAX),
         cores: thread::available_parallelism()
             .map_or(0, |cores| u32::try_from(cores.get()).unwrap_or(u32::MAX)),
-        job_kinds: ["score", "simulate", nothing.kind()]
+        job_kinds: ["score", "simulate", "reduce_head", nothing.kind()]
             .map(str::to_owned)
             .to_vec(),
         effects: Vec::new(),

@@ -6,7 +6,7 @@
 //! the support function `h = R + C.n(psi)` and the crank pin P; Newton on both. The dynamics in
 //! the worker know nothing of this file.
 use super::schema::CaseFile;
-use protocol::case::TurnSense;
+use protocol::case::{BackHead, Case, Condition, Crank, TurnSense};
 
 /// Extremes over one turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,7 +41,8 @@ pub(super) fn envelope(case: &CaseFile) -> Result<Envelope, f64> {
     let mut guess = [0.0, std::f64::consts::PI];
     for step in 0..=STEPS {
         let phi = sense * f64::from(step * 360 / STEPS).to_radians();
-        let solved = close(case, phi, guess, back_rope + case.rod.length_m);
+        let loop_bodies = (&case.crank, &case.back_head);
+        let solved = close(loop_bodies, phi, guess, back_rope + case.rod.length_m);
         let Some([theta, normal]) = solved else {
             return Err(phi.to_degrees());
         };
@@ -72,11 +73,15 @@ fn widen([low, high]: &mut [f64; 2], value: f64) {
 }
 
 /// Beam angle and contact normal for a crank-pin angle \[rad\]; none where Newton does not converge.
-fn close(case: &CaseFile, phi: f64, guess: [f64; 2], length: f64) -> Option<[f64; 2]> {
-    let head = &case.back_head;
+fn close(
+    (crank, head): (&Crank, &BackHead),
+    phi: f64,
+    guess: [f64; 2],
+    length: f64,
+) -> Option<[f64; 2]> {
     let pin = [
-        case.crank.center_x_m + case.crank.radius_m * phi.cos(),
-        case.crank.center_y_m + case.crank.radius_m * phi.sin(),
+        crank.center_x_m + crank.radius_m * phi.cos(),
+        crank.center_y_m + crank.radius_m * phi.sin(),
     ];
     let anchor = head.rope_anchor_deg.to_radians();
     let [mut theta, mut normal] = guess;
@@ -106,4 +111,81 @@ fn close(case: &CaseFile, phi: f64, guess: [f64; 2], length: f64) -> Option<[f64
         }
     }
     None
+}
+
+/// The back rope over one turn, equally spaced from bottom dead centre: rigid kinematics, the
+/// rope's own weight and vibration left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct QuasiStatic {
+    /// Crank angle from bottom dead centre \[deg\].
+    pub turn_deg: Vec<f64>,
+    /// Where the rope leaves the back head, beam frame \[deg\].
+    pub contact_deg: Vec<f64>,
+    /// Rope tension \[N\].
+    pub tension_n: Vec<f64>,
+}
+
+/// Samples of the quasi-static turn.
+const SAMPLES: u32 = 720;
+
+/// The back rope's tension and place over one turn: it holds the load on the front arm, the
+/// beam's unbalance and its inertia, at the arm `h(psi)`. None where the crank cannot turn through.
+pub fn quasi_static(case: &Case, condition: &Condition) -> Option<QuasiStatic> {
+    let bodies = (&case.crank, &case.back_head);
+    let length =
+        case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m + case.rod.length_m;
+    let sense = match case.crank.sense {
+        TurnSense::Clockwise => -1.0,
+        TurnSense::CounterClockwise => 1.0,
+    };
+    let step = std::f64::consts::TAU / f64::from(SAMPLES);
+    let turn = |start: f64, mut guess: [f64; 2]| {
+        let mut angles = Vec::new();
+        for k in 0..SAMPLES {
+            guess = close(bodies, start + sense * step * f64::from(k), guess, length)?;
+            angles.push(guess);
+        }
+        Some(angles)
+    };
+    let first = turn(0.0, [0.0, std::f64::consts::PI])?;
+    // bottom dead centre: the front arm is lowest; a parabola through three samples
+    let n = first.len();
+    let low = (0..n).min_by(|a, b| first[*a][0].total_cmp(&first[*b][0]))?;
+    let [before, here, after] = [first[(low + n - 1) % n], first[low], first[(low + 1) % n]];
+    let bend = before[0] - 2.0 * here[0] + after[0];
+    let shift = 0.5 * (before[0] - after[0]) / bend;
+    let angles = turn(sense * step * (low as f64 + shift), here)?;
+
+    let speed = condition.speed_rpm * std::f64::consts::TAU / 60.0;
+    let mut result = QuasiStatic::default();
+    for (k, [theta, normal]) in angles.iter().enumerate() {
+        let neighbours = angles[(k + n - 1) % n][0] + angles[(k + 1) % n][0];
+        let acceleration = (neighbours - 2.0 * theta) / (step * step) * speed * speed;
+        let turn_deg = 360.0 * k as f64 / n as f64;
+        let psi = normal - theta;
+        let head = &case.back_head;
+        let arm = head.radius_m + head.center_x_m * psi.cos() + head.center_y_m * psi.sin();
+        let moment = load_at(condition, turn_deg) * case.front_head.radius_m
+            + case.beam.gravity_moment_n_m * theta.cos()
+            + case.beam.inertia_kg_m2 * acceleration;
+        result.turn_deg.push(turn_deg);
+        result.contact_deg.push(psi.to_degrees());
+        result.tension_n.push(moment / arm);
+    }
+    Some(result)
+}
+
+/// The card at a crank angle, between its points linear.
+fn load_at(condition: &Condition, turn_deg: f64) -> f64 {
+    let load = &condition.card.load_n;
+    let at = turn_deg / 360.0 * load.len() as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a place in a card of some hundred points"
+    )]
+    let left = at as usize;
+    let share = at - left as f64;
+    let value = |at: usize| load.get(at % load.len().max(1)).copied().unwrap_or(0.0);
+    value(left) * (1.0 - share) + value(left + 1) * share
 }

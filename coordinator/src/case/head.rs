@@ -7,11 +7,12 @@ use super::{
     file,
     table::Table,
 };
-use protocol::case::{Influence, ModalHead, WeightAxes};
+use protocol::case::{Influence, ModalHead, StressRecovery, WeightAxes};
+use protocol::job::HeadGauge;
 use serde::Deserialize;
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path};
 
-/// The modes file: the keys that are used; centre, inertia and gauge places are for the reader.
+/// The modes file: the keys that are used; centre and inertia are for the reader.
 #[derive(Debug, Deserialize)]
 struct ModesFile {
     frequencies_hz: Vec<f64>,
@@ -23,6 +24,49 @@ struct ModesFile {
     participation: Vec<[f64; 3]>,
     inertia_stress_mpa: [[f64; 4]; 3],
     mass_kg: f64,
+    /// Where stress is read; needed only to reduce the head again.
+    gauges: Option<BTreeMap<String, GaugePlace>>,
+    /// Content of the mesh file that the tables were computed from; absent where they were not.
+    mesh_blake3: Option<String>,
+}
+
+/// Place of a gauge in the modes file.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "keys of the file, with their unit"
+)]
+struct GaugePlace {
+    x_m: f64,
+    y_m: f64,
+    z_m: f64,
+    length_m: f64,
+}
+
+/// What the tables say of themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Provenance {
+    /// The four gauges, where the file places them.
+    pub(super) gauges: Option<[HeadGauge; 4]>,
+    /// Content hash of the mesh they were computed from.
+    pub(super) mesh_blake3: Option<String>,
+}
+
+impl Provenance {
+    fn new(file: &ModesFile) -> Self {
+        let place = |name: &str| {
+            let place = file.gauges.as_ref()?.get(name)?;
+            Some(HeadGauge {
+                position_m: [place.x_m, place.y_m, place.z_m],
+                length_m: place.length_m,
+            })
+        };
+        let four = || Some([place("1")?, place("2")?, place("3")?, place("4")?]);
+        Self {
+            gauges: four(),
+            mesh_blake3: file.mesh_blake3.clone(),
+        }
+    }
 }
 
 /// Reads modes and influence lines.
@@ -30,7 +74,7 @@ struct ModesFile {
 /// # Errors
 /// Ragged tables, frequencies or stations that do not ascend, values out of range, an influence
 /// table that does not cover the modes' arc.
-pub(super) fn read(modes: &Path, influence: &Path) -> Result<ModalHead, CaseError> {
+pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provenance), CaseError> {
     let bytes = file::read(
         modes,
         "the modes of the back head, `flexible_head.modes_file`",
@@ -38,7 +82,8 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<ModalHead, CaseErro
     let read: ModesFile = document::json(modes, &bytes)?;
     check_modes(modes, &read)?;
     let influence = read_influence(influence, &read.arc_deg)?;
-    Ok(ModalHead {
+    let provenance = Provenance::new(&read);
+    let head = ModalHead {
         frequencies_hz: read.frequencies_hz,
         damping_ratio: read.damping_ratio,
         arc_deg: read.arc_deg,
@@ -48,9 +93,11 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<ModalHead, CaseErro
         participation: read.participation,
         inertia_stress_mpa: read.inertia_stress_mpa,
         weight_axes: WeightAxes::default(),
+        stress: StressRecovery::default(),
         mass_kg: read.mass_kg,
         influence,
-    })
+    };
+    Ok((head, provenance))
 }
 
 /// Order and ranges of the modes.

@@ -3,14 +3,15 @@ use super::{
     card,
     document::{Document, Step, nearest},
     error::{CaseError, damaged},
+    flexible::{self, ReadHead},
     genes,
     geometry::Envelope,
-    head, machine, mesh,
+    machine,
     note::Note,
     record::{self, Expected, RecordFacts},
-    schema::{CaseFile, ConditionEntry, ObjectiveEntry},
+    schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry},
 };
-use protocol::case::{Case, Condition, ModalHead, Objective};
+use protocol::case::{Case, Condition, Objective};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -46,14 +47,26 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
+    let (loaded, head, _) = resolve(folder, overrides)?;
+    match head.stale {
+        Some(stale) => Err(stale),
+        None => Ok(loaded),
+    }
+}
+
+/// A case with the head's files; tables of another mesh are no error yet.
+pub(super) fn resolve(
+    folder: &Path,
+    overrides: &Overrides,
+) -> Result<(Loaded, ReadHead, FlexibleHead), CaseError> {
     let document = Document::read(
         &folder.join("case.toml"),
         "the description of the case; `horsehead case new` writes a template",
     )?;
     let file: CaseFile = document.parse()?;
     let envelope = machine::check(&document, &file)?;
-    let modal_head = flexible_head(folder, &document, &file)?;
-    machine::check_arc(&document, &file, &modal_head.arc_deg, &envelope)?;
+    let read = flexible::read(folder, &document, &file)?;
+    machine::check_arc(&document, &file, &read.head.arc_deg, &envelope)?;
     check_names(&document, &file.conditions)?;
     let objective = objective(&document, &file.objective, &file.conditions)?;
     let mut notes = Vec::new();
@@ -83,53 +96,19 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
         contact: file.contact,
         front_head: file.front_head,
         back_head: file.back_head,
-        modal_head,
+        modal_head: read.head.clone(),
         genes,
         conditions,
         objective,
         run: file.run,
     };
-    Ok(Loaded {
+    let loaded = Loaded {
         case,
         notes,
         records,
         envelope,
-    })
-}
-
-/// Modes, influence lines and, where there is one, the mesh they belong to.
-fn flexible_head(
-    folder: &Path,
-    document: &Document,
-    file: &CaseFile,
-) -> Result<ModalHead, CaseError> {
-    let flexible = &file.flexible_head;
-    let modes_file = folder.join(&flexible.modes_file);
-    let mut head = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
-    head.weight_axes = flexible.weight_axes;
-    if let Some(name) = &flexible.mesh_file {
-        let path = folder.join(name);
-        let mesh = mesh::read(&path)?;
-        mesh::check_mass(
-            &path,
-            &mesh,
-            flexible.density_kg_m3,
-            (&modes_file, head.mass_kg),
-        )?;
-    }
-    let available = head.frequencies_hz.len();
-    if file.run.modes > available {
-        return Err(document.field(
-            &[Step::Key("run"), Step::Key("modes")],
-            file.run.modes,
-            format!(
-                "0 to {available}, the modes of {}",
-                flexible.modes_file.display()
-            ),
-            "take fewer modes, or reduce the head with more",
-        ));
-    }
-    Ok(head)
+    };
+    Ok((loaded, read, file.flexible_head))
 }
 
 /// Where conditions come from.

@@ -9,6 +9,7 @@ mod check;
 mod document;
 mod error;
 mod file;
+mod flexible;
 mod genes;
 mod geometry;
 mod head;
@@ -22,8 +23,10 @@ mod table;
 
 pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, template};
 pub use error::CaseError;
+pub use flexible::{HeadSource, load_head};
 pub use genes::read_genes;
 pub use geometry::Envelope;
+pub use geometry::{QuasiStatic, quasi_static};
 pub use load::{Loaded, Overrides, load, load_with_notes};
 pub use note::Note;
 pub use record::RecordFacts;

@@ -3,7 +3,7 @@
 use protocol::{
     case::{
         BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
-        Suspension, WeightAxes,
+        StressRecovery, Suspension, WeightAxes,
     },
     unit::Unit,
 };
@@ -44,8 +44,25 @@ pub(super) struct FlexibleHead {
     /// How the records hold the head's own weight; physical unless stated.
     #[serde(default)]
     pub(super) weight_axes: WeightAxes,
+    /// How gauge stress follows from the modes; by mode acceleration unless stated.
+    #[serde(default)]
+    pub(super) stress: StressRecovery,
     /// Density of the mesh [kg/m3].
     pub(super) density_kg_m3: f64,
+    /// Young's modulus of the mesh \[GPa\]; steel unless stated.
+    #[serde(default = "steel_gpa")]
+    pub(super) young_gpa: f64,
+    /// Poisson's ratio of the mesh \[1\]; steel unless stated.
+    #[serde(default = "steel_poisson")]
+    pub(super) poisson: f64,
+}
+
+const fn steel_gpa() -> f64 {
+    206.0
+}
+
+const fn steel_poisson() -> f64 {
+    0.3
 }
 
 /// One entry per gene; all are required.

@@ -1,9 +1,9 @@
 //! What `--output json` prints: exactly one object per command. The fields are a contract with
 //! other programs; more may be added, none renamed. Numbers that are not finite become `null`.
-use crate::study::{Curves, simulation_digest};
+use crate::study::{Curves, HeadComparison, simulation_digest};
 use protocol::{
     case::Case,
-    job::{Evaluation, Reached, Simulation, Verdict},
+    job::{Evaluation, ModeFamily, Reached, ReducedHead, Simulation, Verdict},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -130,6 +130,87 @@ pub(super) struct ChannelOutput {
     mse_fixed_offset_mpa2: f64,
     offset_mpa: f64,
     peak_to_peak_error: f64,
+}
+
+/// Of `horsehead head`.
+#[derive(Debug, Serialize)]
+pub(super) struct HeadOutput<'a> {
+    case: &'a str,
+    /// Condition of the quasi-static turn.
+    condition: &'a str,
+    /// Content of the mesh file.
+    mesh_blake3: &'a str,
+    /// Time on the worker (s).
+    wall_s: f64,
+    /// Unknown displacements of the half that was solved.
+    unknowns: usize,
+    lanczos_steps: usize,
+    mass_kg: f64,
+    modes: Vec<HeadModeOutput>,
+    /// Modes of the case's table that do not move the rope surface (Hz).
+    inert_table_modes_hz: &'a [f64],
+    /// By gauge number.
+    gauges: BTreeMap<String, HeadGaugeOutput>,
+}
+
+/// A mode; the table's are null where it has none like it.
+#[derive(Debug, Serialize)]
+pub(super) struct HeadModeOutput {
+    family: ModeFamily,
+    frequency_hz: f64,
+    table_frequency_hz: Option<f64>,
+    mac: Option<f64>,
+}
+
+/// Statics of a gauge over the quasi-static turn.
+#[derive(Debug, Serialize)]
+pub(super) struct HeadGaugeOutput {
+    exact_half_range_mpa: f64,
+    table_half_range_mpa: f64,
+    mode_displacement_half_range_mpa: f64,
+    mode_displacement_offset_mpa: f64,
+    influence_difference: f64,
+}
+
+/// Gathers what `horsehead head` prints.
+pub(super) fn head<'a>(
+    (case, condition): (&'a Case, &'a str),
+    mesh_blake3: &'a str,
+    head: &ReducedHead,
+    comparison: &'a HeadComparison,
+) -> HeadOutput<'a> {
+    let ranges = &comparison.half_ranges;
+    let modes = head.modes.iter().zip(&comparison.modes);
+    HeadOutput {
+        case: &case.name,
+        condition,
+        mesh_blake3,
+        wall_s: head.wall_s,
+        unknowns: head.unknowns,
+        lanczos_steps: head.lanczos_steps,
+        mass_kg: head.mass_kg,
+        modes: modes
+            .map(|(mode, found)| HeadModeOutput {
+                family: mode.family,
+                frequency_hz: mode.frequency_hz,
+                table_frequency_hz: found.table.map(|(hz, _)| hz),
+                mac: found.table.map(|(_, mac)| mac),
+            })
+            .collect(),
+        inert_table_modes_hz: &comparison.inert_hz,
+        gauges: (0..4)
+            .map(|gauge| {
+                let output = HeadGaugeOutput {
+                    exact_half_range_mpa: ranges.exact[gauge],
+                    table_half_range_mpa: ranges.table[gauge],
+                    mode_displacement_half_range_mpa: ranges.displacement[gauge],
+                    mode_displacement_offset_mpa: ranges.displacement_offset[gauge],
+                    influence_difference: comparison.influence_difference[gauge],
+                };
+                ((gauge + 1).to_string(), output)
+            })
+            .collect(),
+    }
 }
 
 /// Of `horsehead calibrate`, and kept as `result.json` in the run folder.

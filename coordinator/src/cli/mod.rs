@@ -8,6 +8,8 @@ mod calibrate;
 mod case;
 mod completions;
 mod finish;
+mod head;
+mod head_files;
 mod interrupt;
 mod json;
 mod output;
@@ -50,6 +52,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Calibrate(calibrate::Arguments),
     Verify(verify::Arguments),
+    Head(head::Arguments),
     Report(report::Arguments),
     Case(case::Arguments),
     Bench(bench::Arguments),
@@ -145,6 +148,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -62,7 +62,10 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
                 failed(core, from, job, failure, now);
             }
         }
-        Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Nothing(_) => {
+        Outcome::Scored(_)
+        | Outcome::Simulated(_)
+        | Outcome::HeadReduced(_)
+        | Outcome::Nothing(_) => {
             if let Some(member) = core.members.get_mut(&from) {
                 member.done += 1;
                 member.spent.useful_us += done.wall_us;
@@ -192,7 +195,11 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
                 outcome: done.outcome,
             });
         }
-        Outcome::Failed(_) | Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Nothing(_) => {
+        Outcome::Failed(_)
+        | Outcome::Scored(_)
+        | Outcome::Simulated(_)
+        | Outcome::HeadReduced(_)
+        | Outcome::Nothing(_) => {
             accept(core, None, done);
         }
     }

@@ -11,6 +11,7 @@ pub mod html;
 mod number;
 mod section;
 pub mod table;
+pub mod vtu;
 pub mod words;
 
 pub use data::{

@@ -100,7 +100,7 @@ fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
             Some(error) => Err(error),
             None => Ok(Entry::lost(proposal, failure)),
         },
-        Outcome::Simulated(_) | Outcome::Nothing(_) => {
+        Outcome::Simulated(_) | Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
             Err(StudyError::WrongKind { id: proposal.id })
         }
     }

@@ -98,7 +98,9 @@ pub async fn compare<E: Evaluator>(
         match completed.outcome {
             Outcome::Scored(evaluation) => pair.evaluation = Some(evaluation),
             Outcome::Simulated(simulation) => pair.simulation = Some(*simulation),
-            Outcome::Nothing(_) => return Err(StudyError::WrongKind { id: completed.id }),
+            Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
+                return Err(StudyError::WrongKind { id: completed.id });
+            }
             Outcome::Failed(failure) => {
                 return Err(StudyError::Unavailable {
                     what: name(case, wanted, place),

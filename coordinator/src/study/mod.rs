@@ -9,6 +9,7 @@ mod compare;
 mod digest;
 mod error;
 mod evaluator;
+mod head;
 mod log;
 mod progress;
 
@@ -17,6 +18,9 @@ pub use compare::{Compared, Curves, Wanted, compare};
 pub use digest::simulation_digest;
 pub use error::StudyError;
 pub use evaluator::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus};
+pub use head::{
+    HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, reduce_head, wrapped_turn,
+};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 

@@ -63,7 +63,7 @@ impl Evaluator for Oracle {
         let outcome = known.unwrap_or_else(|| match &job {
             Job::Score(spec) => (self.answer)(&self.space, id, spec),
             Job::Simulate(spec) => Outcome::Simulated(Box::new(curves(spec.genes[0]))),
-            Job::Nothing { .. } => Outcome::Nothing(Vec::new()),
+            Job::ReduceHead(_) | Job::Nothing { .. } => Outcome::Nothing(Vec::new()),
         });
         self.answered.insert(id, outcome.clone());
         Ok(Completed {

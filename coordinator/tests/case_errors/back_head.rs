@@ -158,4 +158,42 @@ pub(super) const FAULTS: &[Spoilt] = &[
             "flexible_head.density_kg_m3",
         ],
     ),
+    (
+        "tables of another mesh",
+        |c| {
+            c.replace(
+                MODES,
+                "{\"frequencies_hz\"",
+                "{\"mesh_blake3\": \"00ff\", \"frequencies_hz\"",
+            )
+        },
+        &[
+            "back_head.msh",
+            "back_head_modes.json",
+            "mesh_blake3 = 00ff",
+            "49980a8862ebdc7b",
+        ],
+    ),
+    (
+        "stiffness in another unit",
+        |c| {
+            c.replace(
+                TOML,
+                "density_kg_m3 = 7850.0                                 #",
+                "young_gpa = 2.06e11\ndensity_kg_m3 = 7850.0 #",
+            )
+        },
+        &["case.toml", "flexible_head.young_gpa", "GPa"],
+    ),
+    (
+        "unknown stress recovery",
+        |c| {
+            c.replace(
+                TOML,
+                "density_kg_m3 = 7850.0                                 #",
+                "stress = \"mode_displacment\"\ndensity_kg_m3 = 7850.0 #",
+            )
+        },
+        &["case.toml", "mode_displacment", "mode_displacement"],
+    ),
 ];

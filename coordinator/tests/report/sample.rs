@@ -148,6 +148,7 @@ pub(crate) fn case() -> Case {
             gauge_stress_mpa: Vec::new(),
             participation: Vec::new(),
             weight_axes: protocol::case::WeightAxes::Physical,
+            stress: protocol::case::StressRecovery::ModeAcceleration,
             inertia_stress_mpa: [[0.0; 4]; 3],
             mass_kg: 881.0,
             influence: Influence {

@@ -25,6 +25,8 @@ pub struct ModalHead {
     pub inertia_stress_mpa: [[f64; 4]; 3],
     /// How the records of the case hold the head's own weight.
     pub weight_axes: WeightAxes,
+    /// How gauge stress follows from modes and forces.
+    pub stress: StressRecovery,
     /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
     /// Exact static gauge stress per newton.
@@ -41,6 +43,17 @@ pub enum WeightAxes {
     /// With the x and y components in the beam frame exchanged. No machine does that; records made
     /// by another program may.
     Exchanged,
+}
+
+/// How gauge stress follows from modal coordinates and forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StressRecovery {
+    /// Exact statics by influence lines, and what the modes move beyond their own static answer.
+    #[default]
+    ModeAcceleration,
+    /// The modes alone: what a truncated set leaves out is lost.
+    ModeDisplacement,
 }
 
 /// Static influence lines of the gauges.

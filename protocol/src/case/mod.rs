@@ -11,7 +11,7 @@ mod objective;
 
 pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
 pub use gene::{Gene, GeneName};
-pub use head::{Influence, ModalHead, WeightAxes};
+pub use head::{Influence, ModalHead, StressRecovery, WeightAxes};
 pub use machine::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
 };

@@ -2,10 +2,14 @@
 //!
 //! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
 //! retried. [`Failure`] is infrastructure: the job could not be done.
+mod reduce_head;
 mod score;
 mod simulate;
 mod verdict;
 
+pub use reduce_head::{
+    HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
+};
 pub use score::{ChannelScore, Evaluation, ScoreSpec};
 pub use simulate::{Energy, Motion, SimulateSpec, Simulation};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
@@ -19,6 +23,8 @@ pub enum Job {
     Score(ScoreSpec),
     /// Simulate and return the curves.
     Simulate(SimulateSpec),
+    /// Reduce the flexible back head from its mesh to modes and influence lines.
+    ReduceHead(Box<ReduceHeadSpec>),
     /// Do nothing, return at once: measures the bus.
     Nothing {
         /// Bytes that travel to the worker.
@@ -37,6 +43,7 @@ impl Job {
         match self {
             Self::Score(_) => "score",
             Self::Simulate(_) => "simulate",
+            Self::ReduceHead(_) => "reduce_head",
             Self::Nothing { .. } => "nothing",
         }
     }
@@ -49,6 +56,8 @@ pub enum Outcome {
     Scored(Evaluation),
     /// Of [`Job::Simulate`].
     Simulated(Box<Simulation>),
+    /// Of [`Job::ReduceHead`].
+    HeadReduced(Box<ReducedHead>),
     /// Of [`Job::Nothing`].
     Nothing(#[serde(with = "byte_string")] Vec<u8>),
     /// The job could not be done.

@@ -14,6 +14,7 @@
 )]
 pub mod drive;
 pub mod element;
+pub mod flexible;
 pub mod integrator;
 pub mod linear;
 pub mod math;

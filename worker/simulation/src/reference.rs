@@ -5,7 +5,9 @@
 //! arithmetic; a changed law, tolerance or elementary function shows.
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
-use crate::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
+use crate::model::description::{
+    Arc, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery,
+};
 use crate::observe::Recorder;
 use crate::run::{RunSettings, simulate};
 use crate::statistics::Statistics;
@@ -61,6 +63,7 @@ pub fn description() -> Description {
         head: Head {
             frequencies: vec![700.0, 900.0],
             damping_ratio: 0.01,
+            recovery: StressRecovery::default(),
             start: 118_f64.to_radians(),
             step: 4_f64.to_radians(),
             radial: vec![wave(0, 0.004), wave(1, 0.007)],

@@ -1,6 +1,7 @@
 //! From a job to its outcome.
 //!
 //! A handler is a pure function of the case and the job. It knows nothing of slots or links.
+mod reduce_head;
 mod score;
 mod simulate;
 
@@ -41,6 +42,9 @@ impl Prepared {
             Job::Score(spec) => score::run(self, spec).map(Outcome::Scored),
             Job::Simulate(spec) => {
                 simulate::run(self, spec).map(|done| Outcome::Simulated(Box::new(done)))
+            }
+            Job::ReduceHead(spec) => {
+                reduce_head::run(spec).map(|done| Outcome::HeadReduced(Box::new(done)))
             }
             Job::Nothing { .. } => return nothing(job),
         };

@@ -4,8 +4,12 @@
 mod msh;
 
 pub use msh::read;
+pub(super) use msh::read_hashed;
 
-use super::error::{CaseError, contradiction};
+use super::{
+    error::{CaseError, contradiction},
+    head::Provenance,
+};
 use std::{collections::BTreeMap, path::Path};
 
 /// A mesh of hexahedra with named groups.
@@ -73,6 +77,28 @@ const SIGNS: [[f64; 3]; 8] = [
     [1.0, 1.0, 1.0],
     [-1.0, 1.0, 1.0],
 ];
+
+/// The tables were computed from this mesh, as far as they say.
+///
+/// # Errors
+/// They name another content.
+pub(super) fn check_hash(
+    path: &Path,
+    hash: &str,
+    tables: &Provenance,
+    modes_file: &Path,
+) -> Result<(), CaseError> {
+    match &tables.mesh_blake3 {
+        Some(stated) if stated != hash => Err(contradiction(
+            path,
+            "the content of the mesh (blake3)",
+            hash,
+            format!("{}: mesh_blake3 = {stated}", modes_file.display()),
+            "the tables belong to another mesh: `horsehead head CASE --write` computes them again",
+        )),
+        Some(_) | None => Ok(()),
+    }
+}
 
 /// The mesh is the steel whose modes the case uses.
 ///

@@ -24,7 +24,17 @@ const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh
 /// Another version or a binary file, malformed sections (with the line), other elements than
 /// hexahedra and quadrilaterals, a missing physical group, an element that is inside out.
 pub fn read(path: &Path) -> Result<Mesh, CaseError> {
+    read_hashed(path).map(|(mesh, _)| mesh)
+}
+
+/// Reads a mesh, and names its content by its BLAKE3 hash in hexadecimal digits.
+pub(in super::super) fn read_hashed(path: &Path) -> Result<(Mesh, String), CaseError> {
     let bytes = file::read(path, "the mesh of the back head, `flexible_head.mesh_file`")?;
+    let hash = blake3::hash(&bytes).to_hex().to_string();
+    Ok((parse(path, bytes)?, hash))
+}
+
+fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
     check_version(path, &bytes)?;
     let text = file::text(path, bytes)?;
     let mut sections = Sections::default();

@@ -1,12 +1,14 @@
 //! Tables from one description: for the terminal and for HTML.
 //!
-//! Here is only how a table is set; `compare` and `single` fill it.
+//! Here is only how a table is set; `compare`, `head` and `single` fill it.
 mod compare;
 mod gap;
+mod head;
 mod single;
 
 pub use compare::{table_3, table_4, workers};
 pub use gap::gap;
+pub use head::{head_modes, head_statics};
 pub use single::{balance, genes, simulation};
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};

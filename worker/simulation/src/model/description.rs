@@ -101,6 +101,8 @@ pub struct Head {
     pub frequencies: Vec<f64>,
     /// Damping ratio of every mode \[1\].
     pub damping_ratio: f64,
+    /// How gauge stress follows from modes and forces.
+    pub recovery: StressRecovery,
     /// First station \[rad\].
     pub start: f64,
     /// Spacing of the stations \[rad\].
@@ -126,6 +128,16 @@ pub struct Head {
     pub normal_influence: Vec<Vec<f64>>,
     /// Gauge stress per tangential force towards growing angle [Pa/N]; 4 x s'.
     pub tangential_influence: Vec<Vec<f64>>,
+}
+
+/// How gauge stress follows from modal coordinates and forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StressRecovery {
+    /// Influence lines for the statics, modes for what moves beyond.
+    #[default]
+    ModeAcceleration,
+    /// Modes alone.
+    ModeDisplacement,
 }
 
 /// The searched coefficients of rope and contact, for cylinders of the reference pitch.

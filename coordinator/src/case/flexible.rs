@@ -1,0 +1,125 @@
+//! The flexible head of a case: its tables, its mesh, and whether they belong together.
+use super::{
+    document::{Document, Step},
+    error::{CaseError, damaged},
+    head,
+    load::{Overrides, resolve},
+    mesh,
+    schema::CaseFile,
+};
+use protocol::{
+    case::{Case, ModalHead},
+    job::HeadGauge,
+};
+use std::path::{Path, PathBuf};
+
+/// The flexible head as its files have it.
+pub(super) struct ReadHead {
+    pub(super) head: ModalHead,
+    pub(super) provenance: head::Provenance,
+    /// With the content hash of its file.
+    pub(super) mesh: Option<(mesh::Mesh, String)>,
+    /// The tables were computed from another mesh.
+    pub(super) stale: Option<CaseError>,
+}
+
+/// Modes, influence lines and, where there is one, the mesh they belong to.
+pub(super) fn read(
+    folder: &Path,
+    document: &Document,
+    file: &CaseFile,
+) -> Result<ReadHead, CaseError> {
+    let flexible = &file.flexible_head;
+    let modes_file = folder.join(&flexible.modes_file);
+    let (mut head, provenance) = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
+    head.weight_axes = flexible.weight_axes;
+    head.stress = flexible.stress;
+    let mut read = ReadHead {
+        head,
+        provenance,
+        mesh: None,
+        stale: None,
+    };
+    if let Some(name) = &flexible.mesh_file {
+        let path = folder.join(name);
+        let (mesh, hash) = mesh::read_hashed(&path)?;
+        read.stale = mesh::check_hash(&path, &hash, &read.provenance, &modes_file).err();
+        // what belongs to another mesh has another mass: the hash says it better
+        if read.stale.is_none() {
+            let mass = (modes_file.as_path(), read.head.mass_kg);
+            mesh::check_mass(&path, &mesh, flexible.density_kg_m3, mass)?;
+        }
+        read.mesh = Some((mesh, hash));
+    }
+    let available = read.head.frequencies_hz.len();
+    if file.run.modes > available {
+        return Err(document.field(
+            &[Step::Key("run"), Step::Key("modes")],
+            file.run.modes,
+            format!(
+                "0 to {available}, the modes of {}",
+                flexible.modes_file.display()
+            ),
+            "take fewer modes, or reduce the head with more",
+        ));
+    }
+    Ok(read)
+}
+
+/// What a reduction of the back head starts from, and where its tables are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeadSource {
+    /// The mesh.
+    pub mesh: mesh::Mesh,
+    /// Content hash of its file, in hexadecimal digits.
+    pub mesh_blake3: String,
+    /// Young's modulus \[Pa\].
+    pub young_pa: f64,
+    /// Poisson's ratio \[1\].
+    pub poisson: f64,
+    /// Density [kg/m3].
+    pub density_kg_m3: f64,
+    /// Where stress is read.
+    pub gauges: [HeadGauge; 4],
+    /// Whether the case's tables were computed from another mesh.
+    pub stale: bool,
+    /// The file of the modes.
+    pub modes_file: PathBuf,
+    /// The file of the influence lines.
+    pub influence_file: PathBuf,
+}
+
+/// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
+///
+/// # Errors
+/// As [`load`]; a case without mesh or gauge places.
+pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
+    let (loaded, read, flexible) = resolve(folder, &Overrides::default())?;
+    let Some((mesh, mesh_blake3)) = read.mesh else {
+        return Err(damaged(
+            &folder.join("case.toml"),
+            "`flexible_head` names no mesh_file: there is nothing to reduce",
+            "add mesh_file = \"FILE.msh\" (Gmsh 4.1)",
+        ));
+    };
+    let modes_file = folder.join(&flexible.modes_file);
+    let Some(gauges) = read.provenance.gauges else {
+        return Err(damaged(
+            &modes_file,
+            "`gauges` does not place the gauges 1 to 4",
+            "add \"gauges\": {\"1\": {\"x_m\": .., \"y_m\": .., \"z_m\": .., \"length_m\": ..}, ..}",
+        ));
+    };
+    let source = HeadSource {
+        mesh,
+        mesh_blake3,
+        young_pa: flexible.young_gpa * 1e9,
+        poisson: flexible.poisson,
+        density_kg_m3: flexible.density_kg_m3,
+        gauges,
+        stale: read.stale.is_some(),
+        influence_file: folder.join(&flexible.influence_file),
+        modes_file,
+    };
+    Ok((loaded.case, source))
+}

@@ -1,0 +1,219 @@
+//! `horsehead head`: the flexible back head from its mesh.
+use super::{
+    EXIT_CODES, OutputChoice, bus, condition, head_files, interrupt, json, output, problem::Usage,
+};
+use crate::{
+    case::{self, HeadSource, QuasiStatic},
+    report::table,
+    study,
+};
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
+use protocol::{
+    case::Case,
+    job::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap},
+};
+use std::path::PathBuf;
+
+/// Reduce the flexible back head from its mesh: modes, influence lines, gauge stress.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead head cases/cyjs10-5-37hb
+  horsehead head cases/cyjs10-5-37hb --family both --modes 24 --vtu pictures
+  horsehead head my-case --write
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Case folder, with `case.toml` in it.
+    #[arg(value_name = "CASE")]
+    case: PathBuf,
+    /// How many modes; as many as the case's table by default.
+    #[arg(long, value_name = "N", env = "HORSEHEAD_MODES")]
+    modes: Option<usize>,
+    /// Which modes: a rope over the whole width drives only symmetric ones.
+    #[arg(
+        long,
+        value_enum,
+        default_value = "symmetric",
+        env = "HORSEHEAD_FAMILY"
+    )]
+    family: FamilyChoice,
+    /// Condition whose load stands for the quasi-static turn; that of the objective by default.
+    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
+    condition: Option<String>,
+    /// Replace the case's modes file and influence file.
+    #[arg(long, env = "HORSEHEAD_WRITE")]
+    write: bool,
+    /// Folder for `head.vtu`: all modes, and displacement and stress under the largest tension.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_VTU")]
+    vtu: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Families of modes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FamilyChoice {
+    /// Sideways displacement changes sign across the middle.
+    Symmetric,
+    /// Displacement in the plane of motion changes sign.
+    Antisymmetric,
+    /// The lowest of both.
+    Both,
+}
+
+impl FamilyChoice {
+    fn families(self) -> Vec<ModeFamily> {
+        match self {
+            Self::Symmetric => vec![ModeFamily::Symmetric],
+            Self::Antisymmetric => vec![ModeFamily::Antisymmetric],
+            Self::Both => vec![ModeFamily::Symmetric, ModeFamily::Antisymmetric],
+        }
+    }
+}
+
+/// Most modes: beyond, a mesh of this kind no longer resolves them, and their fields no longer
+/// travel in one message.
+const MOST_MODES: usize = 40;
+
+/// Reduces, compares, writes.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let (case, source) = case::load_head(&arguments.case)?;
+    if source.stale {
+        output::tell("note: the case's tables were computed from another mesh");
+    }
+    let modes = arguments
+        .modes
+        .unwrap_or(case.modal_head.frequencies_hz.len());
+    if !(1..=MOST_MODES).contains(&modes) {
+        return Err(Usage {
+            message: format!("{modes} modes cannot be computed"),
+            help: format!("ask for 1 to {MOST_MODES}"),
+        }
+        .into());
+    }
+    if arguments.write && modes < case.run.modes {
+        return Err(Usage {
+            message: format!("the case simulates {} modes", case.run.modes),
+            help: "write at least as many, or lower run.modes in case.toml first".to_owned(),
+        }
+        .into());
+    }
+    let chosen = condition(&case, arguments.condition.as_deref())?;
+    let name = case.conditions[chosen].name.clone();
+    let turn = case::quasi_static(&case, &case.conditions[chosen])
+        .context("the crank of this case cannot turn through")?;
+    let mut spec = spec(&case, &source, modes, arguments.family.families());
+    if arguments.vtu.is_some() {
+        spec.fields = Some(hardest(&case, &turn));
+    }
+    let head = reduce_once(&case, spec.clone())?;
+    let wrapped = study::wrapped_turn(&turn, case.back_head.rope_anchor_deg);
+    let comparison = study::compare_head(&head, &case.modal_head, &wrapped, case.run.modes);
+    let mut written = Vec::new();
+    if let Some(folder) = &arguments.vtu {
+        written.push(head_files::write_vtu(folder, &spec.mesh, &head)?);
+    }
+    if arguments.write {
+        written.extend(head_files::write_tables(&case, &source, &head)?);
+    }
+    for path in &written {
+        output::tell(&format!("wrote {}", path.display()));
+    }
+    let object = json::head((&case, &name), &source.mesh_blake3, &head, &comparison);
+    let tables = || {
+        let styled = output::styled();
+        let modes = table::text(&table::head_modes(&head, &comparison), styled);
+        let statics = table::head_statics(&comparison, &name, case.run.modes);
+        format!("{modes}\n{}", table::text(&statics, styled))
+    };
+    output::print(arguments.output.output, tables, &object)
+}
+
+/// The rope at its largest tension.
+fn hardest(case: &Case, turn: &QuasiStatic) -> RopeWrap {
+    let places = turn.tension_n.iter().zip(&turn.contact_deg);
+    let (tension, leaves) = places
+        .max_by(|a, b| a.0.total_cmp(b.0))
+        .map_or((0.0, 0.0), |(tension, leaves)| (*tension, *leaves));
+    RopeWrap {
+        tension_n: tension,
+        anchor_deg: case.back_head.rope_anchor_deg,
+        leaves_deg: leaves,
+    }
+}
+
+/// The job that reduces a case's head at the stations of its present tables.
+fn spec(
+    case: &Case,
+    source: &HeadSource,
+    modes: usize,
+    families: Vec<ModeFamily>,
+) -> ReduceHeadSpec {
+    ReduceHeadSpec {
+        mesh: mesh(&source.mesh),
+        young_pa: source.young_pa,
+        poisson: source.poisson,
+        density_kg_m3: source.density_kg_m3,
+        gauges: source.gauges,
+        center_m: [case.back_head.center_x_m, case.back_head.center_y_m],
+        arc_deg: case.modal_head.arc_deg.clone(),
+        probes_deg: Vec::new(),
+        modes,
+        families,
+        fields: None,
+    }
+}
+
+/// A mesh as it travels.
+fn mesh(read: &case::mesh::Mesh) -> HeadMesh {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a mesh of four billion nodes does not fit into memory"
+    )]
+    let index = |node: usize| node as u32;
+    let surface = |name: &str| read.surfaces.get(name).map_or(&[][..], Vec::as_slice);
+    let mut held: Vec<u32> = ["pin_a", "pin_b"]
+        .into_iter()
+        .flat_map(surface)
+        .flatten()
+        .map(|&node| index(node))
+        .collect();
+    held.sort_unstable();
+    held.dedup();
+    let hexahedra = read.volumes.get(case::mesh::VOLUME);
+    HeadMesh {
+        nodes_m: read.nodes_m.clone(),
+        hexahedra: hexahedra
+            .into_iter()
+            .flatten()
+            .map(|e| e.map(index))
+            .collect(),
+        held,
+        rope_surface: surface("rope_surface")
+            .iter()
+            .map(|f| f.map(index))
+            .collect(),
+    }
+}
+
+/// Reduces on one local worker, without a run folder that outlives the command.
+fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
+    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
+    bus::block_on(async {
+        let mut stop = interrupt::listen();
+        let options = bus::Options {
+            run_dir: scratch.path().to_owned(),
+            listen: None,
+            insecure: false,
+            local_workers: 1,
+            kind: "head".to_owned(),
+            settings: serde_json::to_string(&spec.modes)?,
+        };
+        let mut bus = bus::Bus::open(options, case).await?;
+        let head = study::reduce_head(&mut bus, spec, &mut stop).await;
+        bus.close().await?;
+        Ok(head?)
+    })
+}

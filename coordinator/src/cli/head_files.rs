@@ -1,0 +1,184 @@
+//! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
+use crate::{
+    case::HeadSource,
+    report::vtu::{self, Field},
+};
+use anyhow::Context as _;
+use protocol::{
+    case::Case,
+    job::{HeadMesh, ModeFamily, ReducedHead},
+};
+use serde::Serialize;
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    fs::{self, File},
+    io::{BufWriter, Write as _},
+    path::{Path, PathBuf},
+};
+
+/// The modes file, as cases are delivered with it.
+#[derive(Debug, Serialize)]
+struct ModesFile<'a> {
+    mesh_blake3: &'a str,
+    made_by: &'static str,
+    frequencies_hz: Vec<f64>,
+    family: Vec<ModeFamily>,
+    damping_ratio: f64,
+    arc_deg: &'a [f64],
+    radial: Vec<&'a [f64]>,
+    tangential: Vec<&'a [f64]>,
+    gauge_stress_mpa: Vec<[f64; 4]>,
+    participation: Vec<[f64; 3]>,
+    mass_kg: f64,
+    centre_of_mass_m: [f64; 2],
+    inertia_about_pivot_kg_m2: f64,
+    inertia_stress_mpa: [[f64; 4]; 3],
+    gauges: BTreeMap<String, GaugePlace>,
+}
+
+#[derive(Debug, Serialize)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "keys of the file, with their unit"
+)]
+struct GaugePlace {
+    x_m: f64,
+    y_m: f64,
+    z_m: f64,
+    length_m: f64,
+}
+
+/// Replaces the modes file and the influence file of a case; returns their paths.
+pub(super) fn write_tables(
+    case: &Case,
+    source: &HeadSource,
+    head: &ReducedHead,
+) -> anyhow::Result<[PathBuf; 2]> {
+    let place = |(number, gauge): (usize, &protocol::job::HeadGauge)| {
+        let [x_m, y_m, z_m] = gauge.position_m;
+        let place = GaugePlace {
+            x_m,
+            y_m,
+            z_m,
+            length_m: gauge.length_m,
+        };
+        (number.to_string(), place)
+    };
+    let file = ModesFile {
+        mesh_blake3: &source.mesh_blake3,
+        made_by: super::bus::PROGRAM,
+        frequencies_hz: head.modes.iter().map(|m| m.frequency_hz).collect(),
+        family: head.modes.iter().map(|m| m.family).collect(),
+        damping_ratio: case.modal_head.damping_ratio,
+        arc_deg: &head.influence.psi_deg,
+        radial: head.modes.iter().map(|m| &m.radial[..]).collect(),
+        tangential: head.modes.iter().map(|m| &m.tangential[..]).collect(),
+        gauge_stress_mpa: head.modes.iter().map(|m| m.gauge_stress_mpa).collect(),
+        participation: head.modes.iter().map(|m| m.participation).collect(),
+        mass_kg: head.mass_kg,
+        centre_of_mass_m: head.center_of_mass_m,
+        inertia_about_pivot_kg_m2: head.inertia_about_pivot_kg_m2,
+        inertia_stress_mpa: head.inertia_stress_mpa,
+        gauges: (1..).zip(&source.gauges).map(place).collect(),
+    };
+    let mut modes = serde_json::to_string(&file)?;
+    modes.push('\n');
+    // both are complete before either replaces what was there
+    let both = [
+        (&source.modes_file, modes),
+        (&source.influence_file, influence(head)),
+    ];
+    let drafts = both.map(|(path, text)| {
+        let draft = path.with_extension("draft");
+        let written = fs::write(&draft, text);
+        written.with_context(|| format!("cannot write {}", draft.display()))?;
+        anyhow::Ok((draft, path.clone()))
+    });
+    for draft in drafts {
+        let (draft, path) = draft?;
+        fs::rename(&draft, &path).with_context(|| format!("cannot replace {}", path.display()))?;
+    }
+    Ok([source.modes_file.clone(), source.influence_file.clone()])
+}
+
+/// The influence lines as CSV.
+fn influence(head: &ReducedHead) -> String {
+    let mut text = "psi_deg".to_owned();
+    for kind in ["normal", "tangential"] {
+        for gauge in 1..=4 {
+            let _infallible = write!(text, ",{kind}_{gauge}_mpa_per_n");
+        }
+    }
+    text.push('\n');
+    let lines = &head.influence;
+    let rows = lines
+        .normal_mpa_per_n
+        .iter()
+        .zip(&lines.tangential_mpa_per_n);
+    for (psi, (normal, tangential)) in lines.psi_deg.iter().zip(rows) {
+        let _infallible = write!(text, "{psi}");
+        for value in normal.iter().chain(tangential) {
+            let _infallible = write!(text, ",{value:e}");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// Writes `head.vtu` into a folder, which is made if it does not exist.
+pub(super) fn write_vtu(
+    folder: &Path,
+    mesh: &HeadMesh,
+    head: &ReducedHead,
+) -> anyhow::Result<PathBuf> {
+    let fields = head
+        .fields
+        .as_ref()
+        .context("the worker returned no fields")?;
+    let mut at_nodes = vec![Field::new(
+        "displacement under the rope (m)",
+        &fields.wrap_m,
+    )];
+    let named = (1..).zip(head.modes.iter().zip(&fields.modes));
+    at_nodes.extend(named.map(|(number, (mode, shape))| {
+        Field::new(
+            format!("mode {number:02}, {:.1} Hz", mode.frequency_hz),
+            shape,
+        )
+    }));
+    let equivalent: Vec<[f32; 1]> = fields.wrap_stress_mpa.iter().map(von_mises).collect();
+    let at_elements = [
+        Field::new("stress xx yy zz xy yz zx (MPa)", &fields.wrap_stress_mpa),
+        Field::new("von Mises stress (MPa)", &equivalent),
+    ];
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let path = folder.join("head.vtu");
+    let problem = || format!("cannot write {}", path.display());
+    let mut to = BufWriter::new(File::create(&path).with_context(problem)?);
+    let plain = (&mesh.nodes_m[..], &mesh.hexahedra[..]);
+    vtu::write(&mut to, plain, &at_nodes, &at_elements)
+        .and_then(|()| to.flush())
+        .with_context(problem)?;
+    Ok(path)
+}
+
+/// Equivalent stress of xx, yy, zz, xy, yz, zx.
+fn von_mises(stress: &[f32; 6]) -> [f32; 1] {
+    let [xx, yy, zz, xy, yz, zx] = stress;
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    let shear = xy * xy + yz * yz + zx * zx;
+    [(0.5 * normal + 3.0 * shear).sqrt()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equivalent_stress_of_pull_and_of_shear() {
+        assert!((von_mises(&[-7.0, 0.0, 0.0, 0.0, 0.0, 0.0])[0] - 7.0).abs() < 1e-6);
+        let shear = von_mises(&[2.0, 2.0, 2.0, 0.0, 3.0, 0.0])[0];
+        assert!((shear - 3.0 * 3.0_f32.sqrt()).abs() < 1e-5);
+    }
+}

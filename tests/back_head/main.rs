@@ -1,0 +1,268 @@
+//! The shipped back head, reduced from its mesh, against the tables that other programs made:
+//! modes by CalculiX, statics by another implementation of the same element.
+use coordinator::{
+    case::{self, mesh},
+    study,
+};
+use simulation::flexible::{Family, Gauge, Mesh, Reduction, Request, Steel, reduce};
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Welded steel, as the case's documentation states it.
+const STEEL: Steel = Steel {
+    young: 206.0e9,
+    poisson: 0.3,
+    density: 7850.0,
+};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb/back_head")
+}
+
+fn shipped_mesh() -> Mesh {
+    let read = mesh::read(&folder().join("back_head.msh")).unwrap();
+    let held = ["pin_a", "pin_b"].map(|pin| read.surfaces[pin].iter().flatten().copied());
+    Mesh {
+        held: held.into_iter().flatten().collect(),
+        rim: read.surfaces["rope_surface"].clone(),
+        hexahedra: read.volumes["steel"].clone(),
+        nodes: read.nodes_m,
+    }
+}
+
+fn table(name: &str) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(folder().join(name)).unwrap()).unwrap()
+}
+
+fn numbers(value: &serde_json::Value) -> Vec<f64> {
+    let list = value.as_array().unwrap().iter();
+    list.map(|x| x.as_f64().unwrap()).collect()
+}
+
+fn rows(name: &str) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(folder().join(name)).unwrap();
+    let data = text.lines().skip(1);
+    data.map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect()
+}
+
+fn gauges(table: &serde_json::Value) -> Vec<Gauge> {
+    let gauge = |name: &str| {
+        let entry = &table["gauges"][name];
+        let number = |key: &str| entry[key].as_f64().unwrap();
+        Gauge {
+            position: [number("x_m"), number("y_m"), number("z_m")],
+            length: number("length_m"),
+        }
+    };
+    ["1", "2", "3", "4"].map(gauge).to_vec()
+}
+
+const PROBES_DEG: [f64; 6] = [125.0, 140.0, 160.0, 180.0, 200.0, 212.0];
+
+fn reduced(modes: usize, families: &[Family]) -> Reduction {
+    reduced_from(&shipped_mesh(), modes, families)
+}
+
+fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
+    let table = table("back_head_modes.json");
+    let radians = |deg: &[f64]| deg.iter().map(|x| x.to_radians()).collect::<Vec<_>>();
+    reduce(&Request {
+        mesh,
+        steel: STEEL,
+        gauges: &gauges(&table),
+        center: [-0.15, -0.58],
+        stations: &radians(&numbers(&table["arc_deg"])),
+        probes: &radians(&PROBES_DEG),
+        wrap: None,
+        modes,
+        families,
+        fields: false,
+    })
+    .unwrap()
+}
+
+/// Modal assurance criterion of two vectors.
+fn mac(a: &[f64], b: &[f64]) -> f64 {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    dot(a, b).powi(2) / (dot(a, a) * dot(b, b))
+}
+
+const BOTH: [Family; 2] = [Family::Symmetric, Family::Antisymmetric];
+
+/// All 24 modes of both families: the first six within 1 %, twelve within 2 %; shapes alike where
+/// no other mode of the family is near.
+#[test]
+fn modes_of_both_families_are_those_of_calculix() {
+    let reduction = reduced(24, &BOTH);
+    let table = table("back_head_modes_all.json");
+    let theirs = numbers(&table["frequencies_hz"]);
+    let alone = |k: usize| {
+        let near = |other: usize| (theirs[other] / theirs[k] - 1.0).abs() < 0.02;
+        (0..24)
+            .all(|other| other == k || table["family"][other] != table["family"][k] || !near(other))
+    };
+    let mut compared = 0;
+    for (k, mode) in reduction.modes.iter().enumerate() {
+        let hz = mode.frequency / std::f64::consts::TAU;
+        let limit = if k < 6 { 0.01 } else { 0.02 };
+        assert!(
+            (hz / theirs[k] - 1.0).abs() < limit,
+            "mode {k}: {hz} {}",
+            theirs[k]
+        );
+        let symmetric = mode.family == Family::Symmetric;
+        assert_eq!(symmetric, table["family"][k] == "symmetric", "mode {k}");
+        if !alone(k) {
+            continue;
+        }
+        compared += 1;
+        if symmetric {
+            let shape = [&mode.radial[..], &mode.tangential[..]].concat();
+            let other = [
+                numbers(&table["radial"][k]),
+                numbers(&table["tangential"][k]),
+            ]
+            .concat();
+            assert!(
+                mac(&shape, &other) > 0.99,
+                "mode {k}: {}",
+                mac(&shape, &other)
+            );
+        }
+        let gauges = mac(&mode.gauge_stress, &numbers(&table["gauge_stress_mpa"][k]));
+        assert!(gauges > 0.99, "mode {k}: gauges {gauges}");
+    }
+    assert!(compared >= 15, "{compared} modes stand alone");
+    let main = &reduction.modes[3];
+    for (ours, theirs) in main
+        .participation
+        .iter()
+        .zip(numbers(&table["participation"][3]))
+    {
+        assert!((ours / theirs - 1.0).abs() < 0.01, "{ours} {theirs}");
+    }
+}
+
+/// The case's table of "symmetric" modes was computed on the whole mesh with only u_z held on the
+/// middle plane. That lets in a second kind: vibrations of the halves against each other, whose
+/// middle plane stands still. Both kinds together are its twelve, within 2 %; the first five within
+/// 1 %. The sixth is a cheek that breathes, where incompatible modes of two makes differ by 1.1 %.
+#[test]
+fn the_shipped_table_mixes_in_modes_with_the_middle_plane_at_rest() {
+    let theirs = numbers(&table("back_head_modes.json")["frequencies_hz"]);
+    let mut ours: Vec<f64> = Vec::new();
+    let mut mesh = shipped_mesh();
+    for family in BOTH {
+        let reduction = reduced_from(&mesh, 12, &[family]);
+        ours.extend(
+            reduction
+                .modes
+                .iter()
+                .map(|m| m.frequency / std::f64::consts::TAU),
+        );
+        mesh.held
+            .extend((0..mesh.nodes.len()).filter(|&n| mesh.nodes[n][2].abs() < 1e-9));
+    }
+    ours.sort_by(f64::total_cmp);
+    for (k, (ours, theirs)) in ours.iter().zip(&theirs).enumerate() {
+        let limit = if k < 5 { 0.01 } else { 0.02 };
+        assert!(
+            (ours / theirs - 1.0).abs() < limit,
+            "mode {k}: {ours} {theirs}"
+        );
+    }
+}
+
+/// Statics by the same element elsewhere: far within the 1 % that is asked for.
+#[test]
+fn influence_lines_compliance_and_mass_are_those_of_the_other_program() {
+    let reduction = reduced(1, &[Family::Symmetric]);
+    let lines = rows("back_head_influence.csv");
+    for (kind, first) in [
+        (&reduction.normal_influence, 1),
+        (&reduction.tangential_influence, 5),
+    ] {
+        for gauge in 0..4 {
+            let largest = lines
+                .iter()
+                .map(|row| row[first + gauge].abs())
+                .fold(0.0, f64::max);
+            for (ours, row) in kind.iter().zip(&lines) {
+                let difference = ours[gauge] * 1e-6 - row[first + gauge];
+                assert!(
+                    difference.abs() < 1e-4 * largest,
+                    "gauge {gauge} at {}",
+                    row[0]
+                );
+            }
+        }
+    }
+    for (ours, row) in reduction
+        .compliance
+        .iter()
+        .zip(rows("back_head_static_compliance.csv"))
+    {
+        for (ours, theirs) in ours.iter().zip(&row[1..]) {
+            assert!((ours - theirs).abs() < 1e-4 * 2.6e-9, "{ours} {theirs}");
+        }
+    }
+    let table = table("back_head_modes.json");
+    for (ours, theirs) in reduction
+        .inertia_stress
+        .iter()
+        .zip(table["inertia_stress_mpa"].as_array().unwrap())
+    {
+        for (ours, theirs) in ours.iter().zip(numbers(theirs)) {
+            assert!((ours * 1e-6 / theirs - 1.0).abs() < 1e-3, "{ours} {theirs}");
+        }
+    }
+    assert!((reduction.mass - 881.016).abs() < 1e-3);
+    assert!((reduction.center_of_mass[0] + 1.48285).abs() < 1e-5);
+    assert!((reduction.center_of_mass[1] + 0.32917).abs() < 1e-5);
+    assert!((reduction.inertia / 2673.3 - 1.0).abs() < 2e-4);
+}
+
+/// Stress of a wrapped rope over the turn, and how far six modes are from it, as the case's
+/// documentation states both.
+#[test]
+fn the_quasi_static_turn_is_the_published_one() {
+    let case_folder = folder().join("..");
+    let (case, _) = case::load_head(&case_folder).unwrap();
+    let turn = case::quasi_static(&case, &case.conditions[0]).unwrap();
+    let design = fs::read_to_string(case_folder.join("machine/kinematics_720.csv")).unwrap();
+    let design: Vec<Vec<f64>> = design
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    for (k, row) in design.iter().enumerate() {
+        assert!(
+            (turn.contact_deg[k] - row[9]).abs() < 0.01,
+            "{} {}",
+            turn.contact_deg[k],
+            row[9]
+        );
+        // the delivered card differs from the design load by its own resolution
+        assert!(
+            (turn.tension_n[k] / row[13] - 1.0).abs() < 0.01,
+            "{} {}",
+            turn.tension_n[k],
+            row[13]
+        );
+    }
+    let wrapped = study::wrapped_turn(&turn, case.back_head.rope_anchor_deg);
+    let stress = wrapped.exact(&case.modal_head.influence);
+    let published = rows("back_head_quasistatic_5rpm.csv");
+    for gauge in 0..4 {
+        for (ours, row) in stress[gauge].iter().zip(&published) {
+            assert!(
+                (ours - row[1 + gauge]).abs() < 0.3,
+                "gauge {gauge}: {ours} {}",
+                row[1 + gauge]
+            );
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Sparse stiffness and mass of a mesh, and the factor that solves with them.
+//!
+//! Both matrices are symmetric; the lower triangle is kept column by column, so that every sum runs
+//! in a fixed order. Knows nothing of rims, gauges or modes.
+use super::{ReductionError, hexahedron::Hexahedron, hexahedron::Steel, mesh::Mesh};
+use faer::{
+    Side,
+    linalg::solvers::Solve,
+    mat::MatMut,
+    sparse::{
+        SparseColMatRef, SymbolicSparseColMatRef,
+        linalg::solvers::{Llt, SymbolicLlt},
+    },
+};
+use std::collections::BTreeSet;
+
+/// Which displacements are unknown, and their numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Unknowns {
+    /// Number of each node's displacements in x, y, z; none where it is held.
+    numbers: Vec<[Option<usize>; 3]>,
+    count: usize,
+}
+
+impl Unknowns {
+    /// Numbers every displacement of `nodes` nodes for which `free(node, axis)` holds.
+    pub(super) fn new(nodes: usize, free: impl Fn(usize, usize) -> bool) -> Self {
+        let mut count = 0;
+        let numbers = (0..nodes)
+            .map(|node| {
+                [0, 1, 2].map(|axis| {
+                    free(node, axis).then(|| {
+                        count += 1;
+                        count - 1
+                    })
+                })
+            })
+            .collect();
+        Self { numbers, count }
+    }
+
+    /// How many there are.
+    pub(super) const fn len(&self) -> usize {
+        self.count
+    }
+
+    /// The number of a node's displacement; none where it is held.
+    pub(super) fn number(&self, node: usize, axis: usize) -> Option<usize> {
+        self.numbers[node][axis]
+    }
+
+    /// A vector of unknowns as displacements of all nodes, zero where held.
+    pub(super) fn spread(&self, vector: &[f64]) -> Vec<[f64; 3]> {
+        let value = |number: &Option<usize>| number.map_or(0.0, |number| vector[number]);
+        self.numbers
+            .iter()
+            .map(|numbers| numbers.each_ref().map(value))
+            .collect()
+    }
+
+    /// The unknown ones of a field over all nodes.
+    pub(super) fn gather(&self, field: &[[f64; 3]]) -> Vec<f64> {
+        let pairs = self.numbers.iter().flatten().zip(field.iter().flatten());
+        pairs
+            .filter(|(number, _)| number.is_some())
+            .map(|(_, value)| *value)
+            .collect()
+    }
+}
+
+/// A sparse symmetric matrix: the lower triangle, column by column, rows ascending.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Symmetric {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Symmetric {
+    /// Order.
+    pub(super) const fn len(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// `self * vector`.
+    pub(super) fn times(&self, vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; vector.len()];
+        for column in 0..self.len() {
+            let mut sum = 0.0;
+            for k in self.starts[column]..self.starts[column + 1] {
+                let (row, value) = (self.rows[k], self.values[k]);
+                sum += value * vector[row];
+                if row != column {
+                    product[row] += value * vector[column];
+                }
+            }
+            product[column] += sum;
+        }
+        product
+    }
+
+    fn add(&mut self, row: usize, column: usize, value: f64) {
+        let (from, to) = (self.starts[column], self.starts[column + 1]);
+        if let Ok(at) = self.rows[from..to].binary_search(&row) {
+            self.values[from + at] += value;
+        }
+    }
+}
+
+/// Stiffness [N/m] and mass \[kg\] over the unknowns.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Assembly {
+    /// Stiffness.
+    pub(super) stiffness: Symmetric,
+    /// Consistent mass.
+    pub(super) mass: Symmetric,
+}
+
+impl Assembly {
+    /// Sums the elements of a mesh in their order.
+    ///
+    /// # Errors
+    /// [`ReductionError::InsideOut`] naming the element.
+    pub(super) fn new(
+        mesh: &Mesh,
+        steel: &Steel,
+        unknowns: &Unknowns,
+    ) -> Result<Self, ReductionError> {
+        let mut stiffness = pattern(mesh, unknowns);
+        let mut mass = stiffness.clone();
+        for (element, nodes) in mesh.hexahedra.iter().enumerate() {
+            let inside_out = |_| ReductionError::InsideOut { element };
+            let hexahedron = Hexahedron::new(mesh.corners(nodes));
+            let k = hexahedron.stiffness(steel).map_err(inside_out)?;
+            let m = hexahedron.mass(steel).map_err(inside_out)?;
+            for (i, a) in each(nodes, unknowns) {
+                for (j, b) in each(nodes, unknowns) {
+                    if a >= b {
+                        stiffness.add(a, b, k[(i, j)]);
+                        if i % 3 == j % 3 {
+                            mass.add(a, b, m[i / 3][j / 3]);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(Self { stiffness, mass })
+    }
+}
+
+/// Unknowns of an element: (place in the element, number).
+fn each(nodes: &[usize; 8], unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
+    (0..24).filter_map(|i| Some((i, unknowns.number(nodes[i / 3], i % 3)?)))
+}
+
+/// An empty matrix with a place for every pair of unknowns that share an element.
+fn pattern(mesh: &Mesh, unknowns: &Unknowns) -> Symmetric {
+    let mut neighbours = vec![BTreeSet::new(); mesh.nodes.len()];
+    for element in &mesh.hexahedra {
+        for &node in element {
+            neighbours[node].extend(element);
+        }
+    }
+    let mut starts = vec![0];
+    let mut rows = Vec::new();
+    for (node, around) in neighbours.iter().enumerate() {
+        for axis in 0..3 {
+            let Some(column) = unknowns.number(node, axis) else {
+                continue;
+            };
+            let numbers = around
+                .iter()
+                .flat_map(|&other| (0..3).filter_map(move |axis| unknowns.number(other, axis)));
+            rows.extend(numbers.filter(|row| *row >= column));
+            starts.push(rows.len());
+        }
+    }
+    Symmetric {
+        values: vec![0.0; rows.len()],
+        starts,
+        rows,
+    }
+}
+
+/// Cholesky factor of a positive definite matrix.
+#[derive(Debug)]
+pub(super) struct Factor {
+    factor: Llt<usize, f64>,
+    order: usize,
+}
+
+impl Factor {
+    /// Factors with a fill-reducing order of unknowns.
+    ///
+    /// # Errors
+    /// [`ReductionError::NotHeld`] if the matrix is not positive definite.
+    pub(super) fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
+        let order = matrix.len();
+        let symbolic =
+            SymbolicSparseColMatRef::new_checked(order, order, &matrix.starts, None, &matrix.rows);
+        let plan = SymbolicLlt::try_new(symbolic, Side::Lower)
+            .map_err(|_| ReductionError::TooLarge { unknowns: order })?;
+        let values = SparseColMatRef::new(symbolic, &matrix.values[..]);
+        let factor = Llt::try_new_with_symbolic(plan, values, Side::Lower)
+            .map_err(|_| ReductionError::NotHeld)?;
+        Ok(Self { factor, order })
+    }
+
+    /// Overwrites a right-hand side by its solution.
+    pub(super) fn solve(&self, vector: &mut [f64]) {
+        let order = self.order;
+        self.factor
+            .solve_in_place(MatMut::from_column_major_slice_mut(vector, order, 1));
+    }
+}

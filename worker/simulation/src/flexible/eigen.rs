@@ -1,0 +1,166 @@
+//! The lowest natural modes, by Lanczos iteration on the inverse stiffness.
+//!
+//! `K x = lambda M x` becomes `(K^-1 M) x = x / lambda`, whose largest eigenvalues converge first.
+//! The iteration runs in the inner product of M, with full orthogonalisation twice over, from a
+//! fixed start: no luck, no threads, the same bits every time.
+use super::{
+    ReductionError,
+    assembly::{Assembly, Factor},
+};
+use nalgebra::{DMatrix, SymmetricEigen};
+
+/// A mode is found when its residual is below this share of its eigenvalue.
+const TOLERANCE: f64 = 1e-11;
+/// How often the small problem is solved.
+const LOOK_EVERY: usize = 8;
+
+/// Modes in ascending order.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Modes {
+    /// Squared angular frequencies [rad2/s2]; n.
+    pub(super) eigenvalues: Vec<f64>,
+    /// Shapes with unit modal mass, over the unknowns; n.
+    pub(super) shapes: Vec<Vec<f64>>,
+    /// Solves that it took.
+    pub(super) steps: usize,
+}
+
+/// Finds the `count` lowest modes.
+///
+/// # Errors
+/// [`ReductionError::Modes`] if the body has fewer, or if they do not converge.
+pub(super) fn lowest(
+    assembly: &Assembly,
+    factor: &Factor,
+    count: usize,
+) -> Result<Modes, ReductionError> {
+    let order = assembly.mass.len();
+    let limit = order.min(20 * count + 100);
+    let mut space = Space::default();
+    let mut next = start(order);
+    while space.basis.len() < limit {
+        // whatever a rounding error brings back of earlier directions is taken out once more
+        space.purge(&mut next);
+        space.purge(&mut next);
+        let weighed = assembly.mass.times(&next);
+        let length = dot(&next, &weighed).max(0.0).sqrt();
+        let exhausted = length <= 1e-13 * space.scale;
+        if space.basis.len().is_multiple_of(LOOK_EVERY) || exhausted {
+            if let Some(modes) = space.modes(count, if exhausted { 0.0 } else { length }) {
+                return Ok(modes);
+            }
+            if exhausted {
+                break;
+            }
+        }
+        next = space.grow(&next, &weighed, length, factor);
+    }
+    if space.basis.len() == order
+        && let Some(modes) = space.modes(count, 0.0)
+    {
+        return Ok(modes);
+    }
+    Err(ReductionError::Modes {
+        wanted: count,
+        steps: space.basis.len(),
+    })
+}
+
+/// A start vector that is orthogonal to nothing by symmetry: no two entries are alike.
+fn start(order: usize) -> Vec<f64> {
+    let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
+    (0..order)
+        .map(|_| {
+            // a linear congruential generator: equal on every machine
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        })
+        .collect()
+}
+
+/// The Krylov space so far: `K^-1 M Q = Q T + remainder`.
+#[derive(Debug, Default)]
+struct Space {
+    basis: Vec<Vec<f64>>,
+    /// The basis times the mass.
+    weighed: Vec<Vec<f64>>,
+    diagonal: Vec<f64>,
+    beside: Vec<f64>,
+    scale: f64,
+}
+
+impl Space {
+    /// Makes a vector orthogonal to the basis in the mass's inner product.
+    fn purge(&self, vector: &mut [f64]) {
+        for (direction, weighed) in self.basis.iter().zip(&self.weighed) {
+            let part = dot(vector, weighed);
+            for (entry, along) in vector.iter_mut().zip(direction) {
+                *entry -= part * along;
+            }
+        }
+    }
+
+    /// Takes a direction of known length in; returns the operator's answer to it.
+    fn grow(&mut self, next: &[f64], weighed: &[f64], length: f64, factor: &Factor) -> Vec<f64> {
+        let scaled = |vector: &[f64]| vector.iter().map(|x| x / length).collect::<Vec<f64>>();
+        if !self.basis.is_empty() {
+            self.beside.push(length);
+        }
+        self.basis.push(scaled(next));
+        let weighed = scaled(weighed);
+        let mut answer = weighed.clone();
+        factor.solve(&mut answer);
+        self.diagonal.push(dot(&answer, &weighed));
+        self.scale = self.diagonal.iter().copied().fold(0.0, f64::max);
+        self.weighed.push(weighed);
+        answer
+    }
+
+    /// The lowest modes if all of them have converged; `remainder` is the length of what the
+    /// operator adds to the space.
+    fn modes(&self, count: usize, remainder: f64) -> Option<Modes> {
+        let size = self.basis.len();
+        if size < count {
+            return None;
+        }
+        let mut small = DMatrix::zeros(size, size);
+        for (k, value) in self.diagonal.iter().enumerate() {
+            small[(k, k)] = *value;
+        }
+        for (k, value) in self.beside.iter().enumerate() {
+            small[(k, k + 1)] = *value;
+            small[(k + 1, k)] = *value;
+        }
+        let eigen = SymmetricEigen::new(small);
+        let mut order: Vec<usize> = (0..size).collect();
+        order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+        let mut modes = Modes {
+            eigenvalues: Vec::new(),
+            shapes: Vec::new(),
+            steps: size,
+        };
+        for &k in &order[..count] {
+            let value = eigen.eigenvalues[k];
+            let weights = eigen.eigenvectors.column(k);
+            if value <= 0.0 || remainder * weights[size - 1].abs() > TOLERANCE * value {
+                return None;
+            }
+            let mut shape = vec![0.0; self.basis[0].len()];
+            for (direction, weight) in self.basis.iter().zip(&weights) {
+                for (entry, along) in shape.iter_mut().zip(direction) {
+                    *entry += weight * along;
+                }
+            }
+            modes.eigenvalues.push(1.0 / value);
+            modes.shapes.push(shape);
+        }
+        Some(modes)
+    }
+}
+
+/// Inner product, summed in order.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}

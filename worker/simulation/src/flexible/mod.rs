@@ -1,0 +1,22 @@
+//! The flexible back head: from a mesh of bricks to modes and static influence lines.
+//!
+//! Linear elasticity with the pin holes held. What comes out is all that the dynamics need of the
+//! head: natural modes seen along the rope arc, gauge stress, inertial coupling, exact statics.
+//! Plain numbers in SI units come in and go out; nothing here knows of files or of the machine.
+mod arc;
+mod assembly;
+mod eigen;
+mod error;
+mod gauge;
+mod hexahedron;
+mod mesh;
+mod problem;
+mod reduction;
+#[cfg(test)]
+mod tests;
+
+pub use error::ReductionError;
+pub use gauge::Gauge;
+pub use hexahedron::Steel;
+pub use mesh::Mesh;
+pub use reduction::{Family, Mode, Reduction, Request, Wrap, reduce};

@@ -1,0 +1,268 @@
+//! One family's equations over the half, factored once: its modes, and all statics.
+//!
+//! Statics: one solve per gauge, `K w_g = row_g`; then the reading under any load `f` is `w_g . f`.
+use super::{
+    ReductionError,
+    arc::{Rim, Station},
+    assembly::{Assembly, Factor, Unknowns},
+    eigen::{dot, lowest},
+    hexahedron::{Hexahedron, Steel},
+    mesh::{Half, Mesh},
+    reduction::{Family, Mode, Reduction, Request, Row, Wrap},
+};
+
+/// Motions of the whole body per unit base acceleration: along x, along y, about the origin.
+fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
+    [
+        mesh.nodes.iter().map(|_| [1.0, 0.0, 0.0]).collect(),
+        mesh.nodes.iter().map(|_| [0.0, 1.0, 0.0]).collect(),
+        mesh.nodes.iter().map(|n| [-n[1], n[0], 0.0]).collect(),
+    ]
+}
+
+/// Displacement of every node \[m\] and stress at every element's centre \[Pa\].
+type Fields = (Vec<[f64; 3]>, Vec<[f64; 6]>);
+
+/// Stiffness and mass of the half under one family's conditions.
+pub(super) struct Problem<'a> {
+    half: &'a Half,
+    family: Family,
+    unknowns: Unknowns,
+    assembly: Assembly,
+    factor: Factor,
+    /// Consistent mass times the rigid motions, over all nodes of the half.
+    inertia: [Vec<[f64; 3]>; 3],
+}
+
+impl<'a> Problem<'a> {
+    pub(super) fn new(
+        request: &Request<'_>,
+        half: &'a Half,
+        family: Family,
+    ) -> Result<Self, ReductionError> {
+        let mesh = &half.mesh;
+        let mut held = vec![false; mesh.nodes.len()];
+        for &node in &mesh.held {
+            held[node] = true;
+        }
+        let free = |node: usize, axis: usize| {
+            let on_plane = half.on_plane[node] && family.image()[axis] < 0.0;
+            !held[node] && !on_plane
+        };
+        let unknowns = Unknowns::new(mesh.nodes.len(), free);
+        let assembly = Assembly::new(mesh, &request.steel, &unknowns)?;
+        let factor = Factor::new(&assembly.stiffness)?;
+        let inertia = mass_times(mesh, &request.steel, &rigid(mesh))?;
+        Ok(Self {
+            half,
+            family,
+            unknowns,
+            assembly,
+            factor,
+            inertia,
+        })
+    }
+
+    /// Modes of this family, and the solves they took.
+    pub(super) fn modes(
+        &self,
+        request: &Request<'_>,
+        stations: &[Station],
+        rows: &[Row],
+    ) -> Result<(Vec<Mode>, usize), ReductionError> {
+        let found = lowest(&self.assembly, &self.factor, request.modes)?;
+        let mode = |(value, shape): (&f64, &Vec<f64>)| {
+            // unit mass of the whole, not of the half
+            let scale = std::f64::consts::FRAC_1_SQRT_2;
+            let mut field = self.unknowns.spread(shape);
+            field.iter_mut().flatten().for_each(|u| *u *= scale);
+            self.mode(request, stations, rows, (value.sqrt(), field))
+        };
+        let modes = found.eigenvalues.iter().zip(&found.shapes).map(mode);
+        Ok((modes.collect(), found.steps))
+    }
+
+    fn mode(
+        &self,
+        request: &Request<'_>,
+        stations: &[Station],
+        rows: &[Row],
+        (frequency, mut field): (f64, Vec<[f64; 3]>),
+    ) -> Mode {
+        let read = |field: &[[f64; 3]]| -> Vec<f64> {
+            rows.iter().map(|row| self.reading(row, field)).collect()
+        };
+        let mut gauge_stress = read(&field);
+        // a mode has no sign of its own: the gauge that feels it most reads tension
+        let most = gauge_stress.iter().fold(0.0_f64, |most, stress| {
+            if stress.abs() > most.abs() {
+                *stress
+            } else {
+                most
+            }
+        });
+        if most < 0.0 {
+            field.iter_mut().flatten().for_each(|u| *u = -*u);
+            gauge_stress = read(&field);
+        }
+        // both halves together: double, or nothing
+        let both = 1.0 + self.family.image()[0];
+        let participation = self.inertia.each_ref().map(|inertia| {
+            let work = inertia.iter().flatten().zip(field.iter().flatten());
+            both * work.map(|(m, u)| m * u).sum::<f64>()
+        });
+        let mean = |station: &Station, direction| 0.5 * both * station.mean(&field, direction);
+        Mode {
+            family: self.family,
+            frequency,
+            radial: stations.iter().map(|s| mean(s, s.radial)).collect(),
+            tangential: stations.iter().map(|s| mean(s, s.tangential)).collect(),
+            gauge_stress,
+            participation,
+            field: if request.fields {
+                self.half.unfold(&field, self.family.image())
+            } else {
+                Vec::new()
+            },
+        }
+    }
+
+    /// Reading of a gauge \[Pa\] under a field of the half.
+    fn reading(&self, (row, image): &Row, field: &[[f64; 3]]) -> f64 {
+        let sign = if *image { self.family.image()[1] } else { 1.0 };
+        let sum: f64 = row.iter().map(|&(n, factor)| factor * field[n][1]).sum();
+        sign * sum
+    }
+
+    /// Everything static; the modes are left empty.
+    pub(super) fn answer(
+        &self,
+        request: &Request<'_>,
+        rim: &Rim<'_>,
+        stations: &[Station],
+        rows: &[Row],
+    ) -> Result<Reduction, ReductionError> {
+        let count = self.half.mesh.nodes.len();
+        let lines: Vec<Vec<[f64; 3]>> = rows
+            .iter()
+            .map(|(row, _)| {
+                let mut load = vec![[0.0; 3]; count];
+                for &(node, factor) in row {
+                    load[node][1] += factor;
+                }
+                self.solve(&load)
+            })
+            .collect();
+        // a newton over the whole width is half a newton on the half
+        let stress = |station: &Station, direction: [f64; 2], force: f64| -> Vec<f64> {
+            let read = |line: &Vec<[f64; 3]>| 0.5 * force * station.mean(line, direction);
+            lines.iter().map(read).collect()
+        };
+        let inertia_stress = self.inertia.each_ref().map(|inertia| {
+            let read = |line: &Vec<[f64; 3]>| {
+                let work = inertia.iter().flatten().zip(line.iter().flatten());
+                -work.map(|(m, u)| m * u).sum::<f64>()
+            };
+            lines.iter().map(read).collect()
+        });
+        let total = |inertia: usize, rigid: &[[f64; 3]]| {
+            let pairs = self.inertia[inertia].iter().flatten();
+            2.0 * pairs
+                .zip(rigid.iter().flatten())
+                .map(|(m, u)| m * u)
+                .sum::<f64>()
+        };
+        let [x, y, turn] = rigid(&self.half.mesh);
+        let mass = total(0, &x);
+        let (wrap_field, wrap_stress) = match &request.wrap {
+            Some(wrap) => self.wrapped(request, rim, wrap)?,
+            None => (Vec::new(), Vec::new()),
+        };
+        Ok(Reduction {
+            modes: Vec::new(),
+            normal_influence: stations.iter().map(|s| stress(s, s.radial, -1.0)).collect(),
+            tangential_influence: stations
+                .iter()
+                .map(|s| stress(s, s.tangential, 1.0))
+                .collect(),
+            inertia_stress,
+            compliance: self.compliance(request, rim)?,
+            wrap_field,
+            wrap_stress,
+            mass,
+            center_of_mass: [total(2, &y) / mass, -total(2, &x) / mass],
+            inertia: total(2, &turn),
+            unknowns: self.unknowns.len(),
+            lanczos_steps: 0,
+        })
+    }
+
+    /// Displacement of the half under a load on the half.
+    fn solve(&self, load: &[[f64; 3]]) -> Vec<[f64; 3]> {
+        let mut vector = self.unknowns.gather(load);
+        self.factor.solve(&mut vector);
+        self.unknowns.spread(&vector)
+    }
+
+    fn compliance(
+        &self,
+        request: &Request<'_>,
+        rim: &Rim<'_>,
+    ) -> Result<Vec<Vec<f64>>, ReductionError> {
+        let probes = request.probes.iter().map(|&psi| rim.station(psi));
+        let probes: Vec<Station> = probes.collect::<Result<_, _>>()?;
+        let row = |load: &Station| {
+            let force = load.force(self.half.mesh.nodes.len(), load.radial, -0.5);
+            let field = self.solve(&force);
+            probes.iter().map(|p| p.mean(&field, p.radial)).collect()
+        };
+        Ok(probes.iter().map(row).collect())
+    }
+
+    /// Displacement and stress of the whole mesh under a wrapped rope.
+    fn wrapped(
+        &self,
+        request: &Request<'_>,
+        rim: &Rim<'_>,
+        wrap: &Wrap,
+    ) -> Result<Fields, ReductionError> {
+        let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
+        for (psi, share) in wrap.line(512) {
+            let station = rim.station(psi)?;
+            station.add_force(&mut load, station.radial, -0.5 * share);
+        }
+        let anchor = rim.station(wrap.anchor)?;
+        // the rope runs towards increasing psi and pulls its fixed end that way
+        anchor.add_force(&mut load, anchor.tangential, 0.5 * wrap.tension);
+        let field = self.half.unfold(&self.solve(&load), self.family.image());
+        let stress = request.mesh.hexahedra.iter().map(|element| {
+            let hexahedron = Hexahedron::new(request.mesh.corners(element));
+            hexahedron.center_stress(&request.steel, &element.map(|node| field[node]))
+        });
+        let stress = stress.collect();
+        Ok((field, stress))
+    }
+}
+
+/// Consistent mass times fields over all nodes.
+fn mass_times<const N: usize>(
+    mesh: &Mesh,
+    steel: &Steel,
+    fields: &[Vec<[f64; 3]>; N],
+) -> Result<[Vec<[f64; 3]>; N], ReductionError> {
+    let mut products = [(); N].map(|()| vec![[0.0; 3]; mesh.nodes.len()]);
+    for (element, nodes) in mesh.hexahedra.iter().enumerate() {
+        let mass = Hexahedron::new(mesh.corners(nodes))
+            .mass(steel)
+            .map_err(|_| ReductionError::InsideOut { element })?;
+        for (product, field) in products.iter_mut().zip(fields) {
+            for (&a, row) in nodes.iter().zip(&mass) {
+                for axis in 0..3 {
+                    let values = nodes.map(|node| field[node][axis]);
+                    product[a][axis] += dot(row, &values);
+                }
+            }
+        }
+    }
+    Ok(products)
+}

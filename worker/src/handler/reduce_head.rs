@@ -1,0 +1,172 @@
+//! Reduces the back head of a job: plain data in, plain data out; the case plays no part.
+use protocol::case::Influence;
+use protocol::job::{
+    Failure, HeadFields, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
+};
+use simulation::flexible::{Family, Gauge, Mesh, Reduction, Request, Steel, Wrap, reduce};
+use std::time::Instant;
+
+const MEGAPASCAL_PER_PASCAL: f64 = 1e-6;
+
+/// Runs a reduction.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] saying why the mesh cannot be reduced.
+pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
+    check(spec)?;
+    let mesh = mesh(spec);
+    let gauges = spec.gauges.map(|gauge| Gauge {
+        position: gauge.position_m,
+        length: gauge.length_m,
+    });
+    let radians = |degrees: &[f64]| degrees.iter().map(|x| x.to_radians()).collect::<Vec<f64>>();
+    let families: Vec<Family> = spec.families.iter().map(|f| family(*f)).collect();
+    let wrap = |wrap: RopeWrap| Wrap {
+        tension: wrap.tension_n,
+        anchor: wrap.anchor_deg.to_radians(),
+        leaves: wrap.leaves_deg.to_radians(),
+    };
+    let started = Instant::now();
+    let reduction = reduce(&Request {
+        mesh: &mesh,
+        steel: Steel {
+            young: spec.young_pa,
+            poisson: spec.poisson,
+            density: spec.density_kg_m3,
+        },
+        gauges: &gauges,
+        center: spec.center_m,
+        stations: &radians(&spec.arc_deg),
+        probes: &radians(&spec.probes_deg),
+        wrap: spec.fields.map(wrap),
+        modes: spec.modes,
+        families: &families,
+        fields: spec.fields.is_some(),
+    })
+    .map_err(|error| misconfigured("flexible_head", error.to_string()))?;
+    let wall_s = started.elapsed().as_secs_f64();
+    Ok(assemble(spec, &reduction, wall_s))
+}
+
+fn misconfigured(field: &str, problem: String) -> Failure {
+    Failure::Misconfigured {
+        field: field.to_owned(),
+        problem,
+    }
+}
+
+/// Numbers that no reduction can be made with.
+fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
+    let positive = [
+        ("young_pa", spec.young_pa),
+        ("density_kg_m3", spec.density_kg_m3),
+        (
+            "gauges.length_m",
+            spec.gauges
+                .iter()
+                .map(|g| g.length_m)
+                .fold(f64::MAX, f64::min),
+        ),
+    ];
+    for (field, value) in positive {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(misconfigured(
+                field,
+                format!("is {value}; it must be a positive number"),
+            ));
+        }
+    }
+    if !(0.0..0.5).contains(&spec.poisson) {
+        return Err(misconfigured(
+            "poisson",
+            format!("is {}; it must be 0 to below 0.5", spec.poisson),
+        ));
+    }
+    if spec.modes == 0 || spec.families.is_empty() {
+        return Err(misconfigured(
+            "modes",
+            "ask for at least one mode of at least one family".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+const fn family(family: ModeFamily) -> Family {
+    match family {
+        ModeFamily::Symmetric => Family::Symmetric,
+        ModeFamily::Antisymmetric => Family::Antisymmetric,
+    }
+}
+
+fn mesh(spec: &ReduceHeadSpec) -> Mesh {
+    let index = |node: u32| node as usize;
+    Mesh {
+        nodes: spec.mesh.nodes_m.clone(),
+        hexahedra: spec.mesh.hexahedra.iter().map(|e| e.map(index)).collect(),
+        held: spec.mesh.held.iter().map(|&node| index(node)).collect(),
+        rim: spec
+            .mesh
+            .rope_surface
+            .iter()
+            .map(|f| f.map(index))
+            .collect(),
+    }
+}
+
+/// The readings of four gauges \[MPa\].
+fn four(pascal: &[f64]) -> [f64; 4] {
+    let mut four = [0.0; 4];
+    for (to, from) in four.iter_mut().zip(pascal) {
+        *to = from * MEGAPASCAL_PER_PASCAL;
+    }
+    four
+}
+
+fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> ReducedHead {
+    let table = |rows: &[Vec<f64>]| rows.iter().map(|row| four(row)).collect();
+    let modes = reduction.modes.iter().map(|mode| HeadMode {
+        family: match mode.family {
+            Family::Symmetric => ModeFamily::Symmetric,
+            Family::Antisymmetric => ModeFamily::Antisymmetric,
+        },
+        frequency_hz: mode.frequency / std::f64::consts::TAU,
+        radial: mode.radial.clone(),
+        tangential: mode.tangential.clone(),
+        gauge_stress_mpa: four(&mode.gauge_stress),
+        participation: mode.participation,
+    });
+    ReducedHead {
+        modes: modes.collect(),
+        influence: Influence {
+            psi_deg: spec.arc_deg.clone(),
+            normal_mpa_per_n: table(&reduction.normal_influence),
+            tangential_mpa_per_n: table(&reduction.tangential_influence),
+        },
+        inertia_stress_mpa: reduction.inertia_stress.each_ref().map(|row| four(row)),
+        compliance_m_per_n: reduction.compliance.clone(),
+        mass_kg: reduction.mass,
+        center_of_mass_m: reduction.center_of_mass,
+        inertia_about_pivot_kg_m2: reduction.inertia,
+        unknowns: reduction.unknowns,
+        lanczos_steps: reduction.lanczos_steps,
+        wall_s,
+        fields: spec.fields.map(|_| fields(reduction)),
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "pictures need no more than single precision"
+)]
+fn fields(reduction: &Reduction) -> HeadFields {
+    let single = |field: &[[f64; 3]]| field.iter().map(|u| u.map(|x| x as f32)).collect();
+    HeadFields {
+        modes: reduction.modes.iter().map(|m| single(&m.field)).collect(),
+        wrap_m: single(&reduction.wrap_field),
+        wrap_stress_mpa: reduction
+            .wrap_stress
+            .iter()
+            .map(|stress| stress.map(|s| (s * MEGAPASCAL_PER_PASCAL) as f32))
+            .collect(),
+    }
+}
