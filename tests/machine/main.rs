@@ -1,4 +1,5 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
+#![expect(clippy::unwrap_used, reason = "helpers of tests")]
 use protocol::case::Case;
 use simulation::integrator::tableau::{CATALOGUE, ESDIRK4};
 use simulation::model::Machine;
