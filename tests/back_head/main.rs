@@ -150,8 +150,8 @@ fn modes_of_both_families_are_those_of_calculix() {
     }
 }
 
-/// The case's table of "symmetric" modes was computed on the whole mesh with only u_z held on the
-/// middle plane. That lets in a second kind: vibrations of the halves against each other, whose
+/// The case's table of "symmetric" modes was computed on the whole mesh with only `u_z` held on
+/// the middle plane. That lets in a second kind: vibrations of the halves against each other, whose
 /// middle plane stands still. Both kinds together are its twelve, within 2 %; the first five within
 /// 1 %. The sixth is a cheek that breathes, where incompatible modes of two makes differ by 1.1 %.
 #[test]
