@@ -92,7 +92,7 @@ pub struct HeadSource {
 /// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
 ///
 /// # Errors
-/// As [`load`]; a case without mesh or gauge places.
+/// As [`super::load`]; a case without mesh or gauge places.
 pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
     let (loaded, read, flexible) = resolve(folder, &Overrides::default())?;
     let Some((mesh, mesh_blake3)) = read.mesh else {

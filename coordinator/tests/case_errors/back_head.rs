@@ -165,7 +165,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 MODES,
                 "{\"frequencies_hz\"",
                 "{\"mesh_blake3\": \"00ff\", \"frequencies_hz\"",
-            )
+            );
         },
         &[
             "back_head.msh",
@@ -181,7 +181,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "density_kg_m3 = 7850.0                                 #",
                 "young_gpa = 2.06e11\ndensity_kg_m3 = 7850.0 #",
-            )
+            );
         },
         &["case.toml", "flexible_head.young_gpa", "GPa"],
     ),
@@ -191,9 +191,9 @@ pub(super) const FAULTS: &[Spoilt] = &[
             c.replace(
                 TOML,
                 "density_kg_m3 = 7850.0                                 #",
-                "stress = \"mode_displacment\"\ndensity_kg_m3 = 7850.0 #",
-            )
+                "stress = \"modal\"\ndensity_kg_m3 = 7850.0 #",
+            );
         },
-        &["case.toml", "mode_displacment", "mode_displacement"],
+        &["case.toml", "modal", "mode_displacement"],
     ),
 ];
