@@ -10,9 +10,10 @@ use crate::{
     study::StudyError,
 };
 use clap::Args;
+use link::locator::Locator;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, preset},
+    strategy::{CATALOGUE, Preset, preset},
 };
 use std::{path::PathBuf, time::Instant};
 
@@ -46,15 +47,14 @@ pub(super) struct Arguments {
     #[arg(long, env = "HORSEHEAD_INSECURE")]
     insecure: bool,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS")]
-    workers: Option<usize>,
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = clap::value_parser!(u16).range(0..=1024))]
+    workers: Option<u16>,
     #[command(flatten)]
     output: OutputChoice,
 }
 
 fn presets() -> String {
-    let line =
-        |preset: &search::strategy::Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
+    let line = |preset: &Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
     CATALOGUE.iter().map(line).collect()
 }
 
@@ -67,6 +67,37 @@ fn can_go_on(error: &anyhow::Error) -> bool {
     )
 }
 
+fn known_preset(name: &str) -> Result<&'static Preset, Usage> {
+    preset(name).ok_or_else(|| {
+        let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
+        Usage {
+            message: format!("there is no preset `{name}`"),
+            help: format!("choose one of: {}", known.join(", ")),
+        }
+    })
+}
+
+/// Refuses addresses that cannot work before anything is written.
+fn check_bus(listen: Option<&str>, insecure: bool, local_workers: usize) -> Result<(), Usage> {
+    let Some(listen) = listen else {
+        if local_workers == 0 {
+            return Err(Usage {
+                message: "nobody would compute: no local workers, and nowhere to listen".to_owned(),
+                help: "give --listen LOCATOR for workers elsewhere, or --workers 1".to_owned(),
+            });
+        }
+        return Ok(());
+    };
+    Locator::parse(listen)
+        .and_then(|locator| locator.permit(insecure))
+        .map_err(|error| Usage {
+            message: format!("--listen {listen}: {error}"),
+            help: "on this machine use tcp/127.0.0.1:7447; for other machines quic/0.0.0.0:7447 \
+                   with certificates, or tcp/0.0.0.0:7447 with --insecure"
+                .to_owned(),
+        })
+}
+
 /// Calibrates from the first proposal to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let LoadedCase {
@@ -75,14 +106,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         notes,
     } = arguments.choice.load()?;
     let space = Space::new(&case.genes)?;
-    let Some(preset) = preset(&arguments.preset) else {
-        let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
-        return Err(Usage {
-            message: format!("there is no preset `{}`", arguments.preset),
-            help: format!("choose one of: {}", known.join(", ")),
-        }
-        .into());
-    };
+    let preset = known_preset(&arguments.preset)?;
     let objective = case.conditions.get(case.objective.condition);
     if objective.is_none_or(|condition| condition.record.is_none()) {
         return Err(Usage {
@@ -103,6 +127,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         notes,
         wall_s: 0.0,
     };
+    let local_workers = arguments.workers.map_or_else(cores, usize::from);
+    check_bus(
+        arguments.listen.as_deref(),
+        arguments.insecure,
+        local_workers,
+    )?;
     let path = arguments
         .run
         .clone()
@@ -119,7 +149,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     output::tell(&format!("{verb} {}", path.display()));
 
-    let local_workers = arguments.workers.unwrap_or_else(cores);
     let session = Session {
         folder: &folder,
         manifest: &manifest,

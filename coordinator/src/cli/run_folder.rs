@@ -84,7 +84,15 @@ impl RunFolder {
             path: path.to_owned(),
         };
         if !folder.file("run.json").exists() {
-            fs::create_dir_all(path).with_context(|| format!("cannot make {}", path.display()))?;
+            folder.check_empty()?;
+            let unusable = |error: &dyn std::fmt::Display| Usage {
+                message: format!("{} cannot hold a run: {error}", path.display()),
+                help: "give another folder with --run, one that you may write to".to_owned(),
+            };
+            fs::create_dir_all(path).map_err(|error| unusable(&error))?;
+            fs::write(folder.file(".writable"), "")
+                .and_then(|()| fs::remove_file(folder.file(".writable")))
+                .map_err(|error| unusable(&error))?;
             folder.write_json("case.json", case)?;
             folder.write_json("run.json", manifest)?;
             return Ok(Begun {
@@ -118,6 +126,28 @@ impl RunFolder {
             ),
         }
         .into())
+    }
+
+    /// Refuses a folder of somebody else's: a run would scatter its files among theirs.
+    fn check_empty(&self) -> Result<(), Usage> {
+        let mut names = fs::read_dir(&self.path)
+            .into_iter()
+            .flatten()
+            .flatten()
+            .map(|entry| entry.file_name().to_string_lossy().into_owned());
+        // an interrupted beginning leaves no more than these
+        let ours = ["case.json", ".case.json.new", ".run.json.new", ".writable"];
+        names
+            .find(|name| !ours.contains(&name.as_str()))
+            .map_or(Ok(()), |name| {
+                Err(Usage {
+                    message: format!(
+                        "{} is not empty and holds no run (it has {name}, no run.json)",
+                        self.path.display()
+                    ),
+                    help: "give a new or an empty folder with --run".to_owned(),
+                })
+            })
     }
 
     /// Opens a run that was begun before.
@@ -200,7 +230,15 @@ impl RunFolder {
         let file = self.file(name);
         let text = fs::read_to_string(&file);
         let text = text.with_context(|| format!("cannot read {}", file.display()))?;
-        serde_json::from_str(&text).with_context(|| format!("{} is damaged", file.display()))
+        serde_json::from_str(&text).map_err(|error| {
+            Usage {
+                message: format!("{} is damaged: {error}", file.display()),
+                help: "begin a new run in another folder with --run; the journal beside it keeps \
+                       the results of this one"
+                    .to_owned(),
+            }
+            .into()
+        })
     }
 }
 

@@ -108,6 +108,31 @@ pub fn headline(calibration: &Calibration) -> String {
     }
 }
 
+/// Says that absolute stress agrees less than before, where a free offset hides it.
+pub fn absolute(calibration: &Calibration) -> Option<String> {
+    let result = calibration.calibrated()?;
+    let sum = |run: &super::data::Run| -> Option<f64> {
+        let weights = calibration.case.objective.gauges.iter();
+        weights
+            .map(|(gauge, weight)| {
+                let mut channels = run.evaluation.channels.iter();
+                let channel = channels.find(|channel| channel.gauge == *gauge)?;
+                Some(weight * channel.mse_fixed_offset_mpa2)
+            })
+            .sum()
+    };
+    let (before, after) = (sum(&result.recommended)?, sum(&result.optimised)?);
+    (after > before && result.optimised.evaluation.fitness < result.recommended.evaluation.fitness)
+        .then(|| {
+            format!(
+                "The zero of each gauge is free, and was used: of absolute stress, offset not \
+                 removed, {} {}. The curves agree better in shape, not in level.",
+                objective(&calibration.case),
+                change(before, after, " MPa²")
+            )
+        })
+}
+
 /// What is minimised, in words.
 fn objective(case: &Case) -> String {
     let gauges: Vec<_> = case

@@ -72,10 +72,6 @@ impl Limits {
     /// The first limit that a state with loads in `scratch` breaks.
     ///
     /// `swing` is the beam's range on the inextensible mechanism \[rad\].
-    #[expect(
-        clippy::neg_cmp_op_on_partial_ord,
-        reason = "a state that is not a number must fail"
-    )]
     pub fn broken(
         &self,
         machine: &Machine,

@@ -22,7 +22,8 @@ fn render(subject: Subject<'_>) -> Rendered {
 fn of_calibration(calibration: &Calibration) -> Markup {
     let case = &calibration.case;
     let failed = calibration.history.iter().filter(|p| !p.complete).count();
-    let warnings = words::warnings(calibration);
+    let mut warnings = words::warnings(calibration);
+    warnings.extend(words::absolute(calibration));
     html! {
         p.verdict { (words::headline(calibration)) }
         @for result in &calibration.conditions {

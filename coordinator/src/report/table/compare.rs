@@ -91,6 +91,13 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
             figure,
         ));
     }
+    rows.push(Row::Group(
+        "Mean squared error of absolute stress (offset not removed)".to_owned(),
+    ));
+    for &g in &gauges {
+        let value = |c: &ChannelScore| c.mse_fixed_offset_mpa2;
+        rows.push(channel_row(point(g), "MPa²", result, g, value, figure));
+    }
     rows.push(Row::Group("Relative error".to_owned()));
     for &g in &gauges {
         rows.push(channel_row(
@@ -210,11 +217,20 @@ pub fn table_3(calibration: &Calibration) -> Table {
 
 /// The paper's Table 4: agreement under another condition, with the same parameters.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
-    let mut notes = vec![RELATIVE_ERROR.to_owned(), HALF_RANGE.to_owned()];
+    let mut notes = vec![
+        RELATIVE_ERROR.to_owned(),
+        HALF_RANGE.to_owned(),
+        OFFSET.to_owned(),
+    ];
     notes.extend(failures(result));
+    let part = if result.condition == case.objective.condition {
+        "the calibrated one"
+    } else {
+        "which took no part in the fit"
+    };
     Table {
         title: format!(
-            "The same parameters under condition {}, which took no part in the fit",
+            "The same parameters under condition {}, {part}",
             condition_name(case, result.condition)
         ),
         head: head(),

@@ -24,10 +24,6 @@ fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[test]
-#[expect(
-    clippy::too_many_lines,
-    reason = "one column after the other, all in one place"
-)]
 fn tangent_is_the_derivative_of_the_forces() {
     let machine = machine();
     let ropes = machine.ropes(&reference::law());
