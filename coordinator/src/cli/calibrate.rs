@@ -180,3 +180,41 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     })?;
     finish::show(&session, &result, arguments.output.output)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn addresses_that_cannot_work_are_refused_with_a_remedy() {
+        for (listen, insecure, workers, words) in [
+            (None, false, 0, "nobody would compute"),
+            (Some("nonsense"), false, 2, "nonsense"),
+            (Some("udp/127.0.0.1:7447"), false, 2, "udp"),
+            (
+                Some("tcp/0.0.0.0:7447"),
+                false,
+                2,
+                "--listen tcp/0.0.0.0:7447",
+            ),
+        ] {
+            let refused = check_bus(listen, insecure, workers).unwrap_err();
+            assert!(refused.message.contains(words), "{}", refused.message);
+            assert!(!refused.help.is_empty());
+        }
+        for (listen, insecure, workers) in [
+            (None, false, 1),
+            (Some("tcp/127.0.0.1:7447"), false, 0),
+            (Some("tcp/0.0.0.0:7447"), true, 0),
+            (Some("quic/0.0.0.0:7447"), false, 0),
+        ] {
+            assert!(check_bus(listen, insecure, workers).is_ok(), "{listen:?}");
+        }
+    }
+
+    #[test]
+    fn an_unknown_preset_names_those_there_are() {
+        let refused = known_preset("deep").err().map(|usage| usage.help);
+        assert!(refused.is_some_and(|help| help.contains("quick, paper")));
+    }
+}

@@ -279,3 +279,27 @@ fn quote(word: &str) -> String {
     }
     format!("'{}'", word.replace('\'', r"'\''"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_of_somebody_else_is_refused_and_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let run = RunFolder {
+            path: folder.path().to_owned(),
+        };
+        run.check_empty().unwrap();
+        fs::write(run.file("case.json"), "{").unwrap();
+        run.check_empty().expect("an interrupted beginning goes on");
+        fs::write(run.file("thesis.tex"), "").unwrap();
+        let refused = run.check_empty().unwrap_err();
+        assert!(
+            refused.message.contains("thesis.tex"),
+            "{}",
+            refused.message
+        );
+        assert!(refused.help.contains("--run"));
+    }
+}
