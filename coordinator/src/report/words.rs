@@ -3,7 +3,7 @@
 //! Says what the data say and no more; every sentence stands by itself.
 use super::data::{Calibration, ConditionResult};
 use super::number::{figure, percent, unit};
-use protocol::case::Case;
+use protocol::case::{Case, Gene};
 use protocol::job::{ChannelScore, PhysicsFailure, Reached, Verdict};
 
 /// What ended a simulation, in words.
@@ -179,6 +179,33 @@ pub fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
         .collect()
 }
 
+/// One sentence about the points whose absolute error rose although the error without offset
+/// fell: a free offset would hide it. None where there is no such point.
+pub fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<String> {
+    let before = &result.recommended.evaluation.channels;
+    let changes: Vec<String> = result
+        .optimised
+        .evaluation
+        .channels
+        .iter()
+        .filter_map(|new| {
+            let old = channel(before, new.gauge)?;
+            let hidden = new.mse_mpa2 < old.mse_mpa2
+                && new.mse_fixed_offset_mpa2 > old.mse_fixed_offset_mpa2;
+            let (from, to) = (old.mse_fixed_offset_mpa2, new.mse_fixed_offset_mpa2);
+            hidden.then(|| format!("at point {} it {}", new.gauge, change(from, to, " MPa²")))
+        })
+        .collect();
+    (!changes.is_empty()).then(|| {
+        format!(
+            "Under condition {} the absolute mean squared error (offset not removed) got worse \
+             although the one without offset fell: {}.",
+            condition_name(case, result.condition),
+            changes.join(", ")
+        )
+    })
+}
+
 /// Warnings that follow from the data of a calibration.
 pub fn warnings(calibration: &Calibration) -> Vec<String> {
     let case = &calibration.case;
@@ -209,14 +236,25 @@ pub fn warnings(calibration: &Calibration) -> Vec<String> {
     for (gene, &value) in case.genes.iter().zip(&calibration.optimised.genes) {
         if let Some(side) = at_bound(gene.lower, gene.upper, value) {
             warnings.push(format!(
-                "{} ended at its {side} bound ({} {}): the optimum may lie outside.",
+                "{} ended at {} ({} {}): the optimum may lie outside.",
                 gene.name.as_str(),
+                bound(gene, side),
                 figure(value),
                 unit(gene.unit)
             ));
         }
     }
     warnings
+}
+
+/// A bound of a gene in words, as "its upper bound 1.00e12 N/m".
+pub(super) fn bound(gene: &Gene, side: &str) -> String {
+    let value = if side == "lower" {
+        gene.lower
+    } else {
+        gene.upper
+    };
+    format!("its {side} bound {} {}", figure(value), unit(gene.unit))
 }
 
 /// Which bound a value touches, within half a per cent of the interval's decades.

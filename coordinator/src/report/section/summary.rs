@@ -39,6 +39,7 @@ fn of_calibration(calibration: &Calibration) -> Markup {
             } @else {
                 ul { @for sentence in sentences { li { (sentence) } } }
             }
+            @if let Some(sentence) = words::absolute_worse(case, result) { p { (sentence) } }
         }
         p {
             (count(calibration.history.len() as u64)) " evaluations, " (count(failed as u64))
