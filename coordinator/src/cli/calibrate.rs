@@ -14,7 +14,10 @@ use search::{
     space::Space,
     strategy::{CATALOGUE, preset},
 };
-use std::{path::PathBuf, time::Instant};
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 /// Identify stiffness and damping from the gauge records; the same command resumes.
 #[derive(Debug, Args)]
@@ -46,7 +49,7 @@ pub(super) struct Arguments {
     #[arg(long, env = "HORSEHEAD_INSECURE")]
     insecure: bool,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS")]
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
     workers: Option<usize>,
     #[command(flatten)]
     output: OutputChoice,
@@ -65,6 +68,14 @@ fn can_go_on(error: &anyhow::Error) -> bool {
         study,
         Some(StudyError::Interrupted | StudyError::Evaluator(_))
     )
+}
+
+fn warn_of_lost_journal(folder: &Path) {
+    output::tell(&format!(
+        "warning: the journal of {} is gone or empty, and with it the results: the run begins \
+         anew",
+        folder.display()
+    ));
 }
 
 /// Calibrates from the first proposal to the report.
@@ -109,15 +120,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
     let Begun {
         folder,
+        lost_journal,
         resumed,
         wall_s,
     } = RunFolder::begin(&path, &manifest, &case)?;
-    let verb = if resumed {
-        "going on with"
-    } else {
-        "beginning"
-    };
-    output::tell(&format!("{verb} {}", path.display()));
+    if lost_journal {
+        warn_of_lost_journal(&path);
+    }
 
     let local_workers = arguments.workers.unwrap_or_else(cores);
     let session = Session {
@@ -129,6 +138,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         listen: arguments.listen.clone(),
         insecure: arguments.insecure,
         local_workers,
+        resumed,
         replay: false,
     };
     let result = bus::block_on(async {
@@ -138,7 +148,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.clear();
         result
     });
-    folder.spent(&manifest, session.wall_s())?;
     let result = result.inspect_err(|error| {
         if !can_go_on(error) {
             return;

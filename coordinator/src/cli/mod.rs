@@ -18,7 +18,10 @@ mod run_folder;
 mod simulate;
 mod verify;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{
+    Args, Parser, Subcommand, ValueEnum,
+    builder::{RangedU64ValueParser, TypedValueParser},
+};
 use problem::Usage;
 use std::{
     path::{Path, PathBuf},
@@ -130,6 +133,11 @@ fn condition(case: &protocol::case::Case, name: Option<&str>) -> Result<usize, U
             help: format!("it has: {}", known.join(", ")),
         }
     })
+}
+
+/// Numbers of local worker processes: more would only get in each other's way.
+fn worker_count() -> impl TypedValueParser<Value = usize> {
+    RangedU64ValueParser::<usize>::new().range(0..=1024)
 }
 
 /// How many local worker processes to start by default: one per core.

@@ -1,6 +1,7 @@
 //! `horsehead simulate`: one run of the machine.
 use super::{
     CaseChoice, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
+    problem::Usage,
     run_folder::{RunFolder, command_line},
 };
 use crate::{
@@ -10,7 +11,7 @@ use crate::{
 use anyhow::Context as _;
 use clap::Args;
 use protocol::case::Case;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Simulate one revolution: curves, verdict, counters.
 #[derive(Debug, Args)]
@@ -49,8 +50,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let condition = condition(case, arguments.condition.as_deref())?;
     let genes = match arguments.genes.as_str() {
         "recommended" => case.recommended(),
-        file => crate::case::read_genes(std::path::Path::new(file), case)?,
+        file => crate::case::read_genes(Path::new(file), case)?,
     };
+    if let Some(folder) = &arguments.out {
+        check_out(folder)?;
+    }
     let individuals = vec![(arguments.genes.clone(), genes)];
     let motion_step_deg = if arguments.out.is_some() { 3.0 } else { 0.0 };
     let wanted = Wanted {
@@ -93,6 +97,18 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let object = json::simulation((case, condition), &curves);
     let tables = || table::text(&table::simulation(&run), output::styled());
     output::print(arguments.output.output, tables, &object)
+}
+
+/// Refuses a folder that cannot be written, before anything is simulated for it.
+fn check_out(folder: &Path) -> Result<(), Usage> {
+    let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
+    match tried {
+        Ok(_) => Ok(()),
+        Err(error) => Err(Usage {
+            message: format!("cannot write into {}: {error}", folder.display()),
+            help: "choose a folder that can be written, with --out DIR".to_owned(),
+        }),
+    }
 }
 
 fn first(groups: Vec<Compared>) -> Option<Curves> {
