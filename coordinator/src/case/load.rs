@@ -8,7 +8,7 @@ use super::{
     head, machine, mesh,
     note::Note,
     record::{self, Expected, RecordFacts},
-    schema::{CaseFile, ConditionEntry, ObjectiveEntry},
+    schema::{CaseFile, ConditionEntry, ObjectiveEntry, Records},
 };
 use protocol::case::{Case, Condition, ModalHead, Objective};
 use std::path::{Path, PathBuf};
@@ -29,6 +29,8 @@ pub struct Loaded {
     pub notes: Vec<Note>,
     /// Facts about each condition's record, in the order of the conditions.
     pub records: Vec<Option<RecordFacts>>,
+    /// Whether the case says that its gauge records were computed; never of replaced ones.
+    pub synthetic: bool,
     /// Where beam and ropes move.
     pub envelope: Envelope,
 }
@@ -46,6 +48,13 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
+    if let Some(measured) = overrides.measured.as_deref().filter(|path| !path.is_dir()) {
+        return Err(damaged(
+            measured,
+            "there is no such folder; --measured names it",
+            "give the folder that holds the load cards and gauge records of the test",
+        ));
+    }
     let document = Document::read(
         &folder.join("case.toml"),
         "the description of the case; `horsehead case new` writes a template",
@@ -90,6 +99,7 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
         run: file.run,
     };
     Ok(Loaded {
+        synthetic: file.records == Records::Synthetic && overrides.measured.is_none(),
         case,
         notes,
         records,

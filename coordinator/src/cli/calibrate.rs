@@ -83,6 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let LoadedCase {
         case,
         measured,
+        synthetic,
         notes,
     } = arguments.choice.load()?;
     let space = Space::new(&case.genes)?;
@@ -111,6 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         settings: (preset.settings)(&space),
         case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
+        synthetic,
         notes,
         wall_s: 0.0,
     };

@@ -298,6 +298,7 @@ fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibrati
             preset: Some(session.manifest.preset.clone()),
             seed: Some(session.manifest.seed),
             digest: log.digest(),
+            synthetic: session.manifest.synthetic,
         },
         recommended: Individual {
             id: None,

@@ -93,6 +93,8 @@ struct LoadedCase {
     case: protocol::case::Case,
     /// Where the records came from.
     measured: String,
+    /// Whether the case says that they were computed.
+    synthetic: bool,
     /// What there is to know about them.
     notes: Vec<String>,
 }
@@ -117,6 +119,7 @@ fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCas
     Ok(LoadedCase {
         case: loaded.case,
         measured,
+        synthetic: loaded.synthetic,
         notes,
     })
 }

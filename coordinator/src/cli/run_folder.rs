@@ -36,6 +36,9 @@ pub(super) struct Manifest {
     pub(super) case_folder: PathBuf,
     /// Where the records came from.
     pub(super) measured: String,
+    /// Whether the case says that they were computed, not measured.
+    #[serde(default)]
+    pub(super) synthetic: bool,
     /// Remarks about the case.
     pub(super) notes: Vec<String>,
     /// Wall time of the sessions that are over (s).

@@ -21,6 +21,7 @@ fn manifest(case: &protocol::case::Case, seed: u64) -> Manifest {
         settings: (preset("quick").unwrap().settings)(&space),
         case_folder: shipped(),
         measured: "X".to_owned(),
+        synthetic: false,
         notes: Vec::new(),
         wall_s: 0.0,
     }

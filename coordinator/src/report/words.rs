@@ -6,6 +6,10 @@ use super::number::{figure, percent, unit};
 use protocol::case::{Case, Gene};
 use protocol::job::{ChannelScore, PhysicsFailure, Reached, Verdict};
 
+/// What to know of records that come from no test.
+pub(super) const SYNTHETIC: &str = "The gauge records of this case are synthetic: they were \
+    computed, not measured on a machine, and say nothing about how well a real one is met.";
+
 /// What ended a simulation, in words.
 pub fn failure(kind: PhysicsFailure) -> &'static str {
     match kind {

@@ -572,3 +572,13 @@ fn the_fitted_condition_is_not_called_unseen() {
     assert!(title(0).ends_with("the calibrated condition"));
     assert!(title(1).ends_with("which took no part in the fit"));
 }
+
+#[test]
+fn computed_records_are_not_passed_off_as_measured() {
+    let mut calibration = sample::calibration(10);
+    let said = "The gauge records of this case are synthetic";
+    let page = |calibration: &Calibration| words(&html::calibration(calibration).unwrap());
+    assert!(!page(&calibration).contains(said));
+    calibration.provenance.synthetic = true;
+    assert!(page(&calibration).contains(said));
+}
