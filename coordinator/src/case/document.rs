@@ -194,7 +194,18 @@ fn first_line(message: &str) -> String {
     let line = message.lines().next().unwrap_or_default();
     match line.split_once(", expected ") {
         Some((head, _)) if line.starts_with("unknown ") => head.to_owned(),
-        _ => line.to_owned(),
+        _ => line
+            .replace(
+                "expected struct GeneValue",
+                "expected a value with its unit",
+            )
+            .replace(
+                "expected struct GeneEntry",
+                "expected a table with bounds and unit",
+            )
+            .replace("expected struct ", "expected a table, ")
+            .replace("expected f64", "expected a number")
+            .replace("expected u8", "expected a whole number from 0 to 255"),
     }
 }
 
@@ -205,8 +216,10 @@ fn advice(message: &str) -> String {
         let what = quoted.next().unwrap_or_default();
         let known: Vec<&str> = quoted.collect();
         let list = known.join(", ");
+        let choice = message.starts_with("unknown variant");
         return match nearest(what, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? known here: {list}"),
+            None if choice => format!("choose one of: {list}"),
             None => format!("remove it; known here: {list}"),
         };
     }
@@ -216,6 +229,17 @@ fn advice(message: &str) -> String {
             "unit" => format!("add `unit = \"...\"`: one of {}", units()),
             _ => format!("add `{what}`; `horsehead case new` prints a commented template"),
         };
+    }
+    if message.starts_with("invalid type") && message.contains("struct GeneValue") {
+        return format!(
+            "write the value with its unit, as `{{ value = 3.14e8, unit = \"N/m\" }}`; units: {}",
+            units()
+        );
+    }
+    if message.starts_with("invalid type") && message.contains("struct GeneEntry") {
+        return "write a table, as `{ recommended = 1e8, lower = 1e6, upper = 1e10, unit = \
+                \"N/m\" }`"
+            .to_owned();
     }
     if message.starts_with("invalid type") {
         return "correct the value's type: numbers without quotes, names with quotes".to_owned();
@@ -259,4 +283,22 @@ pub(super) fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, 
             "copy the file again from its source; keys and lengths are described in the case's README",
         )
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{advice, first_line};
+
+    #[test]
+    fn the_words_of_the_library_become_what_to_write() {
+        let gene = "invalid type: floating point `3.14e8`, expected struct GeneValue";
+        assert!(first_line(gene).ends_with("expected a value with its unit"));
+        assert!(advice(gene).contains("{ value = 3.14e8, unit = \"N/m\" }"));
+        let number = "invalid type: string \"4\", expected f64";
+        assert!(first_line(number).ends_with("expected a number"));
+        let choice = "unknown variant `sideways`, expected `free` or `fixed`";
+        assert_eq!(advice(choice), "choose one of: free, fixed");
+        let field = "unknown field `zzzzzz`, expected `name` or `run`";
+        assert!(advice(field).starts_with("remove it"));
+    }
 }

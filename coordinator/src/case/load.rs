@@ -9,7 +9,7 @@ use super::{
     machine,
     note::Note,
     record::{self, Expected, RecordFacts},
-    schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry},
+    schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry, Records},
 };
 use protocol::case::{Case, Condition, Objective};
 use std::path::{Path, PathBuf};
@@ -30,6 +30,8 @@ pub struct Loaded {
     pub notes: Vec<Note>,
     /// Facts about each condition's record, in the order of the conditions.
     pub records: Vec<Option<RecordFacts>>,
+    /// Whether the case says that its gauge records were computed; never of replaced ones.
+    pub synthetic: bool,
     /// Where beam and ropes move.
     pub envelope: Envelope,
 }
@@ -59,6 +61,13 @@ pub(super) fn resolve(
     folder: &Path,
     overrides: &Overrides,
 ) -> Result<(Loaded, ReadHead, FlexibleHead), CaseError> {
+    if let Some(measured) = overrides.measured.as_deref().filter(|path| !path.is_dir()) {
+        return Err(damaged(
+            measured,
+            "there is no such folder; --measured names it",
+            "give the folder that holds the load cards and gauge records of the test",
+        ));
+    }
     let document = Document::read(
         &folder.join("case.toml"),
         "the description of the case; `horsehead case new` writes a template",
@@ -103,6 +112,7 @@ pub(super) fn resolve(
         run: file.run,
     };
     let loaded = Loaded {
+        synthetic: file.records == Records::Synthetic && overrides.measured.is_none(),
         case,
         notes,
         records,

@@ -15,6 +15,9 @@ use std::path::PathBuf;
 #[serde(deny_unknown_fields)]
 pub(super) struct CaseFile {
     pub(super) name: String,
+    /// Where the gauge records come from; a test of the machine unless stated.
+    #[serde(default)]
+    pub(super) records: Records,
     pub(super) gravity_m_s2: f64,
     pub(super) beam: Beam,
     pub(super) crank: Crank,
@@ -29,6 +32,17 @@ pub(super) struct CaseFile {
     pub(super) conditions: Vec<ConditionEntry>,
     pub(super) objective: ObjectiveEntry,
     pub(super) run: RunSettings,
+}
+
+/// Where gauge records come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Records {
+    /// A test of the machine.
+    #[default]
+    Measured,
+    /// A computation.
+    Synthetic,
 }
 
 /// Where the reduced back head comes from.

@@ -15,7 +15,7 @@ enum What {
     #[command(after_help = format!("Example:\n  horsehead bench dispatch --workers 2 --jobs 20000\n\n{EXIT_CODES}"))]
     Dispatch {
         /// Worker processes to start.
-        #[arg(long, value_name = "N", default_value_t = 2, env = "HORSEHEAD_WORKERS")]
+        #[arg(long, value_name = "N", default_value_t = 2, env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
         workers: usize,
         /// Jobs to do.
         #[arg(long, value_name = "N", default_value_t = 10_000)]

@@ -1,10 +1,17 @@
 //! Joins the commands to the dispatcher: the only file of the command line that names it.
-use super::json::{BenchOutput, RoundTrip};
+use super::{
+    json::{BenchOutput, RoundTrip},
+    problem::Usage,
+};
 use crate::{
+    journal::JournalError,
     runtime::{self, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
     study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
 };
-use link::memory::{Faults, Hub};
+use link::{
+    LinkError,
+    memory::{Faults, Hub},
+};
 use protocol::{
     case::Case,
     id::{ContentHash, JobId},
@@ -60,8 +67,13 @@ impl Bus {
         let options = options.for_dispatch(case)?;
         let dispatch = Dispatch::open(options)
             .await
-            .map_err(|error| explain(&error))?;
+            .map_err(|error| refuse(&error))?;
         Ok(Self { dispatch })
+    }
+
+    /// How many results earlier sessions left in the journal.
+    pub(super) const fn recorded(&self) -> usize {
+        self.dispatch.recorded()
     }
 
     /// Opens the journal without anybody who could evaluate: only recorded results come back.
@@ -70,7 +82,7 @@ impl Bus {
         let options = options.for_dispatch(case)?;
         let dispatch = Dispatch::over(&options, |_, blob| Hub::new(Faults::NONE, blob).0);
         Ok(Self {
-            dispatch: dispatch.map_err(|error| explain(&error))?,
+            dispatch: dispatch.map_err(|error| refuse(&error))?,
         })
     }
 
@@ -117,7 +129,9 @@ fn crew(snapshot: Snapshot) -> Crew {
         slots: worker.slots,
         busy: worker.busy,
         done: worker.done,
-        ..WorkerStatus::default()
+        failed: worker.failed,
+        busy_s: worker.spent.useful_us as f64 / 1e6,
+        present_s: worker.spent.connected_us as f64 / 1e6 / f64::from(worker.slots.max(1)),
     });
     Crew {
         workers: workers.collect(),
@@ -126,9 +140,58 @@ fn crew(snapshot: Snapshot) -> Crew {
     }
 }
 
+/// Why a run cannot be opened: most often because of what was typed.
+fn refuse(error: &DispatchError) -> anyhow::Error {
+    let help = match error {
+        DispatchError::NobodyToAsk => "for example --workers 2, or --listen tcp/127.0.0.1:7447",
+        DispatchError::Listen { .. } => {
+            "choose another address or port, as --listen tcp/127.0.0.1:7447; port 0 takes any \
+             free one"
+        }
+        DispatchError::Link(LinkError::Transport { .. }) => "choose another address with --listen",
+        DispatchError::Link(_) => "for example --listen tcp/127.0.0.1:7447",
+        DispatchError::Journal(JournalError::Io { .. }) => {
+            "choose a folder that can be written, with --run DIR"
+        }
+        DispatchError::Journal(_) => "another folder is chosen with --run DIR",
+        DispatchError::Locate(_)
+        | DispatchError::Case(_)
+        | DispatchError::Start(_)
+        | DispatchError::LocalWorkers { .. }
+        | DispatchError::JobDiffers { .. }
+        | DispatchError::Stopped(_)
+        | DispatchError::Closed => return explain(error).into(),
+    };
+    Usage {
+        message: without_source_places(&error.to_string()),
+        help: help.to_owned(),
+    }
+    .into()
+}
+
+/// The text without ` at /some/file.rs:12`, with which the transport tells where in its own
+/// source an error was made.
+fn without_source_places(text: &str) -> String {
+    let mut kept = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(" at /") {
+        let (before, place) = rest.split_at(at);
+        kept.push_str(before);
+        let path = place.trim_start_matches(" at ");
+        let end = path.find(char::is_whitespace).unwrap_or(path.len());
+        let (path, after) = path.split_at(end);
+        if !path.contains(".rs:") {
+            kept.push_str(" at ");
+            kept.push_str(path);
+        }
+        rest = after;
+    }
+    kept + rest
+}
+
 fn explain(error: &DispatchError) -> EvaluatorError {
     EvaluatorError {
-        message: error.to_string(),
+        message: without_source_places(&error.to_string()),
         help: None,
     }
 }
@@ -185,4 +248,21 @@ fn empty_case() -> anyhow::Result<Case> {
     (1..zeros.len())
         .find_map(|length| wire::decode(&zeros[..length]).ok())
         .ok_or_else(|| anyhow::anyhow!("this version of the case cannot be all zeros"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_source_places;
+
+    #[test]
+    fn places_in_the_source_of_the_transport_are_left_out() {
+        assert_eq!(
+            without_source_places(
+                "cannot listen: in use (os error 98) at /a/b-1.2/src/unicast.rs:362. at /c/d.rs:1"
+            ),
+            "cannot listen: in use (os error 98)"
+        );
+        let plain = "cannot write at /data/run: full";
+        assert_eq!(without_source_places(plain), plain);
+    }
 }

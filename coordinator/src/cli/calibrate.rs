@@ -10,12 +10,14 @@ use crate::{
     study::StudyError,
 };
 use clap::Args;
-use link::locator::Locator;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, Preset, preset},
+    strategy::{CATALOGUE, preset},
 };
-use std::{path::PathBuf, time::Instant};
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
 
 /// Identify stiffness and damping from the gauge records; the same command resumes.
 #[derive(Debug, Args)]
@@ -47,14 +49,15 @@ pub(super) struct Arguments {
     #[arg(long, env = "HORSEHEAD_INSECURE")]
     insecure: bool,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = clap::value_parser!(u16).range(0..=1024))]
-    workers: Option<u16>,
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
+    workers: Option<usize>,
     #[command(flatten)]
     output: OutputChoice,
 }
 
 fn presets() -> String {
-    let line = |preset: &Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
+    let line =
+        |preset: &search::strategy::Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
     CATALOGUE.iter().map(line).collect()
 }
 
@@ -67,35 +70,12 @@ fn can_go_on(error: &anyhow::Error) -> bool {
     )
 }
 
-fn known_preset(name: &str) -> Result<&'static Preset, Usage> {
-    preset(name).ok_or_else(|| {
-        let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
-        Usage {
-            message: format!("there is no preset `{name}`"),
-            help: format!("choose one of: {}", known.join(", ")),
-        }
-    })
-}
-
-/// Refuses addresses that cannot work before anything is written.
-fn check_bus(listen: Option<&str>, insecure: bool, local_workers: usize) -> Result<(), Usage> {
-    let Some(listen) = listen else {
-        if local_workers == 0 {
-            return Err(Usage {
-                message: "nobody would compute: no local workers, and nowhere to listen".to_owned(),
-                help: "give --listen LOCATOR for workers elsewhere, or --workers 1".to_owned(),
-            });
-        }
-        return Ok(());
-    };
-    Locator::parse(listen)
-        .and_then(|locator| locator.permit(insecure))
-        .map_err(|error| Usage {
-            message: format!("--listen {listen}: {error}"),
-            help: "on this machine use tcp/127.0.0.1:7447; for other machines quic/0.0.0.0:7447 \
-                   with certificates, or tcp/0.0.0.0:7447 with --insecure"
-                .to_owned(),
-        })
+fn warn_of_lost_journal(folder: &Path) {
+    output::tell(&format!(
+        "warning: the journal of {} is gone or empty, and with it the results: the run begins \
+         anew",
+        folder.display()
+    ));
 }
 
 /// Calibrates from the first proposal to the report.
@@ -103,10 +83,18 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let LoadedCase {
         case,
         measured,
+        synthetic,
         notes,
     } = arguments.choice.load()?;
     let space = Space::new(&case.genes)?;
-    let preset = known_preset(&arguments.preset)?;
+    let Some(preset) = preset(&arguments.preset) else {
+        let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
+        return Err(Usage {
+            message: format!("there is no preset `{}`", arguments.preset),
+            help: format!("choose one of: {}", known.join(", ")),
+        }
+        .into());
+    };
     let objective = case.conditions.get(case.objective.condition);
     if objective.is_none_or(|condition| condition.record.is_none()) {
         return Err(Usage {
@@ -124,31 +112,25 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         settings: (preset.settings)(&space),
         case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
+        synthetic,
         notes,
         wall_s: 0.0,
     };
-    let local_workers = arguments.workers.map_or_else(cores, usize::from);
-    check_bus(
-        arguments.listen.as_deref(),
-        arguments.insecure,
-        local_workers,
-    )?;
     let path = arguments
         .run
         .clone()
         .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
     let Begun {
         folder,
+        lost_journal,
         resumed,
         wall_s,
     } = RunFolder::begin(&path, &manifest, &case)?;
-    let verb = if resumed {
-        "going on with"
-    } else {
-        "beginning"
-    };
-    output::tell(&format!("{verb} {}", path.display()));
+    if lost_journal {
+        warn_of_lost_journal(&path);
+    }
 
+    let local_workers = arguments.workers.unwrap_or_else(cores);
     let session = Session {
         folder: &folder,
         manifest: &manifest,
@@ -158,6 +140,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         listen: arguments.listen.clone(),
         insecure: arguments.insecure,
         local_workers,
+        resumed,
         replay: false,
     };
     let result = bus::block_on(async {
@@ -167,7 +150,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.clear();
         result
     });
-    folder.spent(&manifest, session.wall_s())?;
     let result = result.inspect_err(|error| {
         if !can_go_on(error) {
             return;
@@ -179,42 +161,4 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         ));
     })?;
     finish::show(&session, &result, arguments.output.output)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn addresses_that_cannot_work_are_refused_with_a_remedy() {
-        for (listen, insecure, workers, words) in [
-            (None, false, 0, "nobody would compute"),
-            (Some("nonsense"), false, 2, "nonsense"),
-            (Some("udp/127.0.0.1:7447"), false, 2, "udp"),
-            (
-                Some("tcp/0.0.0.0:7447"),
-                false,
-                2,
-                "--listen tcp/0.0.0.0:7447",
-            ),
-        ] {
-            let refused = check_bus(listen, insecure, workers).unwrap_err();
-            assert!(refused.message.contains(words), "{}", refused.message);
-            assert!(!refused.help.is_empty());
-        }
-        for (listen, insecure, workers) in [
-            (None, false, 1),
-            (Some("tcp/127.0.0.1:7447"), false, 0),
-            (Some("tcp/0.0.0.0:7447"), true, 0),
-            (Some("quic/0.0.0.0:7447"), false, 0),
-        ] {
-            assert!(check_bus(listen, insecure, workers).is_ok(), "{listen:?}");
-        }
-    }
-
-    #[test]
-    fn an_unknown_preset_names_those_there_are() {
-        let refused = known_preset("deep").err().map(|usage| usage.help);
-        assert!(refused.is_some_and(|help| help.contains("quick, paper")));
-    }
 }

@@ -34,6 +34,8 @@ pub(super) struct Session<'a> {
     pub(super) insecure: bool,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
+    /// Whether the run was begun by an earlier session.
+    pub(super) resumed: bool,
     /// Whether nothing is to be computed.
     pub(super) replay: bool,
 }
@@ -77,11 +79,35 @@ impl Session<'_> {
         } else {
             bus::Bus::open(options, self.case).await?
         };
+        if !self.replay {
+            self.begun(bus.recorded())?;
+        }
+        observer.resumed(bus.recorded());
         let found = self.work(&mut bus, &mut strategy, observer, stop).await;
+        // while the run is still locked
+        let remembered = if self.replay {
+            Ok(())
+        } else {
+            self.folder.spent(self.manifest, self.case, self.wall_s())
+        };
         let closed = bus.close().await;
         let found = found?;
+        remembered?;
         closed?;
         Ok(found)
+    }
+
+    /// Writes down how the run was begun, now that its journal is ours, and says so.
+    fn begun(&self, recorded: usize) -> anyhow::Result<()> {
+        let (folder, manifest) = (self.folder, self.manifest);
+        folder.spent(manifest, self.case, self.earlier_s)?;
+        let path = folder.path().display();
+        output::tell(&match (self.resumed || recorded > 0, recorded) {
+            (false, _) => format!("beginning {path}"),
+            (true, 1) => format!("going on with {path}: its journal holds 1 result"),
+            (true, _) => format!("going on with {path}: its journal holds {recorded} results"),
+        });
+        Ok(())
     }
 
     async fn work(
@@ -272,6 +298,7 @@ fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibrati
             preset: Some(session.manifest.preset.clone()),
             seed: Some(session.manifest.seed),
             digest: log.digest(),
+            synthetic: session.manifest.synthetic,
         },
         recommended: Individual {
             id: None,

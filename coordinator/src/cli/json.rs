@@ -41,8 +41,8 @@ pub(super) struct SimulateOutput<'a> {
     pub(super) suspension_m: &'a [f64],
     /// Net torque at the crank shaft (N m).
     pub(super) crank_torque_nm: &'a [f64],
-    /// Energy of the revolution.
-    pub(super) energy: EnergyOutput,
+    /// Energy of the revolution; null unless it was completed.
+    pub(super) energy: Option<EnergyOutput>,
     /// Hash of all result bits.
     pub(super) digest: String,
 }
@@ -406,13 +406,13 @@ pub(super) fn simulation<'a>(
         beam_deg: &simulation.beam_deg,
         suspension_m: &simulation.suspension_m,
         crank_torque_nm: &simulation.crank_torque_n_m,
-        energy: EnergyOutput {
+        energy: (simulation.verdict == Verdict::Complete).then_some(EnergyOutput {
             input_j: energy.input_j,
             output_j: energy.output_j,
             dissipated_j: energy.dissipated_j,
             stored_j: energy.stored_j,
             relative_error: energy.relative_error,
-        },
+        }),
         digest: simulation_digest(simulation),
     }
 }

@@ -133,6 +133,7 @@ fn a_failed_simulation_says_what_happened_and_how_far_it_got() {
     };
     let (case, failed) = (case(), curves(verdict));
     let value = serde_json::to_value(simulation((&case, 0), &failed)).unwrap();
+    assert!(value["energy"].is_null());
     let expected = serde_json::json!({ "kind": "load_not_lifted", "load_fraction": 0.75 });
     assert_eq!(value["verdict"], expected);
     assert_eq!(value["objective"], Value::Null);

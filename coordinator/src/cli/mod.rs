@@ -20,7 +20,10 @@ mod run_folder;
 mod simulate;
 mod verify;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{
+    Args, Parser, Subcommand, ValueEnum,
+    builder::{RangedU64ValueParser, TypedValueParser},
+};
 use problem::Usage;
 use std::{
     path::{Path, PathBuf},
@@ -93,6 +96,8 @@ struct LoadedCase {
     case: protocol::case::Case,
     /// Where the records came from.
     measured: String,
+    /// Whether the case says that they were computed.
+    synthetic: bool,
     /// What there is to know about them.
     notes: Vec<String>,
 }
@@ -117,6 +122,7 @@ fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCas
     Ok(LoadedCase {
         case: loaded.case,
         measured,
+        synthetic: loaded.synthetic,
         notes,
     })
 }
@@ -133,6 +139,11 @@ fn condition(case: &protocol::case::Case, name: Option<&str>) -> Result<usize, U
             help: format!("it has: {}", known.join(", ")),
         }
     })
+}
+
+/// Numbers of local worker processes: more would only get in each other's way.
+fn worker_count() -> impl TypedValueParser<Value = usize> {
+    RangedU64ValueParser::<usize>::new().range(0..=1024)
 }
 
 /// How many local worker processes to start by default: one per core.

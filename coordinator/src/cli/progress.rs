@@ -18,6 +18,8 @@ pub(super) struct Display {
     started: Instant,
     last: Instant,
     generation: Option<u32>,
+    /// Results of earlier sessions that come back at once.
+    recorded: u64,
 }
 
 impl Display {
@@ -35,6 +37,7 @@ impl Display {
             started: now,
             last: now,
             generation: None,
+            recorded: 0,
         }
     }
 
@@ -54,7 +57,16 @@ impl Observe for Silent {
 }
 
 impl Observe for Display {
+    fn resumed(&mut self, recorded: usize) {
+        self.recorded = recorded as u64;
+    }
+
     fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Crew) {
+        // what is only read again needs neither workers nor lines
+        let reading = view.completed == view.replayed && view.completed < self.recorded;
+        if reading && view.completed < view.expected {
+            return;
+        }
         let now = Instant::now();
         let silent = now.duration_since(self.last);
         let due = match &self.bar {
@@ -81,7 +93,7 @@ impl Observe for Display {
 /// One line: generation, best, failures, workers, rate, time left.
 fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
     let mut parts = vec![format!(
-        "generation {} of {}",
+        "generation or stage {} of {}",
         view.generation, view.generations
     )];
     if let Some(best) = view.best {
@@ -91,7 +103,9 @@ fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
         parts.push(format!("{} failed", view.failed));
     }
     let attached = crew.workers.iter().filter(|worker| worker.attached).count();
+    let read_only = view.completed > 0 && view.completed == view.replayed;
     parts.push(match attached {
+        0 if read_only => "all from the journal".to_owned(),
         0 => "waiting for workers".to_owned(),
         1 => "1 worker".to_owned(),
         several => format!("{several} workers"),
@@ -134,7 +148,7 @@ mod tests {
         let mut crew = Crew::default();
         assert_eq!(
             describe(&ProgressView::default(), &crew, Duration::from_secs(1)),
-            "generation 0 of 0  waiting for workers"
+            "generation or stage 0 of 0  waiting for workers"
         );
         crew.workers.push(WorkerStatus {
             attached: true,
@@ -142,7 +156,7 @@ mod tests {
         });
         assert_eq!(
             describe(&view, &crew, Duration::from_secs(20)),
-            "generation 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
+            "generation or stage 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
         );
     }
 }

@@ -32,7 +32,23 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !folder.is_finished() {
         return Err(Usage {
             message: format!("{} is not finished", arguments.run.display()),
-            help: format!("go on with it first:\n  {}", manifest.command),
+            help: format!(
+                "go on with it first:\n  {}",
+                manifest.resume_command(&arguments.run)
+            ),
+        }
+        .into());
+    }
+    if !folder.has_journal() {
+        return Err(Usage {
+            message: format!(
+                "the journal of {} is gone or empty",
+                arguments.run.display()
+            ),
+            help: format!(
+                "put it back, or compute the run anew:\n  {}",
+                manifest.resume_command(&arguments.run)
+            ),
         }
         .into());
     }
@@ -45,6 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         listen: None,
         insecure: false,
         local_workers: 0,
+        resumed: true,
         replay: true,
     };
     let found = bus::block_on(async {

@@ -4,6 +4,7 @@
 //! `report` need nothing else. The journal, which the dispatcher keeps in the same folder, holds
 //! every result.
 use super::problem::Usage;
+use crate::journal;
 use anyhow::Context as _;
 use protocol::case::Case;
 use search::strategy::Settings;
@@ -35,6 +36,9 @@ pub(super) struct Manifest {
     pub(super) case_folder: PathBuf,
     /// Where the records came from.
     pub(super) measured: String,
+    /// Whether the case says that they were computed, not measured.
+    #[serde(default)]
+    pub(super) synthetic: bool,
     /// Remarks about the case.
     pub(super) notes: Vec<String>,
     /// Wall time of the sessions that are over (s).
@@ -45,6 +49,26 @@ impl Manifest {
     /// What decides the result, as canonical JSON: the journal refuses to mix two of them.
     pub(super) fn settings_json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string(&(self.seed, &self.settings))?)
+    }
+
+    /// The command that goes on with the run in the folder where it lies now.
+    pub(super) fn resume_command(&self, folder: &Path) -> String {
+        let word = |path: &Path| quote(&path.display().to_string());
+        let mut command = format!(
+            "horsehead calibrate {} --preset {} --seed {} --run {}",
+            word(&self.case_folder),
+            quote(&self.preset),
+            self.seed,
+            word(folder)
+        );
+        let measured = Path::new(&self.measured);
+        let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
+            || self.case_folder.ends_with(measured);
+        if !of_case {
+            command.push_str(" --measured ");
+            command.push_str(&quote(&self.measured));
+        }
+        command
     }
 
     /// A new manifest of this program.
@@ -75,27 +99,19 @@ impl RunFolder {
         Path::new("runs").join(format!("{word}-{preset}-seed{seed}"))
     }
 
-    /// Begins a run, or goes on with it if it is the same one.
+    /// Whether a run can begin here, or go on because it is the same one. Writes nothing:
+    /// [`RunFolder::spent`] does, once the journal has agreed.
     ///
     /// # Errors
-    /// If the folder holds another run, or cannot be written.
+    /// If the folder holds another run or something else.
     pub(super) fn begin(path: &Path, manifest: &Manifest, case: &Case) -> anyhow::Result<Begun> {
         let folder = Self {
             path: path.to_owned(),
         };
         if !folder.file("run.json").exists() {
-            folder.check_empty()?;
-            let unusable = |error: &dyn std::fmt::Display| Usage {
-                message: format!("{} cannot hold a run: {error}", path.display()),
-                help: "give another folder with --run, one that you may write to".to_owned(),
-            };
-            fs::create_dir_all(path).map_err(|error| unusable(&error))?;
-            fs::write(folder.file(".writable"), "")
-                .and_then(|()| fs::remove_file(folder.file(".writable")))
-                .map_err(|error| unusable(&error))?;
-            folder.write_json("case.json", case)?;
-            folder.write_json("run.json", manifest)?;
+            folder.check_vacant()?;
             return Ok(Begun {
+                lost_journal: false,
                 folder,
                 resumed: false,
                 wall_s: 0.0,
@@ -112,7 +128,9 @@ impl RunFolder {
         } else if earlier_case != *case {
             "its case or its records differ".to_owned()
         } else {
+            let computed = earlier.wall_s > 0.0 || folder.is_finished();
             return Ok(Begun {
+                lost_journal: computed && !folder.has_journal(),
                 folder,
                 resumed: true,
                 wall_s: earlier.wall_s,
@@ -122,32 +140,39 @@ impl RunFolder {
             message: format!("{} holds another run: {difference}", path.display()),
             help: format!(
                 "choose another folder with --run, or go on with that run:\n  {}",
-                earlier.command
+                earlier.resume_command(path)
             ),
         }
         .into())
     }
 
-    /// Refuses a folder of somebody else's: a run would scatter its files among theirs.
-    fn check_empty(&self) -> Result<(), Usage> {
-        let mut names = fs::read_dir(&self.path)
-            .into_iter()
-            .flatten()
-            .flatten()
-            .map(|entry| entry.file_name().to_string_lossy().into_owned());
-        // an interrupted beginning leaves no more than these
-        let ours = ["case.json", ".case.json.new", ".run.json.new", ".writable"];
-        names
-            .find(|name| !ours.contains(&name.as_str()))
-            .map_or(Ok(()), |name| {
-                Err(Usage {
-                    message: format!(
-                        "{} is not empty and holds no run (it has {name}, no run.json)",
-                        self.path.display()
-                    ),
-                    help: "give a new or an empty folder with --run".to_owned(),
-                })
-            })
+    /// Refuses what is no folder, or is one with files of something else.
+    fn check_vacant(&self) -> Result<(), Usage> {
+        let path = self.path.display();
+        let help = "choose an empty or new folder with --run DIR".to_owned();
+        // the lock alone is left where a run could not begin
+        let vacant = fs::read_dir(&self.path).map(|entries| {
+            entries
+                .flatten()
+                .all(|entry| entry.file_name() == journal::LOCK)
+        });
+        match vacant {
+            Ok(false) if !self.file(journal::FILE).exists() => Err(Usage {
+                message: format!("{path} is not empty, and no run was begun in it"),
+                help,
+            }),
+            Ok(_) => Ok(()),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+            Err(error) => Err(Usage {
+                message: format!("{path} cannot be a run folder: {error}"),
+                help,
+            }),
+        }
+    }
+
+    /// Whether a journal with anything in it is there.
+    pub(super) fn has_journal(&self) -> bool {
+        fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
     }
 
     /// Opens a run that was begun before.
@@ -185,8 +210,16 @@ impl RunFolder {
         Ok((manifest, self.read_json("case.json")?))
     }
 
-    /// Remembers the time that was spent.
-    pub(super) fn spent(&self, manifest: &Manifest, wall_s: f64) -> anyhow::Result<()> {
+    /// Remembers how the run was begun and the time that was spent.
+    pub(super) fn spent(
+        &self,
+        manifest: &Manifest,
+        case: &Case,
+        wall_s: f64,
+    ) -> anyhow::Result<()> {
+        if !self.file("case.json").exists() {
+            self.write_json("case.json", case)?;
+        }
         self.write_json(
             "run.json",
             &Manifest {
@@ -229,16 +262,20 @@ impl RunFolder {
     fn read_json<T: DeserializeOwned>(&self, name: &str) -> anyhow::Result<T> {
         let file = self.file(name);
         let text = fs::read_to_string(&file);
-        let text = text.with_context(|| format!("cannot read {}", file.display()))?;
-        serde_json::from_str(&text).map_err(|error| {
+        let damaged = |why: String| {
+            let folder = self.path.display();
             Usage {
-                message: format!("{} is damaged: {error}", file.display()),
-                help: "begin a new run in another folder with --run; the journal beside it keeps \
-                       the results of this one"
-                    .to_owned(),
+                message: format!("{} is damaged: {why}", file.display()),
+                help: format!(
+                    "the results are in the journal: remove run.json and case.json, and repeat \
+                     the command that began the run:\n  rm -f {folder}/run.json \
+                     {folder}/case.json\n  horsehead calibrate CASE --preset NAME --seed N \
+                     --run {folder}"
+                ),
             }
-            .into()
-        })
+        };
+        let text = text.map_err(|error| damaged(error.to_string()))?;
+        Ok(serde_json::from_str(&text).map_err(|error| damaged(error.to_string()))?)
     }
 }
 
@@ -247,6 +284,8 @@ impl RunFolder {
 pub(super) struct Begun {
     /// Its folder.
     pub(super) folder: RunFolder,
+    /// Whether its results are gone although there were some.
+    pub(super) lost_journal: bool,
     /// Whether it was begun earlier.
     pub(super) resumed: bool,
     /// Wall time of earlier sessions (s).
@@ -278,28 +317,4 @@ fn quote(word: &str) -> String {
         return word.to_owned();
     }
     format!("'{}'", word.replace('\'', r"'\''"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_folder_of_somebody_else_is_refused_and_left_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        let run = RunFolder {
-            path: folder.path().to_owned(),
-        };
-        run.check_empty().unwrap();
-        fs::write(run.file("case.json"), "{").unwrap();
-        run.check_empty().expect("an interrupted beginning goes on");
-        fs::write(run.file("thesis.tex"), "").unwrap();
-        let refused = run.check_empty().unwrap_err();
-        assert!(
-            refused.message.contains("thesis.tex"),
-            "{}",
-            refused.message
-        );
-        assert!(refused.help.contains("--run"));
-    }
 }

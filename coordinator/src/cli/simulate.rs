@@ -1,16 +1,17 @@
 //! `horsehead simulate`: one run of the machine.
 use super::{
     CaseChoice, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
+    problem::Usage,
     run_folder::{RunFolder, command_line},
 };
 use crate::{
-    report::{self, Provenance, SingleRun, table},
+    report::{self, Provenance, SingleRun, table, words},
     study::{self, Compared, Curves, Wanted, simulation_digest},
 };
 use anyhow::Context as _;
 use clap::Args;
-use protocol::case::Case;
-use std::path::PathBuf;
+use protocol::{case::Case, job::Verdict};
+use std::path::{Path, PathBuf};
 
 /// Simulate one revolution: curves, verdict, counters.
 #[derive(Debug, Args)]
@@ -49,18 +50,29 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let condition = condition(case, arguments.condition.as_deref())?;
     let genes = match arguments.genes.as_str() {
         "recommended" => case.recommended(),
-        file => crate::case::read_genes(std::path::Path::new(file), case)?,
+        file => crate::case::read_genes(Path::new(file), case)?,
     };
-    let individuals = vec![(arguments.genes.clone(), genes)];
+    if let Some(folder) = &arguments.out {
+        check_out(folder)?;
+    }
     let motion_step_deg = if arguments.out.is_some() { 3.0 } else { 0.0 };
+    let mut notes = loaded.notes.clone();
+    for note in outside_bounds(case, &genes) {
+        output::tell(&format!("note: {note}"));
+        notes.push(note);
+    }
     let wanted = Wanted {
         condition,
-        individuals,
+        individuals: vec![(arguments.genes.clone(), genes)],
         motion_step_deg,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let curves = first(groups).context("no result came back")?;
 
+    let verdict = curves.simulation.verdict;
+    if verdict != Verdict::Complete {
+        output::tell(&format!("the machine {}", words::verdict(&verdict)));
+    }
     let run = SingleRun {
         case: case.clone(),
         provenance: Provenance {
@@ -72,13 +84,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             preset: None,
             seed: None,
             digest: simulation_digest(&curves.simulation),
+            synthetic: loaded.synthetic,
         },
         condition,
         genes_name: arguments.genes.clone(),
         genes: curves.genes.clone(),
         evaluation: curves.evaluation.clone(),
         simulation: curves.simulation.clone(),
-        notes: loaded.notes.clone(),
+        notes,
     };
     if let Some(folder) = &arguments.out {
         let files = report::write_simulation(folder, &run)?;
@@ -93,6 +106,34 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let object = json::simulation((case, condition), &curves);
     let tables = || table::text(&table::simulation(&run), output::styled());
     output::print(arguments.output.output, tables, &object)
+}
+
+/// Refuses a folder that cannot be written, before anything is simulated for it.
+fn check_out(folder: &Path) -> Result<(), Usage> {
+    let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
+    match tried {
+        Ok(_) => Ok(()),
+        Err(error) => Err(Usage {
+            message: format!("cannot write into {}: {error}", folder.display()),
+            help: "choose a folder that can be written, with --out DIR".to_owned(),
+        }),
+    }
+}
+
+/// Genes that a search of this case would never try, one sentence each.
+fn outside_bounds(case: &Case, genes: &[f64]) -> Vec<String> {
+    let genes = case.genes.iter().zip(genes);
+    genes
+        .filter(|(gene, value)| !(gene.lower..=gene.upper).contains(value))
+        .map(|(gene, value)| {
+            let (name, unit) = (gene.name.as_str(), gene.unit.symbol());
+            let (lower, upper) = (gene.lower, gene.upper);
+            format!(
+                "{name} = {value:e} {unit} lies outside the case's search bounds, {lower:e} to \
+                 {upper:e} {unit}"
+            )
+        })
+        .collect()
 }
 
 fn first(groups: Vec<Compared>) -> Option<Curves> {
@@ -128,4 +169,31 @@ pub(super) fn compare_once(
 /// Where a run's result was kept, as the tables name it.
 pub(super) fn run_name(folder: &RunFolder) -> String {
     folder.path().display().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{check_out, outside_bounds};
+    use std::path::Path;
+
+    #[test]
+    fn genes_outside_the_bounds_are_noted() {
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+        let case = crate::case::load(&shipped, &crate::case::Overrides::default()).unwrap();
+        let mut genes = case.recommended();
+        assert_eq!(outside_bounds(&case, &genes), [""; 0]);
+        genes[1] = 2.0 * case.genes[1].upper;
+        let notes = outside_bounds(&case, &genes);
+        assert_eq!(notes.len(), 1);
+        assert!(notes[0].starts_with("kb23 = "), "{}", notes[0]);
+    }
+
+    #[test]
+    fn a_file_is_no_folder_for_results() {
+        let scratch = tempfile::tempdir().unwrap();
+        let file = scratch.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        assert!(check_out(&file).is_err());
+        check_out(&scratch.path().join("new")).unwrap();
+    }
 }

@@ -21,6 +21,7 @@ fn manifest(case: &protocol::case::Case, seed: u64) -> Manifest {
         settings: (preset("quick").unwrap().settings)(&space),
         case_folder: shipped(),
         measured: "X".to_owned(),
+        synthetic: false,
         notes: Vec::new(),
         wall_s: 0.0,
     }
@@ -106,9 +107,15 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     assert!(path.ends_with("runs/cyjs10-5-37hb-quick-seed3"));
     let first = RunFolder::begin(&path, &manifest(&case, 3), &case).unwrap();
     assert!(!first.resumed && !first.folder.is_finished());
-    first.folder.spent(&manifest(&case, 3), 12.5).unwrap();
+    assert!(!path.exists(), "nothing is written before the journal is");
+    std::fs::create_dir_all(&path).unwrap();
+    first
+        .folder
+        .spent(&manifest(&case, 3), &case, 12.5)
+        .unwrap();
     let again = RunFolder::begin(&path, &manifest(&case, 3), &case).unwrap();
     assert!(again.resumed);
+    assert!(again.lost_journal, "12.5 s were spent on nothing");
     assert!((again.wall_s - 12.5).abs() < 1e-12);
 
     let other = RunFolder::begin(&path, &manifest(&case, 4), &case).unwrap_err();
@@ -159,4 +166,48 @@ fn an_unknown_condition_is_refused_with_those_there_are() {
     assert_eq!(condition(&case, Some("4rpm")).unwrap(), 1);
     let error = condition(&case, Some("9rpm")).unwrap_err();
     assert_eq!(error.help, "it has: 5rpm, 4rpm");
+}
+
+#[test]
+fn a_folder_of_something_else_is_no_run_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = crate::case::load(&shipped(), &crate::case::Overrides::default()).unwrap();
+    let begin = |path: &Path| RunFolder::begin(path, &manifest(&case, 3), &case);
+    let message = |path: &Path| begin(path).unwrap_err().to_string();
+    assert!(begin(scratch.path()).is_ok(), "an empty one is fine");
+    let file = scratch.path().join("letter.txt");
+    std::fs::write(&file, "mine").unwrap();
+    assert!(message(scratch.path()).ends_with("is not empty, and no run was begun in it"));
+    assert!(message(&file).contains("cannot be a run folder"));
+    std::fs::write(scratch.path().join(crate::journal::FILE), "x").unwrap();
+    assert!(begin(scratch.path()).is_ok(), "a journal makes it one");
+    std::fs::write(scratch.path().join("run.json"), "{").unwrap();
+    let error = begin(scratch.path()).unwrap_err();
+    let usage = error.downcast_ref::<Usage>().unwrap();
+    assert!(usage.message.contains("run.json is damaged"), "{usage}");
+    assert!(usage.help.contains("horsehead calibrate CASE"));
+}
+
+#[test]
+fn the_way_to_go_on_names_the_folder_in_hand() {
+    let case = crate::case::load(&shipped(), &crate::case::Overrides::default()).unwrap();
+    let manifest = manifest(&case, 3);
+    let command = manifest.resume_command(Path::new("moved here/run"));
+    assert!(
+        command.ends_with("--preset quick --seed 3 --run 'moved here/run' --measured X"),
+        "{command}"
+    );
+    let words = [
+        "horsehead",
+        "calibrate",
+        "case",
+        "--preset",
+        "quick",
+        "--seed",
+        "3",
+        "--workers",
+    ];
+    let with = |count: &'static str| Cli::try_parse_from(words.into_iter().chain([count]));
+    assert!(with("0").is_ok() && with("1024").is_ok());
+    assert!(with("1025").is_err() && with("-1").is_err());
 }

@@ -30,7 +30,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     measured: Option<PathBuf>,
     /// Worker processes to start [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS")]
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
     workers: Option<usize>,
     #[command(flatten)]
     output: OutputChoice,
@@ -50,7 +50,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 "{} has no calibrated parameters yet",
                 arguments.run.display()
             ),
-            help: format!("finish the run first:\n  {}", manifest.command),
+            help: format!(
+                "finish the run first:\n  {}",
+                manifest.resume_command(&arguments.run)
+            ),
         }
         .into());
     }

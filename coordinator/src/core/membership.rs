@@ -115,6 +115,7 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
             alone: false,
             claims: Vec::new(),
             done: 0,
+            failed: 0,
             spent: Spent::default(),
         },
     );

@@ -159,13 +159,16 @@ impl Core {
         let mut spent = self.counts.past;
         let mut workers = Vec::with_capacity(self.members.len());
         for (id, member) in &self.members {
-            spent.add(&membership::account(member, now));
+            let account = membership::account(member, now);
+            spent.add(&account);
             workers.push(WorkerSnapshot {
                 id: *id,
                 host: member.announcement.host.clone(),
                 slots: member.announcement.slots,
                 busy: u32::try_from(member.leases.len().min(member.slots())).unwrap_or(u32::MAX),
                 done: member.done,
+                failed: member.failed,
+                spent: account,
             });
         }
         Snapshot {

@@ -55,6 +55,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
             });
             core.send(from, ToWorker::Stored(vec![done.attempt]));
             if let Some(member) = core.members.get_mut(&from) {
+                member.failed += 1;
                 member.spent.failed_us += done.wall_us;
             }
             // a failure of an attempt that was taken away says nothing about the job

@@ -38,4 +38,8 @@ pub struct WorkerSnapshot {
     pub busy: u32,
     /// Jobs it has brought results of.
     pub done: u64,
+    /// Attempts that failed there.
+    pub failed: u64,
+    /// Its slot time by use, since it joined.
+    pub spent: Spent,
 }

@@ -47,6 +47,7 @@ pub(super) struct Member {
     /// Attempts it holds of jobs that were not submitted (yet).
     pub(super) claims: Vec<Attempt>,
     pub(super) done: u64,
+    pub(super) failed: u64,
     pub(super) spent: Spent,
 }
 

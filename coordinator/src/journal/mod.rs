@@ -14,12 +14,20 @@ pub use read::{Damage, Entry, ReadReport, fold};
 pub use write::{Appended, Begun, Journal};
 
 use protocol::{event::RunHeader, wire::WireError};
-use std::{io, path::PathBuf};
+use serde_json::Value;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    io,
+    path::PathBuf,
+};
 
 /// Name of the journal within a run's folder.
 pub const FILE: &str = "journal.hhj";
 /// Name of the lock within a run's folder.
 pub const LOCK: &str = "lock";
+
+/// Most differing settings that are named one by one.
+const MOST_NAMED: usize = 3;
 
 const MARK: [u8; 4] = *b"HHJ1";
 /// Bytes before a record's body.
@@ -101,25 +109,67 @@ fn differences(was: &RunHeader, is: &RunHeader) -> Vec<String> {
 }
 
 fn setting_differences(was: &str, is: &str) -> Vec<String> {
-    let read = |text: &str| serde_json::from_str::<serde_json::Map<_, _>>(text).ok();
-    let (Some(was_map), Some(is_map)) = (read(was), read(is)) else {
-        return vec![format!("setting ({was}, now {is})")];
-    };
-    let names: std::collections::BTreeSet<&String> = was_map.keys().chain(is_map.keys()).collect();
-    let show = |value: Option<&serde_json::Value>| {
-        value.map_or_else(|| "none".to_owned(), ToString::to_string)
-    };
-    names
+    let (was, is) = (leaves(was), leaves(is));
+    let names: BTreeSet<&String> = was.keys().chain(is.keys()).collect();
+    let show = |value: Option<&String>| value.map_or("none", String::as_str).to_owned();
+    let mut what: Vec<String> = names
         .into_iter()
-        .filter(|name| was_map.get(*name) != is_map.get(*name))
+        .filter(|name| was.get(*name) != is.get(*name))
         .map(|name| {
             format!(
                 "{name} ({}, now {})",
-                show(was_map.get(name)),
-                show(is_map.get(name))
+                show(was.get(name)),
+                show(is.get(name))
             )
         })
-        .collect()
+        .collect();
+    if what.len() > MOST_NAMED {
+        let more = what.len() - MOST_NAMED;
+        what.truncate(MOST_NAMED);
+        what.push(format!("{more} settings more"));
+    }
+    if what.is_empty() {
+        what.push("notation of its settings".to_owned());
+    }
+    what
+}
+
+/// Settings by the last words of their path, as `search.population`; a pair that begins with a
+/// number is a seed with its settings.
+fn leaves(text: &str) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    match serde_json::from_str(text) {
+        Ok(Value::Array(mut pair)) if pair.len() == 2 && pair[0].is_number() => {
+            found.insert("seed".to_owned(), pair[0].to_string());
+            collect("", &pair.swap_remove(1), &mut found);
+        }
+        Ok(value) => collect("", &value, &mut found),
+        Err(_) => drop(found.insert("setting".to_owned(), text.to_owned())),
+    }
+    found
+}
+
+fn collect(path: &str, value: &Value, found: &mut BTreeMap<String, String>) {
+    let below = |name: &str| match path {
+        "" => name.to_owned(),
+        _ => format!("{path}.{name}"),
+    };
+    match value {
+        Value::Object(fields) => {
+            for (name, value) in fields {
+                collect(&below(name), value, found);
+            }
+        }
+        Value::Array(values) => {
+            for (index, value) in values.iter().enumerate() {
+                collect(&below(&(index + 1).to_string()), value, found);
+            }
+        }
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::String(_) => {
+            let name = if path.is_empty() { "setting" } else { path };
+            found.insert(name.to_owned(), value.to_string());
+        }
+    }
 }
 
 #[cfg(test)]

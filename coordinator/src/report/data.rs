@@ -93,6 +93,8 @@ pub struct Provenance {
     pub case_hash: String,
     /// Where the measured records came from.
     pub measured_name: String,
+    /// Whether those records were computed, not measured on a machine.
+    pub synthetic: bool,
     /// Search preset, where there was a search.
     pub preset: Option<String>,
     /// Seed of every random choice, where there was one.

@@ -3,8 +3,12 @@
 //! Says what the data say and no more; every sentence stands by itself.
 use super::data::{Calibration, ConditionResult};
 use super::number::{figure, percent, unit};
-use protocol::case::Case;
+use protocol::case::{Case, Gene};
 use protocol::job::{ChannelScore, PhysicsFailure, Reached, Verdict};
+
+/// What to know of records that come from no test.
+pub(super) const SYNTHETIC: &str = "The gauge records of this case are synthetic: they were \
+    computed, not measured on a machine, and say nothing about how well a real one is met.";
 
 /// What ended a simulation, in words.
 pub fn failure(kind: PhysicsFailure) -> &'static str {
@@ -108,31 +112,6 @@ pub fn headline(calibration: &Calibration) -> String {
     }
 }
 
-/// Says that absolute stress agrees less than before, where a free offset hides it.
-pub fn absolute(calibration: &Calibration) -> Option<String> {
-    let result = calibration.calibrated()?;
-    let sum = |run: &super::data::Run| -> Option<f64> {
-        let weights = calibration.case.objective.gauges.iter();
-        weights
-            .map(|(gauge, weight)| {
-                let mut channels = run.evaluation.channels.iter();
-                let channel = channels.find(|channel| channel.gauge == *gauge)?;
-                Some(weight * channel.mse_fixed_offset_mpa2)
-            })
-            .sum()
-    };
-    let (before, after) = (sum(&result.recommended)?, sum(&result.optimised)?);
-    (after > before && result.optimised.evaluation.fitness < result.recommended.evaluation.fitness)
-        .then(|| {
-            format!(
-                "The zero of each gauge is free, and was used: of absolute stress, offset not \
-                 removed, {} {}. The curves agree better in shape, not in level.",
-                objective(&calibration.case),
-                change(before, after, " MPa²")
-            )
-        })
-}
-
 /// What is minimised, in words.
 fn objective(case: &Case) -> String {
     let gauges: Vec<_> = case
@@ -204,6 +183,33 @@ pub fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
         .collect()
 }
 
+/// One sentence about the points whose absolute error rose although the error without offset
+/// fell: a free offset would hide it. None where there is no such point.
+pub fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<String> {
+    let before = &result.recommended.evaluation.channels;
+    let changes: Vec<String> = result
+        .optimised
+        .evaluation
+        .channels
+        .iter()
+        .filter_map(|new| {
+            let old = channel(before, new.gauge)?;
+            let hidden = new.mse_mpa2 < old.mse_mpa2
+                && new.mse_fixed_offset_mpa2 > old.mse_fixed_offset_mpa2;
+            let (from, to) = (old.mse_fixed_offset_mpa2, new.mse_fixed_offset_mpa2);
+            hidden.then(|| format!("at point {} it {}", new.gauge, change(from, to, " MPa²")))
+        })
+        .collect();
+    (!changes.is_empty()).then(|| {
+        format!(
+            "Under condition {} the absolute mean squared error (offset not removed) got worse \
+             although the one without offset fell: {}.",
+            condition_name(case, result.condition),
+            changes.join(", ")
+        )
+    })
+}
+
 /// Warnings that follow from the data of a calibration.
 pub fn warnings(calibration: &Calibration) -> Vec<String> {
     let case = &calibration.case;
@@ -234,14 +240,25 @@ pub fn warnings(calibration: &Calibration) -> Vec<String> {
     for (gene, &value) in case.genes.iter().zip(&calibration.optimised.genes) {
         if let Some(side) = at_bound(gene.lower, gene.upper, value) {
             warnings.push(format!(
-                "{} ended at its {side} bound ({} {}): the optimum may lie outside.",
+                "{} ended at {} ({} {}): the optimum may lie outside.",
                 gene.name.as_str(),
+                bound(gene, side),
                 figure(value),
                 unit(gene.unit)
             ));
         }
     }
     warnings
+}
+
+/// A bound of a gene in words, as "its upper bound 1.00e12 N/m".
+pub(super) fn bound(gene: &Gene, side: &str) -> String {
+    let value = if side == "lower" {
+        gene.lower
+    } else {
+        gene.upper
+    };
+    format!("its {side} bound {} {}", figure(value), unit(gene.unit))
 }
 
 /// Which bound a value touches, within half a per cent of the interval's decades.

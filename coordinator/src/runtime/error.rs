@@ -44,6 +44,14 @@ pub enum DispatchError {
         /// The job.
         job: JobId,
     },
+    /// The address to listen on is taken, or is none of this machine.
+    #[error("cannot listen on {locator}: {source}")]
+    Listen {
+        /// The address.
+        locator: String,
+        /// The system's words.
+        source: std::io::Error,
+    },
     /// The core gave up.
     #[error("{0}")]
     Stopped(Stop),

@@ -53,16 +53,28 @@ impl LocalWorkers {
         let connect = connect.to_string();
         let tend = move || {
             let mut places = Vec::new();
-            for _ in 0..count {
+            // the first one shows whether it can be done; nobody should wait for hundreds more,
+            // and none is started once the end is asked for
+            while places.len() < count && matches!(ended.try_recv(), Err(mpsc::TryRecvError::Empty))
+            {
                 match Place::start(&program, &connect) {
                     Ok(place) => places.push(place),
-                    Err(error) => {
+                    Err(error) if places.is_empty() => {
                         drop(begun_to.send(Err(error)));
                         return;
                     }
+                    Err(error) => {
+                        tracing::warn!(
+                            "only {} of {count} local workers can be started: {error}",
+                            places.len()
+                        );
+                        break;
+                    }
+                }
+                if places.len() == 1 {
+                    drop(begun_to.send(Ok(())));
                 }
             }
-            drop(begun_to.send(Ok(())));
             tend(&mut places, &program, &connect, &say, &ended);
             end_all(places);
         };

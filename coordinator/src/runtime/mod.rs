@@ -19,8 +19,8 @@ use crate::{
 };
 use engine::{Engine, Request};
 use link::{
-    Blob, CoordinatorEnd,
-    locator::Locator,
+    Blob, CoordinatorEnd, LinkError,
+    locator::{Locator, Protocol},
     zenoh::{CoordinatorOptions, TlsFiles, ZenohCoordinator},
 };
 use local::LocalWorkers;
@@ -31,6 +31,7 @@ use protocol::{
     wire,
 };
 use std::{
+    net::{TcpListener, UdpSocket},
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
     time::{SystemTime, UNIX_EPOCH},
@@ -87,6 +88,7 @@ pub struct Dispatch {
     snapshot: Arc<Mutex<Snapshot>>,
     engine: JoinHandle<Summary>,
     listening: Vec<Locator>,
+    recorded: usize,
 }
 
 impl Dispatch {
@@ -98,6 +100,11 @@ impl Dispatch {
     /// there is no worker program, [`DispatchError::NobodyToAsk`] without any workers.
     pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
         let (listen, local) = addresses(&options)?;
+        let tls = TlsFiles::from_env();
+        // a folder that was made for a run that cannot begin would only be in the way
+        for locator in &listen {
+            admissible(locator, options.insecure, tls.as_ref())?;
+        }
         let program = match local {
             Some(_) => Some(locate::worker_program()?),
             None => None,
@@ -105,7 +112,6 @@ impl Dispatch {
         let parts = Parts::open(&options)?;
         let (run, blob) = (parts.run, parts.blob.clone());
         let insecure = options.insecure;
-        let tls = TlsFiles::from_env();
         let link_options = CoordinatorOptions {
             listen,
             insecure,
@@ -147,6 +153,7 @@ impl Dispatch {
         only_local: bool,
         listening: Vec<Locator>,
     ) -> Self {
+        let recorded = parts.journal.len();
         let (requests, asked) = unbounded_channel();
         let (deliver, completed) = unbounded_channel();
         let snapshot = Arc::new(Mutex::new(Snapshot::default()));
@@ -159,7 +166,13 @@ impl Dispatch {
             snapshot,
             engine,
             listening,
+            recorded,
         }
+    }
+
+    /// How many results the journal held when the run was opened.
+    pub const fn recorded(&self) -> usize {
+        self.recorded
     }
 
     /// Where workers can connect, the first one as asked for.
@@ -263,6 +276,29 @@ impl Parts {
     }
 }
 
+/// Whether one may and can listen there, before anything is made or started for it.
+fn admissible(
+    locator: &Locator,
+    insecure: bool,
+    tls: Option<&TlsFiles>,
+) -> Result<(), DispatchError> {
+    locator.permit(insecure)?;
+    let host = locator.host.trim_start_matches('[').trim_end_matches(']');
+    let at = (host, locator.port);
+    let tried = match locator.protocol {
+        Protocol::Tcp => TcpListener::bind(at).map(drop),
+        Protocol::Quic if tls.is_none() => {
+            let locator = locator.to_string();
+            return Err(LinkError::NoCertificates { locator }.into());
+        }
+        Protocol::Quic => UdpSocket::bind(at).map(drop),
+    };
+    tried.map_err(|source| DispatchError::Listen {
+        locator: locator.to_string(),
+        source,
+    })
+}
+
 /// Where to listen, and which of it local workers use.
 fn addresses(options: &DispatchOptions) -> Result<(Vec<Locator>, Option<usize>), DispatchError> {
     let loopback = || Locator::parse("tcp/127.0.0.1:0");
@@ -271,9 +307,7 @@ fn addresses(options: &DispatchOptions) -> Result<(Vec<Locator>, Option<usize>),
         (None, 0) => Err(DispatchError::NobodyToAsk),
         (None, _) => Ok((vec![loopback()?], Some(0))),
         (Some(asked), 0) => Ok((vec![asked], None)),
-        (Some(asked), _) if asked.protocol == link::locator::Protocol::Tcp => {
-            Ok((vec![asked], Some(0)))
-        }
+        (Some(asked), _) if asked.protocol == Protocol::Tcp => Ok((vec![asked], Some(0))),
         // local workers need no certificates
         (Some(asked), _) => Ok((vec![asked, loopback()?], Some(1))),
     }

@@ -23,6 +23,9 @@ pub struct Calibrated {
 pub trait Observe {
     /// An evaluation came back, or the search planned anew.
     fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> super::Crew);
+
+    /// Before anything else: how many results an earlier session left.
+    fn resumed(&mut self, _recorded: usize) {}
 }
 
 /// Becomes true when the user wants to stop.

@@ -502,7 +502,7 @@ fn a_gene_at_its_bound_is_marked() {
     calibration.optimised.genes[8] = calibration.case.genes[8].upper;
     let text = words(&html::calibration(&calibration).unwrap());
     assert!(text.contains("kc ended at its upper bound"));
-    assert!(text.contains("* at a bound of the search."));
+    assert!(text.contains("* at a bound of the search: kc at its upper bound"));
 }
 
 #[test]
@@ -545,4 +545,41 @@ fn the_film_shows_the_machine_where_it_was() {
         sin * anchor(2) + cos * anchor(3),
     );
     assert!((at.0 - x as f64).hypot(at.1 - y as f64) < 60.0);
+}
+
+#[test]
+fn an_absolute_error_that_rose_behind_a_free_offset_is_said() {
+    let mut calibration = sample::calibration(10);
+    let before = calibration.conditions[0].recommended.evaluation.channels[0];
+    let after = &mut calibration.conditions[0].optimised.evaluation.channels[0];
+    assert!(after.mse_mpa2 < before.mse_mpa2);
+    after.mse_fixed_offset_mpa2 = 3.0 * before.mse_fixed_offset_mpa2 + 1.0;
+    let said = "the absolute mean squared error (offset not removed) got worse";
+    let text = words(&html::calibration(&calibration).unwrap());
+    assert!(text.contains(said), "{text}");
+    let printed = table::text(&table::table_3(&calibration), false);
+    assert!(printed.contains(said) && printed.contains("MSE, absolute (offset not removed)"));
+    let after = &mut calibration.conditions[0].optimised.evaluation.channels[0];
+    after.mse_fixed_offset_mpa2 = 0.5 * before.mse_fixed_offset_mpa2;
+    let printed = table::text(&table::table_3(&calibration), false);
+    assert!(!printed.contains(said));
+}
+
+#[test]
+fn the_fitted_condition_is_not_called_unseen() {
+    let calibration = sample::calibration(10);
+    let title =
+        |result: usize| table::table_4(&calibration.case, &calibration.conditions[result]).title;
+    assert!(title(0).ends_with("the calibrated condition"));
+    assert!(title(1).ends_with("which took no part in the fit"));
+}
+
+#[test]
+fn computed_records_are_not_passed_off_as_measured() {
+    let mut calibration = sample::calibration(10);
+    let said = "The gauge records of this case are synthetic";
+    let page = |calibration: &Calibration| words(&html::calibration(calibration).unwrap());
+    assert!(!page(&calibration).contains(said));
+    calibration.provenance.synthetic = true;
+    assert!(page(&calibration).contains(said));
 }

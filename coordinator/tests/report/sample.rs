@@ -459,6 +459,7 @@ fn provenance() -> Provenance {
         measured_name: "the case's own records".to_owned(),
         preset: Some("paper".to_owned()),
         seed: Some(7),
+        synthetic: false,
         digest: "9b1d77aa03c2".repeat(5),
     }
 }

@@ -151,9 +151,9 @@ pub fn convergence(
     Ok(Figure {
         name: "convergence".to_owned(),
         caption: format!(
-            "{title} over {} evaluations: best individual so far, and per generation the median \
+            "{title} over {} evaluations: best individual so far, and per generation or stage of the search the median \
              of the complete individuals with the band from their 10 % to their 90 % quantile. \
-             Below, the share of each generation that did not complete a revolution.",
+             Below, the share of each that did not complete a revolution.",
             count(history.len() as u64)
         ),
         svg,

@@ -138,7 +138,7 @@ pub fn overlay(
         5.0,
     );
     let residuals = sides.iter().flat_map(|side| &side.residual);
-    let residuals = Scale::linear(residuals.map(|&(_, y)| y).chain([0.0]), 3.0);
+    let residuals = Scale::symmetric(residuals.map(|&(_, y)| y));
     let title = format!("Stress at gauge {gauge}, condition {}", condition.name);
     let record = Measured {
         mean: points(&record.turn_deg, &trace.mean_mpa),

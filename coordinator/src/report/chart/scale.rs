@@ -67,6 +67,24 @@ impl Scale {
         }
     }
 
+    /// Linear and symmetric about zero, over all finite values: a tick at zero and the same one or
+    /// two on either side of it. Without any finite value: -1 to 1.
+    pub(super) fn symmetric(values: impl IntoIterator<Item = f64>) -> Self {
+        let largest = range(values.into_iter().map(f64::abs)).map_or(1.0, |(_, high)| high);
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        // the roundest step that still fits between zero and the largest value
+        let step = [5.0, 2.0, 1.0]
+            .map(|factor| factor * 10_f64.powf(largest.log10().floor()))
+            .into_iter()
+            .find(|&step| step <= largest * 1.001)
+            .unwrap_or(largest);
+        Self {
+            low: -1.05 * largest,
+            high: 1.05 * largest,
+            spacing: Spacing::Linear { step },
+        }
+    }
+
     /// Linear between two given ends.
     pub(super) fn between(low: f64, high: f64, parts: f64) -> Self {
         Self {
@@ -208,6 +226,17 @@ mod tests {
             .map(|tick| tick.label)
             .filter(|label| !label.is_empty())
             .collect()
+    }
+
+    #[test]
+    fn symmetric_scales_have_at_least_three_ticks() {
+        assert_eq!(
+            labels(Scale::symmetric([-0.9, 0.2])),
+            ["\u{2212}0.5", "0.0", "0.5"]
+        );
+        assert_eq!(labels(Scale::symmetric([1.0])), ["\u{2212}1", "0", "1"]);
+        assert_eq!(labels(Scale::symmetric([4.1])).len(), 5);
+        assert_eq!(labels(Scale::symmetric([])).len(), 3);
     }
 
     #[test]

@@ -18,7 +18,8 @@ const MOST: usize = 40;
 /// # Errors
 /// [`ChartError`] when the drawing library fails.
 pub fn workers(workers: &[WorkerUse]) -> Result<Option<Figure>, ChartError> {
-    if workers.is_empty() {
+    // bars that are all empty would show nothing
+    if workers.iter().all(|worker| worker.busy_share().is_none()) {
         return Ok(None);
     }
     let shown = &workers[..workers.len().min(MOST)];
@@ -26,7 +27,7 @@ pub fn workers(workers: &[WorkerUse]) -> Result<Option<Figure>, ChartError> {
     let title = "Use of the workers";
     let svg = render((WIDTH, height), title, |canvas| {
         let head = Lettering::new(10.5, GREY);
-        canvas.text((LEFT, 14.0), "slot time spent computing", head)?;
+        canvas.text((LEFT, 14.0), "slot time spent on results", head)?;
         let right = head.at(HPos::Right, VPos::Center);
         canvas.text((WIDTH - 60.0, 14.0), "jobs done", right)?;
         for (index, worker) in shown.iter().enumerate() {
@@ -52,7 +53,7 @@ pub fn workers(workers: &[WorkerUse]) -> Result<Option<Figure>, ChartError> {
     Ok(Some(Figure {
         name: "workers".to_owned(),
         caption: format!(
-            "{title}: share of the slot time, while attached, that was spent computing.{left_out}"
+            "{title}: share of the slot time, while attached, that was spent on accepted results.{left_out}"
         ),
         svg,
     }))

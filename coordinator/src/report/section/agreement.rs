@@ -26,5 +26,10 @@ fn render(subject: Subject<'_>) -> Rendered {
             @for overlay in &figures { (figure(overlay)) }
         });
     }
-    Ok((!parts.is_empty()).then(|| html! { @for part in parts { (part) } }))
+    Ok((!parts.is_empty()).then(|| {
+        html! {
+            p { "Fitted points first, then the others of the record." }
+            @for part in parts { (part) }
+        }
+    }))
 }

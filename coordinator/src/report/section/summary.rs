@@ -22,10 +22,10 @@ fn render(subject: Subject<'_>) -> Rendered {
 fn of_calibration(calibration: &Calibration) -> Markup {
     let case = &calibration.case;
     let failed = calibration.history.iter().filter(|p| !p.complete).count();
-    let mut warnings = words::warnings(calibration);
-    warnings.extend(words::absolute(calibration));
+    let warnings = words::warnings(calibration);
     html! {
         p.verdict { (words::headline(calibration)) }
+        @if calibration.provenance.synthetic { p { (words::SYNTHETIC) } }
         @for result in &calibration.conditions {
             @let sentences = words::gauges(case, result);
             @let calibrated = result.condition == case.objective.condition;
@@ -40,6 +40,7 @@ fn of_calibration(calibration: &Calibration) -> Markup {
             } @else {
                 ul { @for sentence in sentences { li { (sentence) } } }
             }
+            @if let Some(sentence) = words::absolute_worse(case, result) { p { (sentence) } }
         }
         p {
             (count(calibration.history.len() as u64)) " evaluations, " (count(failed as u64))
@@ -59,6 +60,7 @@ fn of_single(run: &SingleRun) -> Markup {
             "Condition " (words::condition_name(&run.case, run.condition)) " with the "
             (run.genes_name) " parameters: " (verdict) "."
         }
+        @if run.provenance.synthetic && run.evaluation.is_some() { p { (words::SYNTHETIC) } }
         @if let Some(evaluation) = &run.evaluation {
             @if evaluation.channels.is_empty() {
                 p { "There is no score: no record, or no complete run." }

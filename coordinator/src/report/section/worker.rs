@@ -14,9 +14,9 @@ fn render(subject: Subject<'_>) -> Rendered {
         return Ok(None);
     };
     let drawn = chart::workers(&calibration.workers)?;
-    Ok(drawn.map(|drawn| {
+    Ok((!calibration.workers.is_empty()).then(|| {
         html! {
-            (figure(&drawn))
+            @if let Some(drawn) = &drawn { (figure(drawn)) }
             (table::markup(&table::workers(&calibration.workers)))
         }
     }))

@@ -91,9 +91,7 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
             figure,
         ));
     }
-    rows.push(Row::Group(
-        "Mean squared error of absolute stress (offset not removed)".to_owned(),
-    ));
+    rows.push(Row::Group("MSE, absolute (offset not removed)".to_owned()));
     for &g in &gauges {
         let value = |c: &ChannelScore| c.mse_fixed_offset_mpa2;
         rows.push(channel_row(point(g), "MPa²", result, g, value, figure));
@@ -194,14 +192,20 @@ pub fn table_3(calibration: &Calibration) -> Table {
         OFFSET.to_owned(),
     ];
     let genes = case.genes.iter().zip(&calibration.optimised.genes);
-    if genes
-        .into_iter()
-        .any(|(gene, &value)| words::at_bound(gene.lower, gene.upper, value).is_some())
-    {
-        notes.insert(0, "* at a bound of the search.".to_owned());
+    let bounds: Vec<String> = genes
+        .filter_map(|(gene, &value)| {
+            let side = words::at_bound(gene.lower, gene.upper, value)?;
+            let bound = words::bound(gene, side);
+            Some(format!("{} at {bound}", gene.name.as_str()))
+        })
+        .collect();
+    if !bounds.is_empty() {
+        let bounds = bounds.join(", ");
+        notes.insert(0, format!("* at a bound of the search: {bounds}."));
     }
     if let Some(result) = calibration.calibrated() {
         rows.extend(agreement(case, result));
+        notes.extend(words::absolute_worse(case, result));
         notes.extend(failures(result));
     }
     Table {
@@ -215,22 +219,21 @@ pub fn table_3(calibration: &Calibration) -> Table {
     }
 }
 
-/// The paper's Table 4: agreement under another condition, with the same parameters.
+/// The paper's Table 4: agreement under one condition, with the same parameters.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
-    let mut notes = vec![
-        RELATIVE_ERROR.to_owned(),
-        HALF_RANGE.to_owned(),
-        OFFSET.to_owned(),
-    ];
+    let mut notes = [RELATIVE_ERROR, HALF_RANGE, OFFSET]
+        .map(str::to_owned)
+        .to_vec();
+    notes.extend(words::absolute_worse(case, result));
     notes.extend(failures(result));
-    let part = if result.condition == case.objective.condition {
-        "the calibrated one"
+    let role = if result.condition == case.objective.condition {
+        "the calibrated condition"
     } else {
         "which took no part in the fit"
     };
     Table {
         title: format!(
-            "The same parameters under condition {}, {part}",
+            "The same parameters under condition {}, {role}",
             condition_name(case, result.condition)
         ),
         head: head(),
@@ -284,6 +287,8 @@ pub fn workers(workers: &[WorkerUse]) -> Table {
         .map(str::to_owned)
         .to_vec(),
         rows: rows.collect(),
-        notes: vec!["Busy: time spent computing over slots times the time attached.".to_owned()],
+        notes: vec![
+            "Busy: time spent on accepted results over slots times the time attached.".to_owned(),
+        ],
     }
 }
