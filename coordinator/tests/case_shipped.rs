@@ -308,3 +308,17 @@ fn the_template_loads_beside_its_data() {
         assert!(described, "no comment on `{line}`");
     }
 }
+
+#[test]
+fn a_folder_of_measurements_that_is_not_there_is_named_as_such() {
+    let overrides = Overrides {
+        measured: Some("no/such/folder".into()),
+    };
+    let error = case::load(&shipped(), &overrides).unwrap_err().to_string();
+    assert!(
+        error.starts_with("no/such/folder: there is no such folder; --measured names it"),
+        "{error}"
+    );
+    let own = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();
+    assert!(own.synthetic, "the shipped records were computed");
+}

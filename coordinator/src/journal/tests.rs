@@ -239,3 +239,18 @@ fn a_journal_without_its_first_record_is_not_continued() {
         Err(JournalError::Headless { .. })
     ));
 }
+
+#[test]
+fn a_seed_and_settings_that_differ_are_named_not_dumped() {
+    let header = |settings: &str| RunHeader {
+        settings: settings.to_owned(),
+        ..header()
+    };
+    let was = header(r#"[1,{"name":"quick","stages":[{"size":24},{"size":8,"x":null}]}]"#);
+    let seed = header(r#"[2,{"name":"quick","stages":[{"size":24},{"size":8,"x":null}]}]"#);
+    assert_eq!(differences(&was, &seed), ["seed (1, now 2)"]);
+    let size = header(r#"[1,{"name":"quick","stages":[{"size":24},{"size":9,"x":null}]}]"#);
+    assert_eq!(differences(&was, &size), ["stages.2.size (8, now 9)"]);
+    let other = header(r#"[1,{"a":1,"b":2,"c":3,"d":4}]"#);
+    assert_eq!(differences(&was, &other).len(), 4);
+}
