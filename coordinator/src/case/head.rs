@@ -9,7 +9,7 @@ use super::{
 };
 use protocol::case::{Influence, ModalHead, StressRecovery, WeightAxes};
 use protocol::job::HeadGauge;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
 
 /// The modes file: the keys that are used; centre and inertia are for the reader.
@@ -31,16 +31,16 @@ struct ModesFile {
 }
 
 /// Place of a gauge in the modes file.
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[expect(
     clippy::struct_field_names,
     reason = "keys of the file, with their unit"
 )]
-struct GaugePlace {
-    x_m: f64,
-    y_m: f64,
-    z_m: f64,
-    length_m: f64,
+pub(crate) struct GaugePlace {
+    pub(crate) x_m: f64,
+    pub(crate) y_m: f64,
+    pub(crate) z_m: f64,
+    pub(crate) length_m: f64,
 }
 
 /// What the tables say of themselves.

@@ -27,6 +27,7 @@ pub use flexible::{HeadSource, load_head};
 pub use genes::read_genes;
 pub use geometry::Envelope;
 pub use geometry::{QuasiStatic, quasi_static};
+pub(crate) use head::GaugePlace;
 pub use load::{Loaded, Overrides, load, load_with_notes};
 pub use note::Note;
 pub use record::RecordFacts;

@@ -1,6 +1,6 @@
 //! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
 use crate::{
-    case::HeadSource,
+    case::{GaugePlace, HeadSource},
     report::vtu::{self, Field},
 };
 use anyhow::Context as _;
@@ -35,18 +35,6 @@ struct ModesFile<'a> {
     inertia_about_pivot_kg_m2: f64,
     inertia_stress_mpa: [[f64; 4]; 3],
     gauges: BTreeMap<String, GaugePlace>,
-}
-
-#[derive(Debug, Serialize)]
-#[expect(
-    clippy::struct_field_names,
-    reason = "keys of the file, with their unit"
-)]
-struct GaugePlace {
-    x_m: f64,
-    y_m: f64,
-    z_m: f64,
-    length_m: f64,
 }
 
 /// Replaces the modes file and the influence file of a case; returns their paths.
