@@ -13,6 +13,7 @@ use super::{
     file,
     note::Note,
 };
+use discrepancy::record::Record;
 use protocol::case::{GaugeRecord, GaugeTrace};
 use samples::Samples;
 use sheet::Sheet;
@@ -21,6 +22,8 @@ use std::path::{Path, PathBuf};
 /// What a record is asked to agree with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Expected<'a> {
+    /// Position of the condition in the case.
+    pub(super) index: usize,
     /// Name of the condition, for messages.
     pub(super) condition: &'a str,
     /// Speed of the condition [1/min].
@@ -52,6 +55,8 @@ pub struct RecordFacts {
 #[derive(Debug)]
 pub(super) struct Read {
     pub(super) record: GaugeRecord,
+    /// Every cycle by itself, with what was recorded beside the gauges.
+    pub(super) cycles: Record,
     pub(super) facts: RecordFacts,
     pub(super) notes: Vec<Note>,
 }
@@ -110,8 +115,15 @@ pub(super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseErr
     }
     let record = average(path, &cycles, expected.step_deg)?;
     remark(path, &cycles, &samples, &facts, expected, &mut notes);
+    let stated = sheet.stated(&cycles.channels, samples.step_deg / expected.step_deg);
     Ok(Read {
         record,
+        cycles: Record {
+            condition: expected.index,
+            channels: cycles.channels,
+            cycles: cycles.single,
+            stated,
+        },
         facts,
         notes,
     })
