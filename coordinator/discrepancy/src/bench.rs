@@ -103,6 +103,7 @@ impl Bench {
                 (model, search)
             })
             .collect();
+        let mut at_best: Vec<Option<Curves>> = vec![None; fits.len()];
         loop {
             let plans: Vec<Vec<Vec<f64>>> = fits.iter().map(|(_, search)| search.plan()).collect();
             let points: Vec<(&Model, &[f64])> = fits
@@ -114,19 +115,22 @@ impl Bench {
                 break;
             }
             let mut results = self.curves(lab, stage, &points).await?.into_iter();
-            for ((_, search), plan) in fits.iter_mut().zip(&plans) {
-                if !plan.is_empty() {
-                    let own = results.by_ref().take(plan.len());
-                    search.absorb(own.map(|c| c.map(|c| self.residual(&c))).collect());
+            for (((_, search), best), plan) in fits.iter_mut().zip(&mut at_best).zip(&plans) {
+                if plan.is_empty() {
+                    continue;
+                }
+                let own: Vec<Option<Curves>> = results.by_ref().take(plan.len()).collect();
+                let whitened = own.iter().map(|c| c.as_ref().map(|c| self.residual(c)));
+                search.absorb(whitened.collect());
+                let arrived = plan.iter().position(|x| *x == search.best().x);
+                if let Some(curves) = arrived.and_then(|k| own.into_iter().nth(k)) {
+                    *best = curves;
                 }
             }
         }
-        let last: Vec<(&Model, &[f64])> =
-            fits.iter().map(|(model, search)| (model, search.best().x.as_slice())).collect();
-        let curves = self.curves(lab, stage, &last).await?;
         Ok(fits
             .into_iter()
-            .zip(curves)
+            .zip(at_best)
             .map(|((model, search), curves)| {
                 Some(Fit {
                     model,

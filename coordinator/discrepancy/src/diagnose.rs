@@ -134,7 +134,9 @@ pub struct Diagnosis {
 /// Of the laboratory: nobody simulates any more, or the user stopped.
 pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
     let Some(record) = inputs.records.first().filter(|r| !r.cycles.is_empty()) else {
-        return Ok(Diagnosis::unresolved("there is no record of the calibrated condition"));
+        return Ok(Diagnosis::unresolved(
+            "there is no record of the calibrated condition",
+        ));
     };
     let (fitted, held) = record.split();
     let model = Model::plain(inputs.space.clone());
@@ -238,7 +240,9 @@ async fn establish<L: Laboratory>(
             }
         }
         None => {
-            notes.push("the finer model did not complete: the numerical error is unknown".to_owned());
+            notes.push(
+                "the finer model did not complete: the numerical error is unknown".to_owned(),
+            );
             (bench, second)
         }
     };
@@ -288,10 +292,15 @@ async fn input_curves<L: Laboratory>(
         own[k] = (p.typical - p.absent) / p.scale;
         x.extend(own);
         let model = fit.model.with(gain);
-        let seen = bench.curves(lab, Stage::Recalibrate, &[(&model, &x)]).await?;
+        let seen = bench
+            .curves(lab, Stage::Recalibrate, &[(&model, &x)])
+            .await?;
         if let Some(curves) = seen.into_iter().next().flatten() {
             let per_unit = |(a, b): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
-                a.iter().zip(b).map(|(a, b)| (a - b) / (p.typical - p.absent)).collect()
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| (a - b) / (p.typical - p.absent))
+                    .collect()
             };
             let curves = curves.iter().zip(&fit.curves).map(per_unit).collect();
             inputs.push((curves, stated.load_scatter / cycles));
@@ -309,8 +318,12 @@ async fn rounds<L: Laboratory>(
 ) -> Result<Fit, L::Error> {
     let settings = &inputs.settings;
     let considered = |effect: &&EffectDescriptor| !settings.without.contains(&effect.id);
-    let (generic, named): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) =
-        inputs.library.iter().filter(considered).cloned().partition(|effect| effect.generic);
+    let (generic, named): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) = inputs
+        .library
+        .iter()
+        .filter(considered)
+        .cloned()
+        .partition(|effect| effect.generic);
     let mut current = base.fit.clone();
     for number in 0..settings.rounds {
         let open: Vec<EffectDescriptor> = named
@@ -346,11 +359,17 @@ async fn examine<L: Laboratory>(
     let suspects = suspect::examine(lab, &base.bench, current, named, 1.0).await?;
     let generics = suspect::examine(lab, &base.bench, current, generic, 1.0).await?;
     let mut order: Vec<&Suspect> = suspects.iter().filter(|s| s.statistic() > 0.0).collect();
-    order.sort_by(|a, b| a.p_value().total_cmp(&b.p_value()).then(b.statistic().total_cmp(&a.statistic())));
+    order.sort_by(|a, b| {
+        a.p_value()
+            .total_cmp(&b.p_value())
+            .then(b.statistic().total_cmp(&a.statistic()))
+    });
     order.truncate(settings.suspects);
     let mut refits = refit::refit(lab, &base.bench, current, &order).await?;
     refits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-    let best = refits.first().map_or(current.chi_squared(), |r| r.fit.chi_squared());
+    let best = refits
+        .first()
+        .map_or(current.chi_squared(), |r| r.fit.chi_squared());
     let phi = misfit(best.min(current.chi_squared()), base.bench.metric.len());
     let least = suspects
         .iter()
@@ -414,12 +433,20 @@ async fn challenge<L: Laboratory>(
     _generic: &[EffectDescriptor],
     settings: &Settings,
 ) -> Result<Option<String>, L::Error> {
-    let best = round.refits.first().map_or(0.0, |r| current.chi_squared() - r.fit.chi_squared());
+    let best = round
+        .refits
+        .first()
+        .map_or(0.0, |r| current.chi_squared() - r.fit.chi_squared());
     let scale = round.phi * round.phi;
     let likeliest = round
         .generics
         .iter()
-        .filter(|g| family_wise(crate::score::chi_squared_tail(g.statistic() / scale, 1), round.generics.len()) < settings.alpha)
+        .filter(|g| {
+            family_wise(
+                crate::score::chi_squared_tail(g.statistic() / scale, 1),
+                round.generics.len(),
+            ) < settings.alpha
+        })
         .max_by(|a, b| a.statistic().total_cmp(&b.statistic()));
     Ok(likeliest
         .filter(|g| g.statistic() > settings.generic_factor * best + 10.0 * scale)
@@ -482,9 +509,17 @@ async fn finish<L: Laboratory>(
     diagnosis.effects = estimates(diagnosis);
     let findings = Findings {
         sound: true,
-        rejected: diagnosis.rounds.first().is_some_and(|r| r.p_value < inputs.settings.alpha),
+        rejected: diagnosis
+            .rounds
+            .first()
+            .is_some_and(|r| r.p_value < inputs.settings.alpha),
         added,
-        rivals: diagnosis.rounds.iter().map(|r| r.set.len()).max().unwrap_or(0),
+        rivals: diagnosis
+            .rounds
+            .iter()
+            .map(|r| r.set.len())
+            .max()
+            .unwrap_or(0),
         generic: diagnosis.generic.is_some(),
     };
     diagnosis.verdict = verdict(&findings);
@@ -500,7 +535,10 @@ fn estimates(diagnosis: &Diagnosis) -> Vec<Estimate> {
     let mut found: Vec<Estimate> = Vec::new();
     for added_first in [true, false] {
         for round in &diagnosis.rounds {
-            let members = round.set.iter().filter(|id| (round.added.as_ref() == Some(id)) == added_first);
+            let members = round
+                .set
+                .iter()
+                .filter(|id| (round.added.as_ref() == Some(id)) == added_first);
             for id in members {
                 let refitted = round.refits.iter().find(|r| r.id == *id);
                 if let Some(refitted) = refitted.filter(|_| found.iter().all(|e| e.id != *id)) {
@@ -550,7 +588,14 @@ fn deviations(fit: &Fit, phi: f64) -> Vec<f64> {
     let n = curvature.nrows();
     curvature.cholesky().map_or_else(
         || vec![f64::INFINITY; n],
-        |factor| factor.inverse().diagonal().iter().map(|v| phi * v.sqrt()).collect(),
+        |factor| {
+            factor
+                .inverse()
+                .diagonal()
+                .iter()
+                .map(|v| phi * v.sqrt())
+                .collect()
+        },
     )
 }
 

@@ -133,7 +133,9 @@ impl Metric {
         for factor in &self.factors {
             let lower = factor.clone().try_inverse();
             for (c, row) in out.iter_mut().enumerate() {
-                let square = lower.as_ref().map_or(0.0, |l| l.row(c).iter().map(Complex::norm_sqr).sum());
+                let square = lower
+                    .as_ref()
+                    .map_or(0.0, |l| l.row(c).iter().map(Complex::norm_sqr).sum());
                 row.push(square.sqrt());
             }
         }

@@ -169,7 +169,12 @@ impl Source<'_> {
             .map(|name| record::read(&self.place(name), &expected))
             .transpose()?;
         let (record, facts, cycles, notes) = match read {
-            Some(read) => (Some(read.record), Some(read.facts), Some(read.cycles), read.notes),
+            Some(read) => (
+                Some(read.record),
+                Some(read.facts),
+                Some(read.cycles),
+                read.notes,
+            ),
             None => (None, None, None, Vec::new()),
         };
         let condition = Condition {

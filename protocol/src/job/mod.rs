@@ -16,6 +16,7 @@ pub use score::{ChannelScore, Evaluation, ScoreSpec};
 pub use simulate::{Energy, Motion, SimulateSpec, Simulation};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
+use crate::announce::EffectDescriptor;
 use serde::{Deserialize, Serialize};
 
 /// One unit of work; a pure function of itself and the case it names.
@@ -29,6 +30,8 @@ pub enum Job {
     Observe(ObserveSpec),
     /// Reduce the flexible back head from its mesh to modes and influence lines.
     ReduceHead(Box<ReduceHeadSpec>),
+    /// Say which effects the model can add to a machine.
+    Describe,
     /// Do nothing, return at once: measures the bus.
     Nothing {
         /// Bytes that travel to the worker.
@@ -49,6 +52,7 @@ impl Job {
             Self::Simulate(_) => "simulate",
             Self::Observe(_) => "observe",
             Self::ReduceHead(_) => "reduce_head",
+            Self::Describe => "describe",
             Self::Nothing { .. } => "nothing",
         }
     }
@@ -65,6 +69,8 @@ pub enum Outcome {
     Observed(Observation),
     /// Of [`Job::ReduceHead`].
     HeadReduced(Box<ReducedHead>),
+    /// Of [`Job::Describe`].
+    Described(Vec<EffectDescriptor>),
     /// Of [`Job::Nothing`].
     Nothing(#[serde(with = "byte_string")] Vec<u8>),
     /// The job could not be done.

@@ -28,8 +28,10 @@ pub async fn enter<L: Laboratory>(
         if proposals.is_empty() {
             break;
         }
-        let points: Vec<Vec<f64>> =
-            proposals.iter().map(|proposal| model.space.decades(&proposal.genes)).collect();
+        let points: Vec<Vec<f64>> = proposals
+            .iter()
+            .map(|proposal| model.space.decades(&proposal.genes))
+            .collect();
         let points: Vec<(&Model, &[f64])> = points.iter().map(|x| (model, x.as_slice())).collect();
         let curves = bench.curves(lab, Stage::Basin, &points).await?;
         for (proposal, curves) in proposals.iter().zip(curves) {
@@ -57,8 +59,16 @@ fn apart(ranked: &[&Evaluated], model: &Model) -> Vec<Vec<f64>> {
     let mut kept: Vec<Vec<f64>> = Vec::new();
     for one in ranked {
         let x = model.space.decades(&one.genes);
-        let near = |other: &Vec<f64>| other.iter().zip(&x).all(|(a, b)| (a - b).abs() < 5.0 * NEAR)
-            && other.first().zip(x.first()).is_some_and(|(a, b)| (a - b).abs() < NEAR);
+        let near = |other: &Vec<f64>| {
+            other
+                .iter()
+                .zip(&x)
+                .all(|(a, b)| (a - b).abs() < 5.0 * NEAR)
+                && other
+                    .first()
+                    .zip(x.first())
+                    .is_some_and(|(a, b)| (a - b).abs() < NEAR)
+        };
         if !kept.iter().any(near) {
             kept.push(x);
         }

@@ -45,7 +45,12 @@ pub async fn check<L: Laboratory>(
     finer: Refinement,
 ) -> Result<Option<Preflight>, L::Error> {
     let spec = fit.model.experiment(fit.x(), bench.record.condition, finer);
-    let observed = lab.observe(Stage::Preflight, vec![spec]).await?.into_iter().next().flatten();
+    let observed = lab
+        .observe(Stage::Preflight, vec![spec])
+        .await?
+        .into_iter()
+        .next()
+        .flatten();
     let Some(fine) = observed.and_then(|o| channels(&o, &bench.record.channels)) else {
         return Ok(None);
     };
@@ -64,7 +69,10 @@ pub async fn check<L: Laboratory>(
     };
     let orders = bench.metric.orders();
     Ok(Some(Preflight {
-        rms: difference.iter().map(|curve| rms(&orders.transform(curve))).collect(),
+        rms: difference
+            .iter()
+            .map(|curve| rms(&orders.transform(curve)))
+            .collect(),
         rms_left: left.iter().map(rms).collect(),
         standard_error: unit
             .iter()

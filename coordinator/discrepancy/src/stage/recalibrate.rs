@@ -45,6 +45,13 @@ pub async fn converge<L: Laboratory>(
         central: true,
         ..Settings::default()
     };
-    let fits = bench.fit(lab, Stage::Recalibrate, vec![(model.clone(), x.to_vec())], settings).await?;
+    let fits = bench
+        .fit(
+            lab,
+            Stage::Recalibrate,
+            vec![(model.clone(), x.to_vec())],
+            settings,
+        )
+        .await?;
     Ok(fits.into_iter().next().flatten())
 }

@@ -33,21 +33,23 @@ pub async fn compare<L: Laboratory>(
     let batch = records
         .iter()
         .flat_map(|(record, _)| {
-            [before, after]
-                .map(|fit| fit.model.experiment(fit.x(), record.condition, refinement))
+            [before, after].map(|fit| fit.model.experiment(fit.x(), record.condition, refinement))
         })
         .collect();
     let observed = lab.observe(Stage::Show, batch).await?;
-    let rows = records.iter().zip(observed.chunks(2)).filter_map(|((record, fitted), pair)| {
-        let curves = |k: usize| channels(pair.get(k)?.as_ref()?, &record.channels);
-        let (before, after) = (curves(0)?, curves(1)?);
-        (!record.cycles.is_empty()).then(|| Row {
-            condition: record.condition,
-            fitted: *fitted,
-            closed: closed(record, &before, &after),
-            before,
-            after,
-        })
-    });
+    let rows = records
+        .iter()
+        .zip(observed.chunks(2))
+        .filter_map(|((record, fitted), pair)| {
+            let curves = |k: usize| channels(pair.get(k)?.as_ref()?, &record.channels);
+            let (before, after) = (curves(0)?, curves(1)?);
+            (!record.cycles.is_empty()).then(|| Row {
+                condition: record.condition,
+                fitted: *fitted,
+                closed: closed(record, &before, &after),
+                before,
+                after,
+            })
+        });
     Ok(rows.collect())
 }

@@ -29,14 +29,20 @@ pub struct Suspect {
 impl Suspect {
     /// Tail probability, the best of several shapes counted as such.
     pub fn p_value(&self) -> f64 {
-        self.score.as_ref().map_or(1.0, |score| family_wise(score.p_value, self.tries))
+        self.score
+            .as_ref()
+            .map_or(1.0, |score| family_wise(score.p_value, self.tries))
     }
 
     /// The statistic; 0 without a test or where the estimate has the wrong sign.
     pub fn statistic(&self) -> f64 {
-        self.score
-            .as_ref()
-            .map_or(0.0, |score| if score.p_value < 1.0 { score.statistic } else { 0.0 })
+        self.score.as_ref().map_or(0.0, |score| {
+            if score.p_value < 1.0 {
+                score.statistic
+            } else {
+                0.0
+            }
+        })
     }
 }
 
@@ -176,8 +182,10 @@ fn judge(
     (residual, tangent, inflation): (&DVector<f64>, &Tangent, f64),
 ) -> Suspect {
     let sizes = sizes(effect);
-    let positive: Vec<bool> =
-        sizes.iter().map(|&k| effect.parameters[k].sign == Sign::Positive).collect();
+    let positive: Vec<bool> = sizes
+        .iter()
+        .map(|&k| effect.parameters[k].sign == Sign::Positive)
+        .collect();
     let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
     let mut best: Option<(Score, Vec<f64>, DMatrix<f64>)> = None;
     let mut tries = 0;
@@ -189,8 +197,10 @@ fn judge(
         tries += 1;
         let signature = DMatrix::from_columns(&columns);
         let found = score(residual, &signature, &positive, tangent, inflation);
-        let better = best.as_ref().is_none_or(|(other, ..)| found.p_value < other.p_value
-            || (found.p_value <= other.p_value && found.statistic > other.statistic));
+        let better = best.as_ref().is_none_or(|(other, ..)| {
+            found.p_value < other.p_value
+                || (found.p_value <= other.p_value && found.statistic > other.statistic)
+        });
         if better {
             let shape = group.first().map(|p| p.shape.clone()).unwrap_or_default();
             best = Some((found, shape, signature));

@@ -55,7 +55,9 @@ pub fn probe_order(id: &str) -> Option<usize> {
     if form == "const" {
         return Some(0);
     }
-    let digits = form.strip_prefix("cos").or_else(|| form.strip_prefix("sin"))?;
+    let digits = form
+        .strip_prefix("cos")
+        .or_else(|| form.strip_prefix("sin"))?;
     digits.parse().ok()
 }
 
@@ -72,7 +74,10 @@ async fn latents<L: Laboratory>(
         .filter_map(|effect| Some((effect, probe_order(&effect.id)?)))
         .filter(|(_, order)| *order <= HARMONICS)
         .collect();
-    let models: Vec<(Model, Vec<f64>)> = probes.iter().map(|(effect, _)| probed(fit, effect)).collect();
+    let models: Vec<(Model, Vec<f64>)> = probes
+        .iter()
+        .map(|(effect, _)| probed(fit, effect))
+        .collect();
     let points: Vec<(&Model, &[f64])> = models.iter().map(|(m, x)| (m, x.as_slice())).collect();
     let curves = bench.curves(lab, Stage::Where, &points).await?;
     let base = bench.metric.whiten(&fit.curves);

@@ -53,9 +53,18 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
             windows.iter().map(at).collect()
         };
         let others = samples.others.iter().map(|(_, curve)| curve);
-        values.push(samples.stress_mpa.iter().chain(others).map(resample).collect());
+        values.push(
+            samples
+                .stress_mpa
+                .iter()
+                .chain(others)
+                .map(resample)
+                .collect(),
+        );
     }
-    let gauges = (1..).zip(&samples.stress_mpa).map(|(number, _)| Source::Gauge(number));
+    let gauges = (1..)
+        .zip(&samples.stress_mpa)
+        .map(|(number, _)| Source::Gauge(number));
     let others = samples.others.iter().map(|(source, _)| *source);
     let mut cycles = Cycles {
         gaps: 0,
@@ -95,10 +104,16 @@ fn filled(cycles: &[Vec<Vec<Option<f64>>>]) -> Vec<Curves> {
     };
     let channel = |(c, curve): (usize, &Vec<Option<f64>>)| -> Option<Vec<f64>> {
         let values = curve.iter().enumerate();
-        values.map(|(at, value)| value.or_else(|| mean(c, at))).collect()
+        values
+            .map(|(at, value)| value.or_else(|| mean(c, at)))
+            .collect()
     };
     let cycle = |cycle: &Vec<Vec<Option<f64>>>| cycle.iter().enumerate().map(channel).collect();
-    cycles.iter().map(cycle).collect::<Option<Vec<Curves>>>().unwrap_or_default()
+    cycles
+        .iter()
+        .map(cycle)
+        .collect::<Option<Vec<Curves>>>()
+        .unwrap_or_default()
 }
 
 /// Number of grid angles of a turn.

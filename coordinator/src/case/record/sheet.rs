@@ -109,18 +109,48 @@ impl Sheet {
         )?;
         document.within("sample_rate_hz", sheet.sample_rate_hz, 1.0..=1.0e5, "Hz")?;
         let chain = [
-            ("gauges.resolution_mpa", sheet.gauges.resolution_mpa, 100.0, "MPa"),
-            ("gauges.noise_rms_mpa", sheet.gauges.noise_rms_mpa, 100.0, "MPa"),
+            (
+                "gauges.resolution_mpa",
+                sheet.gauges.resolution_mpa,
+                100.0,
+                "MPa",
+            ),
+            (
+                "gauges.noise_rms_mpa",
+                sheet.gauges.noise_rms_mpa,
+                100.0,
+                "MPa",
+            ),
             (
                 "gauges.noise_correlation_per_sample",
                 sheet.gauges.noise_correlation_per_sample,
                 0.999,
                 "1",
             ),
-            ("crank.index_tolerance_deg", sheet.crank.index_tolerance_deg, 90.0, "deg"),
-            ("load.cycle_to_cycle_variation", sheet.load.cycle_to_cycle_variation, 1.0, "1"),
-            ("position.noise_rms_m", sheet.position.noise_rms_m, 10.0, "m"),
-            ("torque.noise_rms_nm", sheet.torque.noise_rms_nm, 1.0e6, "N m"),
+            (
+                "crank.index_tolerance_deg",
+                sheet.crank.index_tolerance_deg,
+                90.0,
+                "deg",
+            ),
+            (
+                "load.cycle_to_cycle_variation",
+                sheet.load.cycle_to_cycle_variation,
+                1.0,
+                "1",
+            ),
+            (
+                "position.noise_rms_m",
+                sheet.position.noise_rms_m,
+                10.0,
+                "m",
+            ),
+            (
+                "torque.noise_rms_nm",
+                sheet.torque.noise_rms_nm,
+                1.0e6,
+                "N m",
+            ),
         ];
         for (field, value, highest, unit) in chain {
             if let Some(value) = value {
