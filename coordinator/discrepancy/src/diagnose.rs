@@ -495,9 +495,7 @@ async fn finish<L: Laboratory>(
     records.retain(|(record, _)| !record.cycles.is_empty());
     let refinement = base.bench.refinement;
     let added = after.model.added.len();
-    if added > 0 {
-        diagnosis.rows = show::compare(lab, &records, (&base.fit, &after), refinement).await?;
-    }
+    diagnosis.rows = show::compare(lab, &records, (&base.fit, &after), refinement).await?;
     let rival = diagnosis.rounds.first().and_then(|round| {
         let outside = round.refits.iter().find(|r| !round.set.contains(&r.id));
         outside.or_else(|| round.refits.get(1)).cloned()

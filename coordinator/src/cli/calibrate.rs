@@ -3,7 +3,7 @@ use super::{
     CaseChoice, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
     problem::Usage,
     progress::Display,
-    run_folder::{Begun, Manifest, RunFolder, command_line},
+    run_folder::{self, Begun, Manifest, RunFolder, command_line},
 };
 use crate::{
     cli::finish::{self, Session},
@@ -104,7 +104,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .into());
     }
     let manifest = Manifest {
-        format: Manifest::format(),
+        kind: run_folder::CALIBRATE.to_owned(),
+        format: run_folder::format(),
         program: bus::PROGRAM.to_owned(),
         command: command_line(),
         preset: preset.name.to_owned(),

@@ -7,6 +7,8 @@ mod bus;
 mod calibrate;
 mod case;
 mod completions;
+mod diagnose;
+mod diagnosis_json;
 mod finish;
 mod head;
 mod head_files;
@@ -47,6 +49,7 @@ First steps:
   horsehead case check cases/cyjs10-5-37hb
   horsehead simulate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb
+  horsehead diagnose cases/cyjs10-5-37hb
 
 Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
@@ -55,6 +58,7 @@ enum Command {
     Simulate(simulate::Arguments),
     Calibrate(calibrate::Arguments),
     Verify(verify::Arguments),
+    Diagnose(diagnose::Arguments),
     Head(head::Arguments),
     Report(report::Arguments),
     Case(case::Arguments),
@@ -159,6 +163,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),

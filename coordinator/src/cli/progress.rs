@@ -1,6 +1,7 @@
 //! Progress on standard error: a bar on a terminal, else a line per generation or ten seconds.
 use super::output;
-use crate::study::{Crew, Observe, ProgressView};
+use crate::study::{Crew, Observe, ProgressView, Watch};
+use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::{
     io::{self, IsTerminal as _},
@@ -45,6 +46,67 @@ impl Display {
     pub(super) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows how a diagnosis comes along: the stage, its experiments, the workers.
+pub(super) struct StageDisplay {
+    bar: Option<ProgressBar>,
+    last: Instant,
+    stage: Option<Stage>,
+}
+
+impl StageDisplay {
+    pub(super) fn new() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{spinner} {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_spinner());
+            ProgressBar::new_spinner().with_style(style)
+        });
+        Self {
+            bar,
+            last: Instant::now(),
+            stage: None,
+        }
+    }
+
+    /// Takes the line away.
+    pub(super) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Watch for StageDisplay {
+    fn progress(&mut self, stage: Stage, done: u64, open: usize, crew: &dyn Fn() -> Crew) {
+        let now = Instant::now();
+        let silent = now.duration_since(self.last);
+        let patience = if self.bar.is_some() { LOOK } else { SILENCE };
+        if self.stage == Some(stage) && silent < patience {
+            return;
+        }
+        self.last = now;
+        self.stage = Some(stage);
+        let number = 1 + Stage::ALL.iter().take_while(|other| **other != stage).count();
+        let attached = crew().workers.iter().filter(|worker| worker.attached).count();
+        let workers = match attached {
+            0 => "waiting for workers".to_owned(),
+            1 => "1 worker".to_owned(),
+            several => format!("{several} workers"),
+        };
+        let line = format!(
+            "stage {number} of {}: {}  {done} simulations, {open} open  {workers}",
+            Stage::ALL.len(),
+            stage.name()
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(line);
+                bar.tick();
+            }
+            None => output::tell(&line),
         }
     }
 }

@@ -5,7 +5,7 @@ use super::{
     interrupt,
     problem::Usage,
     progress::Silent,
-    run_folder::RunFolder,
+    run_folder::{self, RunFolder},
 };
 use clap::Args;
 use std::{path::PathBuf, time::Instant};
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
 
 /// Replays the run and writes its files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (folder, manifest, case) = RunFolder::open(&arguments.run)?;
+    let (folder, manifest, case) = RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
     if !folder.is_finished() {
         return Err(Usage {
             message: format!("{} is not finished", arguments.run.display()),

@@ -60,6 +60,11 @@ pub async fn calibrate<E: Evaluator>(
         let Some(proposal) = open.remove(&completed.id) else {
             continue;
         };
+        if let Outcome::Scored(evaluation) = &completed.outcome
+            && !evaluation.residual_mpa.is_empty()
+        {
+            strategy.tell_residual(proposal.id, evaluation.residual_mpa.clone());
+        }
         let entry = entry(proposal, completed.outcome)?;
         strategy.tell(entry.id, entry.told());
         view.apply(&entry, completed.replayed);
@@ -90,7 +95,7 @@ fn score(case: &Case, proposal: &Proposal) -> Job {
     Job::Score(ScoreSpec {
         condition: case.objective.condition,
         genes: proposal.genes.clone(),
-        with_residual: false,
+        with_residual: proposal.purpose.wants_residual(),
     })
 }
 

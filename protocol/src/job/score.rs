@@ -27,7 +27,8 @@ pub struct Evaluation {
     /// One entry per gauge of the record; empty unless complete.
     pub channels: Vec<ChannelScore>,
     /// Measured minus simulated stress after offset removal \[MPa\], gauges of the objective one
-    /// after the other on the output grid; empty unless asked for and complete.
+    /// after the other on the output grid, each scaled such that the squared length of the whole is
+    /// the objective; empty unless asked for and complete.
     pub residual_mpa: Vec<f64>,
     /// What it cost.
     pub counters: Counters,

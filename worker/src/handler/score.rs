@@ -141,14 +141,15 @@ fn weighted(objective: &Objective, compared: &[Compared]) -> Result<f64, Failure
     Ok(sum)
 }
 
-/// Residuals of the objective's gauges, one after the other.
+/// Residuals of the objective's gauges, one after the other, scaled such that the squared length of
+/// the whole is the objective.
 fn residual(objective: &Objective, compared: &[Compared]) -> Vec<f64> {
-    objective
-        .gauges
-        .iter()
-        .filter_map(|(gauge, _)| compared.iter().find(|c| c.score.gauge == *gauge))
-        .flat_map(|c| c.residual.iter().copied())
-        .collect()
+    let scaled = |(gauge, weight): &(u8, f64)| {
+        let found = compared.iter().find(|c| c.score.gauge == *gauge)?;
+        let scale = (weight / found.residual.len() as f64).sqrt();
+        Some(found.residual.iter().map(move |r| scale * r))
+    };
+    objective.gauges.iter().filter_map(scaled).flatten().collect()
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 mod archive;
 mod conductor;
 mod design;
+pub mod levenberg;
 pub mod memetic;
 pub mod quick;
 pub mod refine;
@@ -28,6 +29,10 @@ pub trait Strategy {
     /// Takes the result of a proposal. Results may come in any order: they are buffered and
     /// consumed in id order, so nothing ever depends on arrival. A result told twice is ignored.
     fn tell(&mut self, id: u64, result: Told);
+
+    /// Takes the residual vector of a proposal whose purpose wants one, before its result: in units
+    /// in which its squared length is the fitness.
+    fn tell_residual(&mut self, id: u64, residual: Vec<f64>);
 
     /// Why the search is over, if it is.
     fn finished(&self) -> Option<Finish>;
@@ -68,6 +73,8 @@ pub enum Purpose {
     Scan,
     /// Step of a local refinement.
     Refinement,
+    /// Column or step of a descent of the residual vector.
+    LeastSquares,
 }
 
 impl Purpose {
@@ -80,7 +87,13 @@ impl Purpose {
             Self::MutationTrial => "mutation_trial",
             Self::Scan => "scan",
             Self::Refinement => "refinement",
+            Self::LeastSquares => "least_squares",
         }
+    }
+
+    /// Whether the residual vector is wanted beside the fitness.
+    pub const fn wants_residual(self) -> bool {
+        matches!(self, Self::LeastSquares)
     }
 }
 
@@ -201,7 +214,7 @@ pub struct Draft {
 pub enum Settings {
     /// The memetic algorithm of the reference paper.
     Memetic(memetic::MemeticSettings),
-    /// A short memetic search with line scans.
+    /// A short memetic search with line scans and refinement.
     Quick(quick::QuickSettings),
 }
 
@@ -250,6 +263,11 @@ pub const CATALOGUE: &[Preset] = &[
         name: "quick",
         summary: "a short memetic search, line scans of the axial stiffness, refinement",
         settings: |space| Settings::Quick(quick::QuickSettings::for_space(space)),
+    },
+    Preset {
+        name: "least-squares",
+        summary: "a short memetic search and line scans, then Levenberg-Marquardt on the residual",
+        settings: |space| Settings::Quick(quick::QuickSettings::least_squares(space)),
     },
     Preset {
         name: "paper",
