@@ -32,7 +32,7 @@ pub async fn reduce_head(
                 failure,
             }
         })),
-        Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Nothing(_) => {
+        Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Observed(_) | Outcome::Nothing(_) => {
             Err(StudyError::WrongKind { id: completed.id })
         }
     }

@@ -2,11 +2,13 @@
 //!
 //! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
 //! retried. [`Failure`] is infrastructure: the job could not be done.
+mod observe;
 mod reduce_head;
 mod score;
 mod simulate;
 mod verdict;
 
+pub use observe::{Observation, ObserveSpec, Refinement};
 pub use reduce_head::{
     HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
 };
@@ -23,6 +25,8 @@ pub enum Job {
     Score(ScoreSpec),
     /// Simulate and return the curves.
     Simulate(SimulateSpec),
+    /// Simulate and return the measured channels alone.
+    Observe(ObserveSpec),
     /// Reduce the flexible back head from its mesh to modes and influence lines.
     ReduceHead(Box<ReduceHeadSpec>),
     /// Do nothing, return at once: measures the bus.
@@ -43,6 +47,7 @@ impl Job {
         match self {
             Self::Score(_) => "score",
             Self::Simulate(_) => "simulate",
+            Self::Observe(_) => "observe",
             Self::ReduceHead(_) => "reduce_head",
             Self::Nothing { .. } => "nothing",
         }
@@ -56,6 +61,8 @@ pub enum Outcome {
     Scored(Evaluation),
     /// Of [`Job::Simulate`].
     Simulated(Box<Simulation>),
+    /// Of [`Job::Observe`].
+    Observed(Observation),
     /// Of [`Job::ReduceHead`].
     HeadReduced(Box<ReducedHead>),
     /// Of [`Job::Nothing`].
