@@ -2,7 +2,7 @@
 mod case;
 mod state;
 
-use crate::{handler, pool::Pool};
+use crate::{convert, handler, pool::Pool};
 use link::WorkerEnd;
 use protocol::{announce::Announcement, id::WorkerId, job::Job, wire};
 use state::{State, Step};
@@ -116,9 +116,16 @@ fn announcement(slots: usize) -> Announcement {
         slots: u32::try_from(slots).unwrap_or(u32::MAX),
         cores: thread::available_parallelism()
             .map_or(0, |cores| u32::try_from(cores.get()).unwrap_or(u32::MAX)),
-        job_kinds: ["score", "simulate", "reduce_head", nothing.kind()]
-            .map(str::to_owned)
-            .to_vec(),
-        effects: Vec::new(),
+        job_kinds: [
+            "score",
+            "simulate",
+            "observe",
+            Job::Describe.kind(),
+            "reduce_head",
+            nothing.kind(),
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        effects: convert::effect::descriptors(),
     }
 }

@@ -111,6 +111,7 @@ pub(super) fn resolve(
         front_head: file.front_head,
         back_head: file.back_head,
         modal_head: read.head.clone(),
+        effects: Vec::new(),
         genes,
         conditions,
         objective,

@@ -65,6 +65,8 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         }
         Outcome::Scored(_)
         | Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::Described(_)
         | Outcome::HeadReduced(_)
         | Outcome::Nothing(_) => {
             if let Some(member) = core.members.get_mut(&from) {
@@ -199,6 +201,8 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
         Outcome::Failed(_)
         | Outcome::Scored(_)
         | Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::Described(_)
         | Outcome::HeadReduced(_)
         | Outcome::Nothing(_) => {
             accept(core, None, done);

@@ -95,6 +95,7 @@ fn score(case: &Case, proposal: &Proposal) -> Job {
     Job::Score(ScoreSpec {
         condition: case.objective.condition,
         genes: proposal.genes.clone(),
+        effects: Vec::new(),
         with_residual: proposal.purpose.wants_residual(),
     })
 }
@@ -108,9 +109,11 @@ fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
             Some(error) => Err(error),
             None => Ok(Entry::lost(proposal, failure)),
         },
-        Outcome::Simulated(_) | Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
-            Err(StudyError::WrongKind { id: proposal.id })
-        }
+        Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::Described(_)
+        | Outcome::HeadReduced(_)
+        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: proposal.id }),
     }
 }
 

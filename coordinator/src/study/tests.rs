@@ -63,7 +63,9 @@ impl Evaluator for Oracle {
         let outcome = known.unwrap_or_else(|| match &job {
             Job::Score(spec) => (self.answer)(&self.space, id, spec),
             Job::Simulate(spec) => Outcome::Simulated(Box::new(curves(spec.genes[0]))),
-            Job::ReduceHead(_) | Job::Nothing { .. } => Outcome::Nothing(Vec::new()),
+            Job::Observe(_) | Job::ReduceHead(_) | Job::Nothing { .. } => {
+                Outcome::Nothing(Vec::new())
+            }
         });
         self.answered.insert(id, outcome.clone());
         Ok(Completed {

@@ -157,6 +157,7 @@ pub(crate) fn case() -> Case {
                 tangential_mpa_per_n: Vec::new(),
             },
         },
+        effects: Vec::new(),
         genes: genes(),
         conditions: vec![condition("5rpm", 5.0), condition("4rpm", 4.0)],
         objective: Objective {

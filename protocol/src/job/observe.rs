@@ -21,6 +21,8 @@ pub struct ObserveSpec {
 pub struct Refinement {
     /// Length of a rope cylinder \[m\]; both ropes keep their lengths, which it must divide.
     pub cylinder_length_m: Option<f64>,
+    /// Crank angle that is run before the recorded revolution \[deg\].
+    pub lead_in_deg: Option<f64>,
     /// Number of head modes.
     pub modes: Option<usize>,
     /// Longest step \[s\].
