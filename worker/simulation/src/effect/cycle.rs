@@ -129,6 +129,11 @@ impl Cycle {
         self.tension.value(turn, 0)
     }
 
+    /// The same as a curve over the turn.
+    pub const fn tensions(&self) -> &Splines {
+        &self.tension
+    }
+
     /// Net torque that the reducer must give in the sense of rotation [N m], the counterweight's
     /// phase \[rad\] and moment [N m] being what is given.
     pub fn torque(&self, turn: f64, phase: f64, moment: f64) -> f64 {

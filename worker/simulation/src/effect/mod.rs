@@ -47,6 +47,8 @@ mod twin_rope_inequality;
 mod valve_leakage;
 
 #[cfg(test)]
+mod force_tests;
+#[cfg(test)]
 mod tests;
 
 pub use cycle::Cycle;

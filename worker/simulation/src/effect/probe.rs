@@ -2,12 +2,13 @@
 //!
 //! The catalogue is the product of two tables. A force of unit amplitude is a function of place
 //! `u` and rate `w`, both over their largest values in the ideal motion, and of the turn angle:
-//! constant, `sgn w` (as `tanh(w / 0.02)`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine of the first
+//! constant, `sgn w` (as a steep `tanh`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine of the first
 //! six harmonics of the crank. What depends on the motion resists it; the amplitude has either sign.
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Axial, Cycle, Effect, Hooks, LineForce, Strain};
 use crate::drive::DriveState;
 use crate::math::elementary::{sin_cos, tanh};
+use crate::math::spline::Splines;
 use crate::model::Machine;
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -61,7 +62,7 @@ const JOINTS: [Joint; 6] = [
         title: "Force on the back head's first mode",
         line: Line::Head,
         unit: Unit::ModalNewton,
-        typical: 20.0,
+        typical: 10.0,
     },
     Joint {
         name: "back_rope",
@@ -136,7 +137,6 @@ impl Form {
 
     /// Resistance of unit amplitude; energy per unit of `u`.
     fn resistance(self, u: f64, w: f64, turn: f64) -> Along {
-        const CREEP: f64 = 0.02;
         let mut along = Along::default();
         match self {
             Self::Constant => along.other = 1.0,
@@ -206,6 +206,9 @@ struct Range {
     rate: f64,
 }
 
+/// Share of the largest rate at which three quarters of a dry friction are there.
+const CREEP: f64 = 0.02;
+
 impl Range {
     /// Of a function of the turn, for a crank at `speed` [rad/s].
     fn of(speed: f64, motion: impl Fn(f64) -> f64) -> Self {
@@ -245,19 +248,19 @@ impl Effect for Probe {
         let d = &machine.description;
         let layout = machine.layout;
         let speed = d.crank.speed;
-        let carrier = d.suspension_mass * d.gravity;
         let (index, range) = match self.line {
             Line::Rope(chain) => {
-                let range = Range::of(speed, |turn| {
-                    if chain == 0 {
-                        cycle.tension(turn)
-                    } else {
-                        machine.card.value(turn, 0) + carrier
-                    }
-                });
+                let (slow, weight) = if chain == 0 {
+                    (cycle.tensions().clone(), 0.0)
+                } else {
+                    (machine.card.clone(), d.suspension_mass * d.gravity)
+                };
+                let tension = Range::of(speed, |turn| slow.value(turn, 0) + weight);
                 hooks.axial[chain].push(Arc::new(AlongRope {
                     probe: *self,
-                    tension: range,
+                    tension,
+                    slow,
+                    sense: d.crank.sense,
                 }));
                 return;
             }
@@ -286,8 +289,22 @@ impl Effect for Probe {
                     return;
                 };
                 let w = d.head.frequencies[0];
-                let give = (shape[0] * shape[0] + shape[1] * shape[1]).sqrt() / (w * w);
-                let slow = Range::of(speed, |turn| give * cycle.tension(turn));
+                let anchor = d.back_arc.anchor;
+                let (s, c) = sin_cos(anchor);
+                let end = shape[1] * c - shape[0] * s;
+                // the wrapped rope presses with T / R and pulls with T where it ends
+                let slow = Range::of(speed, |turn| {
+                    let wrapped = cycle.tangent(turn).value - anchor;
+                    let parts = 24;
+                    let pressed: f64 = (0..parts)
+                        .map(|k| {
+                            let share = (f64::from(k) + 0.5) / f64::from(parts);
+                            machine.radial.value(anchor + share * wrapped, 0)
+                        })
+                        .sum();
+                    let pressed = pressed * wrapped / f64::from(parts);
+                    cycle.tension(turn) * (end - pressed) / (w * w)
+                });
                 // the mode swings at its own frequency, far faster than the crank moves it
                 let rate = slow.reach * w;
                 (layout.mode(0), Range { rate, ..slow })
@@ -326,18 +343,34 @@ impl LineForce for AlongLine {
 }
 
 /// A pull along a rope; place and rate are those of the tension that the strain stands for.
-#[derive(Clone, Copy, Debug)]
+///
+/// What is not proportional to the rate goes by that of the ideal tension instead: cylinders swing
+/// against each other faster than the load stretches them, and would stick or be torn.
+#[derive(Clone, Debug)]
 struct AlongRope {
     probe: Probe,
     tension: Range,
+    /// Ideal tension over the turn, up to a constant \[N\].
+    slow: Splines,
+    /// Of rotation.
+    sense: f64,
 }
 
 impl Axial for AlongRope {
     fn pull(&self, at: &Strain<'_>) -> Along {
         let (k, turn) = (at.stiffness, at.drive.turn);
-        let pull = self
-            .tension
-            .resistance(&self.probe, at.strain * k, at.rate * k, turn);
+        let place = at.strain * k;
+        if matches!(self.probe.form, Form::SignOfRate | Form::RateSquared) {
+            let slope = self.slow.jet(&self.slow.place(turn), 0).first;
+            let rate = slope * self.sense * at.drive.pin_rate;
+            let pull = self.tension.resistance(&self.probe, place, rate, turn);
+            return Along {
+                by_rate: 0.0,
+                ..pull
+            };
+        }
+        let rate = at.rate * k;
+        let pull = self.tension.resistance(&self.probe, place, rate, turn);
         Along {
             energy: pull.energy / k,
             by_place: pull.by_place * k,

@@ -1,7 +1,9 @@
 //! Friction between the wires of a rope: Bouc-Wen hysteresis along both ropes.
 //!
-//! `T = EA e + a EA z`, `dz/de = 1 - (sgn(z de) + 1) |z| / 2 e_y` (exponent 1, `beta = gamma`): a share
-//! `a` of the rope's stiffness slips, gradually, and carries at most `a EA e_y`. The law has no time
+//! `T = (1 - a) EA e + a EA z`, `dz/de = 1 - (sgn(z de) + 1) |z| / 2 e_y` (exponent 1,
+//! `beta = gamma`): a share `a` of the rope's stiffness slips, gradually, and carries at most
+//! `a EA e_y`. Small swings feel the whole stiffness, large ones lose up to `4 a EA e_y` times their
+//! range a cycle. The law has no time
 //! in it, so along a strain that moves one way `z` has a closed form: unloading is straight, loading
 //! goes as `e_y (1 - exp(-x / e_y))`. Every joint remembers strain and `z` of the last accepted step
 //! and follows that form from there: between steps nothing is split, and the only error is that
@@ -31,7 +33,6 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     }),
 };
 
-/// The law; public to the tests of the numerics.
 #[derive(Clone, Copy, Debug)]
 struct BoucWen {
     share: f64,
@@ -68,15 +69,16 @@ impl BoucWen {
 
 impl Axial for BoucWen {
     fn pull(&self, at: &Strain<'_>) -> Along {
-        // at rest before the run the wires carry nothing
-        let Some(memory) = at.memory else {
-            return Along::default();
-        };
-        let [z, slope] = self.advanced(memory, at.strain);
         let stiffness = self.share * at.stiffness;
+        // in the equilibrium before the run the slipping wires carry nothing
+        let [z, slope] = at
+            .memory
+            .map_or([0.0; 2], |memory| self.advanced(memory, at.strain));
         Along {
+            spring: -stiffness * at.strain,
+            energy: -0.5 * stiffness * at.strain * at.strain,
             other: stiffness * z,
-            by_place: stiffness * slope,
+            by_place: stiffness * (slope - 1.0),
             ..Along::default()
         }
     }

@@ -35,7 +35,7 @@ fn at<'a>(descriptor: &'a Descriptor, value: impl Fn(usize) -> f64) -> Asked<'a>
     }
 }
 
-fn typical(descriptor: &Descriptor) -> Asked<'_> {
+pub(super) fn typical(descriptor: &Descriptor) -> Asked<'_> {
     at(descriptor, |k| descriptor.parameters[k].typical)
 }
 
