@@ -1,7 +1,7 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 use protocol::case::Case;
-use simulation::integrator::tableau::{CATALOGUE, ESDIRK4};
+use simulation::integrator::tableau::{ESDIRK4};
 use simulation::model::Machine;
 use simulation::model::description::RopeLaw;
 use simulation::observe::Recorder;
@@ -153,7 +153,7 @@ fn gauges_converge_with_shorter_cylinders() {
             let machine = worker::convert::machine(case, 0).unwrap();
             let law = worker::convert::rope_law(case, &genes).unwrap();
             let settings = RunSettings {
-                method: &ESDIRK4,
+                method: Method::RungeKutta(&ESDIRK4),
                 ..worker::convert::run_settings(case)
             };
             run(&machine, &law, &settings).1
