@@ -10,6 +10,7 @@ mod completions;
 mod finish;
 mod head;
 mod head_files;
+mod integrators;
 mod interrupt;
 mod json;
 mod output;

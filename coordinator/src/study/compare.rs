@@ -83,6 +83,7 @@ pub async fn compare<E: Evaluator>(
                 condition: one.condition,
                 genes: genes.clone(),
                 motion_step_deg: one.motion_step_deg,
+                integration: None,
             };
             evaluator.submit(first + 1, Job::Simulate(spec))?;
             open.insert(first + 1, (group, position));
