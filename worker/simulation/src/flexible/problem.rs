@@ -5,7 +5,7 @@ use super::{
     ReductionError,
     arc::{Rim, Station},
     assembly::{Assembly, Factor, Unknowns},
-    eigen::{dot, lowest},
+    eigen::lowest,
     hexahedron::{DOFS, Hexahedron, Steel},
     mesh::{Half, Mesh},
     reduction::{Family, Mode, Reduction, Request, Row, Wrap},
