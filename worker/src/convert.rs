@@ -11,6 +11,7 @@ use protocol::case::{
 };
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
+use simulation::integrator::method::Method;
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
 use simulation::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
 use simulation::model::{Machine, description};
@@ -263,12 +264,35 @@ pub fn run_settings(case: &Case) -> RunSettings {
         ramp: case.run.ramp_s,
         samples,
         tolerance: case.run.tolerance,
-        method: match case.run.integrator {
-            Integrator::TrBdf2 => &TR_BDF2,
-            Integrator::Esdirk4 => &ESDIRK4,
-        },
+        method: method(case.run.integrator, case.run.spectral_radius),
         longest_step: case.run.longest_step_s,
         ..RunSettings::default()
+    }
+}
+
+/// The same with another integration, if there is one.
+pub fn overridden(case: &Case, integration: Option<&job::Integration>) -> RunSettings {
+    let settings = run_settings(case);
+    let Some(other) = integration else {
+        return settings;
+    };
+    RunSettings {
+        method: method(other.integrator, case.run.spectral_radius),
+        longest_step: other.longest_step_s,
+        tolerance: other.tolerance,
+        budget: other.budget.unwrap_or(settings.budget),
+        ..settings
+    }
+}
+
+fn method(integrator: Integrator, spectral_radius: f64) -> Method {
+    match integrator {
+        Integrator::TrBdf2 => (&TR_BDF2).into(),
+        Integrator::Esdirk4 => (&ESDIRK4).into(),
+        Integrator::Rodas4 => Method::Rosenbrock,
+        Integrator::GeneralizedAlpha => Method::GeneralizedAlpha { spectral_radius },
+        Integrator::Bdf => Method::Bdf { highest: 2 },
+        Integrator::Bdf5 => Method::Bdf { highest: 5 },
     }
 }
 

@@ -1,8 +1,8 @@
-//! `horsehead bench`: what the machinery costs without physics.
-use super::{EXIT_CODES, Output, OutputChoice, bus, output};
+//! `horsehead bench`: what the machinery costs without physics, and what accuracy costs with it.
+use super::{EXIT_CODES, Output, OutputChoice, bus, integrators, output};
 use clap::{Args, Subcommand};
 
-/// Measure the machinery without physics.
+/// Measure what the machinery costs, or what accuracy costs.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -23,19 +23,26 @@ enum What {
         #[command(flatten)]
         output: OutputChoice,
     },
+    Integrators(integrators::Arguments),
 }
 
 /// Measures and shows.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let What::Dispatch {
-        workers,
-        jobs,
-        output: OutputChoice { output },
-    } = &arguments.what;
-    if *output == Output::Table {
+    match &arguments.what {
+        What::Dispatch {
+            workers,
+            jobs,
+            output: OutputChoice { output },
+        } => dispatch(*workers, *jobs, *output),
+        What::Integrators(arguments) => integrators::run(arguments),
+    }
+}
+
+fn dispatch(workers: usize, jobs: usize, output: Output) -> anyhow::Result<()> {
+    if output == Output::Table {
         output::tell(&format!("{jobs} no-op jobs on {workers} workers"));
     }
-    let result = bus::block_on(bus::bench(*workers, *jobs))?;
+    let result = bus::block_on(bus::bench(workers, jobs))?;
     let table = || {
         format!(
             "round trip   {:>10.3} ms median, {:.3} ms at 99 %\n\
@@ -48,5 +55,5 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             result.coordinator_rss_mib
         )
     };
-    output::print(*output, table, &result)
+    output::print(output, table, &result)
 }

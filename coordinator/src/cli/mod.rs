@@ -12,6 +12,7 @@ mod diagnosis_json;
 mod finish;
 mod head;
 mod head_files;
+mod integrators;
 mod interrupt;
 mod json;
 mod output;

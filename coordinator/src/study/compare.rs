@@ -85,6 +85,7 @@ pub async fn compare<E: Evaluator>(
                 genes: genes.clone(),
                 effects: Vec::new(),
                 motion_step_deg: one.motion_step_deg,
+                integration: None,
             };
             evaluator.submit(first + 1, Job::Simulate(spec))?;
             open.insert(first + 1, (group, position));

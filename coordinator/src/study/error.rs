@@ -45,6 +45,12 @@ pub enum StudyError {
         /// What happened.
         failure: Failure,
     },
+    /// Not even the most accurate run completes a revolution.
+    #[error("the individual does not complete a revolution: {}", kind.as_str())]
+    NoTruth {
+        /// How it ends.
+        kind: PhysicsFailure,
+    },
     /// A worker answered a job with the result of another kind of job.
     #[error("job {id} was answered with the result of another kind of job")]
     WrongKind {
@@ -87,6 +93,7 @@ impl StudyError {
             Self::AllFailed { physics: None, .. } => {
                 "no simulation was even finished: look at the workers' own messages"
             }
+            Self::NoTruth { .. } => "choose one that does, with --genes FILE",
             Self::Unavailable { .. } => "the same command tries again",
             Self::WrongKind { .. } => "the worker is of another version: replace it",
             Self::Interrupted => return None,

@@ -170,6 +170,7 @@ pub(crate) fn case() -> Case {
             lead_in_deg: 30.0,
             ramp_s: 2.0,
             integrator: protocol::case::Integrator::Esdirk4,
+            spectral_radius: 0.5,
             longest_step_s: 0.03,
             tolerance: 1.0,
             modes: 6,

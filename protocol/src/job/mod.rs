@@ -13,7 +13,7 @@ pub use reduce_head::{
     HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
 };
 pub use score::{ChannelScore, Evaluation, ScoreSpec};
-pub use simulate::{Energy, Motion, SimulateSpec, Simulation};
+pub use simulate::{Energy, Integration, Motion, SimulateSpec, Simulation};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
 use crate::announce::EffectDescriptor;

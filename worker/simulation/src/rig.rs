@@ -262,6 +262,10 @@ impl Equations for Rig {
         }
     }
 
+    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered) {
+        self.setup.chain.add_spin_tangent(state, gamma, matrix);
+    }
+
     fn newton_norm(&self, change: &[f64]) -> f64 {
         cylinders_newton(0.0, change)
     }

@@ -1,7 +1,8 @@
 //! One simulation: settle, lead in, one recorded revolution.
 use crate::drive::Drive;
 use crate::integrator::adaptive::{Adaptive, StepUnderflow};
-use crate::integrator::tableau::{ESDIRK4, Tableau};
+use crate::integrator::method::Method;
+use crate::integrator::tableau::ESDIRK4;
 use crate::integrator::{State, dense::interpolate};
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Powers};
@@ -15,7 +16,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub struct RunSettings {
     /// Method of integration.
-    pub method: &'static Tableau,
+    pub method: Method,
     /// Turn angle before bottom dead centre at which the crank starts \[rad\].
     pub lead_in: f64,
     /// Time to full speed \[s\].
@@ -35,7 +36,7 @@ pub struct RunSettings {
 impl Default for RunSettings {
     fn default() -> Self {
         Self {
-            method: &ESDIRK4,
+            method: Method::RungeKutta(&ESDIRK4),
             lead_in: TAU / 6.0,
             ramp: 1.5,
             samples: 720,
@@ -164,9 +165,8 @@ fn revolve(
     start: Vec<f64>,
     observer: &mut dyn Observe,
 ) -> RunResult {
-    let n = start.len();
     let tolerance = settings.tolerance;
-    let mut method = Adaptive::new(settings.method, n, tolerance, settings.longest_step);
+    let mut method = Adaptive::new(settings.method, system, tolerance, settings.longest_step);
     let mut from = State::at_rest(0.0, start);
     let mut to = from.clone();
     let mut between = from.clone();

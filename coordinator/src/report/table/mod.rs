@@ -5,11 +5,13 @@ mod compare;
 mod gap;
 mod head;
 mod single;
+mod work;
 
 pub use compare::{table_3, table_4, workers};
 pub use gap::gap;
 pub use head::{head_modes, head_statics};
 pub use single::{balance, genes, simulation};
+pub use work::work_precision;
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};

@@ -8,6 +8,7 @@
 //! `F_I = -[k2 d + c2 V + e ((k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`,
 //! `V = v_I - v_J - w_J x d`, and the same for the torque with the rotation vector `Theta` and
 //! `w = w_I - w_J`. On J acts `F_J = -F_I`, `T_J = -T_I - d x F_I` (Eq. 2).
+use super::ForceElement;
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
 use nalgebra::{Matrix3, Vector3};
 
@@ -276,152 +277,16 @@ impl Bushing {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn example() -> Bushing {
-        Bushing {
-            stiffness: [7.0, 3.0],
-            damping: [0.9, 0.4],
-            rotational_stiffness: [1.7, 2.3],
-            rotational_damping: [0.6, 0.8],
-        }
+impl ForceElement for Bushing {
+    fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
+        Self::load(self, i, j)
     }
 
-    fn rotation(theta: &V3) -> M3 {
-        nalgebra::Rotation3::new(*theta).into_inner()
+    fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
+        Self::tangent(self, i, j, load)
     }
 
-    fn markers() -> [Marker; 2] {
-        let marker = |s: f64| Marker {
-            p: V3::new(0.3 + s, -0.2 * s, 0.5),
-            rho: V3::new(0.21, 0.1 * s, -0.15 * s),
-            v: V3::new(0.3, 0.5 * s, -0.2),
-            w: V3::new(-0.7 * s, 0.4, 0.9),
-            R: rotation(&V3::new(0.4 * s, -0.3, 0.6 + 0.2 * s)),
-        };
-        [marker(1.0), marker(1.4)]
-    }
-
-    /// Moves a marker's body: the marker is fixed on it, so arm and frame turn along.
-    fn moved(m: &Marker, kind: usize, k: usize, h: f64) -> Marker {
-        let mut d = V3::zeros();
-        d[k] = h;
-        let mut m = *m;
-        match kind {
-            0 => m.p += d,
-            1 => m.v += d,
-            2 => {
-                let R = rotation(&d);
-                m.rho = R * m.rho;
-                m.R = R * m.R;
-            }
-            _ => m.w += d,
-        }
-        m
-    }
-
-    #[test]
-    fn tangent_is_the_derivative_of_the_load() {
-        let element = example();
-        let at = markers();
-        let load = element.load(&at[0], &at[1]);
-        let tangents = element.tangent(&at[0], &at[1], &load);
-        let h = 1e-6;
-        for (body, tangent) in tangents.iter().enumerate() {
-            for (kind, analytic) in [tangent.p, tangent.v, tangent.a, tangent.w]
-                .iter()
-                .enumerate()
-            {
-                for k in 0..3 {
-                    let at_step = |h: f64| {
-                        let mut m = at;
-                        m[body] = moved(&m[body], kind, k, h);
-                        let l = element.load(&m[0], &m[1]);
-                        [l.force, l.torque_i, l.torque_j]
-                    };
-                    let (plus, minus) = (at_step(h), at_step(-h));
-                    for row in 0..3 {
-                        let difference = (plus[row] - minus[row]) / (2.0 * h);
-                        let error = (difference - analytic[row].column(k)).norm();
-                        assert!(
-                            error < 1e-7,
-                            "body {body} kind {kind} column {k} row {row}: {error}"
-                        );
-                    }
-                }
-            }
-        }
-    }
-
-    /// A pull `7 x^2 + 2 x' x` along the axis, its tangent against differences.
-    #[test]
-    fn a_further_pull_has_its_tangent() {
-        let element = example();
-        let at = markers();
-        let loaded = |m: &[Marker; 2]| {
-            let [x, rate] = element.extension(&m[0], &m[1]);
-            let pull = 7.0 * x * x + 2.0 * rate * x;
-            let mut load = element.load(&m[0], &m[1]);
-            element.add_pull((&m[0], &m[1]), (pull, 0.0), &mut load);
-            (load, [pull, 14.0 * x + 2.0 * rate, 2.0 * x])
-        };
-        let (load, further) = loaded(&at);
-        let tangents = element.tangent_with(&at[0], &at[1], &load, Some(further));
-        let h = 1e-6;
-        for (body, tangent) in tangents.iter().enumerate() {
-            for (kind, analytic) in [tangent.p, tangent.v, tangent.a, tangent.w]
-                .iter()
-                .enumerate()
-            {
-                for k in 0..3 {
-                    let step = |h: f64| {
-                        let mut m = at;
-                        m[body] = moved(&m[body], kind, k, h);
-                        let (l, _) = loaded(&m);
-                        [l.force, l.torque_i, l.torque_j]
-                    };
-                    let (plus, minus) = (step(h), step(-h));
-                    for row in 0..3 {
-                        let difference = (plus[row] - minus[row]) / (2.0 * h);
-                        let error = (difference - analytic[row].column(k)).norm();
-                        assert!(error < 1e-7, "{body} {kind} {k} {row}: {error}");
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn action_equals_reaction_and_power_balances() {
-        let element = example();
-        let [i, j] = markers();
-        let load = element.load(&i, &j);
-        // moments about the origin vanish: T_J = -T_I - d x F_I
-        let moment = load.torque_i + load.torque_j + (i.p - j.p).cross(&load.force);
-        assert!(moment.norm() < 1e-14, "{moment}");
-
-        // with k4 = k5 the law derives from its energy: dE/dt = -(power) - dissipation
-        let element = Bushing {
-            rotational_stiffness: [2.3, 2.3],
-            ..element
-        };
-        let load = element.load(&i, &j);
-        let power =
-            load.force.dot(&(i.v - j.v)) + load.torque_i.dot(&i.w) + load.torque_j.dot(&j.w);
-        let advance = |m: &Marker, h: f64| Marker {
-            p: m.p + m.v * h,
-            rho: rotation(&(m.w * h)) * m.rho,
-            R: rotation(&(m.w * h)) * m.R,
-            ..*m
-        };
-        let energy = |h: f64| element.energy(&advance(&i, h), &advance(&j, h));
-        let rate = (energy(1e-6) - energy(-1e-6)) / 2e-6;
-        assert!(
-            (rate + power + load.dissipated).abs() < 1e-7,
-            "{rate} {power}"
-        );
-        assert!(load.dissipated > 0.0);
+    fn energy(&self, i: &Marker, j: &Marker) -> f64 {
+        Self::energy(self, i, j)
     }
 }

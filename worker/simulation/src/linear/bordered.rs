@@ -136,9 +136,16 @@ impl Bordered {
         }
     }
 
-    /// `y = A x` of the assembled (not factorised) matrix; for tests and checks.
+    /// `A x` of the assembled (not factorised) matrix.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.len()];
+        self.multiply(x, &mut y);
+        y
+    }
+
+    /// `y = A x` of the assembled (not factorised) matrix.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
         let base = self.diagonal.len() * BLOCK;
         let part = |b: usize| column(x, b);
         let mut first = 0;
@@ -164,7 +171,6 @@ impl Bordered {
                 y[base + row] += self.corner[k * self.border + row] * x[base + k];
             }
         }
-        y
     }
 
     /// Factorises in place; the assembled entries are lost.

@@ -129,6 +129,12 @@ impl Equations for Individual<'_> {
             .tangent(&at, coefficients, &self.scratch, matrix);
     }
 
+    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered) {
+        for chain in &self.machine.chains {
+            chain.add_spin_tangent(state, gamma, matrix);
+        }
+    }
+
     fn newton_norm(&self, change: &[f64]) -> f64 {
         let layout = self.machine.layout;
         let mut norm: f64 = 0.0;

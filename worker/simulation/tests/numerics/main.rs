@@ -12,6 +12,7 @@
 mod bounce;
 mod determinism;
 mod energy;
+mod forced;
 mod frame;
 mod order;
 mod reference;
