@@ -18,7 +18,7 @@ use protocol::{
 };
 use search::{
     space::Space,
-    strategy::{Finish, Settings, Strategy as _},
+    strategy::{Finish, Settings, Strategy},
 };
 use std::{collections::BTreeMap, time::Instant};
 
@@ -83,7 +83,7 @@ impl Session<'_> {
             self.begun(bus.recorded())?;
         }
         observer.resumed(bus.recorded());
-        let found = self.work(&mut bus, &mut strategy, observer, stop).await;
+        let found = self.work(&mut bus, strategy.as_mut(), observer, stop).await;
         // while the run is still locked
         let remembered = if self.replay {
             Ok(())
@@ -113,7 +113,7 @@ impl Session<'_> {
     async fn work(
         &self,
         bus: &mut bus::Bus,
-        strategy: &mut search::strategy::Conductor,
+        strategy: &mut dyn Strategy,
         observer: &mut dyn Observe,
         stop: &mut Stop,
     ) -> Result<Found, study::StudyError> {

@@ -8,10 +8,10 @@ mod error;
 mod local;
 pub mod locate;
 
-pub use crate::core::{Policy, Snapshot, Spent, WorkerSnapshot};
+pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
 pub use bench::{BenchResult, bench};
 pub use error::DispatchError;
-pub use protocol::event::RunHeader;
+pub use protocol::event::{RunHeader, Spent};
 
 use crate::{
     core::{Core, CoreOptions},
@@ -204,7 +204,7 @@ impl Dispatch {
             .unwrap_or(Err(DispatchError::Closed))
     }
 
-    /// The state of the run, at most a quarter of a second old.
+    /// The state of the run, some hundredths of a second old at most.
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot
             .lock()
@@ -263,6 +263,7 @@ impl Parts {
             case: blob.hash,
             case_bytes: blob.bytes.len() as u64,
             model_digest: begun.model_digest,
+            proof: begun.proof,
             finished: journal.finished().collect(),
             policy: Policy::default(),
         });

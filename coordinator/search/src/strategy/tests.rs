@@ -20,7 +20,7 @@ pub(super) struct Record {
 
 /// Runs a strategy to its end; `reorder` shuffles the open proposals before one is told.
 pub(super) fn run(
-    strategy: &mut Conductor,
+    strategy: &mut dyn Strategy,
     tell: &Tell<'_>,
     mut reorder: Option<Stream>,
 ) -> Record {
@@ -52,7 +52,7 @@ fn run_preset(preset: &Preset, function: &TestFunction, seed: u64, order: Option
     let mut strategy = (preset.settings)(&space).build(&space, seed).unwrap();
     let reorder = order.map(|order| Streams::new(order, 99).at(0, Phase::Initial, 0));
     run(
-        &mut strategy,
+        strategy.as_mut(),
         &|genes| function.tell(&space, genes),
         reorder,
     )
@@ -151,7 +151,7 @@ fn if_everything_fails_the_search_still_ends() {
     for preset in CATALOGUE {
         for tell in all_failures {
             let mut strategy = (preset.settings)(&space).build(&space, 4).unwrap();
-            let record = run(&mut strategy, tell, None);
+            let record = run(strategy.as_mut(), tell, None);
             assert!(!record.best.complete, "{}", preset.name);
             assert_eq!(strategy.progress().best_fitness, None, "{}", preset.name);
         }
@@ -194,7 +194,7 @@ fn progress_ends_at_what_was_expected() {
         let mut strategy = (preset.settings)(&space).build(&space, 1).unwrap();
         let first = strategy.progress();
         assert_eq!(first.evaluations, 0);
-        run(&mut strategy, &|genes| SPHERE.tell(&space, genes), None);
+        run(strategy.as_mut(), &|genes| SPHERE.tell(&space, genes), None);
         let last = strategy.progress();
         assert_eq!(
             last.evaluations, last.expected_evaluations,
