@@ -45,12 +45,12 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
     let policy = &core.options.policy;
     let alone = membership::is_suspect(pending.failures, policy.suspect);
     let reserved = if alone { None } else { reserved(core) };
-    let room = |member: &Member| {
-        if alone {
-            1
-        } else {
-            policy.per_slot * member.slots()
-        }
+    let kind = pending.job.kind();
+    let ahead = core.times.needs_prefetch(kind, core.latency, policy);
+    let room = |member: &Member| match (alone, ahead) {
+        (true, _) => 1,
+        (false, true) => policy.per_slot * member.slots(),
+        (false, false) => member.slots(),
     };
     core.members
         .iter()

@@ -56,6 +56,35 @@ fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
         member.claims.clear();
     }
     reconcile::reconcile(core, from, beat, now);
+    if beat.case.is_some() {
+        welcome(core, from, now);
+    }
+}
+
+/// Whether everyone is there who may hold jobs and results of the last process, or was waited for.
+pub(super) fn is_complete(core: &mut Core, now: Duration) -> bool {
+    let policy = &core.options.policy;
+    if core.reunion.is_none() && !core.options.expected.is_empty() {
+        core.reunion = Some(now + policy.reunion);
+    }
+    core.reunion.is_none_or(|until| {
+        let over = now >= until;
+        if over {
+            core.options.expected.clear();
+            core.reunion = None;
+        }
+        over
+    })
+}
+
+/// One of those who were waited for is back and has said what it holds.
+fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
+    if core.options.expected.remove(&worker)
+        && core.options.expected.is_empty()
+        && let Some(until) = core.reunion
+    {
+        core.reunion = Some(until.min(now + core.options.policy.delivery));
+    }
 }
 
 fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {

@@ -64,6 +64,8 @@ pub struct CoreOptions {
     pub proof: Option<ContentHash>,
     /// Jobs whose results are in the journal.
     pub finished: JobSet,
+    /// Workers that outlived the last process and may hold jobs and results of it.
+    pub expected: BTreeSet<WorkerId>,
     /// Times and limits.
     pub policy: Policy,
 }
@@ -89,6 +91,11 @@ pub struct Core {
     /// Effects that all workers must know; none before the first.
     effects: Option<Vec<String>>,
     clocks: Clocks,
+    /// From an order to a slot without a job, to its result, less the time in the slot: an average
+    /// over the last few.
+    latency: Option<Duration>,
+    /// Until when nothing is given out, because workers that outlived the last process may have it.
+    reunion: Option<Duration>,
     /// The journal cannot be written.
     paused: bool,
     accounted: Duration,
@@ -128,6 +135,8 @@ impl Core {
             told_lonely: false,
             effects: None,
             clocks: Clocks::default(),
+            latency: None,
+            reunion: None,
             paused: false,
             accounted: Duration::ZERO,
             closing: false,
@@ -165,7 +174,7 @@ impl Core {
                 self.closing = true;
             }
         }
-        if !self.closing && !self.paused {
+        if !self.closing && !self.paused && membership::is_complete(self, now) {
             assign::assign(self, now);
         }
         let waits = self.clocks_wait();

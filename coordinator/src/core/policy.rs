@@ -25,6 +25,12 @@ pub struct Policy {
     pub silence: Duration,
     /// A job that a worker does not mention is sent again after so long (default 2 s).
     pub unmentioned: Duration,
+    /// A process that goes on with a run waits so long for workers that outlived the last one before
+    /// it gives out what they may hold (default 3 s: they try to connect every 2 s).
+    pub reunion: Duration,
+    /// After the last of them came back, it waits so long for the results they bring (default
+    /// 500 ms).
+    pub delivery: Duration,
     /// If the core is not called for so long, it stood still itself (default 1 s).
     pub stall: Duration,
     /// Jobs may wait so long without any worker before people are told (default 10 s).
@@ -32,9 +38,13 @@ pub struct Policy {
     /// A waiting job may be taken from a busy worker for an idle one after so long (default
     /// 50 ms): less would only move short jobs about.
     pub steal_after: Duration,
-    /// Jobs a worker holds per slot: one computes, one waits (default 2). More would queue bytes
-    /// towards a worker that may freeze.
+    /// Jobs a worker holds per slot at most: one computes, one waits (default 2). More would queue
+    /// bytes towards a worker that may freeze.
     pub per_slot: usize,
+    /// A second job is sent ahead only if without it a slot would spend more than this share of its
+    /// time waiting for the next order, in percent (default 4). Where jobs are long, what waits
+    /// behind a slow one would hold up a search that needs results in order.
+    pub prefetch_percent: u32,
     /// Deadline while fewer than [`Self::deadline_samples`] jobs are done (default 120 s).
     pub first_deadline: Duration,
     /// Least deadline (default 10 s).
@@ -71,10 +81,13 @@ impl Default for Policy {
         Self {
             silence: Duration::from_secs(4),
             unmentioned: Duration::from_secs(2),
+            reunion: Duration::from_secs(3),
+            delivery: Duration::from_millis(500),
             stall: Duration::from_secs(1),
             lonely: Duration::from_secs(10),
             steal_after: Duration::from_millis(50),
             per_slot: 2,
+            prefetch_percent: 4,
             first_deadline: Duration::from_mins(2),
             least_deadline: Duration::from_secs(10),
             deadline_factor: 4,
@@ -175,6 +188,21 @@ impl Times {
                 .max(policy.least_deadline)
         });
         once.saturating_mul(2_u32.saturating_pow(overdue.min(8)))
+    }
+
+    /// Whether a slot would wait too long for its next order if it did not have it already, `latency`
+    /// being the time from a result to the next job's beginning; until something is known, it would.
+    pub(super) fn needs_prefetch(
+        &self,
+        kind: &'static str,
+        latency: Option<Duration>,
+        policy: &Policy,
+    ) -> bool {
+        let usual = self.0.get(kind).and_then(|kind| kind.usual);
+        let known = usual.zip(latency);
+        known.is_none_or(|(usual, latency)| {
+            latency.saturating_mul(100) > usual.saturating_mul(policy.prefetch_percent)
+        })
     }
 
     /// How long a job must have been computed before an idle slot may take a copy of it; none

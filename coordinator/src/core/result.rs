@@ -101,6 +101,13 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
             continue;
         };
         if Some(holder) == from {
+            if lease.prompt {
+                let fresh = lease
+                    .held
+                    .saturating_sub(Duration::from_micros(done.wall_us));
+                let before = core.latency.unwrap_or(fresh);
+                core.latency = Some((before * 7 + fresh) / 8);
+            }
             account::attribute(member, &lease, Use::Useful(done.wall_us));
         } else {
             account::attribute(member, &lease, Use::Speculative);

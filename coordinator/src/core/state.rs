@@ -35,6 +35,8 @@ pub(super) struct Lease {
     pub(super) deadline: Duration,
     /// How long it has been computing, as far as the account of its worker is settled.
     pub(super) held: Duration,
+    /// It was sent to a slot that had nothing to do.
+    pub(super) prompt: bool,
 }
 
 impl Lease {
@@ -46,6 +48,7 @@ impl Lease {
             running: None,
             deadline,
             held: Duration::ZERO,
+            prompt: false,
         }
     }
 }
@@ -85,7 +88,8 @@ impl Member {
 
     pub(super) fn add_lease(&mut self, lease: Lease, clocks: &Clocks) {
         settle(self, clocks);
-        self.leases.push(lease);
+        let prompt = self.idle() > 0;
+        self.leases.push(Lease { prompt, ..lease });
     }
 
     pub(super) fn drop_lease(&mut self, job: JobId, clocks: &Clocks) -> Option<Lease> {

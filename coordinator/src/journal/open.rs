@@ -6,10 +6,11 @@ use super::{
 };
 use protocol::{
     event::{Event, Finished, RunHeader},
-    id::{ContentHash, JobId, RunId},
+    id::{ContentHash, JobId, RunId, WorkerId},
     wire,
 };
 use std::{
+    collections::{BTreeMap, BTreeSet},
     fs::{File, OpenOptions, TryLockError},
     io::{self, Seek, SeekFrom, Write},
     os::unix::fs::FileExt,
@@ -32,6 +33,9 @@ const OPENED: u64 = 20;
 /// Epochs are never advanced by more than this for what may hide in damage.
 const MOST_HIDDEN: u64 = 1000;
 
+/// A worker that did not come back in so many processes of the run is not waited for.
+const REMEMBERED: u32 = 8;
+
 /// What an opened journal says of its run.
 #[derive(Clone, Debug)]
 pub struct Begun {
@@ -44,6 +48,9 @@ pub struct Begun {
     pub model_digest: Option<String>,
     /// What the case's reference individual came to on the run's first worker.
     pub proof: Option<ContentHash>,
+    /// Workers that were there when the last process ended without closing the run: they may hold
+    /// jobs and results of it.
+    pub present: BTreeSet<WorkerId>,
     /// What reading it was like.
     pub report: ReadReport,
 }
@@ -131,6 +138,7 @@ impl Journal {
             epoch,
             model_digest: past.model_digest,
             proof: past.proof,
+            present: past.present.into_keys().collect(),
             report,
         };
         let journal = Self {
@@ -253,6 +261,8 @@ struct Past {
     epoch: u32,
     model_digest: Option<String>,
     proof: Option<ContentHash>,
+    /// Workers that joined and were not seen to leave, with the epoch in which they joined.
+    present: BTreeMap<WorkerId, u32>,
     results: Vec<(JobId, u64)>,
 }
 
@@ -260,15 +270,27 @@ impl Past {
     fn apply(&mut self, entry: Entry, event: Event) {
         match event {
             Event::Begun { run, header } => self.begun = self.begun.take().or(Some((run, header))),
-            Event::Opened { epoch, .. } => self.epoch = self.epoch.max(epoch),
-            Event::Joined { model_digest, .. } => {
-                self.model_digest.get_or_insert(model_digest);
+            Event::Opened { epoch, .. } => {
+                self.epoch = self.epoch.max(epoch);
+                self.present
+                    .retain(|_, joined| *joined + REMEMBERED >= epoch);
             }
+            Event::Joined {
+                worker,
+                model_digest,
+                ..
+            } => {
+                self.model_digest.get_or_insert(model_digest);
+                self.present.insert(worker, self.epoch);
+            }
+            Event::Left { worker, .. } => drop(self.present.remove(&worker)),
+            // all were told to forget the run
+            Event::Closed => self.present.clear(),
             Event::Proved { proof } => {
                 self.proof.get_or_insert(proof);
             }
             Event::Finished(finished) => self.results.push((finished.job(), entry.at)),
-            Event::Left { .. } | Event::Closed | Event::Accounted(_) => {}
+            Event::Accounted(_) => {}
         }
     }
 

@@ -31,6 +31,7 @@ use protocol::{
     wire,
 };
 use std::{
+    collections::BTreeSet,
     net::{TcpListener, UdpSocket},
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
@@ -265,6 +266,12 @@ impl Parts {
             model_digest: begun.model_digest,
             proof: begun.proof,
             finished: journal.finished().collect(),
+            // local workers end with their coordinator
+            expected: if options.listen.is_some() {
+                begun.present
+            } else {
+                BTreeSet::new()
+            },
             policy: Policy::default(),
         });
         Ok(Self {

@@ -157,3 +157,38 @@ fn work_that_outlived_the_coordinator_is_not_done_again() {
     scene.finish(1, old(3));
     assert_eq!(scene.delivered.len(), 3);
 }
+
+/// After a restart, what outliving workers may hold is given to nobody before they are back or have
+/// been waited for.
+#[test]
+fn nobody_gets_what_those_who_outlived_the_coordinator_may_hold() {
+    let old = |job| Attempt {
+        job: JobId(job),
+        attempt: AttemptId(1 << 16),
+    };
+    let restarted = || {
+        let mut scene = Scene::with(JobSet::default(), 2);
+        scene.core.options.expected = [WorkerId(1), WorkerId(2)].into();
+        scene.submit(0..4);
+        scene.join(9, 4);
+        assert_eq!(scene.given(), [], "a newcomer waits");
+        scene
+    };
+    // one is back with a job, the other with a result
+    let mut scene = restarted();
+    scene.announce(1, 1, "m");
+    scene.beat(1, &[old(0)]);
+    scene.announce(2, 1, "m");
+    scene.beat(2, &[]);
+    scene.finish(2, old(1));
+    assert_eq!(scene.given(), []);
+    scene.wait(1, &[1, 2, 9]);
+    let given: Vec<u64> = scene.given().iter().map(|(_, it)| it.job.0).collect();
+    assert_eq!(given, [2, 3], "what nobody has");
+    // nobody comes back: the run goes on all the same
+    let mut scene = restarted();
+    scene.wait(2, &[9]);
+    assert_eq!(scene.given(), []);
+    scene.wait(2, &[9]);
+    assert_eq!(scene.given().len(), 4);
+}

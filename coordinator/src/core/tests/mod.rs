@@ -47,6 +47,7 @@ impl Scene {
             model_digest: None,
             proof: None,
             finished,
+            expected: BTreeSet::new(),
             policy: Policy::default(),
         });
         Self {

@@ -205,6 +205,7 @@ impl Cluster {
             model_digest: None,
             proof: None,
             finished: JobSet::default(),
+            expected: BTreeSet::new(),
             policy: Policy::default(),
         });
         let mut cluster = Self {
