@@ -7,6 +7,7 @@ mod bus;
 mod calibrate;
 mod case;
 mod completions;
+mod explain;
 mod finish;
 mod head;
 mod head_files;
@@ -57,6 +58,7 @@ enum Command {
     Verify(verify::Arguments),
     Head(head::Arguments),
     Report(report::Arguments),
+    Explain(explain::Arguments),
     Case(case::Arguments),
     Bench(bench::Arguments),
     Completions(completions::Arguments),
@@ -161,6 +163,7 @@ pub fn main() -> ExitCode {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),

@@ -61,6 +61,9 @@ impl Manifest {
             self.seed,
             word(folder)
         );
+        if let Settings::Window(settings) = &self.settings {
+            command.push_str(&format!(" --window {}", settings.window));
+        }
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
             || self.case_folder.ends_with(measured);

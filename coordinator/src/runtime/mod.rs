@@ -9,7 +9,7 @@ mod local;
 pub mod locate;
 
 pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
-pub use bench::{BenchResult, bench};
+pub use bench::{BenchPlan, BenchResult, Crew, bench};
 pub use error::DispatchError;
 pub use protocol::event::{RunHeader, Spent};
 
