@@ -110,6 +110,7 @@ fn from_worker() -> impl Strategy<Value = FromWorker> {
                 FromWorker::Beat(Beat {
                     number,
                     case: case.map(ContentHash),
+                    proof: case.map(ContentHash),
                     finished: running.iter().rev().copied().collect(),
                     running,
                     waiting,

@@ -41,8 +41,17 @@ impl Process {
     /// # Panics
     /// If it does not start.
     pub fn worker(connect: &str, arguments: &[&str]) -> Self {
+        Self::worker_with(connect, arguments, &[])
+    }
+
+    /// Starts a worker with something in its environment.
+    ///
+    /// # Panics
+    /// If it does not start.
+    pub fn worker_with(connect: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Self {
         let mut command = Command::new(worker_program());
         command.args(["--connect", connect]).args(arguments);
+        command.envs(environment.iter().copied());
         Self::start(command)
     }
 
@@ -80,6 +89,14 @@ impl Process {
     /// The second time.
     pub fn output(&mut self) -> std::process::ChildStdout {
         self.0.stdout.take().expect("the output is read once")
+    }
+
+    /// Its standard error, if it was asked for when the process was started.
+    ///
+    /// # Panics
+    /// The second time, and if it was not.
+    pub fn errors(&mut self) -> std::process::ChildStderr {
+        self.0.stderr.take().expect("the errors are read once")
     }
 
     /// Waits for its end and returns its exit code, if it was not killed.

@@ -2,6 +2,10 @@
 use clap::{Parser, Subcommand};
 use link::locator::Locator;
 
+/// Address space of a slot's process by default (MiB): a simulation needs some tens, the reduction
+/// of a large head some thousand.
+pub const SLOT_MEMORY_MIB: u64 = 8192;
+
 /// Computes simulations for a Horsehead coordinator.
 ///
 /// Start any number of workers, before or after the coordinator, and stop them whenever you like:
@@ -37,6 +41,10 @@ pub struct Cli {
     /// End after so long without work [default: never]
     #[arg(long, value_name = "SECONDS", env = "HORSEHEAD_IDLE_TIMEOUT", value_parser = clap::value_parser!(u64).range(1..))]
     pub idle_timeout: Option<u64>,
+    /// Address space that one simulation may have \[MiB\]; 0 for no limit. What needs more is
+    /// ended and counts as crashed
+    #[arg(long, value_name = "MIB", env = "HORSEHEAD_SLOT_MEMORY", default_value_t = SLOT_MEMORY_MIB)]
+    pub slot_memory: u64,
     /// Belong to the process that started this one: end with it and with its run
     #[arg(long, hide = true)]
     pub embedded: bool,
@@ -50,5 +58,9 @@ pub struct Cli {
 pub enum Role {
     /// Compute what standard input says
     #[command(hide = true)]
-    Slot,
+    Slot {
+        /// Address space it may have \[MiB\]; 0 for no limit
+        #[arg(long, default_value_t = 0)]
+        memory: u64,
+    },
 }

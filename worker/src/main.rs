@@ -48,7 +48,7 @@ fn main() -> ExitCode {
         .with_ansi(io::stderr().is_terminal())
         .init();
     let ended = match cli.role {
-        Some(worker::cli::Role::Slot) => slot::serve()
+        Some(worker::cli::Role::Slot { memory }) => slot::serve(memory)
             .map(|()| ExitCode::SUCCESS)
             .context("the slot ended"),
         None => serve(&cli),
@@ -69,6 +69,7 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
         id: draw_id(),
         slots: cli.slots.map_or_else(cores, usize::from),
         program: env::current_exe().context("where this program lies is unknown")?,
+        slot_memory_mib: cli.slot_memory,
         idle_timeout: cli.idle_timeout.map(Duration::from_secs),
         embedded: cli.embedded,
     };

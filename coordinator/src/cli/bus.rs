@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     journal::JournalError,
-    runtime::{self, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
+    runtime::{self, BenchPlan, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
     study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
 };
 use link::{
@@ -137,6 +137,7 @@ fn crew(snapshot: Snapshot) -> Crew {
         workers: workers.collect(),
         queued: snapshot.queued,
         running: snapshot.running,
+        spent: snapshot.spent,
     }
 }
 
@@ -214,21 +215,25 @@ pub(super) fn block_on<T>(future: impl Future<Output = anyhow::Result<T>>) -> an
 }
 
 /// Measures the dispatcher with no-op jobs, in a scratch folder.
-pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOutput> {
+pub(super) async fn bench(plan: BenchPlan) -> anyhow::Result<BenchOutput> {
     let scratch = tempfile::tempdir()?;
     let options = Options {
         run_dir: scratch.path().to_owned(),
         listen: None,
         insecure: false,
-        local_workers: workers,
+        local_workers: 0,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };
     let options = options.for_dispatch(&empty_case()?)?;
-    let result = runtime::bench(options, jobs as u64)
+    let result = runtime::bench(options, plan)
         .await
         .map_err(|error| explain(&error))?;
     Ok(BenchOutput {
+        crew: match plan.crew {
+            runtime::Crew::Processes => "processes",
+            runtime::Crew::Sessions => "sessions",
+        },
         workers: result.workers,
         jobs: result.jobs,
         rtt_ms: RoundTrip {
@@ -237,6 +242,7 @@ pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOu
         },
         jobs_per_s: result.jobs_per_s,
         coordinator_cpu_us_per_job: result.coordinator_cpu_us_per_job,
+        cost_ratio: result.cost_ratio,
         coordinator_rss_mib: result.coordinator_rss_mib,
     })
 }

@@ -12,7 +12,7 @@ use crate::{
 use clap::Args;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, preset},
+    strategy::{CATALOGUE, Settings, memetic::window::WindowSettings, preset},
 };
 use std::{
     path::{Path, PathBuf},
@@ -45,6 +45,11 @@ pub(super) struct Arguments {
     /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
     #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
     listen: Option<String>,
+    /// Of the preset `window`: an individual is bred from results that are this many behind, part
+    /// of what decides the result [default: that of the run, or 3 times the workers planned:
+    /// those started here, 40 at least with --listen].
+    #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    window: Option<u32>,
     /// Allow other machines to connect without certificates.
     #[arg(long, env = "HORSEHEAD_INSECURE")]
     insecure: bool,
@@ -68,6 +73,43 @@ fn can_go_on(error: &anyhow::Error) -> bool {
         study,
         Some(StudyError::Interrupted | StudyError::Evaluator(_))
     )
+}
+
+/// Workers to plan for where any number of machines may connect.
+const LISTENING: usize = 40;
+
+/// Puts the window that was asked for, or that fits the workers planned, into settings that have
+/// one; a run that was begun keeps its own.
+fn set_window(
+    settings: &mut Settings,
+    arguments: &Arguments,
+    path: &Path,
+    local_workers: usize,
+) -> Result<(), Usage> {
+    let Settings::Window(window) = settings else {
+        return match arguments.window {
+            None => Ok(()),
+            Some(_) => Err(Usage {
+                message: format!("the preset `{}` has no --window", arguments.preset),
+                help: "say --preset window, or leave --window out".to_owned(),
+            }),
+        };
+    };
+    let earlier = RunFolder::open(path)
+        .ok()
+        .and_then(|(_, earlier, _)| match earlier.settings {
+            Settings::Window(earlier) => Some(earlier.window),
+            Settings::Memetic(_) | Settings::Quick(_) => None,
+        });
+    let planned = match arguments.listen {
+        Some(_) => local_workers.max(LISTENING),
+        None => local_workers,
+    };
+    window.window = match arguments.window {
+        Some(asked) => asked as usize,
+        None => earlier.unwrap_or_else(|| WindowSettings::window_for(planned)),
+    };
+    Ok(())
 }
 
 fn warn_of_lost_journal(folder: &Path) {
@@ -103,6 +145,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
+    let local_workers = arguments.workers.unwrap_or_else(cores);
+    let path = arguments
+        .run
+        .clone()
+        .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
+    let mut settings = (preset.settings)(&space);
+    set_window(&mut settings, arguments, &path, local_workers)?;
     let manifest = Manifest {
         kind: run_folder::CALIBRATE.to_owned(),
         format: run_folder::format(),
@@ -110,17 +159,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         command: command_line(),
         preset: preset.name.to_owned(),
         seed: arguments.seed,
-        settings: (preset.settings)(&space),
+        settings,
         case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
         synthetic,
         notes,
         wall_s: 0.0,
     };
-    let path = arguments
-        .run
-        .clone()
-        .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
     let Begun {
         folder,
         lost_journal,
@@ -131,7 +176,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         warn_of_lost_journal(&path);
     }
 
-    let local_workers = arguments.workers.unwrap_or_else(cores);
     let session = Session {
         folder: &folder,
         manifest: &manifest,

@@ -83,6 +83,8 @@ struct Decides {
     start: Option<Vec<f64>>,
 }
 
+impl run_folder::Decides for Decides {}
+
 /// What is diagnosed, and where it came from.
 struct Target {
     /// Folder of the case.

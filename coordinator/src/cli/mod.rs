@@ -9,6 +9,7 @@ mod case;
 mod completions;
 mod diagnose;
 mod diagnosis_json;
+mod explain;
 mod finish;
 mod head;
 mod head_files;
@@ -62,6 +63,7 @@ enum Command {
     Diagnose(diagnose::Arguments),
     Head(head::Arguments),
     Report(report::Arguments),
+    Explain(explain::Arguments),
     Case(case::Arguments),
     Bench(bench::Arguments),
     Completions(completions::Arguments),
@@ -167,6 +169,7 @@ pub fn main() -> ExitCode {
         Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),

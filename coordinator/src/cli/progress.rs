@@ -3,6 +3,7 @@ use super::output;
 use crate::study::{Crew, Observe, ProgressView, Watch};
 use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
+use protocol::event::Spent;
 use std::{
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
@@ -179,6 +180,7 @@ fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
         1 => "1 worker".to_owned(),
         several => format!("{several} workers"),
     });
+    parts.extend(slot_use(&crew.spent));
     if let Some(rate) = view.rate(elapsed) {
         parts.push(format!("{rate:.1}/s"));
     }
@@ -186,6 +188,24 @@ fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
         parts.push(format!("{} left", clock(left)));
     }
     parts.join("  ")
+}
+
+/// What slots do beside what they are there for, as `slots 91 % useful, 8 % barrier`; nothing as
+/// long as there is little to go by.
+fn slot_use(spent: &Spent) -> Option<String> {
+    if spent.connected_us < 5_000_000 {
+        return None;
+    }
+    let percent = |us: u64| 100.0 * us as f64 / spent.connected_us as f64;
+    let kinds = spent
+        .kinds()
+        .into_iter()
+        .map(|(kind, us)| (kind, percent(us)));
+    let shown: Vec<String> = kinds
+        .filter(|(kind, share)| *kind == "useful" || *share >= 1.0)
+        .map(|(kind, share)| format!("{share:.0} % {kind}"))
+        .collect();
+    Some(format!("slots {}", shown.join(", ")))
 }
 
 /// `42 s`, `3 min 05 s`, `2 h 07 min`.
@@ -226,6 +246,18 @@ mod tests {
         assert_eq!(
             describe(&view, &crew, Duration::from_secs(20)),
             "generation or stage 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
+        );
+        crew.spent = Spent {
+            connected_us: 10_000_000,
+            useful_us: 8_950_000,
+            barrier_us: 1_000_000,
+            starved_us: 50_000,
+            ..Spent::default()
+        };
+        let line = describe(&view, &crew, Duration::from_secs(20));
+        assert!(
+            line.contains("1 worker  slots 90 % useful, 10 % barrier  10.0/s"),
+            "{line}"
         );
     }
 }

@@ -57,7 +57,7 @@ pub(super) struct Manifest<S = Settings> {
     pub(super) wall_s: f64,
 }
 
-impl<S: Serialize> Manifest<S> {
+impl<S: Decides> Manifest<S> {
     /// What decides the result, as canonical JSON: the journal refuses to mix two of them.
     pub(super) fn settings_json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string(&(self.seed, &self.settings))?)
@@ -72,6 +72,7 @@ impl<S: Serialize> Manifest<S> {
             command.push_str(&quote(&self.preset));
         }
         command.push_str(&format!(" --seed {} --run {}", self.seed, word(folder)));
+        command.push_str(&self.settings.arguments());
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
             || self.case_folder.ends_with(measured);
@@ -89,8 +90,21 @@ pub(super) const fn format() -> u32 {
 }
 
 /// Settings that a manifest may hold.
-pub(super) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {}
-impl<S: Serialize + DeserializeOwned + PartialEq + Clone> Decides for S {}
+pub(super) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
+    /// What of them a command line must repeat beside preset and seed, with a space before it.
+    fn arguments(&self) -> String {
+        String::new()
+    }
+}
+
+impl Decides for Settings {
+    fn arguments(&self) -> String {
+        match self {
+            Self::Window(settings) => format!(" --window {}", settings.window),
+            Self::Memetic(_) | Self::Quick(_) => String::new(),
+        }
+    }
+}
 
 /// What every manifest says, whatever kind of run it is of.
 #[derive(Debug, Deserialize)]

@@ -8,10 +8,10 @@ mod error;
 mod local;
 pub mod locate;
 
-pub use crate::core::{Policy, Snapshot, Spent, WorkerSnapshot};
-pub use bench::{BenchResult, bench};
+pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
+pub use bench::{BenchPlan, BenchResult, Crew, bench};
 pub use error::DispatchError;
-pub use protocol::event::RunHeader;
+pub use protocol::event::{RunHeader, Spent};
 
 use crate::{
     core::{Core, CoreOptions},
@@ -31,6 +31,7 @@ use protocol::{
     wire,
 };
 use std::{
+    collections::BTreeSet,
     net::{TcpListener, UdpSocket},
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
@@ -204,7 +205,7 @@ impl Dispatch {
             .unwrap_or(Err(DispatchError::Closed))
     }
 
-    /// The state of the run, at most a quarter of a second old.
+    /// The state of the run, some hundredths of a second old at most.
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot
             .lock()
@@ -263,7 +264,14 @@ impl Parts {
             case: blob.hash,
             case_bytes: blob.bytes.len() as u64,
             model_digest: begun.model_digest,
+            proof: begun.proof,
             finished: journal.finished().collect(),
+            // local workers end with their coordinator
+            expected: if options.listen.is_some() {
+                begun.present
+            } else {
+                BTreeSet::new()
+            },
             policy: Policy::default(),
         });
         Ok(Self {

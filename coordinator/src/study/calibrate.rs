@@ -123,9 +123,8 @@ fn check_initial(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<
     let initial_open = open
         .values()
         .any(|proposal| proposal.purpose == Purpose::Initial);
-    let only_initial = log.entries().all(|entry| entry.purpose == Purpose::Initial);
     let all_failed = log.entries().all(|entry| entry.ending != Ending::Complete);
-    if initial_open || !only_initial || !all_failed {
+    if initial_open || !all_failed {
         return Ok(());
     }
     let (how, physics) = log.failures();

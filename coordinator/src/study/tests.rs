@@ -166,7 +166,7 @@ async fn run(oracle: &mut Oracle, case: &Case) -> Result<(Calibrated, Quiet), St
     let mut strategy = settings().build(&oracle.space, 3)?;
     let (_sender, mut stop) = watch::channel(false);
     let mut observer = Quiet(Vec::new());
-    let found = calibrate(oracle, case, &mut strategy, &mut observer, &mut stop).await?;
+    let found = calibrate(oracle, case, strategy.as_mut(), &mut observer, &mut stop).await?;
     Ok((found, observer))
 }
 

@@ -18,6 +18,7 @@ pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
 use crate::announce::EffectDescriptor;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// One unit of work; a pure function of itself and the case it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,6 +116,20 @@ impl Failure {
         match self {
             Self::Deadline { .. } | Self::Crashed { .. } | Self::Lost { .. } => true,
             Self::Refused { .. } | Self::Misconfigured { .. } => false,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Deadline { limit_ms } => {
+                write!(to, "it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
+            }
+            Self::Crashed { how } => write!(to, "the process that computed it ended: {how}"),
+            Self::Lost { workers } => write!(to, "{workers} workers were lost over it"),
+            Self::Refused { reason } => write!(to, "the worker refused it: {reason}"),
+            Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),
         }
     }
 }

@@ -6,7 +6,7 @@
 use crate::bench::Bench;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::Model;
-use search::strategy::{Evaluated, Strategy as _, Told, preset};
+use search::strategy::{Told, preset};
 
 /// Starts for the fit: points of the search's archive, best first, that differ in the scanned gene.
 ///
@@ -23,6 +23,7 @@ pub async fn enter<L: Laboratory>(
     else {
         return Ok(vec![vec![0.0; model.dimension()]]);
     };
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     while strategy.finished().is_none() {
         let proposals = strategy.ask();
         if proposals.is_empty() {
@@ -34,7 +35,7 @@ pub async fn enter<L: Laboratory>(
             .collect();
         let points: Vec<(&Model, &[f64])> = points.iter().map(|x| (model, x.as_slice())).collect();
         let curves = bench.curves(lab, Stage::Basin, &points).await?;
-        for (proposal, curves) in proposals.iter().zip(curves) {
+        for ((proposal, (_, x)), curves) in proposals.iter().zip(&points).zip(curves) {
             let told = curves.map_or(
                 Told {
                     fitness: f64::MAX,
@@ -45,29 +46,26 @@ pub async fn enter<L: Laboratory>(
                     complete: true,
                 },
             );
+            if told.complete {
+                found.push((told.fitness, x.to_vec()));
+            }
             strategy.tell(proposal.id, told);
         }
     }
-    let ranked = strategy.archive().ranked();
-    Ok(apart(&ranked, model))
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Ok(apart(found.into_iter().map(|(_, x)| x)))
 }
 
 /// The best points, no two of which lie within a few hundredths of a decade in every gene.
-fn apart(ranked: &[&Evaluated], model: &Model) -> Vec<Vec<f64>> {
+fn apart(ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     const STARTS: usize = 3;
-    const NEAR: f64 = 0.03;
+    /// Decades; the first gene is the one with the narrow valley.
+    const NEAR: [f64; 2] = [0.03, 0.15];
     let mut kept: Vec<Vec<f64>> = Vec::new();
-    for one in ranked {
-        let x = model.space.decades(&one.genes);
+    for x in ranked {
         let near = |other: &Vec<f64>| {
-            other
-                .iter()
-                .zip(&x)
-                .all(|(a, b)| (a - b).abs() < 5.0 * NEAR)
-                && other
-                    .first()
-                    .zip(x.first())
-                    .is_some_and(|(a, b)| (a - b).abs() < NEAR)
+            let pairs = other.iter().zip(&x).enumerate();
+            pairs.into_iter().all(|(k, (a, b))| (a - b).abs() < NEAR[k.min(1)])
         };
         if !kept.iter().any(near) {
             kept.push(x);

@@ -51,11 +51,6 @@ impl Conductor {
         conductor
     }
 
-    /// Everything evaluated so far, in id order.
-    pub fn archive(&self) -> &Archive {
-        &self.archive
-    }
-
     /// Plans batches until one needs an evaluation or nothing is left.
     fn advance(&mut self) {
         while self.finish.is_none() && self.open.is_empty() {
@@ -201,5 +196,9 @@ impl Strategy for Conductor {
             fitness: best.told.fitness,
             complete: best.told.survived(),
         })
+    }
+
+    fn archive(&self) -> &Archive {
+        &self.archive
     }
 }

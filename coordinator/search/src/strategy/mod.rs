@@ -1,9 +1,9 @@
 //! The strategies there are, and what they have in common.
 //!
-//! Every strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a
+//! A strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a
 //! refinement), each of which plans one batch of points at a time; the [`Conductor`] gives the
-//! points their ids, waits for the results in any order and hands them on in id order. A new
-//! strategy costs one file and one line in [`CATALOGUE`].
+//! points their ids, waits for the results in any order and hands them on in id order. One needs no
+//! batches: [`memetic::window`]. A new strategy costs one file and one line in [`CATALOGUE`].
 mod archive;
 mod conductor;
 mod design;
@@ -42,6 +42,9 @@ pub trait Strategy {
 
     /// The best individual so far: complete before failed, then by fitness, then by id.
     fn best(&self) -> Option<Best>;
+
+    /// Every result that was consumed, in id order.
+    fn archive(&self) -> &Archive;
 }
 
 /// An individual to evaluate.
@@ -216,6 +219,8 @@ pub enum Settings {
     Memetic(memetic::MemeticSettings),
     /// A short memetic search with line scans and refinement.
     Quick(quick::QuickSettings),
+    /// The memetic algorithm without generations.
+    Window(memetic::window::WindowSettings),
 }
 
 /// Settings that no search can be made of.
@@ -239,11 +244,12 @@ impl Settings {
     ///
     /// # Errors
     /// If a setting lies outside its range.
-    pub fn build(&self, space: &Space, seed: u64) -> Result<Conductor, SettingsError> {
-        match self {
-            Self::Memetic(settings) => memetic::build(settings, space, seed),
-            Self::Quick(settings) => quick::build(settings, space, seed),
-        }
+    pub fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
+        Ok(match self {
+            Self::Memetic(settings) => Box::new(memetic::build(settings, space, seed)?),
+            Self::Quick(settings) => Box::new(quick::build(settings, space, seed)?),
+            Self::Window(settings) => Box::new(memetic::window::build(settings, space, seed)?),
+        })
     }
 }
 
@@ -278,6 +284,11 @@ pub const CATALOGUE: &[Preset] = &[
         name: "paper-batch",
         summary: "the same with 40 + 40 climbing trials at once, the best of which wins",
         settings: |_| Settings::Memetic(memetic::MemeticSettings::paper_batch()),
+    },
+    Preset {
+        name: "window",
+        summary: "the same without generations: no worker waits, and the bits are still the same",
+        settings: |_| Settings::Window(memetic::window::WindowSettings::for_workers(16)),
     },
 ];
 

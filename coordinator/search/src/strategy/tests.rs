@@ -19,12 +19,20 @@ pub(super) struct Record {
 }
 
 /// Runs a strategy to its end; `reorder` shuffles the open proposals before one is told.
-pub(super) fn run(strategy: &mut Conductor, tell: &Tell<'_>, reorder: Option<Stream>) -> Record {
+pub(super) fn run(
+    strategy: &mut dyn Strategy,
+    tell: &Tell<'_>,
+    reorder: Option<Stream>,
+) -> Record {
     run_with(strategy, tell, &|_| Vec::new(), reorder)
 }
 
 /// Runs a strategy on a function, residual vectors included.
-fn run_on(strategy: &mut Conductor, function: &TestFunction, reorder: Option<Stream>) -> Record {
+fn run_on(
+    strategy: &mut dyn Strategy,
+    function: &TestFunction,
+    reorder: Option<Stream>,
+) -> Record {
     let space = function.space();
     run_with(
         strategy,
@@ -35,7 +43,7 @@ fn run_on(strategy: &mut Conductor, function: &TestFunction, reorder: Option<Str
 }
 
 fn run_with(
-    strategy: &mut Conductor,
+    strategy: &mut dyn Strategy,
     tell: &Tell<'_>,
     residual: &dyn Fn(&[f64]) -> Vec<f64>,
     mut reorder: Option<Stream>,
@@ -70,7 +78,7 @@ fn run_preset(preset: &Preset, function: &TestFunction, seed: u64, order: Option
     let space = function.space();
     let mut strategy = (preset.settings)(&space).build(&space, seed).unwrap();
     let reorder = order.map(|order| Streams::new(order, 99).at(0, Phase::Initial, 0));
-    run_on(&mut strategy, function, reorder)
+    run_on(strategy.as_mut(), function, reorder)
 }
 
 #[test]
@@ -166,7 +174,7 @@ fn if_everything_fails_the_search_still_ends() {
     for preset in CATALOGUE {
         for tell in all_failures {
             let mut strategy = (preset.settings)(&space).build(&space, 4).unwrap();
-            let record = run(&mut strategy, tell, None);
+            let record = run(strategy.as_mut(), tell, None);
             assert!(!record.best.complete, "{}", preset.name);
             assert_eq!(strategy.progress().best_fitness, None, "{}", preset.name);
         }
@@ -209,7 +217,7 @@ fn progress_ends_at_what_was_expected() {
         let mut strategy = (preset.settings)(&space).build(&space, 1).unwrap();
         let first = strategy.progress();
         assert_eq!(first.evaluations, 0);
-        run_on(&mut strategy, &SPHERE, None);
+        run_on(strategy.as_mut(), &SPHERE, None);
         let last = strategy.progress();
         assert_eq!(
             last.evaluations, last.expected_evaluations,
