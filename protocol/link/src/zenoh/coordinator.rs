@@ -1,11 +1,21 @@
 //! The coordinator's end: an embedded router with its listeners.
-use super::{INBOX, TlsFiles, close, common, open, sender::Sender, tls_for, transport};
-use crate::{Blob, CoordinatorEnd, Heard, LinkError, locator::Locator};
+use super::{
+    INBOX, access, close, common, listening, names::Names, needed, open, sender::Sender, transport,
+};
+use crate::{
+    Blob, CoordinatorEnd, Heard, LinkError,
+    keys::Keys,
+    locator::{Locator, Protocol},
+};
 use protocol::{
     id::{RunId, WorkerId},
     key::{self, Lane},
 };
 use serde_json::json;
+use std::{
+    collections::BTreeSet,
+    sync::{Arc, Mutex, PoisonError},
+};
 use tokio::sync::mpsc;
 use zenoh::{Session, bytes::Encoding, sample::SampleKind};
 
@@ -16,8 +26,8 @@ pub struct CoordinatorOptions {
     pub listen: Vec<Locator>,
     /// Whether unencrypted addresses may be open to the network.
     pub insecure: bool,
-    /// Key material for QUIC.
-    pub tls: Option<TlsFiles>,
+    /// Key material for QUIC, with the names that may join.
+    pub keys: Option<Keys>,
     /// The run it works for.
     pub run: RunId,
     /// What workers may fetch.
@@ -32,40 +42,50 @@ pub struct ZenohCoordinator {
     heard: mpsc::Receiver<Heard>,
     run: RunId,
     listening: Vec<Locator>,
+    names: Arc<Mutex<Names>>,
 }
 
 impl ZenohCoordinator {
     /// Opens the router and starts to listen.
     ///
     /// # Errors
-    /// [`LinkError::Exposed`] or [`LinkError::NoCertificates`] for addresses that may not be
+    /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be
     /// listened on as they are; [`LinkError::Transport`] if the address is taken.
     pub async fn open(options: CoordinatorOptions) -> Result<Self, LinkError> {
         let CoordinatorOptions {
             listen,
             insecure,
-            tls,
+            keys,
             run,
             blob,
         } = options;
-        let mut listening = Vec::new();
+        let mut locators = Vec::new();
         for locator in listen {
             locator.permit(insecure)?;
-            listening.push(locator.with_free_port()?);
+            locators.push(locator.with_free_port()?);
         }
-        let references: Vec<&Locator> = listening.iter().collect();
-        let mut config = common(&tls_for(&references, tls.as_ref(), TlsFiles::listening)?);
-        let names: Vec<String> = listening.iter().map(ToString::to_string).collect();
+        let references: Vec<&Locator> = locators.iter().collect();
+        let keys = needed(&references, keys.as_ref())?;
+        let mut config = common(&references, &keys.map_or_else(|| json!({}), listening));
+        if let Some(keys) = keys {
+            let plain = locators.iter().any(|at| at.protocol == Protocol::Tcp);
+            config["access_control"] = access::control(keys.workers(), plain);
+        }
+        let at: Vec<String> = locators.iter().map(ToString::to_string).collect();
         config["mode"] = json!("router");
-        config["listen"] = json!({ "endpoints": names, "exit_on_failure": true, "timeout_ms": 0 });
+        config["listen"] = json!({ "endpoints": at, "exit_on_failure": true, "timeout_ms": 0 });
         config["connect"] = json!({ "endpoints": [] });
-        let session = open(&config, &format!("listen on {}", names.join(", "))).await?;
+        let session = open(&config, &format!("listen on {}", at.join(", "))).await?;
+        let names = Arc::new(Mutex::new(Names::default()));
         let (to, heard) = mpsc::channel(INBOX);
         for lane in [Lane::Data, Lane::Control] {
-            subscribe(&session, lane, to.clone()).await?;
+            subscribe(&session, lane, to.clone(), Arc::clone(&names)).await?;
         }
-        watch_presence(&session, run, to).await?;
+        watch_presence(&session, run, to, Arc::clone(&names)).await?;
         serve(&session, run, blob).await?;
+        if let Some(keys) = keys {
+            answer_guests(&session, keys.workers().clone()).await?;
+        }
         let sender = Sender::start(session.clone())
             .map_err(|error| transport("start the sending thread", &error))?;
         Ok(Self {
@@ -73,7 +93,8 @@ impl ZenohCoordinator {
             sender,
             heard,
             run,
-            listening,
+            listening: locators,
+            names,
         })
     }
 
@@ -85,8 +106,16 @@ impl ZenohCoordinator {
 
 impl CoordinatorEnd for ZenohCoordinator {
     fn send(&mut self, to: WorkerId, lane: Lane, frame: Vec<u8>) {
-        self.sender
-            .send(key::to_worker(self.run, to, lane), lane, frame);
+        let key = {
+            let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+            names
+                .of(to)
+                .map(|name| key::to_worker(self.run, name, lane))
+        };
+        match key {
+            Some(key) => self.sender.send(key, lane, frame),
+            None => tracing::debug!(%to, "a frame was not sent: the worker is gone"),
+        }
     }
 
     async fn receive(&mut self) -> Option<Heard> {
@@ -109,11 +138,16 @@ async fn subscribe(
     session: &Session,
     lane: Lane,
     to: mpsc::Sender<Heard>,
+    names: Arc<Mutex<Names>>,
 ) -> Result<(), LinkError> {
     session
         .declare_subscriber(key::all_from_workers(lane))
         .callback(move |sample| {
             if let Some(worker) = key::worker_of(sample.key_expr().as_str()) {
+                let worker = names
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .note(worker);
                 offer(
                     &to,
                     Heard::Frame(worker, sample.payload().to_bytes().into_owned()),
@@ -129,6 +163,7 @@ async fn watch_presence(
     session: &Session,
     run: RunId,
     to: mpsc::Sender<Heard>,
+    names: Arc<Mutex<Names>>,
 ) -> Result<(), LinkError> {
     session
         .liveliness()
@@ -137,6 +172,11 @@ async fn watch_presence(
             if sample.kind() == SampleKind::Delete
                 && let Some(worker) = key::worker_of(sample.key_expr().as_str())
             {
+                let worker = worker.id();
+                names
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .forget(worker);
                 offer(&to, Heard::Gone(worker));
             }
         })
@@ -172,4 +212,24 @@ async fn serve(session: &Session, run: RunId, blob: Blob) -> Result<(), LinkErro
         .background()
         .await
         .map_err(|error| transport("serve the case", &error))
+}
+
+/// Tells any certificate whether its name may join.
+async fn answer_guests(session: &Session, owners: BTreeSet<String>) -> Result<(), LinkError> {
+    let runtime = tokio::runtime::Handle::current();
+    session
+        .declare_queryable(key::all_guests())
+        .callback(move |query| {
+            let name = query.key_expr().as_str().to_owned();
+            let may = key::guest_of(&name).is_some_and(|owner| owners.contains(owner));
+            let answer = if may { key::WELCOME } else { key::UNKNOWN };
+            drop(runtime.spawn(async move {
+                if let Err(error) = query.reply(name, answer).await {
+                    tracing::debug!(%error, "a guest was not answered");
+                }
+            }));
+        })
+        .background()
+        .await
+        .map_err(|error| transport("answer guests", &error))
 }

@@ -1,0 +1,195 @@
+//! One handshake with a coordinator, before the bus is opened, to learn why it would fail.
+//!
+//! The bus itself reports every refusal as a time-out after ten seconds. This shows the same
+//! certificates to the same address and reads the answer: a host that is not known, a port that
+//! is closed, a certificate that one of the two ends does not accept.
+use crate::{
+    LinkError,
+    keys::{Keys, provider},
+    locator::Locator,
+};
+use quinn::{
+    ClientConfig, Connection, ConnectionError, Endpoint, VarInt,
+    crypto::rustls::QuicClientConfig,
+};
+use std::{
+    io::ErrorKind,
+    net::{Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket},
+    sync::Arc,
+    time::Duration,
+};
+use tokio::time::{sleep, timeout};
+
+/// How long an answer may take: then the bus tries by itself, for longer.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// How often the end of the handshake is looked for.
+const LOOK: Duration = Duration::from_millis(5);
+/// How long a machine may take to say that a port is closed.
+const ECHO: Duration = Duration::from_millis(200);
+/// Protocols of the bus, any of which will do to shake hands.
+const PROTOCOLS: [&[u8]; 2] = [b"zenoh-ms", b"zenoh"];
+/// What the alerts of TLS begin at among QUIC's error codes.
+const ALERTS: u64 = 0x100;
+
+/// Shakes hands, and says what is wrong if that fails.
+pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
+    let address = resolve(to).await?;
+    let transport = |reason: String| LinkError::Transport {
+        doing: format!("connect to {to}"),
+        reason,
+    };
+    let chain = keys.chain()?;
+    let mut config = rustls::ClientConfig::builder_with_provider(provider())
+        .with_protocol_versions(&[&rustls::version::TLS13])
+        .and_then(|builder| {
+            builder
+                .with_root_certificates(chain.roots)
+                .with_client_auth_cert(chain.certificates, chain.key)
+        })
+        .map_err(|error| transport(error.to_string()))?;
+    config.alpn_protocols = PROTOCOLS.map(<[u8]>::to_vec).to_vec();
+    let config =
+        QuicClientConfig::try_from(config).map_err(|error| transport(error.to_string()))?;
+    let any: SocketAddr = match address {
+        SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
+        SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
+    };
+    let mut endpoint = Endpoint::client(any).map_err(|error| transport(error.to_string()))?;
+    endpoint.set_default_client_config(ClientConfig::new(Arc::new(config)));
+    let connecting = endpoint
+        .connect(address, &to.host)
+        .map_err(|error| transport(error.to_string()))?;
+    let shaken = async {
+        let connection = connecting.await?;
+        confirmed(&connection).await?;
+        connection.close(VarInt::from_u32(0), &[]);
+        Ok(())
+    };
+    let ended = match timeout(PATIENCE, shaken).await {
+        Ok(ended) => ended,
+        Err(_) => Err(ConnectionError::TimedOut),
+    };
+    match ended {
+        Ok(()) => {
+            // the farewell spares the coordinator a wait for the link that never comes
+            drop(timeout(ECHO, endpoint.wait_idle()).await);
+            Ok(())
+        }
+        Err(ConnectionError::TimedOut) => Err(LinkError::Silent {
+            locator: to.to_string(),
+            how: listen_for_refusal(address).await,
+        }),
+        Err(error) => Err(explain(&error, to, keys)),
+    }
+}
+
+/// Waits until the other end has accepted this end's certificate: with TLS 1.3 a client is
+/// connected before that.
+async fn confirmed(connection: &Connection) -> Result<(), ConnectionError> {
+    while connection.stats().frame_rx.handshake_done == 0 {
+        if let Some(reason) = connection.close_reason() {
+            return Err(reason);
+        }
+        sleep(LOOK).await;
+    }
+    Ok(())
+}
+
+async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
+    let host = to.bare_host().to_owned();
+    let port = to.port;
+    let unknown = |reason: String| LinkError::UnknownHost {
+        locator: to.to_string(),
+        reason,
+    };
+    let found = tokio::task::spawn_blocking(move || (host.as_str(), port).to_socket_addrs())
+        .await
+        .map_err(|error| unknown(error.to_string()))?;
+    found
+        .map_err(|error| unknown(error.to_string()))?
+        .next()
+        .ok_or_else(|| unknown("it has no address".to_owned()))
+}
+
+/// Whether the other machine says that the port is closed, or nothing at all.
+async fn listen_for_refusal(address: SocketAddr) -> String {
+    let asked = tokio::task::spawn_blocking(move || {
+        let any: SocketAddr = match address {
+            SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
+            SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
+        };
+        let socket = UdpSocket::bind(any)?;
+        socket.connect(address)?;
+        socket.set_read_timeout(Some(ECHO))?;
+        socket.send(&[0])?;
+        socket.recv(&mut [0])
+    });
+    match asked.await {
+        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => {
+            "UDP port closed: no coordinator listens there".to_owned()
+        }
+        Ok(Err(error))
+            if matches!(
+                error.kind(),
+                ErrorKind::NetworkUnreachable | ErrorKind::HostUnreachable
+            ) =>
+        {
+            error.to_string()
+        }
+        _ => "no coordinator there, or a firewall drops UDP on that port".to_owned(),
+    }
+}
+
+fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> LinkError {
+    let locator = to.to_string();
+    let owner = keys.owner().to_owned();
+    match error {
+        ConnectionError::TransportError(found) => {
+            let words = found.reason.as_str();
+            let reason = if words.contains("UnknownIssuer") || words.contains("BadSignature") {
+                format!(
+                    "its certificate was signed by another authority than {}",
+                    keys.ca().display()
+                )
+            } else if words.contains("not valid for name") || words.contains("NotValidForName") {
+                format!(
+                    "its certificate is not for \"{}\": dial a name or address that was given to \
+                     `horsehead keys new --host` ({words})",
+                    to.host
+                )
+            } else if words.contains("xpired") {
+                "its certificate is out of date (or this machine's clock is wrong)".to_owned()
+            } else {
+                words.to_owned()
+            };
+            LinkError::Distrusted { locator, reason }
+        }
+        ConnectionError::ConnectionClosed(frame) => {
+            let alert = u64::from(frame.error_code).checked_sub(ALERTS);
+            let reason = match alert {
+                Some(48) => "it was signed by another authority than the coordinator's",
+                Some(45) => "it is out of date there: compare the clocks of both machines",
+                Some(44) => "it was revoked",
+                Some(116) => "it arrived without one",
+                Some(42 | 43 | 46 | 49) => "it is no certificate for a worker",
+                Some(120) => "what listens there is no coordinator of this build",
+                Some(_) | None => {
+                    return LinkError::Transport {
+                        doing: format!("connect to {locator}"),
+                        reason: error.to_string(),
+                    };
+                }
+            };
+            let reason = reason.to_owned();
+            LinkError::Refused {
+                locator,
+                owner,
+                reason,
+            }
+        }
+        other => LinkError::Transport {
+            doing: format!("connect to {locator}"),
+            reason: other.to_string(),
+        },
+    }
+}
