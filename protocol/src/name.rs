@@ -92,7 +92,10 @@ pub fn check_owner(name: &str) -> Result<(), NameError> {
     let permitted = |byte: u8| {
         byte.is_ascii_lowercase() || byte.is_ascii_digit() || matches!(byte, b'-' | b'_' | b'.')
     };
-    let first = name.bytes().next().is_some_and(|b| b.is_ascii_alphanumeric());
+    let first = name
+        .bytes()
+        .next()
+        .is_some_and(|b| b.is_ascii_alphanumeric());
     if first && name.len() <= OWNER_BYTES && name.bytes().all(permitted) && name != ANYONE {
         Ok(())
     } else {
@@ -111,7 +114,17 @@ mod tests {
         for good in ["worker-01", "a", "node7.rack_2", &"x".repeat(OWNER_BYTES)] {
             assert_eq!(check_owner(good), Ok(()), "{good}");
         }
-        for bad in ["", "anyone", "*", "a/b", "a$*", "Worker", "-a", "über", &"x".repeat(65)] {
+        for bad in [
+            "",
+            "anyone",
+            "*",
+            "a/b",
+            "a$*",
+            "Worker",
+            "-a",
+            "über",
+            &"x".repeat(65),
+        ] {
             assert!(check_owner(bad).is_err(), "{bad}");
         }
     }

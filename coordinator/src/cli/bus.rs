@@ -31,6 +31,8 @@ pub(super) struct Options {
     pub(super) listen: Option<String>,
     /// Whether they may do so without certificates.
     pub(super) insecure: bool,
+    /// Folder of the coordinator's certificates.
+    pub(super) tls: Option<PathBuf>,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Which command the run belongs to.
@@ -45,6 +47,7 @@ impl Options {
             run_dir: self.run_dir,
             listen: self.listen,
             insecure: self.insecure,
+            tls: self.tls,
             local_workers: self.local_workers,
             case: case.clone(),
             header: RunHeader {
@@ -149,6 +152,9 @@ fn refuse(error: &DispatchError) -> anyhow::Error {
              free one"
         }
         DispatchError::Link(LinkError::Transport { .. }) => "choose another address with --listen",
+        DispatchError::Link(LinkError::NoKeys { .. } | LinkError::Keys(_)) => {
+            "`horsehead keys new DIR --host NAME` makes certificates; --tls DIR uses them"
+        }
         DispatchError::Link(_) => "for example --listen tcp/127.0.0.1:7447",
         DispatchError::Journal(JournalError::Io { .. }) => {
             "choose a folder that can be written, with --run DIR"
@@ -220,6 +226,7 @@ pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOu
         run_dir: scratch.path().to_owned(),
         listen: None,
         insecure: false,
+        tls: None,
         local_workers: workers,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),

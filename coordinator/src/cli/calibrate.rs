@@ -25,6 +25,7 @@ use std::{
 Examples:
   horsehead calibrate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen tcp/127.0.0.1:7447
+  horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
 
 Presets:
 {}
@@ -45,6 +46,9 @@ pub(super) struct Arguments {
     /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
     #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
     listen: Option<String>,
+    /// Folder of certificates for `quic/` addresses, as `horsehead keys new` makes it.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
     /// Allow other machines to connect without certificates.
     #[arg(long, env = "HORSEHEAD_INSECURE")]
     insecure: bool,
@@ -139,6 +143,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         started: Instant::now(),
         listen: arguments.listen.clone(),
         insecure: arguments.insecure,
+        tls: arguments.tls.clone(),
         local_workers,
         resumed,
         replay: false,

@@ -20,7 +20,7 @@ use search::{
     space::Space,
     strategy::{Finish, Settings, Strategy as _},
 };
-use std::{collections::BTreeMap, time::Instant};
+use std::{collections::BTreeMap, path::PathBuf, time::Instant};
 
 /// One session of a run.
 pub(super) struct Session<'a> {
@@ -32,6 +32,7 @@ pub(super) struct Session<'a> {
     pub(super) started: Instant,
     pub(super) listen: Option<String>,
     pub(super) insecure: bool,
+    pub(super) tls: Option<PathBuf>,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Whether the run was begun by an earlier session.
@@ -70,6 +71,7 @@ impl Session<'_> {
             run_dir: self.folder.path().to_owned(),
             listen: self.listen.clone(),
             insecure: self.insecure,
+            tls: self.tls.clone(),
             local_workers: self.local_workers,
             kind: "calibrate".to_owned(),
             settings: self.manifest.settings_json()?,

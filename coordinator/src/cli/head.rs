@@ -207,6 +207,7 @@ fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead>
             run_dir: scratch.path().to_owned(),
             listen: None,
             insecure: false,
+            tls: None,
             local_workers: 1,
             kind: "head".to_owned(),
             settings: serde_json::to_string(&spec.modes)?,

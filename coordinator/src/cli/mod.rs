@@ -12,6 +12,7 @@ mod head;
 mod head_files;
 mod interrupt;
 mod json;
+mod keys;
 mod output;
 mod problem;
 mod progress;
@@ -58,6 +59,7 @@ enum Command {
     Head(head::Arguments),
     Report(report::Arguments),
     Case(case::Arguments),
+    Keys(keys::Arguments),
     Bench(bench::Arguments),
     Completions(completions::Arguments),
 }
@@ -162,6 +164,7 @@ pub fn main() -> ExitCode {
         Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
+        Command::Keys(arguments) => keys::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };

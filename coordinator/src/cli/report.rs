@@ -60,6 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         started: Instant::now(),
         listen: None,
         insecure: false,
+        tls: None,
         local_workers: 0,
         resumed: true,
         replay: true,

@@ -155,6 +155,7 @@ pub(super) fn compare_once(
             run_dir: scratch.path().to_owned(),
             listen: None,
             insecure: false,
+            tls: None,
             local_workers: workers,
             kind: kind.to_owned(),
             settings,

@@ -9,8 +9,7 @@ use crate::{
     locator::Locator,
 };
 use quinn::{
-    ClientConfig, Connection, ConnectionError, Endpoint, VarInt,
-    crypto::rustls::QuicClientConfig,
+    ClientConfig, Connection, ConnectionError, Endpoint, VarInt, crypto::rustls::QuicClientConfig,
 };
 use std::{
     io::ErrorKind,

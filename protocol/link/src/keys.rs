@@ -142,9 +142,10 @@ impl Keys {
         let ca = self.ca();
         let mut roots = RootCertStore::empty();
         for certificate in self::certificates(&ca, self.role)? {
-            roots
-                .add(certificate)
-                .map_err(|_| KeyError::NotPem { path: ca.clone(), what: "authority" })?;
+            roots.add(certificate).map_err(|_| KeyError::NotPem {
+                path: ca.clone(),
+                what: "authority",
+            })?;
         }
         Ok(Chain {
             roots,
@@ -163,7 +164,11 @@ fn certificates(path: &Path, role: Role) -> Result<Vec<CertificateDer<'static>>,
     let found: Vec<_> = CertificateDer::pem_slice_iter(&pem)
         .collect::<Result<_, _>>()
         .map_err(|_| not())?;
-    if found.is_empty() { Err(not()) } else { Ok(found) }
+    if found.is_empty() {
+        Err(not())
+    } else {
+        Ok(found)
+    }
 }
 
 fn readable(path: &Path, role: Role) -> Result<Vec<u8>, KeyError> {

@@ -103,8 +103,8 @@ impl Authority {
             what,
         };
         let key = KeyPair::from_pem(&key).map_err(|_| not(CA_KEY, "private key"))?;
-        let der = CertificateDer::from_pem_slice(pem.as_bytes())
-            .map_err(|_| not(CA, "certificate"))?;
+        let der =
+            CertificateDer::from_pem_slice(pem.as_bytes()).map_err(|_| not(CA, "certificate"))?;
         let name = Certificate::parse(&folder.join(CA), &[der])?.name;
         Ok(Self {
             folder: folder.to_owned(),

@@ -61,7 +61,11 @@ fn every_wrong_file_is_named_with_what_is_wrong() {
     );
     says(
         &refusal(folder.path(), Role::Worker),
-        &["worker.pem is missing", "coordinator's folder", "/worker-01"],
+        &[
+            "worker.pem is missing",
+            "coordinator's folder",
+            "/worker-01",
+        ],
     );
     says(
         &refusal(&worker, Role::Coordinator),
@@ -73,7 +77,11 @@ fn every_wrong_file_is_named_with_what_is_wrong() {
         &refusal(&worker, Role::Worker),
         &["worker.pem was not signed by the authority of", "ca.pem"],
     );
-    fs::copy(other.path().join("worker-01/worker.key"), worker.join("worker.key")).unwrap();
+    fs::copy(
+        other.path().join("worker-01/worker.key"),
+        worker.join("worker.key"),
+    )
+    .unwrap();
     says(
         &refusal(&worker, Role::Worker),
         &["the key beside", "worker.pem is not the one"],
@@ -116,24 +124,37 @@ fn dates_and_purposes_are_checked_before_anyone_is_dialled() {
     ] {
         let worker = authority.issue_worker(name, valid).unwrap();
         let refused = refusal(&worker, Role::Worker);
-        assert!(refused.contains(words) && refused.contains("worker.pem"), "{refused}");
+        assert!(
+            refused.contains(words) && refused.contains("worker.pem"),
+            "{refused}"
+        );
     }
     // a worker's pair in the coordinator's place: made for dialling, and for no host
     let at = folder.path();
     fs::copy(at.join("worker-01/worker.pem"), at.join(COORDINATOR[0])).unwrap();
     fs::copy(at.join("worker-01/worker.key"), at.join(COORDINATOR[1])).unwrap();
     let refused = refusal(at, Role::Coordinator);
-    assert!(refused.contains("coordinator.pem cannot be used here"), "{refused}");
+    assert!(
+        refused.contains("coordinator.pem cannot be used here"),
+        "{refused}"
+    );
 }
 
 #[test]
 fn nothing_is_overwritten() {
     let folder = made();
     let again = Authority::create(folder.path()).unwrap_err().to_string();
-    assert!(again.contains("is not empty; nothing was written"), "{again}");
+    assert!(
+        again.contains("is not empty; nothing was written"),
+        "{again}"
+    );
     let authority = Authority::open(folder.path()).unwrap();
     let twice = authority.issue_worker("worker-01", Validity::days(1));
     assert!(twice.unwrap_err().to_string().contains("exists already"));
     let bad = authority.issue_worker("../up", Validity::days(1));
-    assert!(bad.unwrap_err().to_string().contains("cannot name a worker"));
+    assert!(
+        bad.unwrap_err()
+            .to_string()
+            .contains("cannot name a worker")
+    );
 }

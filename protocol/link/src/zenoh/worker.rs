@@ -178,7 +178,11 @@ async fn is_welcome(session: &Session, owner: &str) -> bool {
     let Ok(replies) = asked else {
         return true;
     };
-    match replies.recv_async().await.map(zenoh::query::Reply::into_result) {
+    match replies
+        .recv_async()
+        .await
+        .map(zenoh::query::Reply::into_result)
+    {
         Ok(Ok(sample)) => sample.payload().to_bytes().as_ref() != key::UNKNOWN.as_bytes(),
         Ok(Err(_)) | Err(_) => true,
     }
