@@ -1,5 +1,6 @@
 //! Joins the commands to the dispatcher: the only file of the command line that names it.
 use super::{
+    Door,
     json::{BenchOutput, RoundTrip},
     problem::Usage,
 };
@@ -27,12 +28,8 @@ pub(super) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION")
 pub(super) struct Options {
     /// Folder of the journal.
     pub(super) run_dir: PathBuf,
-    /// Where other machines may connect.
-    pub(super) listen: Option<String>,
-    /// Whether they may do so without certificates.
-    pub(super) insecure: bool,
-    /// Folder of the coordinator's certificates.
-    pub(super) tls: Option<PathBuf>,
+    /// How other machines may join.
+    pub(super) door: Door,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Which command the run belongs to.
@@ -45,9 +42,9 @@ impl Options {
     fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
         Ok(DispatchOptions {
             run_dir: self.run_dir,
-            listen: self.listen,
-            insecure: self.insecure,
-            tls: self.tls,
+            listen: self.door.listen,
+            insecure: self.door.insecure,
+            tls: self.door.tls,
             local_workers: self.local_workers,
             case: case.clone(),
             header: RunHeader {
@@ -224,9 +221,7 @@ pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOu
     let scratch = tempfile::tempdir()?;
     let options = Options {
         run_dir: scratch.path().to_owned(),
-        listen: None,
-        insecure: false,
-        tls: None,
+        door: Door::default(),
         local_workers: workers,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),

@@ -1,6 +1,6 @@
 //! `horsehead calibrate`: identify the parameters, and show what it brought.
 use super::{
-    CaseChoice, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
+    CaseChoice, Door, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
     problem::Usage,
     progress::Display,
     run_folder::{Begun, Manifest, RunFolder, command_line},
@@ -43,15 +43,8 @@ pub(super) struct Arguments {
     /// Run folder [default: runs/CASE-PRESET-seedN].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
-    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
-    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
-    listen: Option<String>,
-    /// Folder of certificates for `quic/` addresses, as `horsehead keys new` makes it.
-    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
-    tls: Option<PathBuf>,
-    /// Allow other machines to connect without certificates.
-    #[arg(long, env = "HORSEHEAD_INSECURE")]
-    insecure: bool,
+    #[command(flatten)]
+    door: Door,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
     workers: Option<usize>,
@@ -141,9 +134,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         case: &case,
         earlier_s: wall_s,
         started: Instant::now(),
-        listen: arguments.listen.clone(),
-        insecure: arguments.insecure,
-        tls: arguments.tls.clone(),
+        door: arguments.door.clone(),
         local_workers,
         resumed,
         replay: false,

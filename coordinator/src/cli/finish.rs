@@ -1,6 +1,6 @@
 //! From a run folder to its result: the search (or its replay), the comparison, the files.
 use super::{
-    Output, bus,
+    Door, Output, bus,
     json::{self, Both, CalibrateOutput},
     output,
     run_folder::{Manifest, RunFolder, gene_file},
@@ -20,7 +20,7 @@ use search::{
     space::Space,
     strategy::{Finish, Settings, Strategy as _},
 };
-use std::{collections::BTreeMap, path::PathBuf, time::Instant};
+use std::{collections::BTreeMap, time::Instant};
 
 /// One session of a run.
 pub(super) struct Session<'a> {
@@ -30,9 +30,7 @@ pub(super) struct Session<'a> {
     /// Wall time of earlier sessions (s).
     pub(super) earlier_s: f64,
     pub(super) started: Instant,
-    pub(super) listen: Option<String>,
-    pub(super) insecure: bool,
-    pub(super) tls: Option<PathBuf>,
+    pub(super) door: Door,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Whether the run was begun by an earlier session.
@@ -69,9 +67,7 @@ impl Session<'_> {
             .map_err(study::StudyError::from)?;
         let options = bus::Options {
             run_dir: self.folder.path().to_owned(),
-            listen: self.listen.clone(),
-            insecure: self.insecure,
-            tls: self.tls.clone(),
+            door: self.door.clone(),
             local_workers: self.local_workers,
             kind: "calibrate".to_owned(),
             settings: self.manifest.settings_json()?,

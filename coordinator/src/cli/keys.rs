@@ -88,7 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         } => add(folder, names, Validity::days(*days)),
         Action::Check { folder } => check(folder),
     }
-    .map_err(|error| refuse(error).into())
+    .map_err(|error| refuse(&error).into())
 }
 
 fn make(folder: &Path, workers: usize, hosts: &[String], valid: Validity) -> Result<(), KeyError> {
@@ -151,7 +151,7 @@ fn check(folder: &Path) -> Result<(), KeyError> {
     Ok(())
 }
 
-fn refuse(error: KeyError) -> Usage {
+fn refuse(error: &KeyError) -> Usage {
     Usage {
         message: error.to_string(),
         help: String::new(),

@@ -16,6 +16,7 @@ mod keys;
 mod output;
 mod problem;
 mod progress;
+mod refusals;
 mod report;
 mod run_folder;
 mod simulate;
@@ -91,6 +92,20 @@ struct CaseChoice {
     /// same machine.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     measured: Option<PathBuf>,
+}
+
+/// How workers on other machines may join; not at all by default.
+#[derive(Clone, Debug, Default, Args)]
+struct Door {
+    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
+    listen: Option<String>,
+    /// Folder of certificates for `quic/` addresses, as `horsehead keys new` makes it.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
+    /// Allow other machines to connect without certificates.
+    #[arg(long, env = "HORSEHEAD_INSECURE")]
+    insecure: bool,
 }
 
 /// A case that was read.

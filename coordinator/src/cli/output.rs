@@ -1,7 +1,10 @@
 //! Printing: results on standard output, everything else on standard error.
-use super::Output;
+use super::{Output, refusals::Refusals};
 use serde::Serialize;
 use std::io::{self, IsTerminal as _, Write as _};
+use tracing_subscriber::{
+    Layer as _, filter::filter_fn, layer::SubscriberExt as _, util::SubscriberInitExt as _,
+};
 
 /// Sends warnings of the machinery to standard error; `HORSEHEAD_LOG` asks for more or less, as
 /// `HORSEHEAD_LOG=info`. The bus itself is silent by default: it reports as errors what happens
@@ -9,12 +12,15 @@ use std::io::{self, IsTerminal as _, Write as _};
 pub(super) fn diagnostics() {
     let filter = tracing_subscriber::EnvFilter::try_from_env("HORSEHEAD_LOG")
         .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn,zenoh=off"));
-    tracing_subscriber::fmt()
-        .with_env_filter(filter)
+    let shown = tracing_subscriber::fmt::layer()
         .with_writer(io::stderr)
         .with_ansi(io::stderr().is_terminal() && !colourless())
         .with_target(false)
         .without_time()
+        .with_filter(filter);
+    tracing_subscriber::registry()
+        .with(shown)
+        .with(Refusals::default().with_filter(filter_fn(Refusals::concerns)))
         .init();
 }
 

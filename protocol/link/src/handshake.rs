@@ -1,4 +1,4 @@
-//! One handshake with a coordinator, before the bus is opened, to learn why it would fail.
+//! One handshake with a coordinator, before the bus is opened, to learn why that would fail.
 //!
 //! The bus itself reports every refusal as a time-out after ten seconds. This shows the same
 //! certificates to the same address and reads the answer: a host that is not known, a port that
@@ -17,7 +17,10 @@ use std::{
     sync::Arc,
     time::Duration,
 };
-use tokio::time::{sleep, timeout};
+use tokio::{
+    net::TcpStream,
+    time::{sleep, timeout},
+};
 
 /// How long an answer may take: then the bus tries by itself, for longer.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -29,6 +32,25 @@ const ECHO: Duration = Duration::from_millis(200);
 const PROTOCOLS: [&[u8]; 2] = [b"zenoh-ms", b"zenoh"];
 /// What the alerts of TLS begin at among QUIC's error codes.
 const ALERTS: u64 = 0x100;
+
+/// Whether anybody listens for plain connections there.
+pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
+    let address = resolve(to).await?;
+    let silent = |how: String| LinkError::Silent {
+        locator: to.to_string(),
+        how,
+    };
+    match timeout(PATIENCE, TcpStream::connect(address)).await {
+        Ok(Ok(_)) => Ok(()),
+        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => Err(silent(
+            "TCP port closed: no coordinator listens there".to_owned(),
+        )),
+        Ok(Err(error)) => Err(silent(error.to_string())),
+        Err(_) => Err(silent(
+            "no such machine, or a firewall drops TCP on that port".to_owned(),
+        )),
+    }
+}
 
 /// Shakes hands, and says what is wrong if that fails.
 pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
@@ -64,9 +86,13 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
         connection.close(VarInt::from_u32(0), &[]);
         Ok(())
     };
-    let ended = match timeout(PATIENCE, shaken).await {
-        Ok(ended) => ended,
-        Err(_) => Err(ConnectionError::TimedOut),
+    let silent = |how: &str| LinkError::Silent {
+        locator: to.to_string(),
+        how: how.to_owned(),
+    };
+    let ended = tokio::select! {
+        ended = timeout(PATIENCE, shaken) => ended.unwrap_or(Err(ConnectionError::TimedOut)),
+        how = closed(address) => return Err(silent(&how)),
     };
     match ended {
         Ok(()) => {
@@ -74,10 +100,9 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
             drop(timeout(ECHO, endpoint.wait_idle()).await);
             Ok(())
         }
-        Err(ConnectionError::TimedOut) => Err(LinkError::Silent {
-            locator: to.to_string(),
-            how: listen_for_refusal(address).await,
-        }),
+        Err(ConnectionError::TimedOut) => Err(silent(
+            "no coordinator there, or a firewall drops UDP on that port",
+        )),
         Err(error) => Err(explain(&error, to, keys)),
     }
 }
@@ -110,8 +135,8 @@ async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
         .ok_or_else(|| unknown("it has no address".to_owned()))
 }
 
-/// Whether the other machine says that the port is closed, or nothing at all.
-async fn listen_for_refusal(address: SocketAddr) -> String {
+/// Completes only if the other machine says that nobody can be reached there.
+async fn closed(address: SocketAddr) -> String {
     let asked = tokio::task::spawn_blocking(move || {
         let any: SocketAddr = match address {
             SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
@@ -120,75 +145,78 @@ async fn listen_for_refusal(address: SocketAddr) -> String {
         let socket = UdpSocket::bind(any)?;
         socket.connect(address)?;
         socket.set_read_timeout(Some(ECHO))?;
+        // no datagram of QUIC is so short: whoever listens drops it
         socket.send(&[0])?;
         socket.recv(&mut [0])
     });
-    match asked.await {
-        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => {
+    match asked
+        .await
+        .map(|received| received.map_err(|error| (error.kind(), error)))
+    {
+        Ok(Err((ErrorKind::ConnectionRefused, _))) => {
             "UDP port closed: no coordinator listens there".to_owned()
         }
-        Ok(Err(error))
-            if matches!(
-                error.kind(),
-                ErrorKind::NetworkUnreachable | ErrorKind::HostUnreachable
-            ) =>
-        {
+        Ok(Err((ErrorKind::NetworkUnreachable | ErrorKind::HostUnreachable, error))) => {
             error.to_string()
         }
-        _ => "no coordinator there, or a firewall drops UDP on that port".to_owned(),
+        Ok(_) | Err(_) => std::future::pending().await,
     }
 }
 
+/// What broke the handshake off, in the words of whoever has to mend it.
 fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> LinkError {
     let locator = to.to_string();
-    let owner = keys.owner().to_owned();
-    match error {
-        ConnectionError::TransportError(found) => {
-            let words = found.reason.as_str();
-            let reason = if words.contains("UnknownIssuer") || words.contains("BadSignature") {
-                format!(
-                    "its certificate was signed by another authority than {}",
-                    keys.ca().display()
-                )
-            } else if words.contains("not valid for name") || words.contains("NotValidForName") {
-                format!(
-                    "its certificate is not for \"{}\": dial a name or address that was given to \
-                     `horsehead keys new --host` ({words})",
-                    to.host
-                )
-            } else if words.contains("xpired") {
-                "its certificate is out of date (or this machine's clock is wrong)".to_owned()
-            } else {
-                words.to_owned()
-            };
-            LinkError::Distrusted { locator, reason }
-        }
-        ConnectionError::ConnectionClosed(frame) => {
-            let alert = u64::from(frame.error_code).checked_sub(ALERTS);
-            let reason = match alert {
-                Some(48) => "it was signed by another authority than the coordinator's",
-                Some(45) => "it is out of date there: compare the clocks of both machines",
-                Some(44) => "it was revoked",
-                Some(116) => "it arrived without one",
-                Some(42 | 43 | 46 | 49) => "it is no certificate for a worker",
-                Some(120) => "what listens there is no coordinator of this build",
-                Some(_) | None => {
-                    return LinkError::Transport {
-                        doing: format!("connect to {locator}"),
-                        reason: error.to_string(),
-                    };
-                }
-            };
-            let reason = reason.to_owned();
-            LinkError::Refused {
-                locator,
-                owner,
-                reason,
-            }
-        }
-        other => LinkError::Transport {
-            doing: format!("connect to {locator}"),
-            reason: other.to_string(),
-        },
+    if let ConnectionError::TransportError(found) = error {
+        let reason = distrust(&found.reason, to, keys);
+        return LinkError::Distrusted { locator, reason };
+    }
+    if let ConnectionError::ConnectionClosed(frame) = error
+        && let Some(reason) = alert(u64::from(frame.error_code))
+    {
+        return LinkError::Refused {
+            locator,
+            owner: keys.owner().to_owned(),
+            reason: reason.to_owned(),
+        };
+    }
+    LinkError::Transport {
+        doing: format!("connect to {locator}"),
+        reason: error.to_string(),
+    }
+}
+
+/// Why this end does not take the coordinator's certificate.
+fn distrust(words: &str, to: &Locator, keys: &Keys) -> String {
+    let has = |part: &str| words.contains(part);
+    if has("UnknownIssuer") || has("BadSignature") {
+        let ca = keys.ca();
+        return format!(
+            "its certificate was signed by another authority than {}",
+            ca.display()
+        );
+    }
+    if has("not valid for name") || has("NotValidForName") {
+        return format!(
+            "its certificate is not for \"{}\": dial a name or address that was given to \
+             `horsehead keys new --host` ({words})",
+            to.host
+        );
+    }
+    if has("xpired") {
+        return "its certificate is out of date (or this machine's clock is wrong)".to_owned();
+    }
+    words.to_owned()
+}
+
+/// Why the coordinator does not take this end's certificate: the alert it sent.
+const fn alert(code: u64) -> Option<&'static str> {
+    match code.checked_sub(ALERTS) {
+        Some(48) => Some("it was signed by another authority than the coordinator's"),
+        Some(45) => Some("it is out of date there: compare the clocks of both machines"),
+        Some(44) => Some("it was revoked"),
+        Some(116) => Some("it arrived without one"),
+        Some(42 | 43 | 46 | 49) => Some("it is no certificate for a worker"),
+        Some(120) => Some("what listens there is no coordinator of this build"),
+        Some(_) | None => None,
     }
 }

@@ -126,7 +126,7 @@ impl Authority {
             reason: format!("{}: {error}", hosts.join(", ")),
         })?;
         params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ServerAuth];
-        self.sign(params, &certificate, &key)
+        self.sign(&params, &certificate, &key)
     }
 
     /// Makes the folder of one worker and lets it join.
@@ -154,7 +154,7 @@ impl Authority {
             reason: error.to_string(),
         })?;
         params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ClientAuth];
-        self.sign(params, &certificate, &key)?;
+        self.sign(&params, &certificate, &key)?;
         write(&folder.join(CA), &self.pem, Open::All)?;
         let mut names = fs::read_to_string(&list).unwrap_or_default();
         names.push_str(name);
@@ -168,17 +168,19 @@ impl Authority {
 
     fn sign(
         &self,
-        params: CertificateParams,
+        params: &CertificateParams,
         certificate: &Path,
         key: &Path,
     ) -> Result<(), KeyError> {
-        let make = |error: rcgen::Error| KeyError::Make {
+        let make = |error: &rcgen::Error| KeyError::Make {
             path: certificate.to_owned(),
             reason: error.to_string(),
         };
-        let pair = KeyPair::generate().map_err(make)?;
+        let pair = KeyPair::generate().map_err(|error| make(&error))?;
         let issuer = Issuer::from_params(&self.params, &self.key);
-        let signed = params.signed_by(&pair, &issuer).map_err(make)?;
+        let signed = params
+            .signed_by(&pair, &issuer)
+            .map_err(|error| make(&error))?;
         write(key, &pair.serialize_pem(), Open::Owner)?;
         write(certificate, &signed.pem(), Open::All)
     }
@@ -226,6 +228,7 @@ fn set_validity(params: &mut CertificateParams, valid: Validity) {
 }
 
 /// Who may read a file.
+#[derive(Clone, Copy)]
 enum Open {
     All,
     Owner,

@@ -9,6 +9,7 @@ use rustls::{
     sign::CertifiedKey,
 };
 use std::{
+    net::IpAddr,
     path::{Path, PathBuf},
     sync::Arc,
 };
@@ -95,41 +96,37 @@ impl Certificate {
     }
 
     fn explain(&self, error: &Error, ca: &Path) -> KeyError {
+        use CertificateError as C;
         let path = self.path.clone();
-        match error {
-            Error::InvalidCertificate(
-                CertificateError::Expired | CertificateError::ExpiredContext { .. },
-            ) => KeyError::Date {
-                path,
-                when: format!("is out of date since {}", self.until),
-            },
-            Error::InvalidCertificate(
-                CertificateError::NotValidYet | CertificateError::NotValidYetContext { .. },
-            ) => KeyError::Date {
-                path,
-                when: format!("is valid only from {} on", self.from),
-            },
-            Error::InvalidCertificate(
-                CertificateError::UnknownIssuer | CertificateError::BadSignature,
-            ) => KeyError::OtherAuthority {
-                path,
-                ca: ca.to_owned(),
-            },
-            other => KeyError::Unfit {
-                path,
-                reason: other.to_string(),
-            },
+        let is = |kinds: &[C]| matches!(error, Error::InvalidCertificate(found) if kinds.contains(found));
+        if is(&[C::UnknownIssuer, C::BadSignature]) {
+            let ca = ca.to_owned();
+            return KeyError::OtherAuthority { path, ca };
         }
+        let now = ASN1Time::now();
+        if now > self.until {
+            let when = format!("is out of date since {}", self.until);
+            return KeyError::Date { path, when };
+        }
+        if now < self.from {
+            let when = format!("is valid only from {} on", self.from);
+            return KeyError::Date { path, when };
+        }
+        let reason = error.to_string();
+        KeyError::Unfit { path, reason }
     }
 }
 
 fn host_of(name: &GeneralName<'_>) -> Option<String> {
-    match name {
-        GeneralName::DNSName(name) => Some((*name).to_owned()),
-        GeneralName::IPAddress([a, b, c, d]) => Some(format!("{a}.{b}.{c}.{d}")),
-        GeneralName::IPAddress(bytes) => <[u8; 16]>::try_from(*bytes)
-            .ok()
-            .map(|bytes| std::net::Ipv6Addr::from(bytes).to_string()),
-        _ => None,
+    if let GeneralName::DNSName(name) = name {
+        return Some((*name).to_owned());
     }
+    let GeneralName::IPAddress(bytes) = name else {
+        return None;
+    };
+    let address = match bytes.len() {
+        4 => IpAddr::from(<[u8; 4]>::try_from(*bytes).ok()?),
+        _ => IpAddr::from(<[u8; 16]>::try_from(*bytes).ok()?),
+    };
+    Some(address.to_string())
 }

@@ -112,9 +112,10 @@ impl CoordinatorEnd for ZenohCoordinator {
                 .of(to)
                 .map(|name| key::to_worker(self.run, name, lane))
         };
-        match key {
-            Some(key) => self.sender.send(key, lane, frame),
-            None => tracing::debug!(%to, "a frame was not sent: the worker is gone"),
+        if let Some(key) = key {
+            self.sender.send(key, lane, frame);
+        } else {
+            tracing::debug!(%to, "a frame was not sent: the worker is gone");
         }
     }
 

@@ -55,7 +55,10 @@ impl ZenohWorker {
                     })
                 })?
             }
-            None => WorkerName::anyone(process),
+            None => {
+                handshake::knock(connect).await?;
+                WorkerName::anyone(process)
+            }
         };
         let tls = keys.map_or_else(|| json!({}), connecting);
         let mut config = common(&[connect], &tls);
