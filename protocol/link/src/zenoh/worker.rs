@@ -44,21 +44,18 @@ impl ZenohWorker {
         process: u64,
     ) -> Result<Self, LinkError> {
         let keys = needed(&[connect], keys)?;
-        let name = match keys {
-            Some(keys) => {
-                handshake::shake(connect, keys).await?;
-                // checked when the keys were read
-                WorkerName::of(keys.owner(), process).map_err(|source| {
-                    LinkError::Keys(crate::keys::KeyError::Name {
-                        path: keys.certificate(),
-                        source,
-                    })
-                })?
-            }
-            None => {
-                handshake::knock(connect).await?;
-                WorkerName::anyone(process)
-            }
+        let name = if let Some(keys) = keys {
+            handshake::shake(connect, keys).await?;
+            // checked when the keys were read
+            WorkerName::of(keys.owner(), process).map_err(|source| {
+                LinkError::Keys(crate::keys::KeyError::Name {
+                    path: keys.certificate(),
+                    source,
+                })
+            })?
+        } else {
+            handshake::knock(connect).await?;
+            WorkerName::anyone(process)
         };
         let tls = keys.map_or_else(|| json!({}), connecting);
         let mut config = common(&[connect], &tls);
