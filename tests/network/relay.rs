@@ -2,11 +2,12 @@
 //!
 //! `test-relay LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS`: shares from 0 to 1, both ways. (The
 //! kernel's own netem does the same, but is not in every kernel.) Each datagram waits a time of its
-//! own, so they overtake each other.
+//! own, so they overtake each other. Now and then a line says how many were lost and doubled.
 use std::{
     collections::BTreeMap,
     env,
     error::Error,
+    io::{self, Write},
     net::SocketAddr,
     sync::{
         Arc,
@@ -16,6 +17,8 @@ use std::{
 };
 use tokio::net::UdpSocket;
 
+/// Datagrams between two lines.
+const TOLD: u64 = 100;
 /// Longest datagram there can be.
 const LONGEST: usize = 65_535;
 
@@ -26,6 +29,8 @@ struct Weather {
     loss: f64,
     duplication: f64,
     delay: Duration,
+    lost: Arc<AtomicU64>,
+    doubled: Arc<AtomicU64>,
 }
 
 impl Weather {
@@ -44,10 +49,12 @@ impl Weather {
     /// When the copies of a datagram go on; none if it is lost.
     fn fate(&self) -> Vec<Duration> {
         if self.draw() < self.loss {
+            self.lost.fetch_add(1, Ordering::Relaxed);
             return Vec::new();
         }
-        let copies = if self.draw() < self.duplication { 2 } else { 1 };
-        (0..copies)
+        let doubled = u64::from(self.draw() < self.duplication);
+        self.doubled.fetch_add(doubled, Ordering::Relaxed);
+        (0..=doubled)
             .map(|_| self.delay.mul_f64(self.draw()))
             .collect()
     }
@@ -65,7 +72,7 @@ fn pass(weather: &Weather, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[
     }
 }
 
-/// Brings back what the target answers to one client.
+/// Brings back what the target answers to one client, until that cannot be heard any more.
 async fn answer(
     weather: Weather,
     inner: Arc<UdpSocket>,
@@ -73,10 +80,8 @@ async fn answer(
     client: SocketAddr,
 ) {
     let mut buffer = vec![0; LONGEST];
-    loop {
-        if let Ok((length, _)) = inner.recv_from(&mut buffer).await {
-            pass(&weather, &outer, client, &buffer[..length]);
-        }
+    while let Ok((length, _)) = inner.recv_from(&mut buffer).await {
+        pass(&weather, &outer, client, &buffer[..length]);
     }
 }
 
@@ -91,12 +96,19 @@ async fn main() -> Result<(), Box<dyn Error>> {
         loss: loss.parse()?,
         duplication: duplication.parse()?,
         delay: Duration::from_millis(delay_ms.parse()?),
+        lost: Arc::default(),
+        doubled: Arc::default(),
     };
     let target: SocketAddr = target.parse()?;
     let outer = Arc::new(UdpSocket::bind(listen).await?);
     let mut clients: BTreeMap<SocketAddr, Arc<UdpSocket>> = BTreeMap::new();
     let mut buffer = vec![0; LONGEST];
-    loop {
+    let mut out = io::stdout();
+    for count in 1_u64.. {
+        if count.is_multiple_of(TOLD) {
+            let counts = [&weather.lost, &weather.doubled].map(|at| at.load(Ordering::Relaxed));
+            writeln!(out, "lost {} doubled {}", counts[0], counts[1])?;
+        }
         let Ok((length, client)) = outer.recv_from(&mut buffer).await else {
             // a client that is gone is reported here, and is nobody's business
             continue;
@@ -117,4 +129,5 @@ async fn main() -> Result<(), Box<dyn Error>> {
         };
         pass(&weather, &inner, target, &buffer[..length]);
     }
+    Ok(())
 }
