@@ -7,7 +7,6 @@
 //! horsehead/1/RUN/hb/WORKER        worker -> coordinator: announcements, heartbeats
 //! horsehead/1/RUN/alive/WORKER     presence
 //! horsehead/1/RUN/blob/HASH/CHUNK  worker asks coordinator: content, piece by piece
-//! horsehead/1/guest/NAME           worker asks coordinator: may this certificate join?
 //! ```
 //!
 //! `RUN` is 16 hexadecimal digits, all zeros until a coordinator has told the worker. `WORKER` is
@@ -20,11 +19,6 @@ use crate::{
 
 /// What every key begins with; the number is the wire version.
 pub const ROOT: &str = "horsehead/1";
-
-/// Answer to [`guest`]: its workers may join.
-pub const WELCOME: &str = "welcome";
-/// Answer to [`guest`]: they may not.
-pub const UNKNOWN: &str = "unknown";
 
 /// Which of a coordinator's lanes a message takes: a long job must not hold up an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -84,21 +78,6 @@ pub fn blob(run: RunId, hash: ContentHash, chunk: u32) -> String {
 /// Any piece of any content of a run.
 pub fn all_blobs(run: RunId) -> String {
     format!("{ROOT}/{run}/blob/*/*")
-}
-
-/// Whether a certificate's workers may join; the one thing that any certificate may ask.
-pub fn guest(owner: &str) -> String {
-    format!("{ROOT}/guest/{owner}")
-}
-
-/// The same of any certificate.
-pub fn all_guests() -> String {
-    guest("*")
-}
-
-/// The certificate that a question of [`guest`] is about.
-pub fn guest_of(key: &str) -> Option<&str> {
-    key.strip_prefix(ROOT)?.strip_prefix("/guest/")
 }
 
 /// The worker that a key ends with, if it does.
@@ -173,7 +152,6 @@ mod tests {
         }
         assert_eq!(worker_of(&alive(run, &worker)), Some(worker));
         assert_eq!(blob_of(&blob(run, hash, 7)), Some((hash, 7)));
-        assert_eq!(guest_of(&guest("worker-01")), Some("worker-01"));
     }
 
     #[test]

@@ -16,7 +16,6 @@ mod keys;
 mod output;
 mod problem;
 mod progress;
-mod refusals;
 mod report;
 mod run_folder;
 mod simulate;

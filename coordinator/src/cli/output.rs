@@ -1,10 +1,7 @@
 //! Printing: results on standard output, everything else on standard error.
-use super::{Output, refusals::Refusals};
+use super::Output;
 use serde::Serialize;
 use std::io::{self, IsTerminal as _, Write as _};
-use tracing_subscriber::{
-    Layer as _, filter::filter_fn, layer::SubscriberExt as _, util::SubscriberInitExt as _,
-};
 
 /// Sends warnings of the machinery to standard error; `HORSEHEAD_LOG` asks for more or less, as
 /// `HORSEHEAD_LOG=info`. The bus itself is silent by default: it reports as errors what happens
@@ -12,15 +9,12 @@ use tracing_subscriber::{
 pub(super) fn diagnostics() {
     let filter = tracing_subscriber::EnvFilter::try_from_env("HORSEHEAD_LOG")
         .unwrap_or_else(|_| tracing_subscriber::EnvFilter::new("warn,zenoh=off"));
-    let shown = tracing_subscriber::fmt::layer()
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
         .with_writer(io::stderr)
         .with_ansi(io::stderr().is_terminal() && !colourless())
         .with_target(false)
         .without_time()
-        .with_filter(filter);
-    tracing_subscriber::registry()
-        .with(shown)
-        .with(Refusals::default().with_filter(filter_fn(Refusals::concerns)))
         .init();
 }
 

@@ -5,33 +5,27 @@
 //! is closed, a certificate that one of the two ends does not accept.
 use crate::{
     LinkError,
+    gate::{KNOCK, UNLISTED, WELCOME},
     keys::{Keys, provider},
     locator::Locator,
 };
-use quinn::{
-    ClientConfig, Connection, ConnectionError, Endpoint, VarInt, crypto::rustls::QuicClientConfig,
-};
+use quinn::{ClientConfig, ConnectionError, Endpoint, VarInt, crypto::rustls::QuicClientConfig};
 use std::{
     io::ErrorKind,
     net::{Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket},
     sync::Arc,
     time::Duration,
 };
-use tokio::{
-    net::TcpStream,
-    time::{sleep, timeout},
-};
+use tokio::{net::TcpStream, time::timeout};
 
 /// How long an answer may take: then the bus tries by itself, for longer.
 const PATIENCE: Duration = Duration::from_secs(3);
-/// How often the end of the handshake is looked for.
-const LOOK: Duration = Duration::from_millis(5);
 /// How long a machine may take to say that a port is closed.
 const ECHO: Duration = Duration::from_millis(200);
-/// Protocols of the bus, any of which will do to shake hands.
-const PROTOCOLS: [&[u8]; 2] = [b"zenoh-ms", b"zenoh"];
 /// What the alerts of TLS begin at among QUIC's error codes.
 const ALERTS: u64 = 0x100;
+/// The alert of a listener that does not know the protocol.
+const NO_SUCH_PROTOCOL: u64 = 120;
 
 /// Whether anybody listens for plain connections there.
 pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
@@ -68,7 +62,7 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
                 .with_client_auth_cert(chain.certificates, chain.key)
         })
         .map_err(|error| transport(error.to_string()))?;
-    config.alpn_protocols = PROTOCOLS.map(<[u8]>::to_vec).to_vec();
+    config.alpn_protocols = vec![KNOCK.to_vec()];
     let config =
         QuicClientConfig::try_from(config).map_err(|error| transport(error.to_string()))?;
     let any: SocketAddr = match address {
@@ -80,12 +74,8 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
     let connecting = endpoint
         .connect(address, &to.host)
         .map_err(|error| transport(error.to_string()))?;
-    let shaken = async {
-        let connection = connecting.await?;
-        confirmed(&connection).await?;
-        connection.close(VarInt::from_u32(0), &[]);
-        Ok(())
-    };
+    // with TLS 1.3 a client is connected before its certificate is looked at: the answer comes after
+    let shaken = async { Ok(connecting.await?.closed().await) };
     let silent = |how: &str| LinkError::Silent {
         locator: to.to_string(),
         how: how.to_owned(),
@@ -94,29 +84,13 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
         ended = timeout(PATIENCE, shaken) => ended.unwrap_or(Err(ConnectionError::TimedOut)),
         how = closed(address) => return Err(silent(&how)),
     };
-    match ended {
-        Ok(()) => {
-            // the farewell spares the coordinator a wait for the link that never comes
-            drop(timeout(ECHO, endpoint.wait_idle()).await);
-            Ok(())
-        }
-        Err(ConnectionError::TimedOut) => Err(silent(
+    let ended = ended.unwrap_or_else(|error| error);
+    if ended == ConnectionError::TimedOut {
+        return Err(silent(
             "no coordinator there, or a firewall drops UDP on that port",
-        )),
-        Err(error) => Err(explain(&error, to, keys)),
+        ));
     }
-}
-
-/// Waits until the other end has accepted this end's certificate: with TLS 1.3 a client is
-/// connected before that.
-async fn confirmed(connection: &Connection) -> Result<(), ConnectionError> {
-    while connection.stats().frame_rx.handshake_done == 0 {
-        if let Some(reason) = connection.close_reason() {
-            return Err(reason);
-        }
-        sleep(LOOK).await;
-    }
-    Ok(())
+    explain(&ended, to, keys)
 }
 
 async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
@@ -163,26 +137,43 @@ async fn closed(address: SocketAddr) -> String {
     }
 }
 
-/// What broke the handshake off, in the words of whoever has to mend it.
-fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> LinkError {
+/// What the end of the handshake means, in the words of whoever has to mend it.
+fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> Result<(), LinkError> {
     let locator = to.to_string();
+    let refused = |reason: &str| LinkError::Refused {
+        locator: to.to_string(),
+        owner: keys.owner().to_owned(),
+        reason: reason.to_owned(),
+    };
     if let ConnectionError::TransportError(found) = error {
         let reason = distrust(&found.reason, to, keys);
-        return LinkError::Distrusted { locator, reason };
+        return Err(LinkError::Distrusted { locator, reason });
     }
-    if let ConnectionError::ConnectionClosed(frame) = error
-        && let Some(reason) = alert(u64::from(frame.error_code))
-    {
-        return LinkError::Refused {
-            locator,
-            owner: keys.owner().to_owned(),
-            reason: reason.to_owned(),
-        };
+    if let ConnectionError::ConnectionClosed(frame) = error {
+        let code = u64::from(frame.error_code);
+        if code.checked_sub(ALERTS) == Some(NO_SUCH_PROTOCOL) {
+            // a router of the bus without a gate: it will say for itself what it thinks of us
+            return Ok(());
+        }
+        if let Some(reason) = alert(code) {
+            return Err(refused(reason));
+        }
     }
-    LinkError::Transport {
+    if let ConnectionError::ApplicationClosed(answer) = error {
+        if answer.error_code == VarInt::from_u32(WELCOME) {
+            return Ok(());
+        }
+        if answer.error_code == VarInt::from_u32(UNLISTED) {
+            return Err(refused(
+                "its list of workers does not hold that name: `horsehead keys add` puts it \
+                 there, and a new start of the coordinator reads it",
+            ));
+        }
+    }
+    Err(LinkError::Transport {
         doing: format!("connect to {locator}"),
         reason: error.to_string(),
-    }
+    })
 }
 
 /// Why this end does not take the coordinator's certificate.
@@ -216,7 +207,6 @@ const fn alert(code: u64) -> Option<&'static str> {
         Some(44) => Some("it was revoked"),
         Some(116) => Some("it arrived without one"),
         Some(42 | 43 | 46 | 49) => Some("it is no certificate for a worker"),
-        Some(120) => Some("what listens there is no coordinator of this build"),
         Some(_) | None => None,
     }
 }

@@ -13,7 +13,7 @@
 pub mod authority;
 mod certificate;
 
-pub(crate) use certificate::provider;
+pub(crate) use certificate::{certificate_name, provider};
 
 use certificate::Certificate;
 use protocol::name::{NameError, check_owner};

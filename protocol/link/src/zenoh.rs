@@ -47,13 +47,6 @@ fn common(locators: &[&Locator], tls: &Value) -> Value {
     })
 }
 
-fn listening(keys: &Keys) -> Value {
-    json!({
-        "root_ca_certificate": keys.ca(), "listen_certificate": keys.certificate(),
-        "listen_private_key": keys.key(), "enable_mtls": true, "close_link_on_expiration": true,
-    })
-}
-
 fn connecting(keys: &Keys) -> Value {
     json!({
         "root_ca_certificate": keys.ca(), "connect_certificate": keys.certificate(),

@@ -68,17 +68,23 @@ impl Authority {
             ));
         }
         folder_of_ones_own(folder)?;
-        let key = KeyPair::generate().map_err(|error| make(error.to_string()))?;
+        let made = Self::generate(folder)?;
+        write(&folder.join(CA), &made.pem, Open::All)?;
+        write(&folder.join(CA_KEY), &made.key.serialize_pem(), Open::Owner)?;
+        Ok(made)
+    }
+
+    fn generate(folder: &Path) -> Result<Self, KeyError> {
+        let make = |error: rcgen::Error| KeyError::Make {
+            path: folder.to_owned(),
+            reason: error.to_string(),
+        };
+        let key = KeyPair::generate().map_err(make)?;
         // tells authorities apart for people; machines go by the key
         let mark = ContentHash::of(key.public_key_raw()).to_string();
         let mark: String = mark.chars().take(8).collect();
         let params = authority_params(&format!("horsehead authority {mark}"));
-        let pem = params
-            .self_signed(&key)
-            .map_err(|error| make(error.to_string()))?
-            .pem();
-        write(&folder.join(CA), &pem, Open::All)?;
-        write(&folder.join(CA_KEY), &key.serialize_pem(), Open::Owner)?;
+        let pem = params.self_signed(&key).map_err(make)?.pem();
         Ok(Self {
             folder: folder.to_owned(),
             params,
@@ -121,12 +127,42 @@ impl Authority {
     /// [`KeyError::Make`] if a host is no name, or a file cannot be written.
     pub fn issue_coordinator(&self, hosts: &[String], valid: Validity) -> Result<(), KeyError> {
         let [certificate, key] = COORDINATOR.map(|file| self.folder.join(file));
-        let mut params = leaf("coordinator", hosts, valid).map_err(|error| KeyError::Make {
-            path: certificate.clone(),
+        let pair = self.pair_for_coordinator(hosts, valid)?;
+        save(&pair, &certificate, &key)
+    }
+
+    /// Certificate and key of a coordinator, in PEM.
+    pub(crate) fn pair_for_coordinator(
+        &self,
+        hosts: &[String],
+        valid: Validity,
+    ) -> Result<(String, String), KeyError> {
+        let params = leaf(
+            "coordinator",
+            hosts,
+            ExtendedKeyUsagePurpose::ServerAuth,
+            valid,
+        );
+        let params = params.map_err(|error| KeyError::Make {
+            path: self.folder.join(COORDINATOR[0]),
             reason: format!("{}: {error}", hosts.join(", ")),
         })?;
-        params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ServerAuth];
-        self.sign(&params, &certificate, &key)
+        self.sign(&params)
+    }
+
+    /// Certificate and key of a worker, in PEM.
+    pub(crate) fn pair_for_worker(
+        &self,
+        name: &str,
+        valid: Validity,
+    ) -> Result<(String, String), KeyError> {
+        let params = leaf(name, &[], ExtendedKeyUsagePurpose::ClientAuth, valid);
+        self.sign(&params.map_err(|error| self.failed(&error))?)
+    }
+
+    /// The authority's certificate, in PEM.
+    pub(crate) fn pem(&self) -> &str {
+        &self.pem
     }
 
     /// Makes the folder of one worker and lets it join.
@@ -149,12 +185,7 @@ impl Authority {
         }
         folder_of_ones_own(&folder)?;
         let [certificate, key] = WORKER.map(|file| folder.join(file));
-        let mut params = leaf(name, &[], valid).map_err(|error| KeyError::Make {
-            path: certificate.clone(),
-            reason: error.to_string(),
-        })?;
-        params.extended_key_usages = vec![ExtendedKeyUsagePurpose::ClientAuth];
-        self.sign(&params, &certificate, &key)?;
+        save(&self.pair_for_worker(name, valid)?, &certificate, &key)?;
         write(&folder.join(CA), &self.pem, Open::All)?;
         let mut names = fs::read_to_string(&list).unwrap_or_default();
         names.push_str(name);
@@ -166,24 +197,30 @@ impl Authority {
         Ok(folder)
     }
 
-    fn sign(
-        &self,
-        params: &CertificateParams,
-        certificate: &Path,
-        key: &Path,
-    ) -> Result<(), KeyError> {
-        let make = |error: &rcgen::Error| KeyError::Make {
-            path: certificate.to_owned(),
-            reason: error.to_string(),
-        };
-        let pair = KeyPair::generate().map_err(|error| make(&error))?;
+    fn sign(&self, params: &CertificateParams) -> Result<(String, String), KeyError> {
+        let pair = KeyPair::generate().map_err(|error| self.failed(&error))?;
         let issuer = Issuer::from_params(&self.params, &self.key);
-        let signed = params
-            .signed_by(&pair, &issuer)
-            .map_err(|error| make(&error))?;
-        write(key, &pair.serialize_pem(), Open::Owner)?;
-        write(certificate, &signed.pem(), Open::All)
+        let signed = params.signed_by(&pair, &issuer);
+        let signed = signed.map_err(|error| self.failed(&error))?;
+        Ok((signed.pem(), pair.serialize_pem()))
     }
+
+    fn failed(&self, error: &rcgen::Error) -> KeyError {
+        KeyError::Make {
+            path: self.folder.clone(),
+            reason: error.to_string(),
+        }
+    }
+}
+
+/// An authority that is kept nowhere.
+pub(crate) fn for_memory() -> Result<Authority, KeyError> {
+    Authority::generate(Path::new("the inner certificates"))
+}
+
+fn save((certificate, key): &(String, String), to: &Path, key_to: &Path) -> Result<(), KeyError> {
+    write(key_to, key, Open::Owner)?;
+    write(to, certificate, Open::All)
 }
 
 fn authority_params(name: &str) -> CertificateParams {
@@ -202,11 +239,17 @@ fn authority_params(name: &str) -> CertificateParams {
     params
 }
 
-fn leaf(name: &str, hosts: &[String], valid: Validity) -> Result<CertificateParams, rcgen::Error> {
+fn leaf(
+    name: &str,
+    hosts: &[String],
+    purpose: ExtendedKeyUsagePurpose,
+    valid: Validity,
+) -> Result<CertificateParams, rcgen::Error> {
     let mut params = CertificateParams::new(hosts)?;
     params.distinguished_name = named(name);
     params.is_ca = IsCa::ExplicitNoCa;
     params.key_usages = vec![KeyUsagePurpose::DigitalSignature];
+    params.extended_key_usages = vec![purpose];
     params.use_authority_key_identifier_extension = true;
     set_validity(&mut params, valid);
     Ok(params)

@@ -43,13 +43,11 @@ impl Certificate {
         };
         let der = chain.first().ok_or_else(not)?;
         let (_, read) = X509Certificate::from_der(der).map_err(|_| not())?;
-        let name = read.subject().iter_common_name().next();
-        let name = name.and_then(|name| name.as_str().ok()).unwrap_or_default();
         let names = read.subject_alternative_name().ok().flatten();
         let host = names.and_then(|names| names.value.general_names.iter().find_map(host_of));
         Ok(Self {
             path: path.to_owned(),
-            name: name.to_owned(),
+            name: certificate_name(der).unwrap_or_default(),
             host: host.unwrap_or_default(),
             from: read.validity().not_before,
             until: read.validity().not_after,
@@ -115,6 +113,13 @@ impl Certificate {
         let reason = error.to_string();
         KeyError::Unfit { path, reason }
     }
+}
+
+/// The common name of a certificate, if it has one.
+pub(crate) fn certificate_name(der: &CertificateDer<'_>) -> Option<String> {
+    let (_, read) = X509Certificate::from_der(der).ok()?;
+    let name = read.subject().iter_common_name().next()?;
+    name.as_str().ok().map(str::to_owned)
 }
 
 fn host_of(name: &GeneralName<'_>) -> Option<String> {

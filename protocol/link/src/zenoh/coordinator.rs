@@ -1,9 +1,8 @@
 //! The coordinator's end: an embedded router with its listeners.
-use super::{
-    INBOX, access, close, common, listening, names::Names, needed, open, sender::Sender, transport,
-};
+use super::{INBOX, access, close, common, names::Names, needed, open, sender::Sender, transport};
 use crate::{
     Blob, CoordinatorEnd, Heard, LinkError,
+    gate::{Gate, Inner},
     keys::Keys,
     locator::{Locator, Protocol},
 };
@@ -11,9 +10,9 @@ use protocol::{
     id::{RunId, WorkerId},
     key::{self, Lane},
 };
-use serde_json::json;
+use serde_json::{Value, json};
 use std::{
-    collections::BTreeSet,
+    net::Ipv4Addr,
     sync::{Arc, Mutex, PoisonError},
 };
 use tokio::sync::mpsc;
@@ -43,6 +42,7 @@ pub struct ZenohCoordinator {
     run: RunId,
     listening: Vec<Locator>,
     names: Arc<Mutex<Names>>,
+    gates: Vec<Gate>,
 }
 
 impl ZenohCoordinator {
@@ -66,15 +66,18 @@ impl ZenohCoordinator {
         }
         let references: Vec<&Locator> = locators.iter().collect();
         let keys = needed(&references, keys.as_ref())?;
-        let mut config = common(&references, &keys.map_or_else(|| json!({}), listening));
-        if let Some(keys) = keys {
-            let plain = locators.iter().any(|at| at.protocol == Protocol::Tcp);
-            config["access_control"] = access::control(keys.workers(), plain);
-        }
+        let (mut config, gates) = match keys {
+            Some(keys) => behind_gates(&locators, keys)?,
+            None => (common(&references, &json!({})), Vec::new()),
+        };
         let at: Vec<String> = locators.iter().map(ToString::to_string).collect();
         config["mode"] = json!("router");
-        config["listen"] = json!({ "endpoints": at, "exit_on_failure": true, "timeout_ms": 0 });
         config["connect"] = json!({ "endpoints": [] });
+        if gates.is_empty() {
+            config["listen"]["endpoints"] = json!(at);
+        }
+        config["listen"]["exit_on_failure"] = json!(true);
+        config["listen"]["timeout_ms"] = json!(0);
         let session = open(&config, &format!("listen on {}", at.join(", "))).await?;
         let names = Arc::new(Mutex::new(Names::default()));
         let (to, heard) = mpsc::channel(INBOX);
@@ -83,9 +86,6 @@ impl ZenohCoordinator {
         }
         watch_presence(&session, run, to, Arc::clone(&names)).await?;
         serve(&session, run, blob).await?;
-        if let Some(keys) = keys {
-            answer_guests(&session, keys.workers().clone()).await?;
-        }
         let sender = Sender::start(session.clone())
             .map_err(|error| transport("start the sending thread", &error))?;
         Ok(Self {
@@ -95,6 +95,7 @@ impl ZenohCoordinator {
             run,
             listening: locators,
             names,
+            gates,
         })
     }
 
@@ -126,7 +127,38 @@ impl CoordinatorEnd for ZenohCoordinator {
     async fn close(self) {
         self.sender.finish().await;
         close(self.session).await;
+        for gate in self.gates {
+            gate.close().await;
+        }
     }
+}
+
+/// The router's configuration behind gates, and a gate for each QUIC address.
+///
+/// The router itself listens for QUIC on a free port of loopback alone, and takes nobody there but
+/// who comes through a gate.
+fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>), LinkError> {
+    let inside = Locator {
+        protocol: Protocol::Quic,
+        host: Ipv4Addr::LOCALHOST.to_string(),
+        port: 0,
+    }
+    .with_free_port()?;
+    let router = (Ipv4Addr::LOCALHOST, inside.port).into();
+    let inner = Arc::new(Inner::make(router, keys.workers())?);
+    let (mut endpoints, mut gates) = (vec![inside.to_string()], Vec::new());
+    for at in locators {
+        if at.protocol == Protocol::Tcp {
+            endpoints.push(at.to_string());
+            continue;
+        }
+        gates.push(Gate::open(at, keys, Arc::clone(&inner))?);
+    }
+    let references: Vec<&Locator> = locators.iter().collect();
+    let mut config = common(&references, inner.listening());
+    config["access_control"] = access::control(keys.workers(), endpoints.len() > 1);
+    config["listen"]["endpoints"] = json!(endpoints);
+    Ok((config, gates))
 }
 
 fn offer(to: &mpsc::Sender<Heard>, heard: Heard) {
@@ -213,24 +245,4 @@ async fn serve(session: &Session, run: RunId, blob: Blob) -> Result<(), LinkErro
         .background()
         .await
         .map_err(|error| transport("serve the case", &error))
-}
-
-/// Tells any certificate whether its name may join.
-async fn answer_guests(session: &Session, owners: BTreeSet<String>) -> Result<(), LinkError> {
-    let runtime = tokio::runtime::Handle::current();
-    session
-        .declare_queryable(key::all_guests())
-        .callback(move |query| {
-            let name = query.key_expr().as_str().to_owned();
-            let may = key::guest_of(&name).is_some_and(|owner| owners.contains(owner));
-            let answer = if may { key::WELCOME } else { key::UNKNOWN };
-            drop(runtime.spawn(async move {
-                if let Err(error) = query.reply(name, answer).await {
-                    tracing::debug!(%error, "a guest was not answered");
-                }
-            }));
-        })
-        .background()
-        .await
-        .map_err(|error| transport("answer guests", &error))
 }

@@ -18,8 +18,6 @@ use zenoh::{
 
 /// How long one piece of a blob may take.
 const PIECE: Duration = Duration::from_secs(10);
-/// How long a coordinator may take to say whether a certificate may join.
-const GUEST: Duration = Duration::from_secs(2);
 
 /// A worker on the bus.
 #[derive(Debug)]
@@ -66,18 +64,6 @@ impl ZenohWorker {
             "retry": { "period_init_ms": 500, "period_max_ms": 2000, "period_increase_factor": 1.5 },
         });
         let session = open(&config, &format!("connect to {connect}")).await?;
-        if let Some(keys) = keys
-            && !is_welcome(&session, keys.owner()).await
-        {
-            close(session).await;
-            return Err(LinkError::Refused {
-                locator: connect.to_string(),
-                owner: keys.owner().to_owned(),
-                reason: "its list of workers does not hold that name: `horsehead keys add` puts \
-                         it there, and a new start of the coordinator reads it"
-                    .to_owned(),
-            });
-        }
         let (to, frames) = mpsc::channel(INBOX);
         session
             .declare_subscriber(key::all_to_worker(&name))
@@ -169,21 +155,5 @@ impl WorkerEnd for ZenohWorker {
         self.sender.finish().await;
         drop(self.token);
         close(self.session).await;
-    }
-}
-
-/// Whether a certificate's name may join. Without an answer it may: admission decides.
-async fn is_welcome(session: &Session, owner: &str) -> bool {
-    let asked = session.get(key::guest(owner)).timeout(GUEST).await;
-    let Ok(replies) = asked else {
-        return true;
-    };
-    match replies
-        .recv_async()
-        .await
-        .map(zenoh::query::Reply::into_result)
-    {
-        Ok(Ok(sample)) => sample.payload().to_bytes().as_ref() != key::UNKNOWN.as_bytes(),
-        Ok(Err(_)) | Err(_) => true,
     }
 }
