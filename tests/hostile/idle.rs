@@ -1,5 +1,5 @@
 //! Peers that connect and then say nothing, as many as the machine allows.
-use super::{LIMIT, rate};
+use super::{LIMIT, MEASURING, rate};
 use coordinator::runtime::{Dispatch, DispatchOptions};
 use std::{
     collections::BTreeMap,
@@ -93,6 +93,7 @@ async fn handshakes_that_are_never_finished_keep_nobody_out() {
 /// Connections of a local program that never say a word.
 #[tokio::test(flavor = "multi_thread")]
 async fn thousands_of_silent_connections_cost_little_and_no_result() {
+    let _alone = MEASURING.lock().await;
     let folder = tempfile::tempdir().unwrap();
     let locator = free_locator();
     let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))

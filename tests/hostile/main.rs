@@ -18,6 +18,9 @@ use std::{
 
 const LIMIT: Duration = Duration::from_mins(1);
 
+/// One at a time, so that the numbers mean something.
+static MEASURING: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
 /// Does jobs until a time is over, and returns how many a second.
 async fn rate(
     dispatch: &mut Dispatch,

@@ -1,5 +1,5 @@
 //! Peers that speak: rubbish, old versions, wrong models, and results that are not theirs to give.
-use super::{LIMIT, rate};
+use super::{LIMIT, MEASURING, rate};
 use coordinator::runtime::{Dispatch, Snapshot};
 use protocol::{
     announce::Announcement,
@@ -218,6 +218,7 @@ fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u6
 
 #[tokio::test(flavor = "multi_thread")]
 async fn rubbish_costs_little_and_no_result() {
+    let _alone = MEASURING.lock().await;
     let folder = tempfile::tempdir().unwrap();
     let (mut dispatch, _honest, locator) = stage(folder.path()).await;
     let peer = Arc::new(Peer::join(&locator, 1).await);

@@ -28,6 +28,10 @@ const INBOX: usize = 16 << 10;
 /// Longest time that closing a session may take: with a dead peer zenoh needs 10 s.
 const CLOSE: Duration = Duration::from_secs(2);
 
+/// How long a peer may take to open a session once it is connected \[ms\]: silent ones hold the
+/// places of others for so long.
+const ACCEPT_MS: u64 = 4000;
+
 /// What a session of either end is made of.
 fn common(locators: &[&Locator], tls: &Value) -> Value {
     // no other protocol than those asked for: a peer cannot choose a weaker one
@@ -36,7 +40,9 @@ fn common(locators: &[&Locator], tls: &Value) -> Value {
         "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
         "adminspace": { "enabled": false },
         "transport": {
-            "unicast": { "max_sessions": 2000, "accept_pending": 1000 },
+            "unicast": {
+                "max_sessions": 2000, "accept_pending": 1000, "accept_timeout": ACCEPT_MS,
+            },
             "link": {
                 "protocols": protocols,
                 "tx": { "lease": 3000, "keep_alive": 6 },
