@@ -30,4 +30,4 @@ pub use geometry::{QuasiStatic, quasi_static};
 pub(crate) use head::GaugePlace;
 pub use load::{Loaded, Overrides, load, load_with_notes};
 pub use note::Note;
-pub use record::RecordFacts;
+pub use record::{RecordFacts, count_samples};
