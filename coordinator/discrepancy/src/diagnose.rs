@@ -1,15 +1,16 @@
 //! A diagnosis from the record to the verdict: the order of the stages and what they hand on.
 use crate::bench::{Bench, Fit};
 use crate::evidence::{ambiguity_set, log_evidence, misfit};
-use crate::isolability;
+use crate::isolability::{self, Hurdle};
 use crate::laboratory::{Laboratory, Stage};
 use crate::metric::Metric;
-use crate::model::{Model, sizes};
+use crate::model::{Model, SIZE_DEVIATION, sizes};
 use crate::noise::Noise;
 use crate::record::{Curves, Record};
-use crate::score::family_wise;
+use crate::score::{family_wise, single};
 use crate::settings::Settings;
 use crate::spectrum::Orders;
+use crate::stage::challenge::{Challenger, Named, challenge};
 use crate::stage::preflight::Preflight;
 use crate::stage::refit::Refitted;
 use crate::stage::show::Row;
@@ -19,7 +20,7 @@ use crate::stage::{basin, preflight, recalibrate, refit, show, suspect, whereabo
 use crate::tangent::Tangent;
 use crate::verdict::{Findings, Verdict, verdict};
 use nalgebra::{Complex, DMatrix, DVector};
-use protocol::announce::EffectDescriptor;
+use protocol::announce::{EffectDescriptor, Sign};
 use protocol::job::Refinement;
 use search::space::Space;
 
@@ -333,12 +334,37 @@ async fn rounds<L: Laboratory>(
             .collect();
         let mut round = examine(lab, base, &current, (&open, &generic), settings).await?;
         if number == 0 {
-            (diagnosis.limits, diagnosis.classes) = outlook(&round, &current, base);
+            (diagnosis.limits, diagnosis.classes) = outlook(&round, &current, base, settings);
         }
-        let next = decide(&mut round, &current, settings, base);
-        if round.added.is_none() && number == 0 {
-            diagnosis.generic = challenge(lab, base, &current, &round, &generic, settings).await?;
-        }
+        let best = round.refits.first();
+        let named = Named {
+            suspects: &round.suspects,
+            removed: best.map_or(0.0, |r| {
+                (current.chi_squared() - r.fit.chi_squared()).max(0.0)
+            }),
+            left: best
+                .map_or(f64::INFINITY, |r| r.fit.chi_squared())
+                .min(current.chi_squared()),
+            log_evidence: best
+                .map_or(f64::NEG_INFINITY, |r| r.log_evidence)
+                .max(round.null_evidence),
+        };
+        let challenger = challenge(
+            lab,
+            &base.bench,
+            &current,
+            &round.generics,
+            &named,
+            settings,
+        )
+        .await?;
+        let next = match challenger {
+            Some(challenger) => {
+                unlisted(&mut round, &challenger, (&base.fit, &current), diagnosis);
+                None
+            }
+            None => decide(&mut round, &current, settings, base),
+        };
         diagnosis.rounds.push(round);
         match next {
             Some(fit) => current = fit,
@@ -346,6 +372,27 @@ async fn rounds<L: Laboratory>(
         }
     }
     Ok(current)
+}
+
+/// A force without a cause beats every name of this round. Beside names that explain more than it
+/// does it is a remark: what is left there may be the laws of those names, a little otherwise.
+fn unlisted(
+    round: &mut Round,
+    challenger: &Challenger,
+    (before, current): (&Fit, &Fit),
+    diagnosis: &mut Diagnosis,
+) {
+    let named = before.chi_squared() - current.chi_squared();
+    let said = format!(
+        "a force {} explains more of what is left than any name",
+        challenger.id
+    );
+    if challenger.removed > named {
+        diagnosis.generic = Some(challenger.id.clone());
+    } else {
+        diagnosis.notes.push(said.clone());
+    }
+    round.reason = Some(said);
 }
 
 /// Tests everything that is not in the model yet, and refits the suspects.
@@ -424,37 +471,13 @@ fn decide(round: &mut Round, current: &Fit, settings: &Settings, base: &Base) ->
     Some(best.fit.clone())
 }
 
-/// A force without a cause that explains more than every name: its identifier.
-async fn challenge<L: Laboratory>(
-    _lab: &mut L,
-    _base: &Base,
-    current: &Fit,
-    round: &Round,
-    _generic: &[EffectDescriptor],
-    settings: &Settings,
-) -> Result<Option<String>, L::Error> {
-    let best = round
-        .refits
-        .first()
-        .map_or(0.0, |r| current.chi_squared() - r.fit.chi_squared());
-    let scale = round.phi * round.phi;
-    let likeliest = round
-        .generics
-        .iter()
-        .filter(|g| {
-            family_wise(
-                crate::score::chi_squared_tail(g.statistic() / scale, 1),
-                round.generics.len(),
-            ) < settings.alpha
-        })
-        .max_by(|a, b| a.statistic().total_cmp(&b.statistic()));
-    Ok(likeliest
-        .filter(|g| g.statistic() > settings.generic_factor * best + 10.0 * scale)
-        .map(|g| g.effect.id.clone()))
-}
-
 /// Detection limits and classes of effects, before any verdict.
-fn outlook(round: &Round, fit: &Fit, base: &Base) -> (Vec<Limit>, Vec<Vec<String>>) {
+fn outlook(
+    round: &Round,
+    fit: &Fit,
+    base: &Base,
+    settings: &Settings,
+) -> (Vec<Limit>, Vec<Vec<String>>) {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
     let phi = misfit(fit.chi_squared(), base.bench.metric.len());
     let mut limits = Vec::new();
@@ -464,14 +487,24 @@ fn outlook(round: &Round, fit: &Fit, base: &Base) -> (Vec<Limit>, Vec<Vec<String
             continue;
         }
         known.push((suspect.effect.id.clone(), suspect.signature.clone()));
-        for (column, k) in sizes(&suspect.effect).into_iter().enumerate() {
-            let one = suspect.signature.columns(column, 1).into_owned();
+        let tests = suspect.tries * round.suspects.len();
+        let hurdle = Hurdle {
+            p_value: single(settings.alpha, tests),
+            gain: settings.gain,
+            phi,
+        };
+        let sizes = sizes(&suspect.effect);
+        let deviations = vec![SIZE_DEVIATION; sizes.len()];
+        for (column, k) in sizes.into_iter().enumerate() {
             let parameter = &suspect.effect.parameters[k];
+            let prior = (deviations.as_slice(), parameter.sign == Sign::Positive);
+            let limit =
+                isolability::detection_limit(&suspect.signature, column, prior, &tangent, &hurdle);
             limits.push(Limit {
                 id: suspect.effect.id.clone(),
                 parameter: parameter.name.clone(),
                 unit: parameter.unit.clone(),
-                size: phi * isolability::detection_limit(&one, &tangent) * parameter.scale,
+                size: limit * parameter.scale,
             });
         }
     }

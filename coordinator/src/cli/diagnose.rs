@@ -98,7 +98,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
     let target = target(arguments)?;
     let case = &target.loaded.case;
-    let notes: Vec<String> = target.loaded.notes.iter().map(ToString::to_string).collect();
+    let notes: Vec<String> = target
+        .loaded
+        .notes
+        .iter()
+        .map(ToString::to_string)
+        .collect();
     for note in &notes {
         output::tell(&format!("note: {note}"));
     }
@@ -118,26 +123,44 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             start: target.start.clone(),
         },
         case_folder: std::path::absolute(&target.folder)?,
-        measured: target.measured.as_ref().unwrap_or(&target.folder).display().to_string(),
+        measured: target
+            .measured
+            .as_ref()
+            .unwrap_or(&target.folder)
+            .display()
+            .to_string(),
         synthetic: target.loaded.synthetic,
         notes,
         wall_s: 0.0,
     };
-    let path = arguments.run.clone().unwrap_or_else(|| default_path(case, &target, arguments.seed));
+    let path = arguments
+        .run
+        .clone()
+        .unwrap_or_else(|| default_path(case, &target, arguments.seed));
     let begun = RunFolder::begin(&path, &manifest, case)?;
-    let (diagnosed, library) = experiment(arguments, &manifest, &begun, &target).inspect_err(|error| {
-        let study = error.downcast_ref::<StudyError>();
-        if matches!(study, Some(StudyError::Interrupted | StudyError::Evaluator(_))) {
-            output::tell(&format!(
-                "results so far are kept in {}; to go on:\n  {}",
-                path.display(),
-                manifest.command
-            ));
-        }
-    })?;
+    let (diagnosed, library) =
+        experiment(arguments, &manifest, &begun, &target).inspect_err(|error| {
+            let study = error.downcast_ref::<StudyError>();
+            if matches!(
+                study,
+                Some(StudyError::Interrupted | StudyError::Evaluator(_))
+            ) {
+                output::tell(&format!(
+                    "results so far are kept in {}; to go on:\n  {}",
+                    path.display(),
+                    manifest.command
+                ));
+            }
+        })?;
     let wall_s = begun.wall_s + started.elapsed().as_secs_f64();
     begun.folder.spent(&manifest, case, wall_s)?;
-    show(arguments, &target, &manifest, &begun.folder, (&diagnosed, &library, wall_s))
+    show(
+        arguments,
+        &target,
+        &manifest,
+        &begun.folder,
+        (&diagnosed, &library, wall_s),
+    )
 }
 
 /// The case, and where the recalibration starts.
@@ -151,18 +174,27 @@ fn target(arguments: &Arguments) -> anyhow::Result<Target> {
             if !genes.exists() {
                 return Err(Usage {
                     message: format!("{} is not finished", arguments.target.display()),
-                    help: format!("finish it first:\n  {}", manifest.resume_command(&arguments.target)),
+                    help: format!(
+                        "finish it first:\n  {}",
+                        manifest.resume_command(&arguments.target)
+                    ),
                 }
                 .into());
             }
             let own = PathBuf::from(&manifest.measured);
             let replaced = std::path::absolute(&own)? != manifest.case_folder;
-            let measured = arguments.measured.clone().or_else(|| replaced.then_some(own));
+            let measured = arguments
+                .measured
+                .clone()
+                .or_else(|| replaced.then_some(own));
             (manifest.case_folder, measured, Some(genes))
         }
         Some(other) => {
             return Err(Usage {
-                message: format!("{} holds a run of `horsehead {other}`", arguments.target.display()),
+                message: format!(
+                    "{} holds a run of `horsehead {other}`",
+                    arguments.target.display()
+                ),
                 help: "name a case folder, or the folder of a calibration".to_owned(),
             }
             .into());
@@ -174,7 +206,9 @@ fn target(arguments: &Arguments) -> anyhow::Result<Target> {
     };
     let loaded = load_with_notes(&folder, &overrides)?;
     let genes = arguments.genes.clone().or(genes);
-    let start = genes.map(|file| read_genes(&file, &loaded.case)).transpose()?;
+    let start = genes
+        .map(|file| read_genes(&file, &loaded.case))
+        .transpose()?;
     Ok(Target {
         folder,
         measured,
@@ -272,7 +306,11 @@ fn inputs(
         .collect();
     let available = case.modal_head.frequencies_hz.len();
     Ok(Inputs {
-        start: manifest.settings.start.as_ref().map(|genes| space.decades(genes)),
+        start: manifest
+            .settings
+            .start
+            .as_ref()
+            .map(|genes| space.decades(genes)),
         space,
         records,
         library,
@@ -334,8 +372,8 @@ fn show(
 
 /// Appends effects to a case file.
 fn append(file: &Path, text: &str) -> anyhow::Result<()> {
-    let mut whole = std::fs::read_to_string(file)
-        .with_context(|| format!("cannot read {}", file.display()))?;
+    let mut whole =
+        std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
     if !whole.ends_with('\n') {
         whole.push('\n');
     }

@@ -154,13 +154,21 @@ struct StageOutput {
 pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
     let diagnosis = &subject.diagnosed.diagnosis;
     let calibrated = subject.case.objective.condition;
-    let genes = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x())).unwrap_or_default();
+    let genes = diagnosis
+        .after
+        .as_ref()
+        .map(|fit| fit.model.genes(fit.x()))
+        .unwrap_or_default();
     DiagnoseOutput {
         run: subject.provenance.run.clone(),
         case: subject.case.name.clone(),
         verdict: diagnosis.verdict,
         reason: diagnosis.reason.clone(),
-        effects: diagnosis.effects.iter().map(|e| effect(diagnosis, e)).collect(),
+        effects: diagnosis
+            .effects
+            .iter()
+            .map(|e| effect(diagnosis, e))
+            .collect(),
         generic: diagnosis.generic.clone(),
         rounds: rounds(diagnosis),
         whereabouts: whereabouts(subject),
@@ -174,7 +182,12 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
                 size: limit.size,
             })
             .collect(),
-        inseparable: diagnosis.classes.iter().filter(|class| class.len() > 1).cloned().collect(),
+        inseparable: diagnosis
+            .classes
+            .iter()
+            .filter(|class| class.len() > 1)
+            .cloned()
+            .collect(),
         gap: gap(&diagnosis.rows, calibrated),
         rival: diagnosis.rival.as_ref().map(|(id, rows)| RivalOutput {
             id: id.clone(),
@@ -220,7 +233,10 @@ fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
     EffectOutput {
         id: found.id.clone(),
         title: found.title.clone(),
-        added: diagnosis.rounds.iter().any(|round| round.added.as_ref() == Some(&found.id)),
+        added: diagnosis
+            .rounds
+            .iter()
+            .any(|round| round.added.as_ref() == Some(&found.id)),
         parameters: found.parameters.iter().map(parameter).collect(),
         p_value: found.p_value,
         ln_evidence: found.ln_evidence,
@@ -246,7 +262,9 @@ fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
                     .refits
                     .iter()
                     .find(|refit| refit.id == suspect.effect.id)
-                    .map(|refit| (refit.log_evidence - round.null_evidence) / (round.phi * round.phi)),
+                    .map(|refit| {
+                        (refit.log_evidence - round.null_evidence) / (round.phi * round.phi)
+                    }),
             })
             .collect(),
     };
@@ -255,7 +273,10 @@ fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
 
 fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
     let seen = subject.diagnosed.diagnosis.whereabouts.as_ref()?;
-    let record = subject.records.iter().find(|r| r.condition == subject.case.objective.condition)?;
+    let record = subject
+        .records
+        .iter()
+        .find(|r| r.condition == subject.case.objective.condition)?;
     let channel = |c: usize| record.channels.get(c).map(|s| s.name()).unwrap_or_default();
     Some(WhereOutput {
         windows: seen
@@ -296,7 +317,9 @@ fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
 
 fn gap(rows: &[Row], calibrated: usize) -> GapOutput {
     let one = |fitted: bool, own: bool| {
-        let row = rows.iter().find(|row| row.fitted == fitted && (row.condition == calibrated) == own)?;
+        let row = rows
+            .iter()
+            .find(|row| row.fitted == fitted && (row.condition == calibrated) == own)?;
         Some(ClosedOutput {
             before: row.closed.before,
             after: row.closed.after,

@@ -89,8 +89,15 @@ impl Watch for StageDisplay {
         }
         self.last = now;
         self.stage = Some(stage);
-        let number = 1 + Stage::ALL.iter().take_while(|other| **other != stage).count();
-        let attached = crew().workers.iter().filter(|worker| worker.attached).count();
+        let number = 1 + Stage::ALL
+            .iter()
+            .take_while(|other| **other != stage)
+            .count();
+        let attached = crew()
+            .workers
+            .iter()
+            .filter(|worker| worker.attached)
+            .count();
         let workers = match attached {
             0 => "waiting for workers".to_owned(),
             1 => "1 worker".to_owned(),

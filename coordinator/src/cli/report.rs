@@ -28,7 +28,8 @@ pub(super) struct Arguments {
 
 /// Replays the run and writes its files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (folder, manifest, case) = RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
+    let (folder, manifest, case) =
+        RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
     if !folder.is_finished() {
         return Err(Usage {
             message: format!("{} is not finished", arguments.run.display()),

@@ -81,7 +81,6 @@ impl<S: Serialize> Manifest<S> {
         }
         command
     }
-
 }
 
 /// Version of the manifests of this program.
@@ -231,7 +230,10 @@ impl RunFolder {
         let folder = Self {
             path: path.to_owned(),
         };
-        folder.read_json::<Head>("run.json").ok().map(|head| head.kind)
+        folder
+            .read_json::<Head>("run.json")
+            .ok()
+            .map(|head| head.kind)
     }
 
     fn load<S: Decides>(&self, kind: &str) -> anyhow::Result<(Manifest<S>, Case)> {
@@ -254,7 +256,8 @@ impl RunFolder {
                     self.path.display(),
                     head.kind
                 ),
-                help: "name the folder of another run, or begin a new one with --run DIR".to_owned(),
+                help: "name the folder of another run, or begin a new one with --run DIR"
+                    .to_owned(),
             }
             .into());
         }

@@ -136,7 +136,8 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
         "{other}"
     );
     // the case comes back with every bit, so its hash and the journal still fit
-    let (_, _, kept) = RunFolder::open::<search::strategy::Settings>(&path, run_folder::CALIBRATE).unwrap();
+    let (_, _, kept) =
+        RunFolder::open::<search::strategy::Settings>(&path, run_folder::CALIBRATE).unwrap();
     assert_eq!(kept, case);
     assert_eq!(
         bus::case_hash(&kept).unwrap(),

@@ -39,7 +39,8 @@ pub(super) struct Arguments {
 /// Scores both parameter sets and shows them side by side.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
-    let (folder, manifest, mut case) = RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
+    let (folder, manifest, mut case) =
+        RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
     if let Some(measured) = &arguments.measured {
         case = load_case(&manifest.case_folder, Some(measured))?.case;
     }

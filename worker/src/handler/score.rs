@@ -149,7 +149,12 @@ fn residual(objective: &Objective, compared: &[Compared]) -> Vec<f64> {
         let scale = (weight / found.residual.len() as f64).sqrt();
         Some(found.residual.iter().map(move |r| scale * r))
     };
-    objective.gauges.iter().filter_map(scaled).flatten().collect()
+    objective
+        .gauges
+        .iter()
+        .filter_map(scaled)
+        .flatten()
+        .collect()
 }
 
 #[cfg(test)]

@@ -59,9 +59,8 @@ fn gene(name: GeneName, unit: Unit, recommended: f64) -> Gene {
 }
 
 /// Recommended genes, in the order of [`GeneName::ALL`].
-pub(crate) const RECOMMENDED: [f64; 10] = [
-    3150.0, 345.0, 10.0, 1.0, 20.0, 2.0, 1.0, 1.0, 1500.0, 10.0,
-];
+pub(crate) const RECOMMENDED: [f64; 10] =
+    [3150.0, 345.0, 10.0, 1.0, 20.0, 2.0, 1.0, 1.0, 1500.0, 10.0];
 
 /// The space of the genes.
 pub(crate) fn space() -> Space {
@@ -71,7 +70,13 @@ pub(crate) fn space() -> Space {
         .iter()
         .zip(RECOMMENDED)
         .enumerate()
-        .map(|(k, (&name, value))| gene(name, if k < 4 || k == 8 { stiffness } else { damping }, value))
+        .map(|(k, (&name, value))| {
+            gene(
+                name,
+                if k < 4 || k == 8 { stiffness } else { damping },
+                value,
+            )
+        })
         .collect();
     Space::new(&genes).expect("positive and ordered")
 }

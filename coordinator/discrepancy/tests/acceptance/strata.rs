@@ -11,7 +11,11 @@ use std::sync::LazyLock;
 /// Detection limits as a diagnosis of a healthy machine prints them.
 pub(crate) static LIMITS: LazyLock<Vec<Limit>> = LazyLock::new(|| {
     let healthy = diagnose_usual(&Truth::healthy(9001));
-    assert_eq!(healthy.verdict, Verdict::NothingDetected, "the limits come from a healthy machine");
+    assert_eq!(
+        healthy.verdict,
+        Verdict::NothingDetected,
+        "the limits come from a healthy machine"
+    );
     healthy.limits
 });
 

@@ -56,7 +56,14 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         records,
         library: setup.library.clone(),
         // a calibration has been there: it ends beside the truth, not on it
-        start: Some(truth.genes.iter().enumerate().map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 }).collect()),
+        start: Some(
+            truth
+                .genes
+                .iter()
+                .enumerate()
+                .map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 })
+                .collect(),
+        ),
         finer: Refinement {
             cylinder_length_m: Some(0.025),
             ..Refinement::default()
@@ -67,7 +74,10 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
     let mut lab = AtOnce::losing(&MACHINE, setup.lost_every);
     let answer = {
         let mut future = pin!(diagnose(&mut lab, &inputs));
-        match future.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+        match future
+            .as_mut()
+            .poll(&mut Context::from_waker(Waker::noop()))
+        {
             Poll::Ready(Ok(diagnosis)) => diagnosis,
             Poll::Ready(Err(never)) => match never {},
             Poll::Pending => unreachable!("a laboratory that answers at once never waits"),
@@ -83,7 +93,9 @@ pub(crate) fn diagnose_usual(truth: &Truth) -> Diagnosis {
 
 /// In one line, for failures and surveys.
 pub(crate) fn line(diagnosis: &Diagnosis) -> String {
-    let base = diagnosis.before.as_ref().map_or(f64::NAN, |fit| fit.chi_squared() / fit.search.best().residual.len() as f64);
+    let base = diagnosis.before.as_ref().map_or(f64::NAN, |fit| {
+        fit.chi_squared() / fit.search.best().residual.len() as f64
+    });
     let rounds: Vec<String> = diagnosis
         .rounds
         .iter()
@@ -92,15 +104,31 @@ pub(crate) fn line(diagnosis: &Diagnosis) -> String {
                 .refits
                 .iter()
                 .take(3)
-                .map(|f| format!("{} {:.0}", f.id, (f.log_evidence - r.null_evidence) / (r.phi * r.phi)))
+                .map(|f| {
+                    format!(
+                        "{} {:.0}",
+                        f.id,
+                        (f.log_evidence - r.null_evidence) / (r.phi * r.phi)
+                    )
+                })
                 .collect();
-            format!("[p {:.1e} phi {:.2} set {:?} best {}]", r.p_value, r.phi, r.set, best.join(", "))
+            format!(
+                "[p {:.1e} phi {:.2} set {:?} best {}]",
+                r.p_value,
+                r.phi,
+                r.set,
+                best.join(", ")
+            )
         })
         .collect();
     format!(
         "{:?} chi2/n {base:.2} effects {:?} generic {:?} {:?} {}",
         diagnosis.verdict,
-        diagnosis.effects.iter().map(|e| e.id.as_str()).collect::<Vec<_>>(),
+        diagnosis
+            .effects
+            .iter()
+            .map(|e| e.id.as_str())
+            .collect::<Vec<_>>(),
         diagnosis.generic,
         diagnosis.reason,
         rounds.join(" ")

@@ -63,11 +63,13 @@ impl Truth {
 
     fn amount(&self, id: &str, k: usize) -> f64 {
         let own = self.effects.iter().find(|(name, _)| name == id);
-        own.and_then(|(_, amounts)| amounts.get(k)).copied().unwrap_or(0.0)
+        own.and_then(|(_, amounts)| amounts.get(k))
+            .copied()
+            .unwrap_or(0.0)
     }
 
-    fn gene(&self, k: usize) -> f64 {
-        RECOMMENDED[k] * 10_f64.powf(self.genes[k])
+    fn values(&self) -> [f64; 10] {
+        std::array::from_fn(|k| RECOMMENDED[k] * 10_f64.powf(self.genes[k]))
     }
 }
 
@@ -85,6 +87,7 @@ struct March<'a> {
     truth: &'a Truth,
     condition: usize,
     scale: f64,
+    genes: [f64; 10],
 }
 
 /// What is read at an angle: gauges, position, torque.
@@ -97,11 +100,17 @@ impl March<'_> {
     /// The rate of the crank and its derivative by the angle, in turns of the first condition.
     fn rate(&self, angle: f64) -> [f64; 2] {
         let ratio = SPEED[self.condition];
-        let (a, b) = (self.truth.amount("crank_speed_ripple", 0), self.truth.amount("crank_speed_ripple", 1));
+        let (a, b) = (
+            self.truth.amount("crank_speed_ripple", 0),
+            self.truth.amount("crank_speed_ripple", 1),
+        );
         // constant in energy rather than in speed, and a little of the second order
         let swing = a * angle.cos() + b * angle.sin();
         let rate = ratio * (1.0 + 2.0 * swing).max(0.1).sqrt();
-        [rate, ratio * ratio * (b * angle.cos() - a * angle.sin()) / rate]
+        [
+            rate,
+            ratio * ratio * (b * angle.cos() - a * angle.sin()) / rate,
+        ]
     }
 
     fn load(&self, angle: f64) -> f64 {
@@ -109,7 +118,8 @@ impl March<'_> {
         let gain = self.scale * (1.0 + self.truth.amount("load_cell_gain", 0));
         let lag = self.truth.amount("load_cell_lag", 0);
         let step = 1e-4;
-        let slope = (card(self.condition, shifted + step) - card(self.condition, shifted - step)) / (2.0 * step);
+        let slope = (card(self.condition, shifted + step) - card(self.condition, shifted - step))
+            / (2.0 * step);
         gain * (card(self.condition, shifted) + lag * SPEED[self.condition] * slope)
             + self.truth.amount("load_offset", 0)
     }
@@ -121,8 +131,11 @@ impl March<'_> {
 
     /// Force between beam and head at a relative lag.
     fn pin(&self, lag: f64, rate: f64) -> f64 {
-        let (stiffness, loss) = (self.truth.gene(8), self.truth.gene(9));
-        let (gap, at) = (self.truth.amount("pin_clearance", 0), self.truth.amount("pin_clearance", 1));
+        let (stiffness, loss) = (self.genes[8], self.genes[9]);
+        let (gap, at) = (
+            self.truth.amount("pin_clearance", 0),
+            self.truth.amount("pin_clearance", 1),
+        );
         let loss = loss * rate;
         if gap <= 0.0 {
             return stiffness * lag + loss;
@@ -141,7 +154,7 @@ impl March<'_> {
     }
 
     fn rope(&self, lag: f64, rate: f64) -> f64 {
-        let (stiffness, loss) = (self.truth.gene(0), self.truth.gene(4));
+        let (stiffness, loss) = (self.genes[0], self.genes[4]);
         let toe = self.truth.amount("rope_toe", 0);
         let slack = (1.0 - stiffness * lag / 70.0).clamp(0.0, 1.5);
         stiffness * (lag + toe * slack * slack) + loss * rate
@@ -154,22 +167,38 @@ impl March<'_> {
         let [rate, change] = self.rate(angle);
         let acceleration = bend * rate * rate + slope * rate * change;
         let v = slope * rate;
-        let [rod, beam, head, swing, rod_rate, beam_rate, head_rate, swing_rate] = *state;
-        let front = truth.gene(1) * (rod - beam) + truth.gene(5) * (rod_rate - beam_rate);
+        let [
+            rod,
+            beam,
+            head,
+            swing,
+            rod_rate,
+            beam_rate,
+            head_rate,
+            swing_rate,
+        ] = *state;
+        let front = self.genes[1] * (rod - beam) + self.genes[5] * (rod_rate - beam_rate);
         let pin = self.pin(beam - head, beam_rate - head_rate);
         let rope = self.rope(head, head_rate);
-        let mut on_rod = load + Self::friction(truth.amount("stuffing_box_friction", 0), v - rod_rate);
+        let mut on_rod =
+            load + Self::friction(truth.amount("stuffing_box_friction", 0), v - rod_rate);
         on_rod += truth.amount("rod_drag", 0) * (v - rod_rate) * (v - rod_rate).abs();
-        let mut on_beam = Self::friction(truth.amount("pivot_friction", 0) * (load + 20.0), v - beam_rate);
+        let mut on_beam = Self::friction(
+            truth.amount("pivot_friction", 0) * (load + 20.0),
+            v - beam_rate,
+        );
         let mut on_head = 0.0;
         let (mut swing_force, mut swing_mass) = (0.0, 1.0);
         match truth.unlisted {
-            Some(Unlisted::BeamSpring(size)) => on_beam += size * ((height - beam) / 1.5 - 1.0).powi(3),
+            Some(Unlisted::BeamSpring(size)) => {
+                on_beam += size * ((height - beam) / 1.5 - 1.0).powi(3)
+            }
             Some(Unlisted::HeadThrice(size)) => on_head += size * (3.0 * angle + 1.0).cos(),
             Some(Unlisted::RodDashpot(size)) => on_rod += size * (v - rod_rate),
             Some(Unlisted::SwingingMass(mass)) => {
                 swing_mass = mass;
-                swing_force = mass * 6.5 * 6.5 * (swing - beam) + mass * 0.6 * (swing_rate - beam_rate);
+                swing_force =
+                    mass * 6.5 * 6.5 * (swing - beam) + mass * 0.6 * (swing_rate - beam_rate);
                 on_beam += swing_force;
             }
             Some(Unlisted::GearMesh(_)) | None => {}
@@ -192,11 +221,22 @@ impl March<'_> {
     /// One turn, after those until it repeats; readings at every step.
     fn turn(&self) -> Vec<Reading> {
         let step = TAU / STEPS as f64;
-        let loads: Vec<f64> = (0..2 * STEPS).map(|i| self.load(0.5 * step * i as f64)).collect();
-        let stiff = [self.truth.gene(0), self.truth.gene(8), self.truth.gene(1)];
+        let loads: Vec<f64> = (0..2 * STEPS)
+            .map(|i| self.load(0.5 * step * i as f64))
+            .collect();
+        let stiff = [self.genes[0], self.genes[8], self.genes[1]];
         let head = loads[0] / stiff[0];
         let beam = head + loads[0] / stiff[1];
-        let mut state: State = [beam + loads[0] / stiff[2], beam, head, beam, 0.0, 0.0, 0.0, 0.0];
+        let mut state: State = [
+            beam + loads[0] / stiff[2],
+            beam,
+            head,
+            beam,
+            0.0,
+            0.0,
+            0.0,
+            0.0,
+        ];
         let mut readings = Vec::with_capacity(STEPS);
         for _ in 0..TURNS {
             readings.clear();
@@ -205,12 +245,15 @@ impl March<'_> {
                 let angle = step * n as f64;
                 readings.push(self.read(angle, &state, n));
                 let load = |k: usize| loads[(2 * n + k) % (2 * STEPS)];
-                let moved = |k: &State, h: f64| -> State { std::array::from_fn(|j| state[j] + h * k[j]) };
+                let moved =
+                    |k: &State, h: f64| -> State { std::array::from_fn(|j| state[j] + h * k[j]) };
                 let k1 = self.derivative(angle, &state, load(0));
                 let k2 = self.derivative(angle + 0.5 * step, &moved(&k1, 0.5 * step), load(1));
                 let k3 = self.derivative(angle + 0.5 * step, &moved(&k2, 0.5 * step), load(1));
                 let k4 = self.derivative(angle + step, &moved(&k3, step), load(2));
-                state = std::array::from_fn(|j| state[j] + step / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j]));
+                state = std::array::from_fn(|j| {
+                    state[j] + step / 6.0 * (k1[j] + 2.0 * k2[j] + 2.0 * k3[j] + k4[j])
+                });
             }
             // lags of 20 mm and rates of 0.2 m/t, to a ten-thousandth
             let still = |(a, b): (&f64, &f64)| (a - b).abs() < 2e-6;
@@ -239,7 +282,11 @@ impl March<'_> {
                 truth.amount("head_profile_wear", 2),
             );
             // a groove with steep flanks
-            let off = if depth > 0.0 { (along - place) / width } else { 9.0 };
+            let off = if depth > 0.0 {
+                (along - place) / width
+            } else {
+                9.0
+            };
             depth * 1.1 / (1.0 + off.powi(4))
         };
         let table = [
@@ -250,7 +297,8 @@ impl March<'_> {
         ];
         let mut out = [0.0; 6];
         for (c, (tension, by_place, by_bend, by_pin, wear)) in table.into_iter().enumerate() {
-            let factor = 1.0 + by_place * along + bending * by_bend * (7.0 * along + c as f64).sin();
+            let factor =
+                1.0 + by_place * along + bending * by_bend * (7.0 * along + c as f64).sin();
             let drift = truth.amount("gauge_drift", c);
             let turn = n as f64 / STEPS as f64 - 0.5;
             out[c] = (1.0 + truth.amount("gauge_gain", c))
@@ -263,7 +311,9 @@ impl March<'_> {
             _ => 0.0,
         };
         out[4] = height - rod;
-        out[5] = rope * slope - 90.0 * (angle + phase).sin() + 1e-4 * 10_f64.powf(truth.genes[2]) * speed + mesh;
+        out[5] = rope * slope - 90.0 * (angle + phase).sin()
+            + 1e-4 * 10_f64.powf(truth.genes[2]) * speed
+            + mesh;
         out
     }
 
@@ -273,13 +323,18 @@ impl March<'_> {
         if lag <= 0.0 {
             return;
         }
-        let keep = (-TAU / STEPS as f64 / lag).exp();
+        // exact for a reading that is straight between two samples
+        let ratio = TAU / STEPS as f64 / lag;
+        let keep = (-ratio).exp();
+        let before = (1.0 - keep) / ratio - keep;
         let fresh = readings.to_vec();
         let mut slow = fresh[STEPS - 1];
+        let mut last = slow;
         for (i, now) in fresh.iter().chain(&fresh).enumerate() {
-            for (slow, now) in slow.iter_mut().zip(now).take(4) {
-                *slow = keep * *slow + (1.0 - keep) * now;
+            for c in 0..4 {
+                slow[c] = keep * slow[c] + before * last[c] + (1.0 - keep - before) * now[c];
             }
+            last = *now;
             readings[i % STEPS][..4].copy_from_slice(&slow[..4]);
         }
     }
@@ -304,7 +359,12 @@ pub(crate) const ALL: [Source; 6] = [
 ];
 
 /// A record of some cycles.
-pub(crate) fn record(truth: &Truth, condition: usize, channels: &[Source], cycles: usize) -> Record {
+pub(crate) fn record(
+    truth: &Truth,
+    condition: usize,
+    channels: &[Source],
+    cycles: usize,
+) -> Record {
     let streams = Streams::new(truth.seed, 11);
     let mut stream = streams.at(condition as u32, Phase::Initial, 0);
     let zeros: [f64; 6] = std::array::from_fn(|c| if c < 4 { 5.0 * stream.normal() } else { 0.0 });
@@ -336,9 +396,21 @@ fn place(source: Source) -> usize {
     }
 }
 
-fn cycle(truth: &Truth, condition: usize, stream: &mut Stream, zeros: &[f64; 6], channels: &[Source]) -> Curves {
+fn cycle(
+    truth: &Truth,
+    condition: usize,
+    stream: &mut Stream,
+    zeros: &[f64; 6],
+    channels: &[Source],
+) -> Curves {
     let scale = 1.0 + LOAD_SCATTER * stream.normal();
-    let readings = March { truth, condition, scale }.turn();
+    let readings = March {
+        truth,
+        condition,
+        scale,
+        genes: truth.values(),
+    }
+    .turn();
     let shift = ANGLE_TOLERANCE_DEG * (2.0 * stream.unit() - 1.0) * STEPS as f64 / 360.0;
     let each = STEPS as f64 / SAMPLES as f64;
     let at = |c: usize, i: usize| {
@@ -357,7 +429,10 @@ fn cycle(truth: &Truth, condition: usize, stream: &mut Stream, zeros: &[f64; 6],
             curve.push(at(c, i) + zeros[c] + truth.noise * NOISE[c] * drawn[c]);
         }
     }
-    channels.iter().map(|c| std::mem::take(&mut all[place(*c)])).collect()
+    channels
+        .iter()
+        .map(|c| std::mem::take(&mut all[place(*c)]))
+        .collect()
 }
 
 /// Noise of all channels: first-order in time, with a part that the gauges share.
@@ -374,7 +449,11 @@ impl Noise {
         }
         let common = self.last[6];
         std::array::from_fn(|c| {
-            if c < 4 { 0.8_f64.sqrt() * self.last[c] + 0.2_f64.sqrt() * common } else { self.last[c] }
+            if c < 4 {
+                0.8_f64.sqrt() * self.last[c] + 0.2_f64.sqrt() * common
+            } else {
+                self.last[c]
+            }
         })
     }
 }

@@ -18,7 +18,12 @@ pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-fn entry(text: &mut String, subject: &Subject<'_>, found: &Estimate, (round, set): (usize, &[String])) {
+fn entry(
+    text: &mut String,
+    subject: &Subject<'_>,
+    found: &Estimate,
+    (round, set): (usize, &[String]),
+) {
     let verdict = if set.len() > 1 { "ambiguous" } else { "named" };
     let set: Vec<String> = set.iter().map(|id| format!("\"{id}\"")).collect();
     // a String takes everything that is written to it

@@ -36,7 +36,12 @@ fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> P
     }
 }
 
-fn effect(id: &str, joint: &str, place: Place, parameters: Vec<ParameterDescriptor>) -> EffectDescriptor {
+fn effect(
+    id: &str,
+    joint: &str,
+    place: Place,
+    parameters: Vec<ParameterDescriptor>,
+) -> EffectDescriptor {
     EffectDescriptor {
         id: id.to_owned(),
         title: id.replace('_', " "),
@@ -52,27 +57,82 @@ pub(crate) fn named() -> Vec<EffectDescriptor> {
     use Place::{Drive, Dynamics, Gauge, Load};
     use Sign::{Either, Positive};
     let four = |unit: &str, typical: f64| -> Vec<ParameterDescriptor> {
-        (1..=4).map(|k| size(&format!("gauge_{k}"), unit, typical, Either)).collect()
+        (1..=4)
+            .map(|k| size(&format!("gauge_{k}"), unit, typical, Either))
+            .collect()
     };
     vec![
-        effect("pivot_friction", "beam", Dynamics, vec![size("coefficient", "1", 0.01, Positive)]),
-        effect("stuffing_box_friction", "rod", Dynamics, vec![size("force", "kN", 0.8, Positive)]),
-        effect("rod_drag", "rod", Dynamics, vec![size("drag", "kN/(m/t)^2", 1.0, Positive)]),
-        effect("card_time_shift", "load", Load, vec![size("shift", "deg", 1.0, Either)]),
-        effect("load_cell_lag", "load", Load, vec![size("lag", "t", 0.01, Positive)]),
-        effect("load_cell_gain", "load", Load, vec![size("gain", "1", 0.02, Either)]),
-        effect("load_offset", "load", Load, vec![size("offset", "kN", 2.0, Either)]),
-        effect("crank_angle_offset", "crank", Drive, vec![size("offset", "deg", 1.0, Either)]),
+        effect(
+            "pivot_friction",
+            "beam",
+            Dynamics,
+            vec![size("coefficient", "1", 0.01, Positive)],
+        ),
+        effect(
+            "stuffing_box_friction",
+            "rod",
+            Dynamics,
+            vec![size("force", "kN", 0.8, Positive)],
+        ),
+        effect(
+            "rod_drag",
+            "rod",
+            Dynamics,
+            vec![size("drag", "kN/(m/t)^2", 1.0, Positive)],
+        ),
+        effect(
+            "card_time_shift",
+            "load",
+            Load,
+            vec![size("shift", "deg", 1.0, Either)],
+        ),
+        effect(
+            "load_cell_lag",
+            "load",
+            Load,
+            vec![size("lag", "t", 0.01, Positive)],
+        ),
+        effect(
+            "load_cell_gain",
+            "load",
+            Load,
+            vec![size("gain", "1", 0.02, Either)],
+        ),
+        effect(
+            "load_offset",
+            "load",
+            Load,
+            vec![size("offset", "kN", 2.0, Either)],
+        ),
+        effect(
+            "crank_angle_offset",
+            "crank",
+            Drive,
+            vec![size("offset", "deg", 1.0, Either)],
+        ),
         effect(
             "crank_speed_ripple",
             "crank",
             Drive,
-            vec![size("cosine", "1", 0.03, Either), size("sine", "1", 0.03, Either)],
+            vec![
+                size("cosine", "1", 0.03, Either),
+                size("sine", "1", 0.03, Either),
+            ],
         ),
-        effect("counterweight_phase", "crank", Drive, vec![size("phase", "deg", 1.0, Either)]),
+        effect(
+            "counterweight_phase",
+            "crank",
+            Drive,
+            vec![size("phase", "deg", 1.0, Either)],
+        ),
         effect("gauge_gain", "gauge", Gauge, four("1", 0.02)),
         effect("gauge_drift", "gauge", Gauge, four("MPa", 0.5)),
-        effect("amplifier_lag", "gauge", Gauge, vec![size("lag", "t", 0.01, Positive)]),
+        effect(
+            "amplifier_lag",
+            "gauge",
+            Gauge,
+            vec![size("lag", "t", 0.01, Positive)],
+        ),
         effect(
             "head_profile_wear",
             "head",
@@ -92,15 +152,29 @@ pub(crate) fn named() -> Vec<EffectDescriptor> {
                 shape("load", "kN", 65.0, [45.0, 85.0], 10.0),
             ],
         ),
-        effect("rope_toe", "back_rope", Dynamics, vec![size("stretch", "m", 0.004, Positive)]),
-        effect("beam_inertia", "beam", Dynamics, vec![size("mass", "1", 0.4, Either)]),
+        effect(
+            "rope_toe",
+            "back_rope",
+            Dynamics,
+            vec![size("stretch", "m", 0.004, Positive)],
+        ),
+        effect(
+            "beam_inertia",
+            "beam",
+            Dynamics,
+            vec![size("mass", "1", 0.4, Either)],
+        ),
     ]
 }
 
 /// Forces without a cause: `probe.JOINT.FORM`.
 pub(crate) fn generic() -> Vec<EffectDescriptor> {
     let harmonics = (1..=HARMONICS).flat_map(|h| [format!("cos{h}"), format!("sin{h}")]);
-    let forms: Vec<String> = FORMS.iter().map(|f| (*f).to_owned()).chain(harmonics).collect();
+    let forms: Vec<String> = FORMS
+        .iter()
+        .map(|f| (*f).to_owned())
+        .chain(harmonics)
+        .collect();
     let mut all = Vec::new();
     for joint in JOINTS {
         for form in &forms {

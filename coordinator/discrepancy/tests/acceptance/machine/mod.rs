@@ -42,11 +42,29 @@ impl Turn {
             let mut at = 0;
             for y in curve {
                 sum += self.0[at].conj() * *y;
-                at = (at + h) % SAMPLES;
+                at += h;
+                if at >= SAMPLES {
+                    at -= SAMPLES;
+                }
             }
             sum / SAMPLES as f64
         };
         (0..=HIGHEST).map(coefficient).collect()
+    }
+
+    /// A curve at any angles (rad).
+    fn at(spectrum: &[C], angles: &[f64]) -> Vec<f64> {
+        let value = |angle: &f64| {
+            let unit = C::from_polar(1.0, *angle);
+            let mut turned = unit;
+            let mut sum = 0.5 * spectrum[0].re;
+            for f in &spectrum[1..] {
+                sum += (f * turned).re;
+                turned *= unit;
+            }
+            2.0 * sum
+        };
+        angles.iter().map(value).collect()
     }
 
     fn curve(&self, spectrum: &[C]) -> Vec<f64> {
@@ -108,7 +126,10 @@ struct Drive {
 
 fn drive(amounts: &Amounts<'_>, ratio: f64) -> Drive {
     let offset = amounts.get("crank_angle_offset", 0).to_radians();
-    let (a, b) = (amounts.get("crank_speed_ripple", 0), amounts.get("crank_speed_ripple", 1));
+    let (a, b) = (
+        amounts.get("crank_speed_ripple", 0),
+        amounts.get("crank_speed_ripple", 1),
+    );
     let mut drive = Drive {
         height: Vec::with_capacity(SAMPLES),
         speed: Vec::with_capacity(SAMPLES),
@@ -122,12 +143,68 @@ fn drive(amounts: &Amounts<'_>, ratio: f64) -> Drive {
         let bend = 1.5 * (p.cos() + 0.25 * (2.0 * p).cos());
         let rate = ratio * (1.0 + a * angle.cos() + b * angle.sin());
         let change = ratio * (b * angle.cos() - a * angle.sin());
-        drive.height.push(1.5 * (1.0 - p.cos() + 0.0625 * (1.0 - (2.0 * p).cos())));
+        drive
+            .height
+            .push(1.5 * (1.0 - p.cos() + 0.0625 * (1.0 - (2.0 * p).cos())));
         drive.speed.push(slope * rate);
-        drive.acceleration.push(bend * rate * rate + slope * rate * change);
+        drive
+            .acceleration
+            .push(bend * rate * rate + slope * rate * change);
         drive.slope.push(slope);
     }
     drive
+}
+
+/// Effects that follow the motion: evaluated on a solution without them.
+const BY_MOTION: [&str; 5] = [
+    "pivot_friction",
+    "stuffing_box_friction",
+    "rod_drag",
+    "pin_clearance",
+    "rope_toe",
+];
+
+/// Crank angle against time where the crank's speed ripples: the machine swings in time.
+struct Warp(Option<[Vec<f64>; 2]>);
+
+impl Warp {
+    fn new(turn: &Turn, amounts: &Amounts<'_>) -> Self {
+        let (a, b) = (
+            amounts.get("crank_speed_ripple", 0),
+            amounts.get("crank_speed_ripple", 1),
+        );
+        if a == 0.0 && b == 0.0 {
+            return Self(None);
+        }
+        let late = |angle: f64| a * angle.sin() - b * angle.cos();
+        let to: Vec<f64> = grid().map(|angle| angle - late(angle)).collect();
+        let from = grid()
+            .map(|time| (0..4).fold(time, |angle, _| time + late(angle)))
+            .collect();
+        debug_assert_eq!(to.len(), turn.0.len());
+        Self(Some([from, to]))
+    }
+
+    /// The spectrum over time of a curve over the angle.
+    fn enter(&self, turn: &Turn, curve: &[f64]) -> Vec<C> {
+        let spectrum = turn.transform(curve);
+        match &self.0 {
+            None => spectrum,
+            Some([from, _]) => turn.transform(&Turn::at(&spectrum, from)),
+        }
+    }
+
+    /// Spectra over the angle of a solution over time.
+    fn leave(&self, turn: &Turn, lags: &mut Lags, tensions: &mut (Vec<C>, Vec<C>)) {
+        let Some([_, to]) = &self.0 else { return };
+        let back = |spectrum: &[C]| turn.transform(&Turn::at(spectrum, to));
+        tensions.0 = back(&tensions.0);
+        tensions.1 = back(&tensions.1);
+        let rod = back(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());
+        for (y, rod) in lags.0.iter_mut().zip(rod) {
+            y[0] = rod;
+        }
+    }
 }
 
 /// The lags of one solution, order by order.
@@ -137,10 +214,18 @@ impl Machine {
     /// With its whole library.
     pub(crate) fn new() -> Self {
         let turn = Turn::new();
-        let spectrum = |condition| turn.transform(&grid().map(|a| card(condition, a)).collect::<Vec<f64>>());
+        let spectrum =
+            |condition| turn.transform(&grid().map(|a| card(condition, a)).collect::<Vec<f64>>());
         let cards = [spectrum(0), spectrum(1)];
-        let library = library::named().into_iter().chain(library::generic()).collect();
-        Self { turn, cards, library }
+        let library = library::named()
+            .into_iter()
+            .chain(library::generic())
+            .collect();
+        Self {
+            turn,
+            cards,
+            library,
+        }
     }
 
     /// What it announces.
@@ -161,12 +246,19 @@ impl Machine {
             })
             .collect();
         let offset = amounts.get("load_offset", 0);
-        self.turn.curve(&spectrum).iter().map(|w| w + offset).collect()
+        self.turn
+            .curve(&spectrum)
+            .iter()
+            .map(|w| w + offset)
+            .collect()
     }
 
     /// One turn.
     pub(crate) fn observe(&self, spec: &ObserveSpec) -> Observation {
-        let amounts = Amounts { library: &self.library, spec };
+        let amounts = Amounts {
+            library: &self.library,
+            spec,
+        };
         let ratio = SPEED[spec.condition];
         let g = Genes::new(spec);
         if !(g.back > 50.0 && g.front > 5.0) {
@@ -175,47 +267,91 @@ impl Machine {
         let drive = drive(&amounts, ratio);
         let load = self.load(&amounts, spec.condition);
         let forces = self.forces(&amounts, &drive, &load, ratio);
-        let mut spectra = forces.map(|f| self.turn.transform(&f));
-        let mut lags = solve(&g, ratio, &spectra, amounts.get("beam_inertia", 0));
+        let warp = Warp::new(&self.turn, &amounts);
+        let linear = forces.map(|f| warp.enter(&self.turn, &f));
+        let extra_mass = amounts.get("beam_inertia", 0);
+        let mut lags = solve(&g, ratio, &linear, extra_mass);
         let mut tensions = (lags.rope(&g, ratio), lags.pin(&g, ratio));
-        if ["pin_clearance", "rope_toe"].iter().any(|id| amounts.on(id)) {
-            let [pin, rope] = self.stretch(&amounts, &g, ratio, &tensions);
-            for h in 0..=HIGHEST {
-                spectra[1][h] += pin[h];
-                spectra[2][h] += rope[h] - pin[h];
-            }
-            lags = solve(&g, ratio, &spectra, amounts.get("beam_inertia", 0));
-            tensions = (lags.rope(&g, ratio), lags.pin(&g, ratio));
-            for h in 0..=HIGHEST {
-                tensions.0[h] -= rope[h];
-                tensions.1[h] -= pin[h];
+        if BY_MOTION.iter().any(|id| amounts.on(id)) {
+            for _ in 0..2 {
+                let [on_rod, on_beam] = self.losses(&amounts, &drive, &load, &lags, ratio);
+                let [pin, rope] = self.stretch(&amounts, &g, ratio, &tensions);
+                let mut spectra = linear.clone();
+                for h in 0..=HIGHEST {
+                    spectra[0][h] += on_rod[h];
+                    spectra[1][h] += on_beam[h] + pin[h];
+                    spectra[2][h] += rope[h] - pin[h];
+                }
+                lags = solve(&g, ratio, &spectra, extra_mass);
+                tensions = (lags.rope(&g, ratio), lags.pin(&g, ratio));
+                for h in 0..=HIGHEST {
+                    tensions.0[h] -= rope[h];
+                    tensions.1[h] -= pin[h];
+                }
             }
         }
+        warp.leave(&self.turn, &mut lags, &mut tensions);
         self.channels(&amounts, &g, &drive, (&lags, &tensions), ratio)
     }
 
     /// Forces on rod, beam, head, downwards.
-    fn forces(&self, amounts: &Amounts<'_>, drive: &Drive, load: &[f64], ratio: f64) -> [Vec<f64>; 3] {
-        let mass = [MASSES[0], MASSES[1] + amounts.get("beam_inertia", 0), MASSES[2]];
-        let (pivot, box_, drag) = (
-            amounts.get("pivot_friction", 0),
-            amounts.get("stuffing_box_friction", 0),
-            amounts.get("rod_drag", 0),
-        );
-        let sign = |v: f64| (v / 0.08).tanh();
+    fn forces(
+        &self,
+        amounts: &Amounts<'_>,
+        drive: &Drive,
+        load: &[f64],
+        ratio: f64,
+    ) -> [Vec<f64>; 3] {
+        let mass = [
+            MASSES[0],
+            MASSES[1] + amounts.get("beam_inertia", 0),
+            MASSES[2],
+        ];
         let mut forces: [Vec<f64>; 3] =
             mass.map(|m| drive.acceleration.iter().map(|a| m * a).collect());
-        for i in 0..SAMPLES {
-            let v = drive.speed[i];
-            forces[0][i] += load[i] + box_ * sign(v) + drag * v * v.abs();
-            forces[1][i] += pivot * (load[i] + 20.0) * sign(v);
+        for (f, load) in forces[0].iter_mut().zip(load) {
+            *f += load;
         }
         for (joint, force) in ["rod", "beam", "head"].iter().zip(&mut forces) {
-            for (f, p) in force.iter_mut().zip(self.probe(amounts.spec, joint, drive, ratio)) {
+            for (f, p) in force
+                .iter_mut()
+                .zip(self.probe(amounts.spec, joint, drive, ratio))
+            {
                 *f += p;
             }
         }
         forces
+    }
+
+    /// Friction and drag on rod and beam, by how these move in a solution.
+    fn losses(
+        &self,
+        amounts: &Amounts<'_>,
+        drive: &Drive,
+        load: &[f64],
+        lags: &Lags,
+        ratio: f64,
+    ) -> [Vec<C>; 2] {
+        let (pivot, seal, drag) = (
+            amounts.get("pivot_friction", 0),
+            amounts.get("stuffing_box_friction", 0),
+            amounts.get("rod_drag", 0),
+        );
+        let rate = |mass: usize| {
+            let rate = |(h, y): (usize, &Vector3<C>)| y[mass] * C::new(0.0, h as f64 * ratio);
+            self.turn
+                .curve(&lags.0.iter().enumerate().map(rate).collect::<Vec<C>>())
+        };
+        let sign = |v: f64| (v / 0.06).tanh();
+        let (rod, beam) = (rate(0), rate(1));
+        let on_rod: Vec<f64> = (0..SAMPLES)
+            .map(|i| drive.speed[i] - rod[i])
+            .map(|v| seal * sign(v) + drag * v * v.abs())
+            .collect();
+        let on_beam: Vec<f64> = (0..SAMPLES)
+            .map(|i| pivot * (load[i] + 20.0) * sign(drive.speed[i] - beam[i]))
+            .collect();
+        [self.turn.transform(&on_rod), self.turn.transform(&on_beam)]
     }
 
     /// The forces without a cause at one joint.
@@ -223,7 +359,9 @@ impl Machine {
         let mut sum = vec![0.0; SAMPLES];
         let prefix = format!("probe.{joint}.");
         for effect in &spec.effects {
-            let Some(form) = effect.id.strip_prefix(&prefix) else { continue };
+            let Some(form) = effect.id.strip_prefix(&prefix) else {
+                continue;
+            };
             let amplitude = effect.parameters.first().map_or(0.0, |(_, value)| *value);
             for (i, (angle, sum)) in grid().zip(&mut sum).enumerate() {
                 let v = drive.speed[i] / (1.5 * ratio);
@@ -247,22 +385,48 @@ impl Machine {
     }
 
     /// Stretches that clearance and toe impose, as forces across pin and back rope.
-    fn stretch(&self, amounts: &Amounts<'_>, g: &Genes, ratio: f64, tensions: &(Vec<C>, Vec<C>)) -> [Vec<C>; 2] {
+    fn stretch(
+        &self,
+        amounts: &Amounts<'_>,
+        g: &Genes,
+        ratio: f64,
+        tensions: &(Vec<C>, Vec<C>),
+    ) -> [Vec<C>; 2] {
         let (rope, pin) = (self.turn.curve(&tensions.0), self.turn.curve(&tensions.1));
-        let (gap, at) = (amounts.get("pin_clearance", 0), amounts.get("pin_clearance", 1));
+        let (gap, at) = (
+            amounts.get("pin_clearance", 0),
+            amounts.get("pin_clearance", 1),
+        );
         let toe = amounts.get("rope_toe", 0);
-        let play: Vec<f64> = pin.iter().map(|q| 0.5 * gap * (1.0 + ((q - at) / 3.0).tanh())).collect();
+        let play: Vec<f64> = pin
+            .iter()
+            .map(|q| 0.5 * gap * (1.0 + ((q - at) / 3.0).tanh()))
+            .collect();
         let soft: Vec<f64> = rope.iter().map(|t| -toe * (-t / 25.0).exp()).collect();
         let force = |stretch: &[f64], stiffness: f64, loss: f64| -> Vec<C> {
             let spectrum = self.turn.transform(stretch).into_iter().enumerate();
-            spectrum.map(|(h, f)| C::new(stiffness, h as f64 * ratio * loss) * f).collect()
+            spectrum
+                .map(|(h, f)| C::new(stiffness, h as f64 * ratio * loss) * f)
+                .collect()
         };
-        [force(&play, g.contact, g.contact_loss), force(&soft, g.back, g.back_loss)]
+        [
+            force(&play, g.contact, g.contact_loss),
+            force(&soft, g.back, g.back_loss),
+        ]
     }
 
-    fn channels(&self, amounts: &Amounts<'_>, g: &Genes, drive: &Drive, (lags, tensions): (&Lags, &(Vec<C>, Vec<C>)), ratio: f64) -> Observation {
+    fn channels(
+        &self,
+        amounts: &Amounts<'_>,
+        g: &Genes,
+        drive: &Drive,
+        (lags, tensions): (&Lags, &(Vec<C>, Vec<C>)),
+        ratio: f64,
+    ) -> Observation {
         let (rope, pin) = (self.turn.curve(&tensions.0), self.turn.curve(&tensions.1));
-        let rod = self.turn.curve(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());
+        let rod = self
+            .turn
+            .curve(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());
         let (depth, place, width) = (
             amounts.get("head_profile_wear", 0),
             amounts.get("head_profile_wear", 1),
@@ -298,7 +462,9 @@ impl Machine {
         let phase = amounts.get("counterweight_phase", 0).to_radians();
         let extra = self.probe(amounts.spec, "crank", drive, ratio);
         let torque = grid().enumerate().map(|(i, angle)| {
-            rope[i] * drive.slope[i] - 90.0 * (angle + phase).sin() + 1e-4 * g.torsion * drive.speed[i] + extra[i]
+            rope[i] * drive.slope[i] - 90.0 * (angle + phase).sin()
+                + 1e-4 * g.torsion * drive.speed[i]
+                + extra[i]
         });
         Observation {
             verdict: Verdict::Complete,
@@ -346,7 +512,8 @@ impl Genes {
 impl Lags {
     /// Tension of the back rope.
     fn rope(&self, g: &Genes, ratio: f64) -> Vec<C> {
-        let part = |(h, y): (usize, &Vector3<C>)| C::new(g.back, h as f64 * ratio * g.back_loss) * y[2];
+        let part =
+            |(h, y): (usize, &Vector3<C>)| C::new(g.back, h as f64 * ratio * g.back_loss) * y[2];
         self.0.iter().enumerate().map(part).collect()
     }
 
@@ -371,12 +538,21 @@ fn solve(g: &Genes, ratio: f64, spectra: &[Vec<C>; 3], beam: f64) -> Lags {
         let w2 = w * w;
         let zero = C::new(0.0, 0.0);
         let matrix = Matrix3::new(
-            f - w2 * MASSES[0], -f, zero,
-            -f, f + c - w2 * (MASSES[1] + beam), -c,
-            zero, -c, c + b - w2 * MASSES[2],
+            f - w2 * MASSES[0],
+            -f,
+            zero,
+            -f,
+            f + c - w2 * (MASSES[1] + beam),
+            -c,
+            zero,
+            -c,
+            c + b - w2 * MASSES[2],
         );
         let force = Vector3::new(spectra[0][h], spectra[1][h], spectra[2][h]);
-        matrix.lu().solve(&force).unwrap_or_else(|| Vector3::from_element(zero))
+        matrix
+            .lu()
+            .solve(&force)
+            .unwrap_or_else(|| Vector3::from_element(zero))
     };
     Lags((0..=HIGHEST).map(at).collect())
 }
@@ -406,19 +582,33 @@ pub(crate) struct AtOnce<'a> {
 
 impl<'a> AtOnce<'a> {
     pub(crate) const fn new(machine: &'a Machine) -> Self {
-        Self { machine, lost_every: 0, runs: 0, lost: 0 }
+        Self {
+            machine,
+            lost_every: 0,
+            runs: 0,
+            lost: 0,
+        }
     }
 
     /// Loses one run in `every`, spread as a counter's hash spreads them.
     pub(crate) const fn losing(machine: &'a Machine, every: u64) -> Self {
-        Self { machine, lost_every: every, runs: 0, lost: 0 }
+        Self {
+            machine,
+            lost_every: every,
+            runs: 0,
+            lost: 0,
+        }
     }
 }
 
 impl Laboratory for AtOnce<'_> {
     type Error = Infallible;
 
-    async fn observe(&mut self, _: Stage, batch: Vec<ObserveSpec>) -> Result<Vec<Option<Observation>>, Infallible> {
+    async fn observe(
+        &mut self,
+        _: Stage,
+        batch: Vec<ObserveSpec>,
+    ) -> Result<Vec<Option<Observation>>, Infallible> {
         let one = |spec: &ObserveSpec| {
             self.runs += 1;
             let hash = self.runs.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
