@@ -34,6 +34,8 @@ pub struct Challenger {
     pub id: String,
     /// By how much it lowers `chi^2`, refitted.
     pub removed: f64,
+    /// Log evidence of the refit (nats).
+    pub log_evidence: f64,
     /// The refit.
     pub fit: Fit,
 }
@@ -72,7 +74,7 @@ pub async fn challenge<L: Laboratory>(
     let tests = forms.len();
     forms.retain(|form| {
         family_wise(form.p_value, tests) < settings.alpha
-            && form.statistic > settings.generic_factor * named.removed + settings.generic_gain
+            && form.statistic > named.removed + settings.generic_gain
             && !is_listed(form, named.suspects, settings, &tangent)
     });
     // a harmonic has two amplitudes to choose: two nats' worth of chi^2 each
@@ -94,13 +96,15 @@ pub async fn challenge<L: Laboratory>(
         let phi = misfit(refit.chi_squared().min(named.left), bench.metric.len());
         let scale = phi * phi;
         let removed = fit.chi_squared() - refit.chi_squared();
-        let gain = log_evidence(refit.search.best(), refit.variables()) - named.log_evidence;
+        let log_evidence = log_evidence(refit.search.best(), refit.variables());
+        let gain = log_evidence - named.log_evidence;
         let beats = removed
             > settings.generic_factor * named.removed + settings.generic_gain * scale
             && gain > settings.gain * scale;
         beats.then(|| Challenger {
             id: form.parts[0].effect.id.clone(),
             removed,
+            log_evidence,
             fit: refit,
         })
     }))

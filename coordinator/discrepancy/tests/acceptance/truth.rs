@@ -21,7 +21,7 @@ pub(crate) enum Unlisted {
     RodDashpot(f64),
     /// A gear that brakes the crank four times a turn (kN m).
     GearMesh(f64),
-    /// A mass that swings on the beam, 6.5 times a turn (1).
+    /// A mass that swings on the beam, 3.3 times a turn (1).
     SwingingMass(f64),
 }
 
@@ -198,7 +198,7 @@ impl March<'_> {
             Some(Unlisted::SwingingMass(mass)) => {
                 swing_mass = mass;
                 swing_force =
-                    mass * 6.5 * 6.5 * (swing - beam) + mass * 0.6 * (swing_rate - beam_rate);
+                    mass * 3.3 * 3.3 * (swing - beam) + mass * 0.6 * (swing_rate - beam_rate);
                 on_beam += swing_force;
             }
             Some(Unlisted::GearMesh(_)) | None => {}
