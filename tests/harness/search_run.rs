@@ -69,6 +69,8 @@ impl SearchRun {
             },
             Outcome::Scored(_)
             | Outcome::Simulated(_)
+            | Outcome::Observed(_)
+            | Outcome::Described(_)
             | Outcome::HeadReduced(_)
             | Outcome::Failed(_) => Told {
                 fitness: f64::INFINITY,

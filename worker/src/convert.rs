@@ -38,6 +38,7 @@ pub fn machine_with(
     condition: usize,
     effects: &[EffectSetting],
 ) -> Result<Machine, Failure> {
+    effect::check_units(&case.effects, &case.effect_units)?;
     let selection = effect::selection(&merged(&case.effects, effects))?;
     let condition = case
         .conditions

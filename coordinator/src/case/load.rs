@@ -2,6 +2,7 @@
 use super::{
     card,
     document::{Document, Step, nearest},
+    effect::{self, CaseEffect},
     error::{CaseError, damaged},
     flexible::{self, ReadHead},
     genes,
@@ -35,6 +36,8 @@ pub struct Loaded {
     pub cycles: Vec<Record>,
     /// Whether the case says that its gauge records were computed; never of replaced ones.
     pub synthetic: bool,
+    /// Effects as the file states them, with intervals and provenance.
+    pub effects: Vec<CaseEffect>,
     /// Where beam and ropes move.
     pub envelope: Envelope,
 }
@@ -81,6 +84,7 @@ pub(super) fn resolve(
     machine::check_arc(&document, &file, &read.head.arc_deg, &envelope)?;
     check_names(&document, &file.conditions)?;
     let objective = objective(&document, &file.objective, &file.conditions)?;
+    effect::check(&document, &file.effects)?;
     let mut notes = Vec::new();
     let mut records = Vec::new();
     let mut cycles = Vec::new();
@@ -111,7 +115,8 @@ pub(super) fn resolve(
         front_head: file.front_head,
         back_head: file.back_head,
         modal_head: read.head.clone(),
-        effects: Vec::new(),
+        effects: file.effects.iter().map(CaseEffect::setting).collect(),
+        effect_units: file.effects.iter().map(CaseEffect::units).collect(),
         genes,
         conditions,
         objective,
@@ -123,6 +128,7 @@ pub(super) fn resolve(
         notes,
         records,
         cycles,
+        effects: file.effects,
         envelope,
     };
     Ok((loaded, read, file.flexible_head))

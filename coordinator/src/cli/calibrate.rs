@@ -1,9 +1,9 @@
 //! `horsehead calibrate`: identify the parameters, and show what it brought.
 use super::{
-    CaseChoice, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
+    CaseChoice, Door, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
     problem::Usage,
     progress::Display,
-    run_folder::{self, Begun, Manifest, RunFolder, command_line},
+    run_folder::{self, Begun, CALIBRATE, Manifest, RunFolder, command_line},
 };
 use crate::{
     cli::finish::{self, Session},
@@ -25,6 +25,7 @@ use std::{
 Examples:
   horsehead calibrate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen tcp/127.0.0.1:7447
+  horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
 
 Presets:
 {}
@@ -42,17 +43,13 @@ pub(super) struct Arguments {
     /// Run folder [default: runs/CASE-PRESET-seedN].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
-    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
-    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
-    listen: Option<String>,
     /// Of the preset `window`: an individual is bred from results that are this many behind, part
     /// of what decides the result [default: that of the run, or 3 times the workers planned:
     /// those started here, 40 at least with --listen].
     #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     window: Option<u32>,
-    /// Allow other machines to connect without certificates.
-    #[arg(long, env = "HORSEHEAD_INSECURE")]
-    insecure: bool,
+    #[command(flatten)]
+    door: Door,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
     workers: Option<usize>,
@@ -95,13 +92,13 @@ fn set_window(
             }),
         };
     };
-    let earlier = RunFolder::open(path)
+    let earlier = RunFolder::open::<Settings>(path, CALIBRATE)
         .ok()
         .and_then(|(_, earlier, _)| match earlier.settings {
             Settings::Window(earlier) => Some(earlier.window),
             Settings::Memetic(_) | Settings::Quick(_) => None,
         });
-    let planned = match arguments.listen {
+    let planned = match arguments.door.listen {
         Some(_) => local_workers.max(LISTENING),
         None => local_workers,
     };
@@ -153,7 +150,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let mut settings = (preset.settings)(&space);
     set_window(&mut settings, arguments, &path, local_workers)?;
     let manifest = Manifest {
-        kind: run_folder::CALIBRATE.to_owned(),
+        kind: CALIBRATE.to_owned(),
         format: run_folder::format(),
         program: bus::PROGRAM.to_owned(),
         command: command_line(),
@@ -182,8 +179,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         case: &case,
         earlier_s: wall_s,
         started: Instant::now(),
-        listen: arguments.listen.clone(),
-        insecure: arguments.insecure,
+        door: arguments.door.clone(),
         local_workers,
         resumed,
         replay: false,

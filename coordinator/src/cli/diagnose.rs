@@ -1,7 +1,7 @@
 //! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
 //! that is, and how far the gap closes.
 use super::{
-    EXIT_CODES, OutputChoice, bus, cores, diagnosis_json, interrupt, output,
+    Door, EXIT_CODES, OutputChoice, bus, cores, diagnosis_json, interrupt, output,
     problem::Usage,
     progress::StageDisplay,
     run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, command_line},
@@ -61,12 +61,8 @@ pub(super) struct Arguments {
     /// Run folder [default: runs/CASE-diagnose-seedN].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
-    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
-    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
-    listen: Option<String>,
-    /// Allow other machines to connect without certificates.
-    #[arg(long, env = "HORSEHEAD_INSECURE")]
-    insecure: bool,
+    #[command(flatten)]
+    door: Door,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
     workers: Option<usize>,
@@ -241,8 +237,7 @@ fn experiment(
         let mut stop = interrupt::listen();
         let options = bus::Options {
             run_dir: begun.folder.path().to_owned(),
-            listen: arguments.listen.clone(),
-            insecure: arguments.insecure,
+            door: arguments.door.clone(),
             local_workers: arguments.workers.unwrap_or_else(cores),
             kind: DIAGNOSE.to_owned(),
             settings: manifest.settings_json()?,

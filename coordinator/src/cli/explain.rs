@@ -70,7 +70,7 @@ impl ExplainOutput {
 
 /// Reads the journal and explains.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (folder, _, _) = RunFolder::open(&arguments.run)?;
+    let folder = RunFolder::at(&arguments.run)?;
     let account = account::read(&folder.file(journal::FILE))?;
     let object = ExplainOutput::new(arguments.run.display().to_string(), &account);
     let text = || {

@@ -1,6 +1,6 @@
 //! From a run folder to its result: the search (or its replay), the comparison, the files.
 use super::{
-    Output, bus,
+    Door, Output, bus,
     json::{self, Both, CalibrateOutput},
     output,
     run_folder::{Manifest, RunFolder, gene_file},
@@ -32,8 +32,7 @@ pub(super) struct Session<'a> {
     /// Wall time of earlier sessions (s).
     pub(super) earlier_s: f64,
     pub(super) started: Instant,
-    pub(super) listen: Option<String>,
-    pub(super) insecure: bool,
+    pub(super) door: Door,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Whether the run was begun by an earlier session.
@@ -69,8 +68,7 @@ impl Session<'_> {
             .map_err(study::StudyError::from)?;
         let options = bus::Options {
             run_dir: self.folder.path().to_owned(),
-            listen: self.listen.clone(),
-            insecure: self.insecure,
+            door: self.door.clone(),
             local_workers: self.local_workers,
             kind: "calibrate".to_owned(),
             settings: self.manifest.settings_json()?,

@@ -16,6 +16,7 @@ mod head_files;
 mod integrators;
 mod interrupt;
 mod json;
+mod keys;
 mod output;
 mod problem;
 mod progress;
@@ -65,6 +66,7 @@ enum Command {
     Report(report::Arguments),
     Explain(explain::Arguments),
     Case(case::Arguments),
+    Keys(keys::Arguments),
     Bench(bench::Arguments),
     Completions(completions::Arguments),
 }
@@ -96,6 +98,20 @@ struct CaseChoice {
     /// same machine.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     measured: Option<PathBuf>,
+}
+
+/// How workers on other machines may join; not at all by default.
+#[derive(Clone, Debug, Default, Args)]
+struct Door {
+    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
+    listen: Option<String>,
+    /// Folder of certificates for `quic/` addresses, as `horsehead keys new` makes it.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
+    /// Allow other machines to connect without certificates.
+    #[arg(long, env = "HORSEHEAD_INSECURE")]
+    insecure: bool,
 }
 
 /// A case that was read.
@@ -171,6 +187,7 @@ pub fn main() -> ExitCode {
         Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
+        Command::Keys(arguments) => keys::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };

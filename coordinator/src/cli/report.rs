@@ -1,6 +1,6 @@
 //! `horsehead report`: the files of a finished run again, from its journal.
 use super::{
-    EXIT_CODES, OutputChoice, bus,
+    Door, EXIT_CODES, OutputChoice, bus,
     finish::{self, Session},
     interrupt,
     problem::Usage,
@@ -59,8 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         case: &case,
         earlier_s: manifest.wall_s,
         started: Instant::now(),
-        listen: None,
-        insecure: false,
+        door: Door::default(),
         local_workers: 0,
         resumed: true,
         replay: true,

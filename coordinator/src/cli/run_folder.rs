@@ -217,24 +217,33 @@ impl RunFolder {
         fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
     }
 
+    /// The folder of a run of any kind.
+    ///
+    /// # Errors
+    /// If no run was begun there.
+    pub(super) fn at(path: &Path) -> Result<Self, Usage> {
+        let folder = Self {
+            path: path.to_owned(),
+        };
+        if folder.file("run.json").exists() {
+            return Ok(folder);
+        }
+        Err(Usage {
+            message: format!("{} is no run folder: it has no run.json", path.display()),
+            help: "`horsehead calibrate CASE` and `horsehead diagnose CASE` make them below runs/"
+                .to_owned(),
+        })
+    }
+
     /// Opens a run that was begun before.
     ///
     /// # Errors
-    /// If the folder holds no run, or one of another version.
+    /// If the folder holds no run, or one of another version or kind.
     pub(super) fn open<S: Decides>(
         path: &Path,
         kind: &str,
     ) -> anyhow::Result<(Self, Manifest<S>, Case)> {
-        let folder = Self {
-            path: path.to_owned(),
-        };
-        if !folder.file("run.json").exists() {
-            return Err(Usage {
-                message: format!("{} is no run folder: it has no run.json", path.display()),
-                help: format!("`horsehead {kind} CASE` makes one below runs/"),
-            }
-            .into());
-        }
+        let folder = Self::at(path)?;
         let (manifest, case) = folder.load(kind)?;
         Ok((folder, manifest, case))
     }

@@ -222,9 +222,11 @@ impl<E: Evaluator> Runner<'_, E> {
                     }),
                 )
             }
-            Outcome::Scored(_) | Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
-                Err(StudyError::WrongKind { id })
-            }
+            Outcome::Scored(_)
+            | Outcome::Observed(_)
+            | Outcome::Described(_)
+            | Outcome::HeadReduced(_)
+            | Outcome::Nothing(_) => Err(StudyError::WrongKind { id }),
         }
     }
 

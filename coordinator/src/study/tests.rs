@@ -63,7 +63,7 @@ impl Evaluator for Oracle {
         let outcome = known.unwrap_or_else(|| match &job {
             Job::Score(spec) => (self.answer)(&self.space, id, spec),
             Job::Simulate(spec) => Outcome::Simulated(Box::new(curves(spec.genes[0]))),
-            Job::Observe(_) | Job::ReduceHead(_) | Job::Nothing { .. } => {
+            Job::Observe(_) | Job::ReduceHead(_) | Job::Describe | Job::Nothing { .. } => {
                 Outcome::Nothing(Vec::new())
             }
         });

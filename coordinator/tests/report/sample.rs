@@ -159,6 +159,7 @@ pub(crate) fn case() -> Case {
             },
         },
         effects: Vec::new(),
+        effect_units: Vec::new(),
         genes: genes(),
         conditions: vec![condition("5rpm", 5.0), condition("4rpm", 4.0)],
         objective: Objective {

@@ -48,6 +48,9 @@ pub struct Case {
     pub modal_head: ModalHead,
     /// What the machine has beside the above: effects with their numbers.
     pub effects: Vec<EffectSetting>,
+    /// Units in which the case states those numbers, effect by effect in the same order; a worker
+    /// refuses one that is not its own. Empty where nobody stated any.
+    pub effect_units: Vec<Vec<String>>,
     /// The unknown numbers, in the order of every gene vector.
     pub genes: Vec<Gene>,
     /// Working conditions with their records.

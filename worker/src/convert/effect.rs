@@ -71,6 +71,29 @@ pub fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
     })
 }
 
+/// The units that a case states are those of the catalogue. What the catalogue does not have is left
+/// to [`selection`].
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the first that differs.
+pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<(), Failure> {
+    for (k, (setting, units)) in settings.iter().zip(units).enumerate() {
+        let Some(descriptor) = catalogue().iter().find(|d| d.id == setting.id) else {
+            continue;
+        };
+        for ((name, _), unit) in setting.parameters.iter().zip(units) {
+            let parameter = descriptor.parameters.iter().find(|p| p.name == name);
+            if let Some(own) = parameter.map(|p| p.unit.symbol()).filter(|own| own != unit) {
+                return Err(misconfigured(
+                    &format!("effects[{k}].parameters.{name}.unit"),
+                    format!("is \"{unit}\"; `{}` takes it in {own}", setting.id),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// What is wrong, with what was probably meant.
 fn problem(refused: &Refused) -> String {
     match refused {
@@ -135,6 +158,22 @@ mod tests {
         assert_eq!(problem, "is 20; it must lie between 130 and 215 deg");
         let (_, problem) = refused("load_offset", "force", 1.0);
         assert_eq!(problem, "`load_offset` is given twice");
+    }
+
+    #[test]
+    fn a_unit_of_another_quantity_is_refused() {
+        let settings = [EffectSetting::new("pivot_friction", &[("moment", 1.0)])];
+        let units = |unit: &str| [vec![unit.to_owned()]];
+        assert_eq!(check_units(&settings, &units("N.m")), Ok(()));
+        let Err(Failure::Misconfigured { field, problem }) = check_units(&settings, &units("N"))
+        else {
+            unreachable!("accepted")
+        };
+        assert_eq!(field, "effects[0].parameters.moment.unit");
+        assert_eq!(problem, "is \"N\"; `pivot_friction` takes it in N.m");
+        for p in catalogue().iter().flat_map(|d| d.parameters.iter()) {
+            assert!(protocol::unit::EFFECT_UNITS.contains(&p.unit.symbol()));
+        }
     }
 
     #[test]

@@ -87,11 +87,16 @@ pub fn nothing(job: &Job) -> Outcome {
     Outcome::Nothing(vec![0; *reply_bytes as usize])
 }
 
-/// Names the numerics of this build by the bits of a reference run: equal digests promise equal
-/// results. Takes as long as that run, some hundredths of a second.
+/// Names the numerics of this build by the bits of two reference runs, without effects and with all of
+/// them, and by the catalogue's units and bounds: equal digests promise equal results. Takes as long
+/// as those runs, some tenths of a second.
 pub fn model_digest() -> String {
-    let (bits, statistics) = simulation::reference::bits();
-    let mut bytes: Vec<u8> = bits.iter().flat_map(|bits| bits.to_le_bytes()).collect();
-    bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
+    let mut bytes = Vec::new();
+    let plain = simulation::reference::bits();
+    for (bits, statistics) in [plain, simulation::reference::bits_with_effects()] {
+        bytes.extend(bits.iter().flat_map(|bits| bits.to_le_bytes()));
+        bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
+    }
+    bytes.extend_from_slice(format!("{:?}", convert::effect::descriptors()).as_bytes());
     ContentHash::of(&bytes).to_string()
 }

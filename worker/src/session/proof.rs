@@ -68,6 +68,7 @@ pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
     let job = Job::Score(ScoreSpec {
+        effects: Vec::new(),
         condition: decoded.objective.condition,
         genes: decoded.recommended(),
         with_residual: true,

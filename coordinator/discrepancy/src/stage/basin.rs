@@ -65,7 +65,9 @@ fn apart(ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     for x in ranked {
         let near = |other: &Vec<f64>| {
             let pairs = other.iter().zip(&x).enumerate();
-            pairs.into_iter().all(|(k, (a, b))| (a - b).abs() < NEAR[k.min(1)])
+            pairs
+                .into_iter()
+                .all(|(k, (a, b))| (a - b).abs() < NEAR[k.min(1)])
         };
         if !kept.iter().any(near) {
             kept.push(x);

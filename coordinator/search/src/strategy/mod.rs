@@ -32,7 +32,8 @@ pub trait Strategy {
 
     /// Takes the residual vector of a proposal whose purpose wants one, before its result: in units
     /// in which its squared length is the fitness.
-    fn tell_residual(&mut self, id: u64, residual: Vec<f64>);
+    /// A strategy that wants none ignores it.
+    fn tell_residual(&mut self, _id: u64, _residual: Vec<f64>) {}
 
     /// Why the search is over, if it is.
     fn finished(&self) -> Option<Finish>;

@@ -19,20 +19,12 @@ pub(super) struct Record {
 }
 
 /// Runs a strategy to its end; `reorder` shuffles the open proposals before one is told.
-pub(super) fn run(
-    strategy: &mut dyn Strategy,
-    tell: &Tell<'_>,
-    reorder: Option<Stream>,
-) -> Record {
+pub(super) fn run(strategy: &mut dyn Strategy, tell: &Tell<'_>, reorder: Option<Stream>) -> Record {
     run_with(strategy, tell, &|_| Vec::new(), reorder)
 }
 
 /// Runs a strategy on a function, residual vectors included.
-fn run_on(
-    strategy: &mut dyn Strategy,
-    function: &TestFunction,
-    reorder: Option<Stream>,
-) -> Record {
+fn run_on(strategy: &mut dyn Strategy, function: &TestFunction, reorder: Option<Stream>) -> Record {
     let space = function.space();
     run_with(
         strategy,

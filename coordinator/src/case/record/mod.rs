@@ -51,6 +51,14 @@ pub struct RecordFacts {
     pub stated_noise_mpa: Option<f64>,
 }
 
+/// Reads the samples of a record alone, without its sheet and without a case; how many there are.
+///
+/// # Errors
+/// Everything that makes the samples unusable, with row and column; `path` is only named.
+pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
+    Samples::read(path, csv).map(|samples| samples.angle_deg.len())
+}
+
 /// A record that was read.
 #[derive(Debug)]
 pub(super) struct Read {

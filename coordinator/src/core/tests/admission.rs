@@ -32,6 +32,9 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
     let effect = |id: &str| protocol::announce::EffectDescriptor {
         id: id.to_owned(),
         title: id.to_owned(),
+        joint: "saddle".to_owned(),
+        place: protocol::announce::Place::Dynamics,
+        generic: false,
         parameters: Vec::new(),
     };
     let first = || Announcement {

@@ -137,7 +137,7 @@ fn answer(Order { attempt, job, .. }: Order) -> Done {
     let work = work_hash(&job);
     let outcome = match job {
         Job::Nothing { reply_bytes, .. } => Outcome::Nothing(vec![0; reply_bytes as usize]),
-        Job::Score(_) | Job::Simulate(_) | Job::ReduceHead(_) => {
+        Job::Score(_) | Job::Simulate(_) | Job::Observe(_) | Job::ReduceHead(_) | Job::Describe => {
             Outcome::Failed(Failure::Refused {
                 reason: "a session without slots computes nothing".to_owned(),
             })

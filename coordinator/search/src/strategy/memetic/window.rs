@@ -229,7 +229,11 @@ impl Window {
                 let how = (count, memetic.real_step);
                 variation::flip_some(&self.codec, elite, how, &mut stream)
             }
-            Purpose::Initial | Purpose::Offspring | Purpose::Scan | Purpose::Refinement => {
+            Purpose::Initial
+            | Purpose::Offspring
+            | Purpose::Scan
+            | Purpose::Refinement
+            | Purpose::LeastSquares => {
                 let mut stream = self.streams.at(1, Phase::Selection, index);
                 let mut child = self.population[wheel.draw(&mut stream)].chromosome.clone();
                 let mut other = self.population[wheel.draw(&mut stream)].chromosome.clone();
@@ -256,6 +260,7 @@ impl Window {
             id,
             genes: self.codec.decode(&chromosome),
             told,
+            residual: None,
         });
         let threshold = self.settings.memetic.threshold;
         if told.survived() && threshold.is_some_and(|threshold| told.fitness <= threshold) {
