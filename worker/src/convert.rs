@@ -1,8 +1,13 @@
 //! From a case, as it travels, to a machine as the dynamics take it, and back: the only file that
 //! names both vocabularies. Degrees become radians and megapascals pascals here.
+pub mod effect;
+mod refinement;
+
+pub use refinement::refined;
+
 use protocol::case::{
-    Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, StressRecovery, TurnSense,
-    WeightAxes,
+    Case, Condition, EffectSetting, GeneName, Integrator, RopeEnds, Smoothing, StressRecovery,
+    TurnSense, WeightAxes, merged,
 };
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
@@ -16,21 +21,40 @@ use simulation::verdict;
 
 const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
 
-/// The machine of a case under one of its conditions.
+/// The machine of a case under one of its conditions, with the case's effects.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the field that cannot be built.
 pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
+    machine_with(case, condition, &[])
+}
+
+/// The same with a job's own effects, which replace those of the case that have their names.
+///
+/// # Errors
+/// As [`machine`]; an effect that is refused is named by its place in the merged list.
+pub fn machine_with(
+    case: &Case,
+    condition: usize,
+    effects: &[EffectSetting],
+) -> Result<Machine, Failure> {
+    effect::check_units(&case.effects, &case.effect_units)?;
+    let selection = effect::selection(&merged(&case.effects, effects))?;
     let condition = case
         .conditions
         .get(condition)
-        .ok_or_else(|| misconfigured("conditions", format!("has no entry {condition}")))?;
+        .ok_or_else(|| no_condition(condition))?;
     let modes = case.run.modes;
-    Machine::new(description(case, condition)?, modes)
+    Machine::with_effects(description(case, condition)?, modes, &selection)
         .map_err(|error| misconfigured("machine", error.to_string()))
 }
 
-fn misconfigured(field: &str, problem: String) -> Failure {
+/// A condition that the case does not have.
+pub(crate) fn no_condition(condition: usize) -> Failure {
+    misconfigured("conditions", format!("has no entry {condition}"))
+}
+
+pub(crate) fn misconfigured(field: &str, problem: String) -> Failure {
     Failure::Misconfigured {
         field: field.to_owned(),
         problem,

@@ -110,8 +110,7 @@ fn compare(case: &Case, plan: &WorkPlan, tell: bool) -> anyhow::Result<WorkPreci
         let mut stop = interrupt::listen();
         let options = bus::Options {
             run_dir: scratch.path().to_owned(),
-            listen: None,
-            insecure: false,
+            door: super::Door::default(),
             local_workers: 1,
             kind: "bench integrators".to_owned(),
             settings: format!("{plan:?}"),

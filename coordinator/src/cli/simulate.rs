@@ -1,6 +1,6 @@
 //! `horsehead simulate`: one run of the machine.
 use super::{
-    CaseChoice, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
+    CaseChoice, Door, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
     problem::Usage,
     run_folder::{RunFolder, command_line},
 };
@@ -158,8 +158,7 @@ pub(super) fn compare_once(
         let mut stop = interrupt::listen();
         let options = bus::Options {
             run_dir: scratch.path().to_owned(),
-            listen: None,
-            insecure: false,
+            door: Door::default(),
             local_workers: workers,
             kind: kind.to_owned(),
             settings,

@@ -7,6 +7,7 @@ pub mod chart;
 mod color;
 pub mod csv;
 mod data;
+pub mod diagnosis;
 pub mod html;
 mod number;
 mod section;

@@ -38,7 +38,7 @@ pub enum StudyError {
         physics: Option<PhysicsFailure>,
     },
     /// A parameter set that is to be compared could not be evaluated.
-    #[error("{what} could not be evaluated: {}", describe(failure))]
+    #[error("{what} could not be evaluated: {failure}")]
     Unavailable {
         /// Which.
         what: String,
@@ -99,18 +99,5 @@ impl StudyError {
             Self::Interrupted => return None,
         };
         Some(text.to_owned())
-    }
-}
-
-/// A failure of the infrastructure, in words.
-pub(super) fn describe(failure: &Failure) -> String {
-    match failure {
-        Failure::Deadline { limit_ms } => {
-            format!("it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
-        }
-        Failure::Crashed { how } => format!("the process that computed it ended: {how}"),
-        Failure::Lost { workers } => format!("{workers} workers were lost over it"),
-        Failure::Refused { reason } => format!("the worker refused it: {reason}"),
-        Failure::Misconfigured { field, problem } => format!("{field}: {problem}"),
     }
 }

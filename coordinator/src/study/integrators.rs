@@ -204,6 +204,7 @@ impl<E: Evaluator> Runner<'_, E> {
         let id = self.next;
         self.next += 1;
         let spec = SimulateSpec {
+            effects: Vec::new(),
             condition: self.plan.condition,
             genes: self.plan.genes.clone(),
             motion_step_deg: 0.0,
@@ -221,9 +222,11 @@ impl<E: Evaluator> Runner<'_, E> {
                     }),
                 )
             }
-            Outcome::Scored(_) | Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
-                Err(StudyError::WrongKind { id })
-            }
+            Outcome::Scored(_)
+            | Outcome::Observed(_)
+            | Outcome::Described(_)
+            | Outcome::HeadReduced(_)
+            | Outcome::Nothing(_) => Err(StudyError::WrongKind { id }),
         }
     }
 

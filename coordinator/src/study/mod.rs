@@ -6,6 +6,7 @@
 //! arrive: what they return is a function of the case, the settings and the seed.
 mod calibrate;
 mod compare;
+mod diagnose;
 mod digest;
 mod error;
 mod evaluator;
@@ -16,6 +17,7 @@ mod progress;
 
 pub use calibrate::{Calibrated, Observe, Stop, calibrate};
 pub use compare::{Compared, Curves, Wanted, compare};
+pub use diagnose::{Account, Diagnosed, Watch, diagnose_on, library};
 pub use digest::simulation_digest;
 pub use error::StudyError;
 pub use evaluator::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus};

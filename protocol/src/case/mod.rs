@@ -4,12 +4,14 @@
 //! The coordinator reads and validates case *files* and builds this; its encoded bytes travel as
 //! one blob, named by their content hash. Nothing here knows of files, of TOML or of dynamics.
 mod condition;
+mod effect;
 mod gene;
 mod head;
 mod machine;
 mod objective;
 
 pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
+pub use effect::{EffectSetting, merged};
 pub use gene::{Gene, GeneName};
 pub use head::{Influence, ModalHead, StressRecovery, WeightAxes};
 pub use machine::{
@@ -44,6 +46,11 @@ pub struct Case {
     pub back_head: BackHead,
     /// Modes and influence lines of the back head.
     pub modal_head: ModalHead,
+    /// What the machine has beside the above: effects with their numbers.
+    pub effects: Vec<EffectSetting>,
+    /// Units in which the case states those numbers, effect by effect in the same order; a worker
+    /// refuses one that is not its own. Empty where nobody stated any.
+    pub effect_units: Vec<Vec<String>>,
     /// The unknown numbers, in the order of every gene vector.
     pub genes: Vec<Gene>,
     /// Working conditions with their records.

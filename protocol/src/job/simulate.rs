@@ -1,6 +1,6 @@
 //! Simulate a condition and return everything that can be drawn.
 use super::{Counters, Verdict};
-use crate::case::Integrator;
+use crate::case::{EffectSetting, Integrator};
 use serde::{Deserialize, Serialize};
 
 /// What to simulate.
@@ -10,6 +10,8 @@ pub struct SimulateSpec {
     pub condition: usize,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
+    /// Effects beside those of the case; the same identifier replaces the case's.
+    pub effects: Vec<EffectSetting>,
     /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
     pub motion_step_deg: f64,
     /// How to integrate, instead of as the case says.

@@ -111,6 +111,7 @@ impl Setup {
             inner: &self.joint,
             base: base.held(),
             head: head.held(),
+            axial: None,
         }
     }
 }

@@ -52,6 +52,9 @@ impl Default for RunSettings {
 pub trait Observe {
     /// `state` is the interpolated state at sample `index`; the loads of `system` belong to it.
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
+
+    /// The revolution is complete; its samples lie `spacing` \[s\] apart.
+    fn complete(&mut self, _machine: &Machine, _spacing: f64) {}
 }
 
 /// What a run gives besides its samples.
@@ -75,7 +78,7 @@ pub fn simulate(
     observer: &mut dyn Observe,
 ) -> RunResult {
     let drive = Drive {
-        start: -settings.lead_in,
+        start: -settings.lead_in + machine.hooks.index_offset().min(0.0),
         ramp: settings.ramp,
         speed: machine.description.crank.speed,
     };
@@ -168,7 +171,9 @@ fn revolve(
     let mut to = from.clone();
     let mut between = from.clone();
     let drive = system.equations.drive;
-    let (begin, end) = (drive.time_at(0.0), drive.time_at(TAU));
+    let zero = system.equations.machine.hooks.index_offset();
+    let (begin, end) = (drive.time_at(zero), drive.time_at(TAU + zero));
+    system.equations.remember(&from);
     let mut sample = 0;
     let mut ledger = Ledger::default();
     let verdict = loop {
@@ -205,7 +210,7 @@ fn revolve(
         );
         while sample < settings.samples {
             let turn = TAU * sample as f64 / settings.samples as f64;
-            let t = drive.time_at(turn);
+            let t = drive.time_at(zero + turn);
             if t > to.t + 1e-9 {
                 break;
             }
@@ -213,8 +218,13 @@ fn revolve(
             observer.sample(sample, system, &between);
             sample += 1;
         }
+        system.equations.remember(&to);
         std::mem::swap(&mut from, &mut to);
     };
+    if verdict == Verdict::Complete {
+        let spacing = TAU / drive.speed / settings.samples as f64;
+        observer.complete(system.equations.machine, spacing);
+    }
     RunResult {
         verdict,
         statistics: system.statistics,

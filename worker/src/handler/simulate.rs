@@ -28,13 +28,12 @@ pub(super) fn run(prepared: &Prepared, spec: &SimulateSpec) -> Result<Simulation
     } else {
         0
     };
-    let machine = prepared.machine(spec.condition)?;
-    let lowest = machine.description.front_arc.radius * machine.bottom.beam;
+    let machine = prepared.machine_with(spec.condition, &spec.effects)?;
     let mut recorder = Recorder::everything(shape_every);
     let started = Instant::now();
-    let result = simulate(machine, &law, &settings, &mut recorder);
+    let result = simulate(&machine, &law, &settings, &mut recorder);
     let wall_s = started.elapsed().as_secs_f64();
-    let height = suspension_zero(machine, lowest);
+    let height = machine.lowest_suspension;
     Ok(assemble(&recorder.curves, &result, step, height, wall_s))
 }
 
@@ -55,15 +54,6 @@ fn check(integration: Option<&Integration>) -> Result<(), Failure> {
         }
     }
     Ok(())
-}
-
-/// Height in the ground frame of the suspension point's lowest design position \[m\]: the front rope
-/// hangs from the arc's height, unstretched.
-fn suspension_zero(machine: &simulation::model::Machine, lowest: f64) -> f64 {
-    let d = &machine.description;
-    let rope = d.rope.front as f64 * d.rope.pitch;
-    let wrapped = d.front_arc.radius * d.front_arc.anchor + lowest;
-    wrapped - rope
 }
 
 fn assemble(

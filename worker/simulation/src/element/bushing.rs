@@ -162,6 +162,28 @@ impl Bushing {
         }
     }
 
+    /// Extension along the axis \[m\] and its rate [m/s].
+    pub fn extension(&self, i: &Marker, j: &Marker) -> [f64; 2] {
+        let Deformation { e, d, V, .. } = self.deformation(i, j);
+        [e.dot(&d), e.dot(&V)]
+    }
+
+    /// Adds a pull along the axis \[N\], of which `lost` [W] is taken out, to a load.
+    pub fn add_pull(
+        &self,
+        (i, j): (&Marker, &Marker),
+        (pull, lost): (f64, f64),
+        load: &mut LinkLoad,
+    ) {
+        let Deformation { e, d, .. } = self.deformation(i, j);
+        let force = e * -pull;
+        load.force += force;
+        load.torque_i += i.rho.cross(&force);
+        load.torque_j -= (d + j.rho).cross(&force);
+        load.axial -= pull;
+        load.dissipated += lost;
+    }
+
     /// Stored energy \[J\]. Exact while torsion and bending do not mix (planar motion).
     pub fn energy(&self, i: &Marker, j: &Marker) -> f64 {
         let [k1, k2] = self.stiffness;
@@ -174,15 +196,32 @@ impl Bushing {
 
     /// Derivatives of [`Self::load`] by the motion of I and of J.
     pub fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
-        let [k1, k2] = self.stiffness;
-        let [c1, c2] = self.damping;
+        self.tangent_with(i, j, load, None)
+    }
+
+    /// The same with a further pull along the axis: itself \[N\], and its derivatives by extension
+    /// and by rate.
+    pub fn tangent_with(
+        &self,
+        i: &Marker,
+        j: &Marker,
+        load: &LinkLoad,
+        further: Option<[f64; 3]>,
+    ) -> [LinkTangent; 2] {
+        let [mut k1, k2] = self.stiffness;
+        let [mut c1, c2] = self.damping;
         let [k4, k5] = self.rotational_stiffness;
         let [c4, c5] = self.rotational_damping;
         let Deformation { e, d, V, theta, w } = self.deformation(i, j);
+        let mut pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
+        if let Some([force, by_extension, by_rate]) = further {
+            pull += force;
+            k1 += by_extension;
+            c1 += by_rate;
+        }
         let ee = e * e.transpose();
         let K = M3::from_diagonal_element(k2) + ee * (k1 - k2);
         let C = M3::from_diagonal_element(c2) + ee * (c1 - c2);
-        let pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
         let G = M3::from_diagonal_element(pull) + e * (d * (k1 - k2) + V * (c1 - c2)).transpose();
         let (skew_e, rho_i, rho_j) = (skew(&e), skew(&i.rho), skew(&j.rho));
         let relative = skew(&i.w) - skew(&j.w);

@@ -1,5 +1,5 @@
 //! What every element of the catalogue must keep, whatever its law.
-use super::bushing::{LinkLoad, Marker};
+use super::bushing::{Bushing, LinkLoad, Marker};
 use super::{CATALOGUE, ForceElement};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -166,5 +166,47 @@ fn entries_are_complete() {
     for (k, info) in CATALOGUE.iter().enumerate() {
         assert!(CATALOGUE[..k].iter().all(|other| other.name != info.name));
         assert!(info.summary.ends_with('.') && !info.reference.is_empty());
+    }
+}
+
+/// A pull `7 x^2 + 2 x' x` along the axis of a bushing, its tangent against differences.
+#[test]
+fn a_further_pull_has_its_tangent() {
+    let element = Bushing {
+        stiffness: [7.0, 3.0],
+        damping: [0.9, 0.4],
+        rotational_stiffness: [1.7, 2.3],
+        rotational_damping: [0.6, 0.8],
+    };
+    let loaded = |m: &[Marker; 2]| {
+        let [x, rate] = element.extension(&m[0], &m[1]);
+        let pull = 7.0 * x * x + 2.0 * rate * x;
+        let mut load = element.load(&m[0], &m[1]);
+        element.add_pull((&m[0], &m[1]), (pull, 0.0), &mut load);
+        (load, [pull, 14.0 * x + 2.0 * rate, 2.0 * x])
+    };
+    let h = 1e-6;
+    for at in motions() {
+        let (load, further) = loaded(&at);
+        let tangents = element.tangent_with(&at[0], &at[1], &load, Some(further));
+        for (body, tangent) in tangents.iter().enumerate() {
+            let kinds = [tangent.p, tangent.v, tangent.a, tangent.w];
+            for (kind, analytic) in kinds.iter().enumerate() {
+                for k in 0..3 {
+                    let step = |h: f64| {
+                        let mut m = at;
+                        m[body] = moved(&m[body], kind, k, h);
+                        let (l, _) = loaded(&m);
+                        [l.force, l.torque_i, l.torque_j]
+                    };
+                    let (plus, minus) = (step(h), step(-h));
+                    for row in 0..3 {
+                        let difference = (plus[row] - minus[row]) / (2.0 * h);
+                        let error = (difference - analytic[row].column(k)).norm();
+                        assert!(error < 1e-6, "{body} {kind} {k} {row}: {error}");
+                    }
+                }
+            }
+        }
     }
 }

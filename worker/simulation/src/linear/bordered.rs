@@ -110,6 +110,32 @@ impl Bordered {
         self.corner[column * self.border + row] += value;
     }
 
+    /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
+    ///
+    /// # Panics
+    /// In debug builds, between blocks that are not neighbours of one chain.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        let base = self.diagonal.len() * BLOCK;
+        let split = |i: usize| (i / BLOCK, i % BLOCK);
+        match (row < base, column < base) {
+            (false, false) => self.add_corner(row - base, column - base, value),
+            (true, false) => self.add_right(split(row).0, split(row).1, column - base, value),
+            (false, true) => {
+                self.add_bottom(split(column).0, row - base, split(column).1, value);
+            }
+            (true, true) => {
+                let ((b, r), (c, k)) = (split(row), split(column));
+                debug_assert!(b.abs_diff(c) <= 1, "blocks {b} and {c} are no neighbours");
+                let block = match c.cmp(&b) {
+                    std::cmp::Ordering::Equal => &mut self.diagonal[b],
+                    std::cmp::Ordering::Greater => &mut self.upper[b],
+                    std::cmp::Ordering::Less => &mut self.lower[c],
+                };
+                block[(r, k)] += value;
+            }
+        }
+    }
+
     /// `A x` of the assembled (not factorised) matrix.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.len()];

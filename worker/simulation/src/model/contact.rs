@@ -4,6 +4,7 @@
 //! `d = R + sum_k q_k phi_k(s) - |g - C(theta)|`, `s = arg(g - C) - theta`; the rope's radius is
 //! part of `R`. The generalised force is `-f grad d`. A cylinder touches along its length: the law
 //! is integrated by three Gauss points, whose weights share the cylinder's coefficients.
+use crate::effect::Profile;
 use crate::math::elementary::{atan2, sin_cos};
 use crate::math::spline::Splines;
 use crate::model::description::Arc;
@@ -35,6 +36,8 @@ pub struct Surface<'a> {
     pub modal_rate: &'a [f64],
     /// Radial shapes over the arc angle \[rad\].
     pub shapes: Option<&'a Splines>,
+    /// Where a surface with shapes is not the circle, if anywhere.
+    pub profile: Option<&'a Profile>,
 }
 
 /// Where a cylinder's centre lies, seen from the arc's centre: one arc tangent serves all of its
@@ -114,6 +117,7 @@ impl<'a> Surface<'a> {
             modal: modal.0,
             modal_rate: modal.1,
             shapes,
+            profile: None,
         }
     }
 
@@ -146,6 +150,12 @@ impl<'a> Surface<'a> {
             slope = [deflected.first, deflected.second];
             for (shape, modal_rate) in shape.iter().zip(self.modal_rate) {
                 rate += modal_rate * shape;
+            }
+            if let Some(profile) = self.profile {
+                let [height, first, second] = profile.height(angle);
+                bulge += height;
+                slope[0] += first;
+                slope[1] += second;
             }
         }
         let by_point = tangent * (slope[0] * inverse) - normal;

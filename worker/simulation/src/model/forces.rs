@@ -53,6 +53,7 @@ impl Machine {
                 border,
             );
         }
+        self.hooks.add_forces(at, force);
     }
 
     /// Acceleration of gravity as a vector [m/s2].
@@ -119,12 +120,19 @@ impl Machine {
     pub(crate) fn surface<'a>(&'a self, chain: usize, q: &'a [f64], v: &'a [f64]) -> Surface<'a> {
         let beam = self.layout.beam();
         let modal = if chain == 0 { beam + 1..q.len() } else { 0..0 };
-        Surface::new(
-            self.arc(chain),
-            [q[beam], v[beam]],
-            (&q[modal.clone()], &v[modal]),
-            (chain == 0).then_some(&self.radial),
-        )
+        Surface {
+            profile: if chain == 0 {
+                self.hooks.profile()
+            } else {
+                None
+            },
+            ..Surface::new(
+                self.arc(chain),
+                [q[beam], v[beam]],
+                (&q[modal.clone()], &v[modal]),
+                (chain == 0).then_some(&self.radial),
+            )
+        }
     }
 
     /// `out -= M(q) a`.
@@ -178,6 +186,7 @@ impl Machine {
             let rate = v[self.layout.mode(k)];
             dissipated += 2.0 * head.damping_ratio * head.frequencies[k] * rate * rate;
         }
+        dissipated += self.hooks.lost(at);
         Powers {
             input: pin.dot(&at.drive.pin[1]),
             output: at.drive.load * v[self.layout.suspension()],
@@ -216,7 +225,19 @@ impl Machine {
                 &scratch.chains[k],
             );
         }
-        sum
+        sum + self.hooks.energy(at)
+    }
+
+    /// What of the potential at rest that effects add is no stored energy \[J\].
+    pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+        if self.hooks.is_empty() {
+            return 0.0;
+        }
+        let chains = self.chains.iter().zip(&scratch.chains).enumerate();
+        let along: f64 = chains
+            .map(|(k, (chain, state))| chain.potential_beyond_energy(&self.joints(k, at), state))
+            .sum();
+        along + self.hooks.potential_beyond_energy(at)
     }
 
     fn kinetic(&self, at: &Instant<'_>) -> f64 {

@@ -9,7 +9,7 @@ fn machine() -> Machine {
 }
 
 /// A state near the working position, disturbed in every coordinate so that nothing vanishes.
-fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
     let layout = machine.layout;
     let law = reference::law();
     let drive = drive(0.0);
@@ -74,7 +74,7 @@ fn drive(t: f64) -> DriveState {
 }
 
 /// Coordinates that are not locked.
-fn free(machine: &Machine) -> impl Iterator<Item = usize> {
+pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     let layout = machine.layout;
     (0..layout.len()).filter(move |&i| {
         let block = i / BLOCK;
@@ -106,7 +106,7 @@ fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<
         .collect()
 }
 
-fn unit(n: usize, i: usize) -> Vec<f64> {
+pub(crate) fn unit(n: usize, i: usize) -> Vec<f64> {
     let mut x = vec![0.0; n];
     x[i] = 1.0;
     x

@@ -11,6 +11,7 @@
 )]
 mod bounce;
 mod determinism;
+mod effect;
 mod energy;
 mod forced;
 mod frame;

@@ -9,6 +9,22 @@ use nalgebra::Vector3;
     reason = "one file per term of the equations"
 )]
 impl Chain {
+    /// What of the potential at rest of laws along the rope is no stored energy \[J\].
+    pub(crate) fn potential_beyond_energy(&self, joints: &Joints<'_>, state: &ChainState) -> f64 {
+        let mut sum = 0.0;
+        if joints.axial.is_none() {
+            return sum;
+        }
+        for joint in 1..self.count {
+            if let Some(([i, j], law)) = self.link(joint, joints, &state.poses)
+                && let Some(along) = self.along(joint, joints, state, (&i, &j))
+            {
+                sum += along.other * law.extension(&i, &j)[0];
+            }
+        }
+        sum
+    }
+
     /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders
     /// to `sum` \[J\].
     pub(crate) fn add_potential(
@@ -22,6 +38,9 @@ impl Chain {
         for joint in 0..=self.count {
             if let Some(([i, j], law)) = self.link(joint, joints, &state.poses) {
                 *sum += law.energy(&i, &j);
+                if let Some(along) = self.along(joint, joints, state, (&i, &j)) {
+                    *sum += along.energy;
+                }
             }
         }
         if let Some((surface, law)) = contact {

@@ -1,5 +1,7 @@
 //! Forces on the cylinders of a chain, and of its contact on whoever carries the arc.
 use super::{Chain, ChainState, Joints};
+use crate::effect::Along;
+use crate::element::bushing::Marker;
 use crate::element::impact::Impact;
 use crate::linear::BLOCK;
 use crate::model::MAX_MODES;
@@ -53,7 +55,11 @@ impl Chain {
             let Some(([i, j], law)) = self.link(joint, joints, &state.poses) else {
                 continue;
             };
-            let load = law.load(&i, &j);
+            let mut load = law.load(&i, &j);
+            if let Some(along) = self.along(joint, joints, state, (&i, &j)) {
+                let lost = along.other * law.extension(&i, &j)[1];
+                law.add_pull((&i, &j), (along.spring + along.other, lost), &mut load);
+            }
             let at = (self.first + joint) * BLOCK;
             if joint > 0 {
                 add_wrench(
@@ -72,6 +78,38 @@ impl Chain {
                 );
             }
             state.joints[joint] = load;
+        }
+    }
+
+    /// What laws along the rope pull in a joint between two cylinders, markers I and J.
+    pub(super) fn along(
+        &self,
+        joint: usize,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        (i, j): (&Marker, &Marker),
+    ) -> Option<Along> {
+        let laws = joints.axial.filter(|_| joint > 0 && joint < self.count)?;
+        let [extension, rate] = joints.inner.extension(i, j);
+        Some(laws.pull(extension, rate, state.memory.get(joint).copied()))
+    }
+
+    /// Lets laws with a past remember the step that ended in these poses.
+    pub(crate) fn remember(&self, joints: &Joints<'_>, state: &mut ChainState) {
+        let Some(laws) = joints.axial else { return };
+        let first = state.memory.is_empty();
+        state.memory.resize(self.count + 1, [0.0; 2]);
+        for joint in 1..self.count {
+            let Some(([i, j], law)) = self.link(joint, joints, &state.poses) else {
+                continue;
+            };
+            let [extension, rate] = law.extension(&i, &j);
+            let before = (!first).then(|| state.memory[joint]);
+            let Some(memory) = laws.remember(extension, rate, before) else {
+                state.memory.clear();
+                return;
+            };
+            state.memory[joint] = memory;
         }
     }
 

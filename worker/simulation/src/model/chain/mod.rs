@@ -10,6 +10,7 @@ mod forces;
 mod inertia;
 mod tangent;
 
+use crate::effect::{AxialLaws, Memory};
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::linear::BLOCK;
 use crate::model::contact::GAUSS;
@@ -54,6 +55,8 @@ pub struct Joints<'a> {
     pub base: Option<Held<'a>>,
     /// What holds the last cylinder, if anything does.
     pub head: Option<Held<'a>>,
+    /// Laws of effects along the rope, between its cylinders.
+    pub axial: Option<AxialLaws<'a>>,
 }
 
 /// Poses and loads of a chain at the last evaluation of its forces; allocated once.
@@ -69,6 +72,9 @@ pub struct ChainState {
     pub deepest: f64,
     /// Power that the contact's damping takes \[W\].
     pub dissipated: f64,
+    /// What laws along the rope remember of the last accepted step, joint by joint; empty where
+    /// none has a past, or before the run has begun to move.
+    pub memory: Vec<Memory>,
 }
 
 impl ChainState {
@@ -87,6 +93,7 @@ impl ChainState {
             contact: vec![0.0; count],
             deepest: 0.0,
             dissipated: 0.0,
+            memory: Vec::new(),
         }
     }
 

@@ -66,7 +66,10 @@ impl Chain {
             let Some(([i, j], law)) = self.link(joint, joints, poses) else {
                 continue;
             };
-            let [by_i, by_j] = law.tangent(&i, &j, &state.joints[joint]);
+            let further = self
+                .along(joint, joints, state, (&i, &j))
+                .map(|along| [along.spring + along.other, along.by_place, along.by_rate]);
+            let [by_i, by_j] = law.tangent_with(&i, &j, &state.joints[joint], further);
             let before = (joint > 0).then(|| &poses[joint - 1]);
             let behind = poses.get(joint);
             let columns_j = before.map(|pose| CylinderColumns::new(&by_j, pose, gamma));
