@@ -69,7 +69,7 @@ pub async fn challenge<L: Laboratory>(
     settings: &Settings,
 ) -> Result<Option<Challenger>, L::Error> {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
-    let residual = &fit.search.best().residual;
+    let residual = &fit.search.settled_residual();
     let mut forms = forms(generics, residual, &tangent);
     let tests = forms.len();
     forms.retain(|form| {
