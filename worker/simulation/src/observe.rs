@@ -1,7 +1,6 @@
 //! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
 use crate::drive::DriveState;
 use crate::integrator::State;
-use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
 use crate::model::{Individual, Instant, Machine, description::StressRecovery};
@@ -45,7 +44,7 @@ fn mode_acceleration(system: &Individual<'_>, at: &Instant<'_>, state: &State) -
     let mut modal_force = [0.0; crate::model::MAX_MODES];
     let surface = machine.surface(0, at.q, at.v);
     let back = &system.scratch.chains[0];
-    machine.chains[0].each_touch(&surface, &back.poses, |share, touch, shape| {
+    machine.chains[0].each_touch(&surface, back, |share, touch, shape| {
         let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
         let place = machine.normal_influence.place(touch.angle);
         for (gauge, stress) in stress.iter_mut().enumerate() {
@@ -237,7 +236,7 @@ fn shape(sample: usize, system: &Individual<'_>, drive: &DriveState, state: &Sta
     let [pin, ..] = drive.pin;
     let centers = [0, 1].map(|chain| {
         state.q[machine.chains[chain].range()]
-            .chunks_exact(BLOCK)
+            .chunks_exact(layout.motion.width())
             .map(|q| [q[0], q[1]])
             .collect()
     });

@@ -4,7 +4,6 @@
 //! answer is a stable equilibrium and no transient can decide a verdict. Limits are checked at
 //! equilibria alone.
 use crate::drive::DriveState;
-use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::Chain;
 use crate::model::kinematics::{DoesNotClose, Position};
@@ -140,6 +139,7 @@ impl Strand {
     ) -> f64 {
         let pitch = machine.description.rope.pitch;
         let Chain { first, count, .. } = machine.chains[chain];
+        let width = machine.layout.motion.width();
         let sense = machine.arc(chain).sense;
         let wrapped = self.radius * (anchor - leave).abs();
         let end = self.extension * machine.description.rope.end_pitches;
@@ -154,10 +154,10 @@ impl Strand {
             let straight = (along - wrapped).max(0.0);
             // towards the anchor the rope runs along sense * t
             let (tx, ty) = (-sense * s, sense * c);
-            let at = (first + j) * BLOCK;
+            let at = (first + j) * width;
             q[at] = center[0] + self.radius * c - straight * tx;
             q[at + 1] = center[1] + self.radius * s - straight * ty;
-            q[at + 5] = crate::math::elementary::atan2(ty, tx);
+            q[at + width - 1] = crate::math::elementary::atan2(ty, tx);
             along += pitch + self.extension;
         }
         let (s, c) = sin_cos(leave);

@@ -28,7 +28,7 @@ impl Machine {
     /// Fills the poses of all cylinders.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
-            chain.pose(q, v, &mut state.poses);
+            chain.pose(q, v, state);
         }
     }
 
@@ -39,7 +39,7 @@ impl Machine {
         self.weights(at, force);
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &mut scratch.chains[k];
-            chain.add_weights(&self.gravity(), &state.poses, force);
+            chain.add_weights(&self.gravity(), state, force);
             let joints = self.joints(k, at);
             chain.add_joints(&joints, state, force);
             self.end_forces(k, at, &joints, scratch, force);

@@ -4,7 +4,7 @@ use crate::math::{elementary::sin_cos, spline::Splines};
 use crate::model::chain::{Chain, ChainState};
 use crate::model::description::{Arc, Description, RopeLaw};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
-use crate::model::layout::Layout;
+use crate::model::layout::{Layout, Motion};
 
 /// A machine under one working condition; immutable and shared by every individual.
 #[derive(Clone, Debug)]
@@ -85,6 +85,7 @@ impl Machine {
             back: d.rope.back,
             front: d.rope.front,
             modes,
+            motion: Motion::Plane,
         };
         let mechanism = Mechanism {
             crank: d.crank,
@@ -94,7 +95,11 @@ impl Machine {
         let bottom = mechanism.bottom_dead_centre()?;
         let chain = |k: usize, count: usize| {
             let first = layout.base_block(k) + 1;
-            Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density)
+            let chain = Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density);
+            Chain {
+                motion: layout.motion,
+                ..chain
+            }
         };
         let chains = [chain(0, d.rope.back), chain(1, d.rope.front)];
         let radial = Splines::natural(d.head.start, d.head.step, &d.head.radial[..modes]);
@@ -126,6 +131,19 @@ impl Machine {
             radial,
             description,
         })
+    }
+
+    /// The same machine with six coordinates per cylinder.
+    ///
+    /// [`Self::new`] takes three, because a symmetric machine stays in its plane; this one shows
+    /// that it does.
+    #[must_use]
+    pub fn in_space(mut self) -> Self {
+        self.layout.motion = Motion::Space;
+        for chain in &mut self.chains {
+            chain.motion = Motion::Space;
+        }
+        self
     }
 
     /// The inextensible mechanism with another effective radius and length.
@@ -165,7 +183,7 @@ impl Machine {
     }
 }
 
-/// Buffers of a simulation, allocated once per machine size.
+/// Buffers of a simulation.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     /// Poses and loads of back rope and front rope.
@@ -173,10 +191,10 @@ pub struct Scratch {
 }
 
 impl Scratch {
-    /// Buffers for a layout.
-    pub fn new(layout: &Layout) -> Self {
+    /// Buffers for a machine.
+    pub fn new(machine: &Machine) -> Self {
         Self {
-            chains: [ChainState::new(layout.back), ChainState::new(layout.front)],
+            chains: machine.chains.each_ref().map(ChainState::new),
         }
     }
 
