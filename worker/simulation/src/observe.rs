@@ -42,18 +42,21 @@ fn mode_acceleration(system: &Individual<'_>, at: &Instant<'_>, state: &State) -
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    let surface = machine.surface(0, at.q, at.v);
+    let surface = machine.surface(0, at.q, at.v, &system.scratch.deflection);
     let back = &system.scratch.chains[0];
-    machine.chains[0].each_touch(&surface, back, |share, touch, shape| {
-        let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
+    machine.chains[0].each_touch(&surface, back, |share, touch| {
+        let force = share * system.ropes.contact.push(touch.depth, touch.rate).0;
         let place = machine.normal_influence.place(touch.angle);
         for (gauge, stress) in stress.iter_mut().enumerate() {
             *stress += force * machine.normal_influence.jet(&place, gauge).value;
         }
-        for (modal, shape) in modal_force.iter_mut().zip(shape) {
-            *modal -= force * shape;
-        }
     });
+    // what the arc's contact does to the modes is at hand
+    back.pressure
+        .gather(&machine.radial, &mut modal_force[..modes]);
+    for modal in &mut modal_force[..modes] {
+        *modal = -*modal;
+    }
 
     // the rope's end pulls at the anchor; in the beam frame
     let beam = layout.beam();

@@ -166,7 +166,7 @@ impl Rig {
                 anchor: 0.0,
                 sense: 1.0,
             };
-            (Surface::new(&arc, [0.0; 2], (&[], &[]), None), drum.law)
+            (Surface::new(&arc, [0.0; 2], None), drum.law)
         })
     }
 

@@ -27,8 +27,10 @@ pub struct Blocks<const N: usize> {
     bottom: Vec<Column<N>>,
     /// Border by border, column-major.
     corner: Vec<f64>,
-    touches: Vec<bool>,
-    filled_from: Vec<usize>,
+    /// Per block, how many of the border's first unknowns it touches.
+    touches: Vec<usize>,
+    /// Per chain, the first block that the border fills, and how many of its unknowns do.
+    filled: Vec<(usize, usize)>,
     corner_pivots: Vec<usize>,
 }
 
@@ -45,8 +47,8 @@ impl<const N: usize> Blocks<N> {
             right: vec![Column::zeros(); blocks * border],
             bottom: vec![Column::zeros(); blocks * border],
             corner: vec![0.0; border * border],
-            touches: vec![false; blocks],
-            filled_from: vec![0; chains.len()],
+            touches: vec![0; blocks],
+            filled: vec![(0, 0); chains.len()],
             corner_pivots: vec![0; border],
         }
     }
@@ -75,7 +77,7 @@ impl<const N: usize> Blocks<N> {
         // a factorisation fills the border beyond the blocks that touched it
         self.right.fill(Column::zeros());
         self.bottom.fill(Column::zeros());
-        self.touches.fill(false);
+        self.touches.fill(0);
     }
 
     /// Diagonal block.
@@ -93,14 +95,14 @@ impl<const N: usize> Blocks<N> {
     /// Adds `value` to row `row` of `block`, column `k` of the border.
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
-        self.touches[block] = true;
+        self.touches[block] = self.touches[block].max(k + 1);
         self.right[block * self.border + k][row] += value;
     }
 
     /// Adds `value` to row `k` of the border, column `column` of `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
-        self.touches[block] = true;
+        self.touches[block] = self.touches[block].max(k + 1);
         self.bottom[block * self.border + k][column] += value;
     }
 
@@ -149,18 +151,23 @@ impl<const N: usize> Blocks<N> {
         let mut first = 0;
         for chain in 0..self.chains.len() {
             let end = first + self.chains[chain];
-            let filled = (first..end).find(|&b| self.touches[b]).unwrap_or(end);
-            self.filled_from[chain] = filled;
+            let touches = &self.touches[first..end];
+            let filled = touches.iter().position(|&k| k > 0);
+            let filled = filled.map_or(end, |b| first + b);
+            let reach = touches.iter().copied().max().unwrap_or(0);
+            self.filled[chain] = (filled, reach);
             for b in first..end {
-                self.eliminate(b, b + 1 < end, b >= filled)?;
+                let reach = if b >= filled { reach } else { 0 };
+                self.eliminate(b, b + 1 < end, reach)?;
             }
             first = end;
         }
         self.factorize_corner()
     }
 
-    /// Eliminates one block: `upper` and `right` become `D^-1 upper` and `D^-1 right`.
-    fn eliminate(&mut self, b: usize, has_next: bool, filled: bool) -> Result<(), SingularPivot> {
+    /// Eliminates one block, which the first `reach` unknowns of the border fill: `upper` and `right`
+    /// become `D^-1 upper` and `D^-1 right`.
+    fn eliminate(&mut self, b: usize, has_next: bool, reach: usize) -> Result<(), SingularPivot> {
         invert(&mut self.diagonal[b]).map_err(|column| SingularPivot {
             unknown: b * N + column,
         })?;
@@ -170,25 +177,22 @@ impl<const N: usize> Blocks<N> {
             let fill = self.lower[b] * self.upper[b];
             self.diagonal[b + 1] -= fill;
         }
-        if !filled {
-            return Ok(());
-        }
-        for k in 0..m {
+        for k in 0..reach {
             self.right[b * m + k] = product(&self.diagonal[b], &self.right[b * m + k]);
         }
         if has_next {
             let (head, tail) = self.right.split_at_mut((b + 1) * m);
-            for k in 0..m {
+            for k in 0..reach {
                 subtract_product(&self.lower[b], &head[b * m + k], &mut tail[k]);
             }
             let transposed = self.upper[b].transpose();
             let (head, tail) = self.bottom.split_at_mut((b + 1) * m);
-            for k in 0..m {
+            for k in 0..reach {
                 subtract_product(&transposed, &head[b * m + k], &mut tail[k]);
             }
         }
-        for column in 0..m {
-            for row in 0..m {
+        for column in 0..reach {
+            for row in 0..reach {
                 self.corner[column * m + row] -=
                     self.bottom[b * m + row].dot(&self.right[b * m + column]);
             }
@@ -238,20 +242,19 @@ impl<const N: usize> Blocks<N> {
         let m = self.border;
         let base = self.diagonal.len() * N;
         let (blocks, border) = x.split_at_mut(base);
+        let (blocks, _) = blocks.as_chunks_mut::<N>();
         let mut first = 0;
-        for (chain, &count) in self.chains.iter().enumerate() {
+        for (&count, &(filled, reach)) in self.chains.iter().zip(&self.filled) {
             let end = first + count;
+            let mut right = Column::<N>::zeros();
             for b in first..end {
-                let y = product(&self.diagonal[b], &column(blocks, b));
-                blocks[b * N..(b + 1) * N].copy_from_slice(y.as_slice());
-                if b + 1 < end {
-                    let mut next = column(blocks, b + 1);
-                    subtract_product(&self.lower[b], &y, &mut next);
-                    blocks[(b + 1) * N..(b + 2) * N].copy_from_slice(next.as_slice());
-                }
-                if b >= self.filled_from[chain] {
-                    for k in 0..m {
-                        border[k] -= self.bottom[b * m + k].dot(&y);
+                let y = product(&self.diagonal[b], &(Column::from(blocks[b]) - right));
+                blocks[b] = y.into();
+                right = product(&self.lower[b], &y);
+                if b >= filled {
+                    let bottom = &self.bottom[b * m..b * m + reach];
+                    for (x, bottom) in border.iter_mut().zip(bottom) {
+                        *x -= bottom.dot(&y);
                     }
                 }
             }
@@ -279,22 +282,25 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    fn substitute_back(&self, blocks: &mut [f64], border: &[f64]) {
+    fn substitute_back(&self, blocks: &mut [[f64; N]], border: &[f64]) {
         let m = self.border;
         let mut end = self.diagonal.len();
-        for (chain, &count) in self.chains.iter().enumerate().rev() {
+        for (&count, &(filled, reach)) in self.chains.iter().zip(&self.filled).rev() {
             let first = end - count;
+            let mut next = Column::<N>::zeros();
             for b in (first..end).rev() {
-                let mut y = column(blocks, b);
-                if b + 1 < end {
-                    subtract_product(&self.upper[b], &column(blocks, b + 1), &mut y);
-                }
-                if b >= self.filled_from[chain] {
-                    for k in 0..m {
-                        y.axpy(-border[k], &self.right[b * m + k], 1.0);
+                let mut y = Column::from(blocks[b]);
+                subtract_product(&self.upper[b], &next, &mut y);
+                if b >= filled {
+                    let right = &self.right[b * m..b * m + reach];
+                    for (x, right) in border.iter().zip(right) {
+                        for i in 0..N {
+                            y[i] -= x * right[i];
+                        }
                     }
                 }
-                blocks[b * N..(b + 1) * N].copy_from_slice(y.as_slice());
+                blocks[b] = y.into();
+                next = y;
             }
             end = first;
         }

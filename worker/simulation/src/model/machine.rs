@@ -1,6 +1,7 @@
 //! A machine ready to be simulated: constants derived once from a description.
 use crate::element::{bushing::Bushing, impact::Impact};
-use crate::math::{elementary::sin_cos, spline::Splines};
+use crate::math::elementary::sin_cos;
+use crate::math::spline::{Splines, sum::Sum};
 use crate::model::chain::{Chain, ChainState};
 use crate::model::description::{Arc, Description, RopeLaw};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
@@ -188,6 +189,8 @@ impl Machine {
 pub struct Scratch {
     /// Poses and loads of back rope and front rope.
     pub chains: [ChainState; 2],
+    /// Deflection of the back head's arc.
+    pub deflection: Sum,
 }
 
 impl Scratch {
@@ -195,6 +198,7 @@ impl Scratch {
     pub fn new(machine: &Machine) -> Self {
         Self {
             chains: machine.chains.each_ref().map(ChainState::new),
+            deflection: Sum::default(),
         }
     }
 

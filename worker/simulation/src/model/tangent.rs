@@ -43,7 +43,7 @@ impl Machine {
                 };
                 self.anchor_tangent(&anchor, at, gamma, matrix);
             }
-            let surface = self.surface(k, at.q, at.v);
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             chain.add_contact_tangent(&surface, &at.ropes.contact, state, gamma, matrix);
         }
     }

@@ -1,6 +1,7 @@
 //! Forces of a chain's contact with an arc, on the cylinders and on whoever carries the arc.
 use super::{Chain, ChainState};
 use crate::element::impact::Impact;
+use crate::math::spline::sum::Spread;
 use crate::model::MAX_MODES;
 use crate::model::contact::{Surface, Touch};
 use crate::model::layout::Motion;
@@ -22,11 +23,15 @@ impl Chain {
         border: &mut [f64],
     ) {
         let width = self.motion.width();
+        if let Some(bend) = &surface.bend {
+            state.pressure.clear(bend.shapes);
+        }
         let mut contact = Contact {
             chain: self,
             surface,
             law,
-            border,
+            pressure: &mut state.pressure,
+            beam: 0.0,
             deepest: 0.0,
             dissipated: 0.0,
         };
@@ -44,16 +49,33 @@ impl Chain {
                 }
             }
         }
-        state.deepest = contact.deepest;
-        state.dissipated = contact.dissipated;
+        let Contact {
+            beam,
+            deepest,
+            dissipated,
+            ..
+        } = contact;
+        state.deepest = deepest;
+        state.dissipated = dissipated;
+        if let Some((on_beam, modal)) = border.split_first_mut() {
+            *on_beam -= beam;
+            if let Some(bend) = &surface.bend {
+                let mut pressed = [0.0; MAX_MODES];
+                let pressed = &mut pressed[..modal.len()];
+                state.pressure.gather(bend.shapes, pressed);
+                for (modal, pressed) in modal.iter_mut().zip(pressed) {
+                    *modal -= *pressed;
+                }
+            }
+        }
     }
 
-    /// Calls `visit(share, touch, shapes)` for every Gauss point inside the arc.
+    /// Calls `visit(share, touch)` for every Gauss point inside the arc.
     pub(crate) fn each_touch(
         &self,
         surface: &Surface<'_>,
         state: &ChainState,
-        mut visit: impl FnMut(f64, &Touch, &[f64]),
+        mut visit: impl FnMut(f64, &Touch),
     ) {
         for pose in &state.poses {
             self.touches(surface, pose, &mut visit);
@@ -67,11 +89,9 @@ impl Chain {
         &self,
         surface: &Surface<'_>,
         pose: &impl InPlane<A>,
-        visit: &mut impl FnMut(f64, &Touch, &[f64]),
+        visit: &mut impl FnMut(f64, &Touch),
     ) {
         let half = 0.5 * self.pitch;
-        let modes = surface.modal.len();
-        let mut shape = [0.0; MAX_MODES];
         let Some(bearing) = surface.bearing(&pose.center(), half) else {
             return;
         };
@@ -79,9 +99,10 @@ impl Chain {
             let along = place * half;
             let g = pose.center() + pose.axis() * along;
             let velocity = pose.velocity() + pose.sweep() * along;
-            let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
-            if touch.depth > 0.0 {
-                visit(share, &touch, &shape[..modes]);
+            if let Some(touch) = surface.touch(&bearing, &g, &velocity)
+                && touch.depth > 0.0
+            {
+                visit(share, &touch);
             }
         }
     }
@@ -92,13 +113,16 @@ struct Contact<'a> {
     chain: &'a Chain,
     surface: &'a Surface<'a>,
     law: &'a Impact,
-    border: &'a mut [f64],
+    /// Forces on a deflected arc, spread over the knots of its shapes.
+    pressure: &'a mut Spread,
+    /// Moment that the beam takes up \[N m\].
+    beam: f64,
     deepest: f64,
     dissipated: f64,
 }
 
 impl Contact<'_> {
-    /// Adds the forces on one cylinder to its rows and to the border; returns how hard it is pressed
+    /// Adds the forces on one cylinder to its rows and on what carries the arc; returns how hard it is pressed
     /// \[N\].
     #[inline]
     fn add<const A: usize>(&mut self, pose: &impl InPlane<A>, force: &mut [f64]) -> f64 {
@@ -108,20 +132,18 @@ impl Contact<'_> {
             return 0.0;
         };
         let angles = force.len() - A;
-        let modes = self.surface.modal.len();
-        let mut shape = [0.0; MAX_MODES];
         let (velocity, axis, sweep) = (pose.velocity(), pose.axis(), pose.sweep());
         let mut total = 0.0;
         for &(place, share) in self.chain.contact_points {
             let along = place * half;
             let (g, velocity) = (center + axis * along, velocity + sweep * along);
-            let touch = self
-                .surface
-                .touch(&bearing, &g, &velocity, &mut shape[..modes]);
+            let Some(touch) = self.surface.touch(&bearing, &g, &velocity) else {
+                continue;
+            };
             self.deepest = self.deepest.max(touch.depth);
-            let law = self.law.force(touch.depth, touch.rate);
-            self.dissipated += share * law.dissipated;
-            let f = share * law.force;
+            let (force_here, dissipated) = self.law.push(touch.depth, touch.rate);
+            self.dissipated += share * dissipated;
+            let f = share * force_here;
             if f == 0.0 {
                 continue;
             }
@@ -132,11 +154,9 @@ impl Contact<'_> {
             for (k, arm) in pose.axis_by().iter().enumerate() {
                 force[angles + k] += along * push.dot(arm);
             }
-            if let Some((beam, modal)) = self.border.split_first_mut() {
-                *beam -= f * touch.by_beam;
-                for (modal, shape) in modal.iter_mut().zip(&shape[..modes]) {
-                    *modal -= f * shape;
-                }
+            self.beam += f * touch.by_beam;
+            if let Some(place) = &touch.place {
+                self.pressure.add(place, f);
             }
         }
         total

@@ -73,7 +73,7 @@ impl Chain {
         matrix: &mut Bordered,
     ) {
         let half = 0.5 * self.pitch;
-        let modes = surface.modal.len();
+        let modes = surface.modes();
         let mut shape = [0.0; MAX_MODES];
         let Some(bearing) = surface.bearing(&pose.center(), half) else {
             return;
@@ -82,11 +82,14 @@ impl Chain {
             let along = place * half;
             let g = pose.center() + pose.axis() * along;
             let velocity = pose.velocity() + pose.sweep() * along;
-            let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
+            let Some(touch) = surface.touch(&bearing, &g, &velocity) else {
+                continue;
+            };
             let at = law.force(touch.depth, touch.rate);
             if at.force == 0.0 {
                 continue;
             }
+            surface.shapes_at(&touch, &mut shape[..modes]);
             let by_rate = share * at.by_rate;
             let stiff = share * at.by_penetration + gamma * by_rate;
             let mut point = Point {
@@ -115,11 +118,10 @@ impl Point {
         let (angle_by_point, angle_by_beam) = self.curvature.angle_by;
         let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
         let mut drift = 0.0;
-        if let Some(shapes) = surface.shapes {
-            let at = shapes.place(self.touch.angle);
+        if let (Some(bend), Some(at)) = (&surface.bend, &self.touch.place) {
             for (k, &shape) in shape.iter().enumerate() {
-                let slope = shapes.jet(&at, k).first;
-                drift += surface.modal_rate[k] * slope;
+                let slope = bend.shapes.jet(at, k).first;
+                drift += bend.modal_rate[k] * slope;
                 self.border[1 + k] = BorderColumn {
                     gradient: shape,
                     force_by: shape * stiff + slope * angle_rate * self.by_rate,

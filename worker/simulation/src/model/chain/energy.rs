@@ -28,7 +28,7 @@ impl Chain {
             }
         }
         if let Some((surface, law)) = contact {
-            self.each_touch(surface, state, |share, touch, _| {
+            self.each_touch(surface, state, |share, touch| {
                 *sum += share * law.energy(touch.depth);
             });
         }

@@ -13,6 +13,7 @@ mod plane;
 mod tangent;
 
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
+use crate::math::spline::sum::Spread;
 use crate::model::contact::GAUSS;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
@@ -71,6 +72,8 @@ pub struct ChainState {
     pub joints: Vec<LinkLoad>,
     /// Contact force of each cylinder \[N\].
     pub contact: Vec<f64>,
+    /// Contact forces on a deflected arc, spread over the knots of its shapes.
+    pub pressure: Spread,
     /// Deepest penetration \[m\].
     pub deepest: f64,
     /// Power that the contact's damping takes \[W\].
@@ -96,6 +99,7 @@ impl ChainState {
             plane: vec![PlanePose::new(&[0.0; 3], &[0.0; 3]); plane],
             joints: vec![none; chain.count + 1],
             contact: vec![0.0; chain.count],
+            pressure: Spread::default(),
             deepest: 0.0,
             dissipated: 0.0,
         }
