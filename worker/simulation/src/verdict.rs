@@ -13,7 +13,8 @@ pub enum Failure {
     BeamOvertravel,
     /// The beam stayed below its swing by [`Limits::beam_margin`].
     LoadNotLifted,
-    /// A cylinder turned out of the machine's plane.
+    /// A cylinder turned out of the machine's plane, or cylinders give way sideways because their
+    /// shear stiffness cannot hold them under tension.
     TumbledCylinder,
     /// The step size fell below its limit.
     StepUnderflow,

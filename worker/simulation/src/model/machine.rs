@@ -147,6 +147,21 @@ impl Machine {
         self
     }
 
+    /// Range of the beam on the inextensible mechanism \[rad\].
+    pub fn swing(&self) -> [f64; 2] {
+        let mechanism = self.mechanism(self.description.back_arc.radius, self.back_length());
+        let mut at = self.bottom;
+        let mut highest = at.beam;
+        for k in 1..=90 {
+            let pin = self.bottom.pin + std::f64::consts::TAU * f64::from(k) / 90.0;
+            if let Ok(next) = mechanism.position(pin, at.beam, at.tangent) {
+                at = next;
+                highest = highest.max(at.beam);
+            }
+        }
+        [self.bottom.beam, highest]
+    }
+
     /// The inextensible mechanism with another effective radius and length.
     pub fn mechanism(&self, radius: f64, length: f64) -> Mechanism {
         Mechanism {
