@@ -2,3 +2,4 @@
 //! bodies, coordinates or integrators.
 pub mod bushing;
 pub mod impact;
+pub mod plane;

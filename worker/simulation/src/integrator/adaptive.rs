@@ -11,12 +11,19 @@ pub struct Adaptive {
     control: StepControl,
     /// Size of the next step \[s\].
     step: f64,
+    /// Largest step that Newton's method is trusted with after it failed \[s\].
+    trusted: f64,
 }
 
 /// The step size fell below its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepUnderflow;
 
+/// After a step at which Newton's method failed, steps stay below this share of it, and may grow
+/// again by this factor with every step that succeeds: the error estimate alone, which sees nothing
+/// of the contact that chatters, would lead straight back into the failure.
+const TRUST: f64 = 0.6;
+const REGAIN: f64 = 1.1;
 /// Shortest step; a run that needs shorter ones ends \[s\].
 const SHORTEST_STEP: f64 = 1e-9;
 
@@ -32,6 +39,7 @@ impl Adaptive {
                 shortest: SHORTEST_STEP,
             },
             step: 1e-3_f64.min(longest),
+            trusted: longest,
         }
     }
 
@@ -63,6 +71,7 @@ impl Adaptive {
             Err(_) => {
                 system.statistics.newton_rejections += 1;
                 self.step = 0.3 * step;
+                self.trusted = TRUST * step;
                 Ok(None)
             }
             Ok(done) if done.error > tolerance || !done.error.is_finite() => {
@@ -73,7 +82,8 @@ impl Adaptive {
             Ok(done) => {
                 system.statistics.steps += 1;
                 self.method.accept();
-                let next = self.control.next(step, done.error);
+                let next = self.control.next(step, done.error).min(self.trusted);
+                self.trusted = (self.trusted * REGAIN).min(self.control.longest);
                 self.step = if step < self.step {
                     self.step.min(next.max(self.step))
                 } else {

@@ -10,10 +10,12 @@
     reason = "helpers of tests; what was measured is printed; closed forms use the C library's functions"
 )]
 mod bounce;
+mod box_of_genes;
 mod determinism;
 mod energy;
 mod frame;
 mod order;
+mod plane;
 mod reference;
 mod rope;
 mod statics;
