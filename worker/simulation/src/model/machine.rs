@@ -32,6 +32,8 @@ pub struct Machine {
     pub(crate) tangential_influence: Splines,
     /// What effects add.
     pub(crate) hooks: Hooks,
+    /// The effects, and the ideal turn that they refer to.
+    effects: Option<(Selection, Cycle)>,
 }
 
 /// The ropes of one individual: coefficients scaled to the pitch of the chain.
@@ -117,12 +119,20 @@ impl Machine {
         let bottom = mechanism.position(marked.pin, marked.beam, marked.tangent)?;
         let cycle = Cycle::new(&edited, &mechanism, &bottom)?;
         let mut machine = Self::assemble(edited, kept, bottom, lowest)?;
-        let mut hooks = Hooks::default();
-        for effect in &selection.effects {
-            effect.install(&machine, &cycle, &mut hooks);
-        }
-        machine.hooks = hooks;
+        machine.effects = Some((selection.clone(), cycle));
+        machine.install_effects();
         Ok(machine)
+    }
+
+    /// Hangs the effects' pieces, which know where in the layout they act.
+    fn install_effects(&mut self) {
+        let mut hooks = Hooks::default();
+        if let Some((selection, cycle)) = &self.effects {
+            for effect in &selection.effects {
+                effect.install(self, cycle, &mut hooks);
+            }
+        }
+        self.hooks = hooks;
     }
 
     fn assemble(
@@ -176,6 +186,7 @@ impl Machine {
             tangential_influence: influence(&d.head.tangential_influence),
             radial,
             hooks: Hooks::default(),
+            effects: None,
             description,
         })
     }
@@ -190,6 +201,7 @@ impl Machine {
         for chain in &mut self.chains {
             chain.motion = Motion::Space;
         }
+        self.install_effects();
         self
     }
 
