@@ -1,5 +1,4 @@
 //! What a simulation takes of the heap: nothing in a step, little in all.
-#![expect(clippy::unwrap_used, reason = "a test")]
 use simulation::integrator::State;
 use simulation::model::{Individual, Machine};
 use simulation::reference;
