@@ -18,8 +18,11 @@ pub use guess::guess;
 pub use minimize::{Damping, minimize, minimize_within};
 pub use overload::overload;
 
-/// Iterations that the minimisation gets before the continuation takes over.
+/// Iterations that a minimisation gets before the continuation takes over.
 const DIRECT: u32 = 50;
+/// Iterations (factorisations) after which a search for one equilibrium begins no further step: from
+/// a given start, from the geometric guess, and along the continuation, whose last step is finished.
+pub const BUDGET: u64 = 2 * DIRECT as u64 + continuation::BUDGET + 100;
 
 /// Equilibrium of a machine at time 0, and whether it keeps inside the limits.
 ///

@@ -14,15 +14,18 @@ pub struct Adaptive<E> {
     step: f64,
     /// Largest step that Newton's method is trusted with after it failed \[s\].
     trusted: f64,
+    /// Steps accepted since then, up to [`LONG_AGO`].
+    since: u32,
 }
 
 /// The step size fell below its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepUnderflow;
 
-/// After a step at which Newton's method failed, steps stay below this share of it, and may grow
-/// again by this factor with every step that succeeds: the error estimate alone, which sees nothing
-/// of the contact that chatters, would lead straight back into the failure.
+/// Where Newton's method fails again within so many steps, steps stay below this share of the one
+/// that failed, and may grow again by this factor with every step that succeeds: the error estimate
+/// alone, which sees nothing of a contact that chatters, would lead straight back into the failure.
+const LONG_AGO: u32 = 4;
 const TRUST: f64 = 0.6;
 const REGAIN: f64 = 1.1;
 /// Shortest step; a run that needs shorter ones ends \[s\].
@@ -42,6 +45,7 @@ impl<E: Equations> Adaptive<E> {
             method,
             step: 1e-3_f64.min(longest),
             trusted: longest,
+            since: LONG_AGO,
         }
     }
 
@@ -74,7 +78,10 @@ impl<E: Equations> Adaptive<E> {
                 system.statistics.newton_rejections += 1;
                 self.method.reject();
                 self.step = 0.3 * step;
-                self.trusted = TRUST * step;
+                if self.since < LONG_AGO {
+                    self.trusted = TRUST * step;
+                }
+                self.since = 0;
                 Ok(None)
             }
             Ok(done) if done.error > tolerance || !done.error.is_finite() => {
@@ -91,6 +98,7 @@ impl<E: Equations> Adaptive<E> {
                 let next = self.method.next(&self.control, step, done.error);
                 let next = next.min(self.trusted);
                 self.trusted = (self.trusted * REGAIN).min(self.control.longest);
+                self.since = (self.since + 1).min(LONG_AGO);
                 self.step = if step < self.step {
                     self.step.min(next.max(self.step))
                 } else {

@@ -6,14 +6,14 @@
 //! pliable, to the given ones, and the equilibrium follows by Newton's method. The path is the
 //! individual's own: it depends on no start and on no damping.
 use super::guess::guess;
-use super::minimize::{CONVERGED, minimize};
+use super::minimize::{CONVERGED, Damping, minimize, minimize_within};
 use super::overload::Hanging;
 use crate::math::elementary::powf;
 use crate::model::{Individual, Machine, Ropes};
 use crate::system::{Static, System};
 
 /// Iterations (factorisations) that a continuation may take.
-const BUDGET: u64 = 800;
+pub(super) const BUDGET: u64 = 1200;
 
 /// Equilibrium of an individual at time 0, and whether it was reached; `q` is its coordinates then.
 pub fn follow(system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
@@ -82,7 +82,12 @@ impl Path {
                     *trial += ratio * (q - of);
                 }
             }
-            if newton(system, &mut trial) {
+            let mut found = newton(system, &mut trial);
+            if !found && stride < CAREFUL {
+                trial.copy_from_slice(q);
+                found = minimize_within(system, 0.0, &mut trial, &Damping::default(), PATIENCE);
+            }
+            if found {
                 let (at, of) = last.get_or_insert_with(|| (0.0, q.to_vec()));
                 *at = place;
                 of.copy_from_slice(q);
@@ -148,6 +153,10 @@ fn newton<E: Static>(system: &mut System<E>, q: &mut [f64]) -> bool {
 
 const FIRST_STRIDE: f64 = 0.25;
 const SHORTEST_STRIDE: f64 = 2e-3;
+/// Stride below which a minimisation, of so many iterations at most, is tried where Newton's method
+/// fails: a cylinder snaps to or off its arc there.
+const CAREFUL: f64 = 0.02;
+const PATIENCE: u32 = 40;
 /// How often a step may fail to be shorter than all before it.
 const SETBACKS: u32 = 3;
 /// Longest step that is taken, and the step at which Newton's method is lost, in units of its

@@ -14,7 +14,7 @@ use simulation::model::{Individual, Machine};
 use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::run::{RunResult, RunSettings, settle, simulate};
-use simulation::settle::{Damping, guess};
+use simulation::settle::{BUDGET, Damping, guess};
 use simulation::system::System;
 use simulation::verdict::{Failure, Reached, Verdict};
 use std::collections::BTreeMap;
@@ -82,10 +82,19 @@ fn statics(
     let ropes = machine.ropes(law);
     let mut system = System::new(Individual::new(machine, ropes, drive));
     let at = system.equations.drive_state(0.0);
+    let layout = machine.layout;
+    let width = layout.motion.width();
     let start = disturb.and_then(|random| {
         let mut q = guess(machine, &ropes, &at).ok()?;
-        for q in &mut q {
-            *q += 2e-3 * (random.random::<f64>() - 0.5);
+        for (i, q) in q.iter_mut().enumerate() {
+            // the rod and the suspension have one coordinate each, the rest of their block is locked
+            let base = [layout.rod(), layout.suspension()];
+            if !base
+                .iter()
+                .any(|&first| (first + 1..first + width).contains(&i))
+            {
+                *q += 2e-3 * (random.random::<f64>() - 0.5);
+            }
         }
         Some(q)
     });
@@ -111,7 +120,8 @@ fn quantiles(mut x: Vec<u64>) -> String {
 }
 
 /// Statics from three starts with three dampings agree, verdict for verdict and equilibrium for
-/// equilibrium; where they know no answer they say so within the budget.
+/// equilibrium, and end within their budget: of one search, and of four more for the load that is
+/// carried where the whole is not.
 fn assert_statics(machine: &Machine, count: usize) {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
@@ -127,6 +137,7 @@ fn assert_statics(machine: &Machine, count: usize) {
         spent.push(iterations);
         for damping in dampings {
             let (found, iterations) = statics(machine, &law, damping, Some(&mut random));
+            assert!(iterations <= 5 * BUDGET, "individual {k}: {iterations}");
             spent.push(iterations);
             match (&expected, &found) {
                 (Ok(expected), Ok(found)) => {
@@ -135,7 +146,9 @@ fn assert_statics(machine: &Machine, count: usize) {
                     assert!(apart < 1e-9, "individual {k}: {apart} {law:?}");
                 }
                 (Err(expected), Err(found)) => assert_eq!(expected, found, "individual {k}"),
-                _ => panic!("individual {k}: {:?} {:?}", expected.is_ok(), found.is_ok()),
+                (expected, found) => {
+                    assert_eq!(expected.is_ok(), found.is_ok(), "individual {k}");
+                }
             }
         }
         let verdict = expected.map_or_else(|(kind, _)| format!("{kind:?}"), |_| "stands".into());
