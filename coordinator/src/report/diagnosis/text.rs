@@ -25,7 +25,7 @@ pub fn text(subject: &Subject<'_>) -> String {
         item(&mut text, &sentence);
     }
     if diagnosis.verdict == Verdict::NothingDetected {
-        for sentence in words::reach(subject) {
+        if let Some(sentence) = words::reach(subject) {
             item(&mut text, &sentence);
         }
     }
