@@ -8,6 +8,7 @@ use crate::model::Model;
 use crate::record::Record;
 pub use crate::rounds::Round;
 use crate::rounds::rounds;
+use crate::score::misfit_tail;
 use crate::settings::Settings;
 use crate::stage::establish::{Base, establish};
 use crate::stage::preflight::Preflight;
@@ -148,12 +149,20 @@ async fn finish<L: Laboratory>(
         diagnosis.rival = Some((rival.id, rows));
     }
     diagnosis.effects = estimates(&diagnosis.rounds, &after);
+    let names = diagnosis
+        .rounds
+        .first()
+        .is_some_and(|r| r.p_value < inputs.settings.alpha);
+    let misfit = left_over(base, &after) < inputs.settings.adequacy;
+    if misfit && diagnosis.generic.is_none() {
+        let ratio = after.chi_squared() / base.bench.metric.len() as f64;
+        diagnosis.notes.push(format!(
+            "what is left is {ratio:.2} times the noise: more than noise, and not explained"
+        ));
+    }
     let findings = Findings {
         sound: true,
-        rejected: diagnosis
-            .rounds
-            .first()
-            .is_some_and(|r| r.p_value < inputs.settings.alpha),
+        rejected: misfit || names,
         added,
         rivals: diagnosis
             .rounds
@@ -165,10 +174,21 @@ async fn finish<L: Laboratory>(
     };
     diagnosis.verdict = verdict(&findings);
     if diagnosis.verdict == Verdict::Unresolved {
-        diagnosis.reason = diagnosis.rounds.first().and_then(|r| r.reason.clone());
+        let why = diagnosis.rounds.first().and_then(|r| r.reason.clone());
+        diagnosis.reason = diagnosis.notes.last().filter(|_| !names).cloned().or(why);
     }
     diagnosis.after = Some(after);
     Ok(())
+}
+
+/// Probability that noise alone leaves so much; 1 where the noise is only assumed.
+fn left_over(base: &Base, after: &Fit) -> f64 {
+    if base.assumed {
+        return 1.0;
+    }
+    let n = base.bench.metric.len();
+    let freedom = n as f64 * (base.bench.record.cycles.len() as f64 - 1.0);
+    misfit_tail(after.chi_squared(), n, after.x().len(), freedom)
 }
 
 impl Diagnosis {

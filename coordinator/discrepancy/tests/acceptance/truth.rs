@@ -435,6 +435,24 @@ fn cycle(
         .collect()
 }
 
+/// Cycles with nothing but noise in them, all channels.
+pub(crate) fn cycles_of_noise(seed: u64, cycles: usize) -> Vec<Curves> {
+    let streams = Streams::new(seed, 13);
+    let one = |k: usize| {
+        let mut stream = streams.at(0, Phase::Resample, k);
+        let mut noise = Noise::default();
+        let mut curves: Curves = vec![Vec::with_capacity(SAMPLES); NOISE.len()];
+        for _ in 0..SAMPLES {
+            let drawn = noise.next(&mut stream);
+            for ((curve, drawn), size) in curves.iter_mut().zip(drawn).zip(NOISE) {
+                curve.push(size * drawn);
+            }
+        }
+        curves
+    };
+    (0..cycles).map(one).collect()
+}
+
 /// Noise of all channels: first-order in time, with a part that the gauges share.
 #[derive(Default)]
 struct Noise {
