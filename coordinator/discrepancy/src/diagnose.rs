@@ -8,7 +8,6 @@ use crate::model::Model;
 use crate::record::Record;
 pub use crate::rounds::Round;
 use crate::rounds::rounds;
-use crate::score::misfit_tail;
 use crate::settings::Settings;
 use crate::stage::establish::{Base, establish};
 use crate::stage::preflight::Preflight;
@@ -153,7 +152,8 @@ async fn finish<L: Laboratory>(
         .rounds
         .first()
         .is_some_and(|r| r.p_value < inputs.settings.alpha);
-    let misfit = left_over(base, &after) < inputs.settings.adequacy;
+    let parameters = after.x().len();
+    let misfit = !base.is_noise(after.chi_squared(), parameters, inputs.settings.adequacy);
     if misfit && diagnosis.generic.is_none() {
         let ratio = after.chi_squared() / base.bench.metric.len() as f64;
         diagnosis.notes.push(format!(
@@ -179,16 +179,6 @@ async fn finish<L: Laboratory>(
     }
     diagnosis.after = Some(after);
     Ok(())
-}
-
-/// Probability that noise alone leaves so much; 1 where the noise is only assumed.
-fn left_over(base: &Base, after: &Fit) -> f64 {
-    if base.assumed {
-        return 1.0;
-    }
-    let n = base.bench.metric.len();
-    let freedom = n as f64 * (base.bench.record.cycles.len() as f64 - 1.0);
-    misfit_tail(after.chi_squared(), n, after.x().len(), freedom)
 }
 
 impl Diagnosis {

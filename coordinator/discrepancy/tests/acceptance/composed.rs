@@ -1,7 +1,7 @@
 //! Two effects at once, and effects that no library has.
 use crate::strata::{OUTSIDE, named, planted};
 use crate::trial::{diagnose_usual, line, say, trials};
-use crate::truth::Truth;
+use crate::truth::{Truth, Unlisted};
 use discrepancy::verdict::Verdict;
 
 /// Acceptance 9: two effects at four times their limits.
@@ -72,4 +72,18 @@ fn what_is_in_no_library_gets_no_name() {
         form as f64 >= 0.6 * f64::from(unlisted),
         "{form} of {unlisted}"
     );
+}
+
+/// A degree of freedom that no library has, but that acts as a listed effect does: a mass that swings
+/// slowly on the beam is an inertia of the beam up to the noise, and is called so, and nothing else.
+#[test]
+fn what_acts_like_a_listed_effect_takes_only_its_name() {
+    for seed in 0..trials(3) {
+        let mut truth = Truth::healthy(3500 + seed);
+        truth.unlisted = Some(Unlisted::SwingingMass(0.1));
+        let answer = diagnose_usual(&truth);
+        let first = answer.effects.first().map(|e| e.id.as_str());
+        let honest = first == Some("beam_inertia") || answer.verdict == Verdict::Unlisted;
+        assert!(honest, "{}", line(&answer));
+    }
 }
