@@ -150,12 +150,21 @@ async fn finish<L: Laboratory>(
         diagnosis.rival = Some((rival.id, rows));
     }
     diagnosis.effects = estimates(&diagnosis.rounds, &after);
+    let names = diagnosis
+        .rounds
+        .first()
+        .is_some_and(|r| r.p_value < inputs.settings.alpha);
+    let parameters = after.x().len();
+    let misfit = !base.is_noise(after.chi_squared(), parameters, inputs.settings.adequacy);
+    if misfit && diagnosis.generic.is_none() {
+        let ratio = after.chi_squared() / base.bench.metric.len() as f64;
+        diagnosis.notes.push(format!(
+            "what is left is {ratio:.2} times the noise: more than noise, and not explained"
+        ));
+    }
     let findings = Findings {
         sound: true,
-        rejected: diagnosis
-            .rounds
-            .first()
-            .is_some_and(|r| r.p_value < inputs.settings.alpha),
+        rejected: misfit || names,
         added,
         rivals: diagnosis
             .rounds
@@ -167,7 +176,8 @@ async fn finish<L: Laboratory>(
     };
     diagnosis.verdict = verdict(&findings);
     if diagnosis.verdict == Verdict::Unresolved {
-        diagnosis.reason = diagnosis.rounds.first().and_then(|r| r.reason.clone());
+        let why = diagnosis.rounds.first().and_then(|r| r.reason.clone());
+        diagnosis.reason = diagnosis.notes.last().filter(|_| !names).cloned().or(why);
     }
     diagnosis.after = Some(after);
     Ok(())
