@@ -62,7 +62,8 @@ impl Manifest {
             word(folder)
         );
         if let Settings::Window(settings) = &self.settings {
-            command.push_str(&format!(" --window {}", settings.window));
+            command.push_str(" --window ");
+            command.push_str(&settings.window.to_string());
         }
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
