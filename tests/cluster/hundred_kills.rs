@@ -62,11 +62,11 @@ fn kill_once(process: &mut Process, random: u64) -> bool {
             }
         }
     });
-    if random % 3 == 0 {
-        thread::sleep(Duration::from_micros(random / 3 % 400_000));
+    if random.is_multiple_of(2) {
+        thread::sleep(Duration::from_micros(random / 3 % 300_000));
     } else {
         // new results, not those of the journal
-        let mut fresh = random / 3 % 12;
+        let mut fresh = random / 3 % 10;
         while fresh > 0 {
             match heard.recv_timeout(LIMIT) {
                 Ok(line) if line.starts_with("done") => break,

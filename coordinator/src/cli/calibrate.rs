@@ -61,8 +61,7 @@ pub(super) struct Arguments {
 }
 
 fn presets() -> String {
-    let line =
-        |preset: &search::strategy::Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
+    let line = |preset: &Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
     CATALOGUE.iter().map(line).collect()
 }
 
