@@ -25,8 +25,6 @@ pub enum Job {
     Score(ScoreSpec),
     /// Simulate and return the curves.
     Simulate(SimulateSpec),
-    /// Simulate and return the measured channels alone.
-    Observe(ObserveSpec),
     /// Reduce the flexible back head from its mesh to modes and influence lines.
     ReduceHead(Box<ReduceHeadSpec>),
     /// Do nothing, return at once: measures the bus.
@@ -39,6 +37,8 @@ pub enum Job {
         /// How long the slot is held \[ms\].
         delay_ms: u32,
     },
+    /// Simulate and return the measured channels alone.
+    Observe(ObserveSpec),
 }
 
 impl Job {
@@ -61,14 +61,14 @@ pub enum Outcome {
     Scored(Evaluation),
     /// Of [`Job::Simulate`].
     Simulated(Box<Simulation>),
-    /// Of [`Job::Observe`].
-    Observed(Observation),
     /// Of [`Job::ReduceHead`].
     HeadReduced(Box<ReducedHead>),
     /// Of [`Job::Nothing`].
     Nothing(#[serde(with = "byte_string")] Vec<u8>),
     /// The job could not be done.
     Failed(Failure),
+    /// Of [`Job::Observe`].
+    Observed(Observation),
 }
 
 /// Why a job could not be done.
