@@ -62,12 +62,7 @@ impl Chain {
     }
 
     /// Extension \[m\] of a joint between two cylinders and its rate [m/s].
-    fn extension(
-        &self,
-        joint: usize,
-        joints: &Joints<'_>,
-        state: &ChainState,
-    ) -> Option<[f64; 2]> {
+    fn extension(&self, joint: usize, joints: &Joints<'_>, state: &ChainState) -> Option<[f64; 2]> {
         if self.in_plane(joint) {
             let [i, j] = self.plane_markers(joint, &state.plane);
             return Some(joints.inner.plane_extension(&i, &j));

@@ -83,7 +83,9 @@ impl Chain {
             let [i, j] = self.plane_markers(joint, &state.plane);
             let force = state.joints[joint].force.xy();
             let further = self.pull(joint, joints, state);
-            let tangent = joints.inner.plane_tangent((&i, &j), &force, gamma, further.as_ref());
+            let tangent = joints
+                .inner
+                .plane_tangent((&i, &j), &force, gamma, further.as_ref());
             let [by_i, by_j] = tangent;
             let block = self.first + joint;
             subtract(matrix.diagonal_mut(block - 1), &by_j, Side::J);
