@@ -59,6 +59,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     assert_eq!(plain.verdict, Verdict::Complete);
     assert_eq!(plain.gauge_mpa[0].len(), 720);
     let simulate = Job::Simulate(SimulateSpec {
+        integration: None,
         condition: 0,
         genes: case.recommended(),
         effects: vec![EffectSetting::new("gauge_gain", &[("gain_1", 0.0)])],
@@ -103,6 +104,7 @@ fn a_refined_observation_is_of_the_same_machine() {
         &case,
         &[],
         Refinement {
+            lead_in_deg: None,
             cylinder_length_m: Some(0.025),
             longest_step_s: Some(0.02),
             modes: Some(8),
@@ -141,6 +143,7 @@ fn what_the_model_does_not_have_is_refused_by_field() {
             with_residual: false,
         }),
         Job::Simulate(SimulateSpec {
+            integration: None,
             condition: 0,
             genes,
             effects,
