@@ -2,9 +2,10 @@
 //!
 //! Data flows one way: a case folder is read and checked ([`case`]), a search strategy proposes
 //! individuals, the sans-I/O [`core`] leases them to workers, the [`journal`] records what came
-//! back, and the [`report`] shows it. [`study`] is the loop from the first proposal to the
+//! back, the [`account`] of slot time and the [`report`] show it. [`study`] is the loop from the first proposal to the
 //! comparison of the result, [`cli`] the commands around it, [`runtime`] the only asynchronous
 //! glue. Nothing here links the dynamics.
+pub mod account;
 pub mod case;
 pub mod cli;
 pub mod core;

@@ -24,15 +24,35 @@ pub struct Announcement {
     pub effects: Vec<EffectDescriptor>,
 }
 
-/// One effect that a model may add, described well enough to be proposed and searched.
+/// One effect that a model may add, described well enough to be proposed, sized and searched.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EffectDescriptor {
     /// Fixed identifier, as in results.
     pub id: String,
     /// In words.
     pub title: String,
+    /// Joint or part of the machine that it acts at, as `saddle` or `back_rope`.
+    pub joint: String,
+    /// What of the model it changes.
+    pub place: Place,
+    /// Whether it is a form of force without a cause, for localisation alone.
+    pub generic: bool,
     /// Its free numbers.
     pub parameters: Vec<ParameterDescriptor>,
+}
+
+/// What of a model an effect changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// Geometry, inertia or forces of the machine.
+    Dynamics,
+    /// The motion of the crank, or where its angle is zero.
+    Drive,
+    /// The load at the suspension point.
+    Load,
+    /// The chain from strain to reading.
+    Gauge,
 }
 
 /// One free number of an effect.
@@ -42,10 +62,38 @@ pub struct ParameterDescriptor {
     pub name: String,
     /// Unit of all its values, as written.
     pub unit: String,
+    /// Whether it switches the effect on, or only shapes it.
+    pub role: Role,
+    /// Signs that it may have.
+    pub sign: Sign,
     /// Least value.
     pub lower: f64,
     /// Greatest value.
     pub upper: f64,
-    /// Value at which the effect is not there.
+    /// Value at which the effect is not there; of a shape, its typical value.
     pub absent: f64,
+    /// Value with which its signature is taken, and the default of a shape.
+    pub typical: f64,
+    /// Its physical size: how large it commonly is on machines of this kind.
+    pub scale: f64,
+}
+
+/// What a parameter does for its effect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Role {
+    /// At its absent value it contributes nothing.
+    Size,
+    /// It forms what the sizes switch on.
+    Shape,
+}
+
+/// Signs that a parameter may have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sign {
+    /// Above and below its absent value.
+    Either,
+    /// Not below its absent value: what dissipates, what is a distance, a time.
+    Positive,
 }

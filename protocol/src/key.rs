@@ -9,9 +9,13 @@
 //! horsehead/1/RUN/blob/HASH/CHUNK  worker asks coordinator: content, piece by piece
 //! ```
 //!
-//! `RUN` and `WORKER` are 16 hexadecimal digits; `RUN` is all zeros until a coordinator has told
-//! the worker. Access control grants a worker only keys with its own name in them.
-use crate::id::{ContentHash, RunId, WorkerId};
+//! `RUN` is 16 hexadecimal digits, all zeros until a coordinator has told the worker. `WORKER` is
+//! two parts: the name of its certificate and the 16 digits of its process ([`WorkerName`]).
+//! Access control grants a worker only keys with the name of its certificate in them.
+use crate::{
+    id::{ContentHash, RunId},
+    name::WorkerName,
+};
 
 /// What every key begins with; the number is the wire version.
 pub const ROOT: &str = "horsehead/1";
@@ -26,7 +30,7 @@ pub enum Lane {
 }
 
 /// Where the coordinator puts a message for a worker.
-pub fn to_worker(run: RunId, worker: WorkerId, lane: Lane) -> String {
+pub fn to_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
     let lane = match lane {
         Lane::Data => "job",
         Lane::Control => "ack",
@@ -35,7 +39,7 @@ pub fn to_worker(run: RunId, worker: WorkerId, lane: Lane) -> String {
 }
 
 /// Where a worker puts a message for the coordinator.
-pub fn from_worker(run: RunId, worker: WorkerId, lane: Lane) -> String {
+pub fn from_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
     let lane = match lane {
         Lane::Data => "res",
         Lane::Control => "hb",
@@ -44,26 +48,26 @@ pub fn from_worker(run: RunId, worker: WorkerId, lane: Lane) -> String {
 }
 
 /// Everything for one worker, of any run: it learns the run from the first admission.
-pub fn all_to_worker(worker: WorkerId) -> String {
+pub fn all_to_worker(worker: &WorkerName) -> String {
     format!("{ROOT}/*/w/{worker}/*")
 }
 
 /// Everything from any worker in one lane, of any run: newcomers do not know the run.
 pub fn all_from_workers(lane: Lane) -> String {
     match lane {
-        Lane::Data => format!("{ROOT}/*/res/*"),
-        Lane::Control => format!("{ROOT}/*/hb/*"),
+        Lane::Data => format!("{ROOT}/*/res/*/*"),
+        Lane::Control => format!("{ROOT}/*/hb/*/*"),
     }
 }
 
 /// Presence of a worker in a run.
-pub fn alive(run: RunId, worker: WorkerId) -> String {
+pub fn alive(run: RunId, worker: &WorkerName) -> String {
     format!("{ROOT}/{run}/alive/{worker}")
 }
 
 /// Presence of any worker in a run.
 pub fn all_alive(run: RunId) -> String {
-    format!("{ROOT}/{run}/alive/*")
+    format!("{ROOT}/{run}/alive/*/*")
 }
 
 /// One piece of some content.
@@ -77,10 +81,40 @@ pub fn all_blobs(run: RunId) -> String {
 }
 
 /// The worker that a key ends with, if it does.
-pub fn worker_of(key: &str) -> Option<WorkerId> {
-    let (_, name) = key.rsplit_once('/')?;
-    (name.len() == 16).then_some(())?;
-    u64::from_str_radix(name, 16).ok().map(WorkerId)
+pub fn worker_of(key: &str) -> Option<WorkerName> {
+    let (rest, process) = key.rsplit_once('/')?;
+    let (_, owner) = rest.rsplit_once('/')?;
+    WorkerName::parse(owner, process)
+}
+
+/// What the workers of one certificate may do, as patterns of keys; nothing else.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Grant {
+    /// Where they may listen, and receive.
+    pub hear: String,
+    /// Where they may speak.
+    pub speak: [String; 2],
+    /// Where they may show presence.
+    pub appear: String,
+}
+
+impl Grant {
+    /// What `owner`'s workers may do.
+    pub fn of(owner: &str) -> Self {
+        Self {
+            hear: format!("{ROOT}/*/w/{owner}/*/*"),
+            speak: [
+                format!("{ROOT}/*/res/{owner}/*"),
+                format!("{ROOT}/*/hb/{owner}/*"),
+            ],
+            appear: format!("{ROOT}/*/alive/{owner}/*"),
+        }
+    }
+
+    /// What every worker may fetch.
+    pub fn fetch() -> String {
+        format!("{ROOT}/*/blob/*/*")
+    }
 }
 
 /// The content and piece that a key asks for, if it does.
@@ -109,12 +143,14 @@ mod tests {
 
     #[test]
     fn what_a_key_names_can_be_read_back() {
-        let (run, worker) = (RunId(0x1f), WorkerId(0xfeed_0000_1234_5678));
+        let run = RunId(0x1f);
+        let worker = WorkerName::of("worker-01", 0xfeed_0000_1234_5678).unwrap();
         let hash = ContentHash::of(b"case");
         for lane in [Lane::Data, Lane::Control] {
-            assert_eq!(worker_of(&from_worker(run, worker, lane)), Some(worker));
+            let key = from_worker(run, &worker, lane);
+            assert_eq!(worker_of(&key), Some(worker.clone()));
         }
-        assert_eq!(worker_of(&alive(run, worker)), Some(worker));
+        assert_eq!(worker_of(&alive(run, &worker)), Some(worker));
         assert_eq!(blob_of(&blob(run, hash, 7)), Some((hash, 7)));
     }
 
@@ -122,8 +158,9 @@ mod tests {
     fn foreign_keys_name_nothing() {
         for key in [
             "",
-            "horsehead/1/x/res/12",
-            "horsehead/1/0/hb/zzzzzzzzzzzzzzzz",
+            "horsehead/1/x/res/worker-01/12",
+            "horsehead/1/0/hb/worker-01/zzzzzzzzzzzzzzzz",
+            "horsehead/1/0/hb/Nobody!/0000000000000001",
         ] {
             assert_eq!(worker_of(key), None, "{key}");
             assert_eq!(blob_of(key), None, "{key}");

@@ -9,5 +9,6 @@ pub mod id;
 pub mod job;
 pub mod key;
 pub mod message;
+pub mod name;
 pub mod unit;
 pub mod wire;

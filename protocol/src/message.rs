@@ -78,6 +78,8 @@ pub struct Beat {
     pub number: u64,
     /// The case it has fetched and checked; without it no job but [`Job::Nothing`] can be done.
     pub case: Option<ContentHash>,
+    /// What the reference individual of that case came to here; without it no job is given.
+    pub proof: Option<ContentHash>,
     /// Attempts in a slot.
     pub running: Vec<Attempt>,
     /// Attempts that wait for a slot.

@@ -89,3 +89,26 @@ impl Unit {
         value * self.si_factor()
     }
 }
+
+/// Units that parameters of effects may have, as written; what they measure is the effect's
+/// business.
+pub const EFFECT_UNITS: [&str; 18] = [
+    "1",
+    "m",
+    "s",
+    "deg",
+    "N",
+    "N.m",
+    "N.s/m",
+    "N.m.s/rad",
+    "m/N",
+    "m/s",
+    "rad/s",
+    "Hz",
+    "1/s",
+    "kg",
+    "MPa",
+    "MPa/rev",
+    "MPa/m",
+    "N/kg^0.5",
+];

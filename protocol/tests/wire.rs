@@ -1,9 +1,10 @@
 //! The codec against its two promises: what goes in comes out, and nothing makes it panic.
 use proptest::{collection::vec, option, prelude::*};
 use protocol::{
+    case::EffectSetting,
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::{Failure, Job, Outcome, ScoreSpec},
+    job::{Failure, Job, ObserveSpec, Outcome, Refinement, ScoreSpec},
     message::{Attempt, Beat, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
     wire::{self, Kind, WireError},
 };
@@ -19,6 +20,11 @@ fn bytes() -> impl Strategy<Value = Vec<u8>> {
     vec(any::<u8>(), 0..200)
 }
 
+fn effect() -> impl Strategy<Value = EffectSetting> {
+    (".{0,20}", vec((".{0,9}", -1e9..1e9), 0..4))
+        .prop_map(|(id, parameters)| EffectSetting { id, parameters })
+}
+
 fn job() -> impl Strategy<Value = Job> {
     prop_oneof![
         (bytes(), any::<u32>(), any::<u32>()).prop_map(|(payload, reply_bytes, delay_ms)| {
@@ -28,15 +34,36 @@ fn job() -> impl Strategy<Value = Job> {
                 delay_ms,
             }
         }),
-        (0..9_usize, vec(-1e9..1e9, 0..12), any::<bool>()).prop_map(
-            |(condition, genes, with_residual)| {
+        (
+            0..9_usize,
+            vec(-1e9..1e9, 0..12),
+            vec(effect(), 0..3),
+            any::<bool>()
+        )
+            .prop_map(|(condition, genes, effects, with_residual)| {
                 Job::Score(ScoreSpec {
                     condition,
                     genes,
+                    effects,
                     with_residual,
                 })
-            }
-        ),
+            }),
+        (
+            vec(effect(), 0..3),
+            option::of(1e-3..1.0),
+            option::of(0..9_usize)
+        )
+            .prop_map(|(effects, cylinder_length_m, modes)| {
+                Job::Observe(ObserveSpec {
+                    effects,
+                    refinement: Refinement {
+                        cylinder_length_m,
+                        modes,
+                        ..Refinement::default()
+                    },
+                    ..ObserveSpec::default()
+                })
+            }),
     ]
 }
 
@@ -83,6 +110,7 @@ fn from_worker() -> impl Strategy<Value = FromWorker> {
                 FromWorker::Beat(Beat {
                     number,
                     case: case.map(ContentHash),
+                    proof: case.map(ContentHash),
                     finished: running.iter().rev().copied().collect(),
                     running,
                     waiting,

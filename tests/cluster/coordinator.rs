@@ -1,32 +1,54 @@
-//! A coordinator for the cluster suite: does a number of jobs and writes a line for each result.
+//! A coordinator for the cluster suite, to be killed: writes a line for each result.
 //!
-//! `test-coordinator RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS`; each line is `id replayed`.
+//! `test-coordinator RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS` does a number of jobs; each line
+//! is `id replayed`. With `search:SEED` for JOBS it searches, and leaves its log in `RUN_DIR/log`.
 use coordinator::runtime::Dispatch;
 use protocol::id::JobId;
 use std::{
     env,
     error::Error,
+    fs,
     io::{self, Write},
     path::Path,
 };
+use tests::search_run::SearchRun;
 
 #[tokio::main]
 async fn main() -> Result<(), Box<dyn Error>> {
+    tracing_subscriber::fmt()
+        .with_writer(io::stderr)
+        .with_max_level(tracing_subscriber::filter::LevelFilter::WARN)
+        .init();
     let arguments: Vec<String> = env::args().skip(1).collect();
     let [run_dir, locator, jobs, delay_ms, local] = arguments.as_slice() else {
         return Err("expected RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS".into());
     };
-    let (jobs, delay_ms): (u64, u32) = (jobs.parse()?, delay_ms.parse()?);
-    let options = tests::options(Path::new(run_dir), Some(locator), local.parse()?);
+    let listen = (locator != "none").then_some(locator.as_str());
+    let options = tests::options(Path::new(run_dir), listen, local.parse()?);
     let mut dispatch = Dispatch::open(options).await?;
-    for n in 0..jobs {
-        dispatch.submit(JobId(n), tests::job(n, delay_ms))?;
-    }
     let mut out = io::stdout();
-    for _ in 0..jobs {
-        let completed = dispatch.next().await?;
-        writeln!(out, "{} {}", completed.id, completed.replayed)?;
-        out.flush()?;
+    let delay_ms: u32 = delay_ms.parse()?;
+    if let Some(seed) = jobs.strip_prefix("search:") {
+        let mut search = SearchRun::new(seed.parse()?, delay_ms);
+        while search.strategy.finished().is_none() {
+            for (id, job) in search.ask() {
+                dispatch.submit(JobId(id), job)?;
+            }
+            let completed = dispatch.next().await?;
+            search.tell(completed.id.0, &completed.outcome);
+            writeln!(out, "{} {}", completed.id, completed.replayed)?;
+        }
+        fs::write(Path::new(run_dir).join("log"), search.log())?;
+    } else {
+        let jobs: u64 = jobs.parse()?;
+        for n in 0..jobs {
+            dispatch.submit(JobId(n), tests::job(n, delay_ms))?;
+        }
+        for _ in 0..jobs {
+            let completed = dispatch.next().await?;
+            writeln!(out, "{} {}", completed.id, completed.replayed)?;
+            out.flush()?;
+        }
     }
     let summary = dispatch.close().await?;
     writeln!(

@@ -1,6 +1,6 @@
 //! Workers that are killed, frozen or told to end.
 use super::{collect, submit};
-use coordinator::runtime::{Dispatch, bench};
+use coordinator::runtime::{BenchPlan, Crew, Dispatch, bench};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
 use tests::{
@@ -140,11 +140,20 @@ async fn a_worker_that_is_told_to_end_gives_its_jobs_back_and_says_nothing() {
 #[tokio::test(flavor = "multi_thread")]
 async fn the_bench_measures_the_bus() {
     let folder = tempfile::tempdir().unwrap();
-    let result = bench(options(folder.path(), None, 2), 400).await.unwrap();
-    eprintln!("{result:?}");
-    assert!(result.rtt_median_ms > 0.0 && result.rtt_median_ms <= result.rtt_p99_ms);
-    assert!(
-        result.jobs_per_s > 50.0 && result.coordinator_rss_mib > 1.0,
-        "{result:?}"
-    );
+    for crew in [Crew::Processes, Crew::Sessions] {
+        let folder = folder.path().join(format!("{crew:?}"));
+        let plan = BenchPlan {
+            crew,
+            workers: 2,
+            jobs: 400,
+            result_bytes: 1000,
+        };
+        let result = bench(options(&folder, None, 0), plan).await.unwrap();
+        eprintln!("{result:?}");
+        assert!(result.rtt_median_ms > 0.0 && result.rtt_median_ms <= result.rtt_p99_ms);
+        assert!(
+            result.jobs_per_s > 50.0 && result.coordinator_rss_mib > 1.0,
+            "{result:?}"
+        );
+    }
 }

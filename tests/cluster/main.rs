@@ -4,7 +4,11 @@
     clippy::panic,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
+mod disk;
 mod faults;
+mod hundred_kills;
+mod misbehaviour;
+mod outage;
 mod resume;
 mod slots;
 

@@ -18,11 +18,18 @@ use tests::{
 };
 use tokio::sync::mpsc::unbounded_channel;
 use worker::{
-    pool::{Freed, Pool, Task},
+    pool::{Freed, Pool, SlotOptions, Task},
     session::{self, Ending, SessionOptions},
 };
 
 const LIMIT: Duration = Duration::from_mins(1);
+
+fn slot_options() -> SlotOptions {
+    SlotOptions {
+        program: worker_program(),
+        memory_mib: 0,
+    }
+}
 
 fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
     let attempt = Attempt {
@@ -63,7 +70,7 @@ fn failure(freed: Freed) -> Failure {
 #[test]
 fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     let (to, mut freed) = unbounded_channel();
-    let pool = Pool::start(1, &worker_program(), &to).unwrap();
+    let pool = Pool::start(1, &slot_options(), &to).unwrap();
     let before = slots();
     pool.run(0, task(1, 600_000, Duration::from_millis(400)));
     let begun = Instant::now();
@@ -131,6 +138,7 @@ async fn over_memory(
             id: WorkerId(id),
             slots: 2,
             program: worker_program(),
+            slot_memory_mib: 0,
             idle_timeout: None,
             embedded: true,
         };

@@ -3,7 +3,7 @@ use coordinator::runtime::locate;
 use rustix::process::{Pid, Signal, kill_process};
 use std::{
     fs,
-    path::PathBuf,
+    path::{Path, PathBuf},
     process::{Child, Command, Stdio},
     sync::OnceLock,
     thread,
@@ -22,12 +22,55 @@ pub fn worker_program() -> PathBuf {
         .clone()
 }
 
+/// The coordinator program, which `cargo test --workspace` builds; built here otherwise.
+///
+/// # Panics
+/// If it cannot be built.
+pub fn coordinator_program() -> PathBuf {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    PROGRAM
+        .get_or_init(|| {
+            let program = worker_program().with_file_name("horsehead");
+            if !program.is_file() {
+                let cargo = std::env::var_os("CARGO").expect("started by cargo");
+                let built = Command::new(cargo)
+                    .args([
+                        "build",
+                        "--quiet",
+                        "-p",
+                        "coordinator",
+                        "--bin",
+                        "horsehead",
+                    ])
+                    .status();
+                assert!(
+                    built.is_ok_and(|status| status.success()),
+                    "horsehead is built"
+                );
+            }
+            program
+        })
+        .clone()
+}
+
 /// A free port on loopback, as a locator.
 ///
 /// # Panics
 /// If the machine has none.
 pub fn free_locator() -> String {
-    let any = link::locator::Locator::parse("tcp/127.0.0.1:0").expect("a locator");
+    free_port("tcp/127.0.0.1:0")
+}
+
+/// The same for QUIC.
+///
+/// # Panics
+/// If the machine has none.
+pub fn free_quic_locator() -> String {
+    free_port("quic/127.0.0.1:0")
+}
+
+fn free_port(any: &str) -> String {
+    let any = link::locator::Locator::parse(any).expect("a locator");
     any.with_free_port().expect("a free port").to_string()
 }
 
@@ -41,8 +84,17 @@ impl Process {
     /// # Panics
     /// If it does not start.
     pub fn worker(connect: &str, arguments: &[&str]) -> Self {
+        Self::worker_with(connect, arguments, &[])
+    }
+
+    /// Starts a worker with something in its environment.
+    ///
+    /// # Panics
+    /// If it does not start.
+    pub fn worker_with(connect: &str, arguments: &[&str], environment: &[(&str, &str)]) -> Self {
         let mut command = Command::new(worker_program());
         command.args(["--connect", connect]).args(arguments);
+        command.envs(environment.iter().copied());
         Self::start(command)
     }
 
@@ -53,6 +105,16 @@ impl Process {
     pub fn start(mut command: Command) -> Self {
         let child = command.stdin(Stdio::null()).stdout(Stdio::piped()).spawn();
         Self(child.expect("the program starts"))
+    }
+
+    /// Starts any program that writes what it has to say into a file.
+    ///
+    /// # Panics
+    /// If it does not start or the file cannot be made.
+    pub fn logged(mut command: Command, log: &Path) -> Self {
+        let log = fs::File::create(log).expect("a log file");
+        command.stderr(log);
+        Self::start(command)
     }
 
     /// Its process id.
@@ -80,6 +142,14 @@ impl Process {
     /// The second time.
     pub fn output(&mut self) -> std::process::ChildStdout {
         self.0.stdout.take().expect("the output is read once")
+    }
+
+    /// Its standard error, if it was asked for when the process was started.
+    ///
+    /// # Panics
+    /// The second time, and if it was not.
+    pub fn errors(&mut self) -> std::process::ChildStderr {
+        self.0.stderr.take().expect("the errors are read once")
     }
 
     /// Waits for its end and returns its exit code, if it was not killed.

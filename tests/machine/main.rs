@@ -1,7 +1,9 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
-use protocol::case::Case;
-use simulation::integrator::tableau::{CATALOGUE, ESDIRK4};
+use protocol::case::{Case, EffectSetting};
+use simulation::effect::{Descriptor, Place, catalogue};
+use simulation::integrator::method::{CATALOGUE, Method};
+use simulation::integrator::tableau::ESDIRK4;
 use simulation::model::Machine;
 use simulation::model::description::RopeLaw;
 use simulation::observe::Recorder;
@@ -37,7 +39,8 @@ fn run(machine: &Machine, law: &RopeLaw, settings: &RunSettings) -> (RunResult, 
 }
 
 /// Crank work is load work, losses and stored energy: to 1e-4 of it at the default tolerance, with
-/// both methods (measured: 2e-6 to 3e-5).
+/// methods of fourth order and with TR-BDF2 (measured: 2e-6 to 5e-5), to 2e-3 with those that damp by
+/// their own.
 #[test]
 fn energy_ledger_closes_over_one_revolution() {
     let case = case();
@@ -55,10 +58,37 @@ fn energy_ledger_closes_over_one_revolution() {
             let defect = (result.stored - gained).abs() / work.input;
             eprintln!(
                 "{name} {}: {defect:.1e} {:?}",
-                method.name, result.statistics
+                method.name(),
+                result.statistics
             );
-            assert!(defect < 1e-4, "{name} {}: {defect}", method.name);
+            let allowed = match method {
+                Method::RungeKutta(_) | Method::Rosenbrock => 1e-4,
+                Method::GeneralizedAlpha { .. } | Method::Bdf { .. } => 2e-3,
+            };
+            assert!(defect < allowed, "{name} {}: {defect}", method.name());
         }
+    }
+}
+
+/// The same with each effect that acts on the motion, at its typical size and the recommended
+/// coefficients (measured: the worst is MEASURED).
+#[test]
+fn energy_ledger_closes_with_every_effect() {
+    let case = case();
+    let law = worker::convert::rope_law(&case, &case.recommended()).unwrap();
+    let settings = worker::convert::run_settings(&case);
+    let acts = |d: &&Descriptor| d.place == Place::Dynamics && !d.generic;
+    for d in catalogue().iter().filter(acts) {
+        let sizes = d.parameters.iter().map(|p| (p.name, p.typical));
+        let typical: Vec<(&str, f64)> = sizes.collect();
+        let effect = EffectSetting::new(&d.id, &typical);
+        let machine = worker::convert::machine_with(&case, 0, &[effect]).unwrap();
+        let (result, _) = run(&machine, &law, &settings);
+        let work = result.work;
+        let gained = work.input - work.output - work.dissipated;
+        let defect = (result.stored - gained).abs() / work.input;
+        eprintln!("{}: {defect:.1e}", d.id);
+        assert!(defect < 1e-4, "{}: {defect}", d.id);
     }
 }
 
@@ -129,6 +159,44 @@ fn torsion_leaves_every_gauge_bit_alone() {
     }
 }
 
+/// Every method gives the same gauges once its steps resolve the rope: to 0.1 % of their range with a
+/// method of fourth order and steps of 10 ms, to 1.5 % with one of second and steps of 4 ms.
+#[test]
+fn gauges_do_not_depend_on_the_method() {
+    let case = case();
+    let machine = worker::convert::machine(&case, 0).unwrap();
+    for (name, genes) in individuals(&case) {
+        let law = worker::convert::rope_law(&case, &genes).unwrap();
+        let with = |method, tolerance, longest_step| {
+            let settings = RunSettings {
+                method,
+                tolerance,
+                longest_step,
+                budget: u64::MAX,
+                ..worker::convert::run_settings(&case)
+            };
+            let (result, recorder) = run(&machine, &law, &settings);
+            assert_eq!(result.verdict, Verdict::Complete);
+            (result, recorder.curves)
+        };
+        let (_, exact) = with(Method::RungeKutta(&ESDIRK4), 0.01, 0.005);
+        for method in CATALOGUE {
+            let (longest_step, allowed) = if method.order() > 2 {
+                (0.01, 1e-3)
+            } else {
+                (0.004, 1.5e-2)
+            };
+            let (result, curves) = with(method, 0.03, longest_step);
+            let worst = (0..4)
+                .map(|k| difference(&curves.gauge[k], &exact.gauge[k]))
+                .fold(0.0, f64::max);
+            let method = method.name();
+            eprintln!("{name} {method}: {worst:.1e} {:?}", result.statistics);
+            assert!(worst < allowed, "{name} {method}: {worst}");
+        }
+    }
+}
+
 /// Root mean square difference of two curves over the range of the second.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
     let mean = |x: &[f64]| x.iter().sum::<f64>() / x.len() as f64;
@@ -153,7 +221,7 @@ fn gauges_converge_with_shorter_cylinders() {
             let machine = worker::convert::machine(case, 0).unwrap();
             let law = worker::convert::rope_law(case, &genes).unwrap();
             let settings = RunSettings {
-                method: &ESDIRK4,
+                method: Method::RungeKutta(&ESDIRK4),
                 ..worker::convert::run_settings(case)
             };
             run(&machine, &law, &settings).1

@@ -1,11 +1,17 @@
 //! From a case, as it travels, to a machine as the dynamics take it, and back: the only file that
 //! names both vocabularies. Degrees become radians and megapascals pascals here.
+pub mod effect;
+mod refinement;
+
+pub use refinement::refined;
+
 use protocol::case::{
-    Case, Condition, GeneName, Integrator, RopeEnds, Smoothing, StressRecovery, TurnSense,
-    WeightAxes,
+    Case, Condition, EffectSetting, GeneName, Integrator, RopeEnds, Smoothing, StressRecovery,
+    TurnSense, WeightAxes, merged,
 };
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
+use simulation::integrator::method::Method;
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
 use simulation::model::description::{Arc, Crank, Description, Head, Rod, Rope, RopeLaw};
 use simulation::model::{Machine, description};
@@ -15,21 +21,40 @@ use simulation::verdict;
 
 const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
 
-/// The machine of a case under one of its conditions.
+/// The machine of a case under one of its conditions, with the case's effects.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the field that cannot be built.
 pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
+    machine_with(case, condition, &[])
+}
+
+/// The same with a job's own effects, which replace those of the case that have their names.
+///
+/// # Errors
+/// As [`machine`]; an effect that is refused is named by its place in the merged list.
+pub fn machine_with(
+    case: &Case,
+    condition: usize,
+    effects: &[EffectSetting],
+) -> Result<Machine, Failure> {
+    effect::check_units(&case.effects, &case.effect_units)?;
+    let selection = effect::selection(&merged(&case.effects, effects))?;
     let condition = case
         .conditions
         .get(condition)
-        .ok_or_else(|| misconfigured("conditions", format!("has no entry {condition}")))?;
+        .ok_or_else(|| no_condition(condition))?;
     let modes = case.run.modes;
-    Machine::new(description(case, condition)?, modes)
+    Machine::with_effects(description(case, condition)?, modes, &selection)
         .map_err(|error| misconfigured("machine", error.to_string()))
 }
 
-fn misconfigured(field: &str, problem: String) -> Failure {
+/// A condition that the case does not have.
+pub(crate) fn no_condition(condition: usize) -> Failure {
+    misconfigured("conditions", format!("has no entry {condition}"))
+}
+
+pub(crate) fn misconfigured(field: &str, problem: String) -> Failure {
     Failure::Misconfigured {
         field: field.to_owned(),
         problem,
@@ -240,12 +265,35 @@ pub fn run_settings(case: &Case) -> RunSettings {
         ramp: case.run.ramp_s,
         samples,
         tolerance: case.run.tolerance,
-        method: match case.run.integrator {
-            Integrator::TrBdf2 => &TR_BDF2,
-            Integrator::Esdirk4 => &ESDIRK4,
-        },
+        method: method(case.run.integrator, case.run.spectral_radius),
         longest_step: case.run.longest_step_s,
         ..RunSettings::default()
+    }
+}
+
+/// The same with another integration, if there is one.
+pub fn overridden(case: &Case, integration: Option<&job::Integration>) -> RunSettings {
+    let settings = run_settings(case);
+    let Some(other) = integration else {
+        return settings;
+    };
+    RunSettings {
+        method: method(other.integrator, case.run.spectral_radius),
+        longest_step: other.longest_step_s,
+        tolerance: other.tolerance,
+        budget: other.budget.unwrap_or(settings.budget),
+        ..settings
+    }
+}
+
+fn method(integrator: Integrator, spectral_radius: f64) -> Method {
+    match integrator {
+        Integrator::TrBdf2 => (&TR_BDF2).into(),
+        Integrator::Esdirk4 => (&ESDIRK4).into(),
+        Integrator::Rodas4 => Method::Rosenbrock,
+        Integrator::GeneralizedAlpha => Method::GeneralizedAlpha { spectral_radius },
+        Integrator::Bdf => Method::Bdf { highest: 2 },
+        Integrator::Bdf5 => Method::Bdf { highest: 5 },
     }
 }
 

@@ -15,3 +15,4 @@ pub mod pool;
 pub mod session;
 pub mod slot;
 mod stream;
+mod test_hook;

@@ -2,8 +2,10 @@
 use anyhow::Context;
 use clap::Parser;
 use link::{
-    locator::Locator,
-    zenoh::{TlsFiles, ZenohWorker},
+    LinkError,
+    keys::{Keys, Role},
+    locator::{Locator, Protocol},
+    zenoh::ZenohWorker,
 };
 use protocol::id::{WorkerId, draw};
 use rustix::process::{Signal, set_parent_process_death_signal};
@@ -48,7 +50,7 @@ fn main() -> ExitCode {
         .with_ansi(io::stderr().is_terminal())
         .init();
     let ended = match cli.role {
-        Some(worker::cli::Role::Slot) => slot::serve()
+        Some(worker::cli::Role::Slot { memory }) => slot::serve(memory)
             .map(|()| ExitCode::SUCCESS)
             .context("the slot ended"),
         None => serve(&cli),
@@ -69,21 +71,26 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
         id: draw_id(),
         slots: cli.slots.map_or_else(cores, usize::from),
         program: env::current_exe().context("where this program lies is unknown")?,
+        slot_memory_mib: cli.slot_memory,
         idle_timeout: cli.idle_timeout.map(Duration::from_secs),
         embedded: cli.embedded,
+    };
+    let keys = match (&cli.tls, locator.protocol) {
+        (Some(folder), Protocol::Quic) => match Keys::read(folder, Role::Worker) {
+            Ok(keys) => Some(keys),
+            Err(error) => return Ok(refused(&error)),
+        },
+        (None, _) | (_, Protocol::Tcp) => None,
     };
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
         .enable_all()
         .build()
         .context("the runtime did not start")?;
-    let ending = runtime.block_on(work(locator, options));
+    let ending = runtime.block_on(work(locator, keys, options));
     runtime.shutdown_timeout(Duration::from_millis(200));
     Ok(match ending? {
-        Ending::Refused(reason) => {
-            tracing::error!("refused: {reason}");
-            ExitCode::from(3)
-        }
+        Ending::Refused(reason) => refused(&reason),
         Ending::Unlinked => ExitCode::FAILURE,
         ending @ (Ending::Asked | Ending::RunOver | Ending::Idle) => {
             tracing::info!("ended in good order: {ending:?}");
@@ -92,26 +99,42 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
     })
 }
 
-async fn work(locator: &Locator, options: SessionOptions) -> anyhow::Result<Ending> {
+/// Says why this worker cannot take part until somebody changes something.
+fn refused(reason: &dyn std::fmt::Display) -> ExitCode {
+    tracing::error!("refused: {reason}");
+    ExitCode::from(3)
+}
+
+async fn work(
+    locator: &Locator,
+    keys: Option<Keys>,
+    options: SessionOptions,
+) -> anyhow::Result<Ending> {
     let mut asked = asked_to_end(options.embedded)?;
-    let tls = TlsFiles::from_env();
     let began = Instant::now();
     let patience = options.idle_timeout;
     let mut said: Option<Instant> = None;
     let link = loop {
         // in a task of its own: opening may hold its thread for seconds, and a signal must not wait
-        let (to, tls, id) = (locator.clone(), tls.clone(), options.id);
-        let opening = tokio::spawn(async move { ZenohWorker::open(&to, tls.as_ref(), id).await });
+        let (to, keys, process) = (locator.clone(), keys.clone(), options.id.0);
+        let opening =
+            tokio::spawn(async move { ZenohWorker::open(&to, keys.as_ref(), process).await });
         tokio::select! {
             opened = opening => match opened.context("the connection's task ended")? {
                 Ok(link) => break link,
-                Err(error @ link::LinkError::Transport { .. }) => {
+                Err(error) if error.may_pass() => {
                     if said.is_none_or(|said| said.elapsed() > COMPLAINT) {
                         tracing::warn!("{error}; trying again until it answers");
                         said = Some(Instant::now());
                     }
                     tokio::time::sleep(Duration::from_millis(500)).await;
                 }
+                Err(
+                    error @ (LinkError::NoKeys { .. }
+                    | LinkError::Keys(_)
+                    | LinkError::Distrusted { .. }
+                    | LinkError::Refused { .. }),
+                ) => return Ok(Ending::Refused(error.to_string())),
                 Err(error) => return Err(error.into()),
             },
             () = &mut asked => return Ok(Ending::Asked),

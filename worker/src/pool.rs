@@ -12,7 +12,7 @@ use protocol::{
 };
 use std::{
     io,
-    path::Path,
+    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
@@ -33,6 +33,15 @@ pub struct CaseBytes {
     pub hash: protocol::id::ContentHash,
     /// Its content.
     pub bytes: Arc<[u8]>,
+}
+
+/// How the processes of slots are started.
+#[derive(Clone, Debug)]
+pub struct SlotOptions {
+    /// Program whose `slot` subcommand computes.
+    pub program: PathBuf,
+    /// Address space that a process may have (MiB); 0 for as much as there is.
+    pub memory_mib: u64,
 }
 
 /// A job for a slot.
@@ -75,7 +84,11 @@ impl Pool {
     ///
     /// # Errors
     /// If a thread cannot be started.
-    pub fn start(slots: usize, program: &Path, freed: &UnboundedSender<Freed>) -> io::Result<Self> {
+    pub fn start(
+        slots: usize,
+        options: &SlotOptions,
+        freed: &UnboundedSender<Freed>,
+    ) -> io::Result<Self> {
         let pulses: Arc<[AtomicU64]> = (0..slots).map(|_| AtomicU64::new(0)).collect();
         let begun = Instant::now();
         let mut keepers = Vec::new();
@@ -83,7 +96,7 @@ impl Pool {
         for slot in 0..slots {
             let (to, messages) = mpsc::channel();
             let (pulses, freed) = (Arc::clone(&pulses), freed.clone());
-            let mut keeper = Keeper::new(slot, program.to_path_buf(), to.clone(), freed);
+            let mut keeper = Keeper::new(slot, options.clone(), to.clone(), freed);
             let keep = move || {
                 let pulse = || {
                     if let Some(pulse) = pulses.get(slot) {

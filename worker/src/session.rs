@@ -1,8 +1,12 @@
 //! A worker's life on the bus: announce, take jobs, return results, until told to end.
 mod case;
+mod proof;
 mod state;
 
-use crate::{handler, pool::Pool};
+use crate::{
+    convert, handler,
+    pool::{Pool, SlotOptions},
+};
 use link::WorkerEnd;
 use protocol::{announce::Announcement, id::WorkerId, job::Job, wire};
 use state::{State, Step};
@@ -30,6 +34,8 @@ pub struct SessionOptions {
     pub slots: usize,
     /// Program whose `slot` subcommand computes; usually this one.
     pub program: PathBuf,
+    /// Address space that a slot's process may have (MiB); 0 for as much as there is.
+    pub slot_memory_mib: u64,
     /// Without work for so long the worker ends; never by default.
     pub idle_timeout: Option<Duration>,
     /// Whether it belongs to one coordinator and ends with its run.
@@ -61,7 +67,11 @@ pub async fn run<L: WorkerEnd>(
     asked: impl Future<Output = ()> + Send,
 ) -> io::Result<Ending> {
     let (to, mut freed) = unbounded_channel();
-    let pool = Pool::start(options.slots, &options.program, &to)?;
+    let slot = SlotOptions {
+        program: options.program.clone(),
+        memory_mib: options.slot_memory_mib,
+    };
+    let pool = Pool::start(options.slots, &slot, &to)?;
     let begun = Instant::now();
     let mut state = State::new(options, announcement, pool);
     let mut ticks = tokio::time::interval(TICK);
@@ -116,9 +126,16 @@ fn announcement(slots: usize) -> Announcement {
         slots: u32::try_from(slots).unwrap_or(u32::MAX),
         cores: thread::available_parallelism()
             .map_or(0, |cores| u32::try_from(cores.get()).unwrap_or(u32::MAX)),
-        job_kinds: ["score", "simulate", "reduce_head", nothing.kind()]
-            .map(str::to_owned)
-            .to_vec(),
-        effects: Vec::new(),
+        job_kinds: [
+            "score",
+            "simulate",
+            "observe",
+            Job::Describe.kind(),
+            "reduce_head",
+            nothing.kind(),
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        effects: convert::effect::descriptors(),
     }
 }

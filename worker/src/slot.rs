@@ -2,26 +2,35 @@
 //!
 //! It ends with its worker: at the end of its input even in the middle of a job, and by the
 //! parent-death signal should the worker be killed while this process does not read.
-use crate::{handler, handler::Prepared, stream};
+use crate::{handler, handler::Prepared, stream, test_hook};
 use protocol::{
     case::Case,
     job::{Failure, Job, Outcome},
     message::{FromSlot, ToSlot},
     wire::{self, Kind},
 };
-use rustix::process::{Signal, set_parent_process_death_signal};
+use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
 use std::{
     io::{self, BufReader},
     sync::mpsc,
     thread,
 };
 
-/// Serves until the input ends.
+/// Serves until the input ends, in at most so much address space (MiB; 0 for no limit): a job that
+/// wants more aborts this process and nothing else.
 ///
 /// # Errors
-/// If standard output is closed or a message cannot be read.
-pub fn serve() -> io::Result<()> {
+/// If the limit cannot be set, standard output is closed or a message cannot be read.
+pub fn serve(memory_mib: u64) -> io::Result<()> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
+    if memory_mib > 0 {
+        let limit = Some(memory_mib.saturating_mul(1 << 20));
+        let limit = Rlimit {
+            current: limit,
+            maximum: limit,
+        };
+        setrlimit(Resource::As, limit)?;
+    }
     let (to, messages) = mpsc::channel();
     thread::Builder::new()
         .name("slot-input".to_owned())
@@ -33,6 +42,7 @@ pub fn serve() -> io::Result<()> {
         match message {
             ToSlot::Case(bytes) => prepared = Some(prepare(&bytes)),
             ToSlot::Run(job) => {
+                test_hook::before(&job);
                 let outcome = evaluate(prepared.as_ref(), &job);
                 stream::write(&mut out, Kind::FromSlot, &FromSlot::Done(Box::new(outcome)))?;
             }

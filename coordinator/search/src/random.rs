@@ -26,6 +26,8 @@ pub enum Phase {
     MutationTrial,
     /// One step of a local refinement.
     Refinement,
+    /// Noise or a resample of cycles that a statistic is held against.
+    Resample,
 }
 
 /// All streams of one part of a run.

@@ -7,6 +7,10 @@ use crate::{
 };
 use protocol::case::{Gene, GeneName};
 
+/// What a function gives: the residual vector whose squared length is the fitness, or the grade of
+/// a point that fails.
+type Value = Result<Vec<f64>, f64>;
+
 /// A function with a known minimum of 0.
 #[derive(Clone, Copy, Debug)]
 pub struct TestFunction {
@@ -14,7 +18,7 @@ pub struct TestFunction {
     pub name: &'static str,
     /// Where its minimum lies (decades); at most 10 genes.
     pub optimum: &'static [f64],
-    value: fn(&[f64], &[f64]) -> Told,
+    value: fn(&[f64], &[f64]) -> Value,
 }
 
 /// Every published function.
@@ -83,36 +87,48 @@ impl TestFunction {
 
     /// Its result at gene values [declared units of [`Self::space`]].
     pub fn tell(&self, space: &Space, genes: &[f64]) -> Told {
-        (self.value)(&space.decades(genes), self.optimum)
-    }
-}
-
-fn complete(fitness: f64) -> Told {
-    Told {
-        fitness,
-        complete: true,
-    }
-}
-
-fn sphere(x: &[f64], optimum: &[f64]) -> Told {
-    complete(x.iter().zip(optimum).map(|(x, o)| (x - o) * (x - o)).sum())
-}
-
-fn rastrigin(x: &[f64], optimum: &[f64]) -> Told {
-    let ripple = |d: f64| d * d + 0.5 - 0.5 * libm::cos(4.0 * std::f64::consts::PI * d);
-    complete(x.iter().zip(optimum).map(|(x, o)| ripple(x - o)).sum())
-}
-
-fn cliff(x: &[f64], optimum: &[f64]) -> Told {
-    let told = sphere(x, optimum);
-    let distance = libm::sqrt(told.fitness);
-    if distance > 2.5 {
-        Told {
-            fitness: 1e6 * distance,
-            complete: false,
+        match (self.value)(&space.decades(genes), self.optimum) {
+            Ok(residual) => Told {
+                fitness: square(&residual),
+                complete: true,
+            },
+            Err(grade) => Told {
+                fitness: grade,
+                complete: false,
+            },
         }
+    }
+
+    /// Its residual vector at gene values [declared units of [`Self::space`]], whose squared length
+    /// is the fitness; empty where it fails.
+    pub fn residual(&self, space: &Space, genes: &[f64]) -> Vec<f64> {
+        (self.value)(&space.decades(genes), self.optimum).unwrap_or_default()
+    }
+}
+
+fn square(residual: &[f64]) -> f64 {
+    residual.iter().map(|r| r * r).sum()
+}
+
+fn sphere(x: &[f64], optimum: &[f64]) -> Value {
+    Ok(x.iter().zip(optimum).map(|(x, o)| x - o).collect())
+}
+
+fn rastrigin(x: &[f64], optimum: &[f64]) -> Value {
+    let ripple = |d: f64| d * d + 0.5 - 0.5 * libm::cos(4.0 * std::f64::consts::PI * d);
+    let distances = x.iter().zip(optimum).map(|(x, o)| x - o);
+    Ok(distances
+        .map(|d| libm::copysign(libm::sqrt(ripple(d)), d))
+        .collect())
+}
+
+fn cliff(x: &[f64], optimum: &[f64]) -> Value {
+    let residual = sphere(x, optimum)?;
+    let distance = libm::sqrt(square(&residual));
+    if distance > 2.5 {
+        Err(1e6 * distance)
     } else {
-        told
+        Ok(residual)
     }
 }
 
@@ -124,7 +140,7 @@ fn cliff(x: &[f64], optimum: &[f64]) -> Told {
 /// harmonics of `a_n^2 |H_n - H*_n|^2 / 2`: a valley about 0.02 decade wide in axial stiffness,
 /// and a plateau near 0.3 on which too much damping pays. Bending matters a little, the other
 /// genes not at all; far from the recommendation the simulation fails.
-fn resonance(x: &[f64], optimum: &[f64]) -> Told {
+fn resonance(x: &[f64], optimum: &[f64]) -> Value {
     let limits = [
         (0, -1.2, 2.2),
         (3, -3.0, 2.5),
@@ -137,25 +153,23 @@ fn resonance(x: &[f64], optimum: &[f64]) -> Told {
         .map(|&(gene, low, high)| (low - x[gene]).max(x[gene] - high))
         .fold(0.0, f64::max);
     if beyond > 0.0 {
-        return Told {
-            fitness: 1e6 * (1.0 + beyond),
-            complete: false,
-        };
+        return Err(1e6 * (1.0 + beyond));
     }
     let (here, truth) = (modes(x), modes(optimum));
-    let mut sum = 0.0;
+    let mut residual = Vec::with_capacity(962);
     for n in 1..=240 {
         let n = f64::from(n);
         for (mode, truth) in here.iter().zip(&truth) {
             let (re, im) = response(n, *mode);
             let (re_0, im_0) = response(n, *truth);
-            let square = (re - re_0) * (re - re_0) + (im - im_0) * (im - im_0);
-            sum += square / (n * n);
+            let scale = libm::sqrt(0.11) / n;
+            residual.extend([scale * (re - re_0), scale * (im - im_0)]);
         }
     }
     let sink = libm::exp10(-x[8] / 1.5) - libm::exp10(-optimum[8] / 1.5);
     let bending = (x[3] - optimum[3]).clamp(-1.0, 1.0);
-    complete(0.11 * sum + 0.05 * sink * sink + 0.02 * bending * bending)
+    residual.extend([libm::sqrt(0.05) * sink, libm::sqrt(0.02) * bending]);
+    Ok(residual)
 }
 
 /// Order [harmonics of the crank] and damping ratio of both modes.

@@ -1,5 +1,5 @@
 //! What `horsehead case check` tells about a case that is in order.
-use super::{CaseError, Envelope, Note, Overrides, RecordFacts, load_with_notes};
+use super::{CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts, load_with_notes};
 use protocol::case::{Case, Gene};
 use std::{fmt, path::Path};
 
@@ -20,6 +20,8 @@ pub struct Summary {
     pub head_mass_kg: f64,
     /// The unknown numbers.
     pub genes: Vec<Gene>,
+    /// Effects beside the machine that is drawn.
+    pub effects: Vec<CaseEffect>,
     /// One entry per condition.
     pub conditions: Vec<ConditionSummary>,
     /// Name of the calibrated condition, and its gauges with weights.
@@ -90,6 +92,7 @@ pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseE
             case.objective.gauges.clone(),
         ),
         notes: loaded.notes,
+        effects: loaded.effects,
         genes: case.genes,
         name: case.name,
     })
@@ -193,6 +196,12 @@ impl Summary {
                 gene.upper,
                 gene.unit.symbol()
             )?;
+        }
+        for effect in &self.effects {
+            let numbers = effect.parameters.iter();
+            let numbers = numbers.map(|(name, p)| format!("{name} {} {}", p.value, p.unit));
+            let numbers: Vec<String> = numbers.collect();
+            writeln!(to, "effect      {}: {}", effect.id, numbers.join(", "))?;
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 use super::{
     card,
     document::{Document, Step, nearest},
+    effect::{self, CaseEffect},
     error::{CaseError, damaged},
     flexible::{self, ReadHead},
     genes,
@@ -11,6 +12,7 @@ use super::{
     record::{self, Expected, RecordFacts},
     schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry, Records},
 };
+use discrepancy::record::Record;
 use protocol::case::{Case, Condition, Objective};
 use std::path::{Path, PathBuf};
 
@@ -30,8 +32,12 @@ pub struct Loaded {
     pub notes: Vec<Note>,
     /// Facts about each condition's record, in the order of the conditions.
     pub records: Vec<Option<RecordFacts>>,
+    /// Every cycle of each record by itself, for a diagnosis; only conditions that have a record.
+    pub cycles: Vec<Record>,
     /// Whether the case says that its gauge records were computed; never of replaced ones.
     pub synthetic: bool,
+    /// Effects as the file states them, with intervals and provenance.
+    pub effects: Vec<CaseEffect>,
     /// Where beam and ropes move.
     pub envelope: Envelope,
 }
@@ -78,8 +84,10 @@ pub(super) fn resolve(
     machine::check_arc(&document, &file, &read.head.arc_deg, &envelope)?;
     check_names(&document, &file.conditions)?;
     let objective = objective(&document, &file.objective, &file.conditions)?;
+    effect::check(&document, &file.effects)?;
     let mut notes = Vec::new();
     let mut records = Vec::new();
+    let mut cycles = Vec::new();
     let mut conditions = Vec::new();
     for index in 0..file.conditions.len() {
         let source = Source {
@@ -88,10 +96,11 @@ pub(super) fn resolve(
             document: &document,
             file: &file,
         };
-        let (condition, facts, remarks) = source.condition(index)?;
-        conditions.push(condition);
-        records.push(facts);
-        notes.extend(remarks);
+        let read = source.condition(index)?;
+        conditions.push(read.condition);
+        records.push(read.facts);
+        cycles.extend(read.cycles);
+        notes.extend(read.notes);
     }
     let genes = genes::declared(&document, file.genes)?;
     let case = Case {
@@ -106,6 +115,8 @@ pub(super) fn resolve(
         front_head: file.front_head,
         back_head: file.back_head,
         modal_head: read.head.clone(),
+        effects: file.effects.iter().map(CaseEffect::setting).collect(),
+        effect_units: file.effects.iter().map(CaseEffect::units).collect(),
         genes,
         conditions,
         objective,
@@ -116,6 +127,8 @@ pub(super) fn resolve(
         case,
         notes,
         records,
+        cycles,
+        effects: file.effects,
         envelope,
     };
     Ok((loaded, read, file.flexible_head))
@@ -129,12 +142,17 @@ struct Source<'a> {
     file: &'a CaseFile,
 }
 
+/// A condition with what its record gave.
+struct ReadCondition {
+    condition: Condition,
+    facts: Option<RecordFacts>,
+    cycles: Option<Record>,
+    notes: Vec<Note>,
+}
+
 impl Source<'_> {
     /// Reads one condition with its card and record.
-    fn condition(
-        &self,
-        index: usize,
-    ) -> Result<(Condition, Option<RecordFacts>, Vec<Note>), CaseError> {
+    fn condition(&self, index: usize) -> Result<ReadCondition, CaseError> {
         let Some(entry) = self.file.conditions.get(index) else {
             return Err(damaged(&self.document.path, "no such condition", "add it"));
         };
@@ -147,6 +165,7 @@ impl Source<'_> {
         );
         let card = card::read(&self.place(&entry.card_file), entry.smoothing, &role)?;
         let expected = Expected {
+            index,
             condition: &entry.name,
             speed_rpm: entry.speed_rpm,
             case_file: &self.document.path,
@@ -156,9 +175,14 @@ impl Source<'_> {
         let read = record_file
             .map(|name| record::read(&self.place(name), &expected))
             .transpose()?;
-        let (record, facts, notes) = match read {
-            Some(read) => (Some(read.record), Some(read.facts), read.notes),
-            None => (None, None, Vec::new()),
+        let (record, facts, cycles, notes) = match read {
+            Some(read) => (
+                Some(read.record),
+                Some(read.facts),
+                Some(read.cycles),
+                read.notes,
+            ),
+            None => (None, None, None, Vec::new()),
         };
         let condition = Condition {
             name: entry.name.clone(),
@@ -167,7 +191,12 @@ impl Source<'_> {
             card,
             record,
         };
-        Ok((condition, facts, notes))
+        Ok(ReadCondition {
+            condition,
+            facts,
+            cycles,
+            notes,
+        })
     }
 
     /// Where a card or record is read from: `--measured DIR` replaces the folder, not the name.

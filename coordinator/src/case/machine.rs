@@ -129,6 +129,12 @@ fn check_run(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     document.within("run.lead_in_deg", run.lead_in_deg, 0.0..=3600.0, "deg")?;
     document.within("run.ramp_s", run.ramp_s, 0.0..=600.0, "s")?;
     document.within("run.longest_step_s", run.longest_step_s, 1.0e-5..=1.0, "s")?;
+    document.within(
+        "run.spectral_radius",
+        run.spectral_radius,
+        0.0..=1.0,
+        "(no unit)",
+    )?;
     document.within("run.tolerance", run.tolerance, 1.0e-6..=1.0e3, "(no unit)")?;
     let count = 360.0 / run.output_step_deg;
     if (count - count.round()).abs() > 1e-9 * count {

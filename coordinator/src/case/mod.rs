@@ -7,6 +7,7 @@
 mod card;
 mod check;
 mod document;
+mod effect;
 mod error;
 mod file;
 mod flexible;
@@ -22,6 +23,7 @@ mod schema;
 mod table;
 
 pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, template};
+pub use effect::{CaseEffect, CaseParameter, Provenance, write_effects};
 pub use error::CaseError;
 pub use flexible::{HeadSource, load_head};
 pub use genes::read_genes;
@@ -30,4 +32,4 @@ pub use geometry::{QuasiStatic, quasi_static};
 pub(crate) use head::GaugePlace;
 pub use load::{Loaded, Overrides, load, load_with_notes};
 pub use note::Note;
-pub use record::RecordFacts;
+pub use record::{RecordFacts, count_samples};

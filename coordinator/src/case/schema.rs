@@ -1,5 +1,6 @@
 //! `case.toml` as it is written: the keys there are, and their types. What the values may be is
 //! checked in [`super::machine`] and beside the data they name.
+use super::effect::CaseEffect;
 use protocol::{
     case::{
         BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
@@ -28,6 +29,9 @@ pub(super) struct CaseFile {
     pub(super) front_head: FrontHead,
     pub(super) back_head: BackHead,
     pub(super) flexible_head: FlexibleHead,
+    /// What the machine has beside the above; nothing unless stated.
+    #[serde(default)]
+    pub(super) effects: Vec<CaseEffect>,
     pub(super) genes: GeneTable<GeneEntry>,
     pub(super) conditions: Vec<ConditionEntry>,
     pub(super) objective: ObjectiveEntry,

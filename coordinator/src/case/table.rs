@@ -20,6 +20,19 @@ impl Table {
     /// A missing or repeated column, a row of another length, a cell that is not a finite number,
     /// no rows at all.
     pub(super) fn read(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Self, CaseError> {
+        Self::read_with(path, bytes, wanted, &[])
+    }
+
+    /// Reads the wanted columns, and after them those of the optional ones that there are.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub(super) fn read_with(
+        path: &Path,
+        bytes: &[u8],
+        wanted: &[&str],
+        optional: &[&str],
+    ) -> Result<Self, CaseError> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -34,6 +47,12 @@ impl Table {
                     .trim_start_matches(['#', '\u{feff}', ' '])
                     .to_owned()
             })
+            .collect();
+        let present = |name: &&&str| header.iter().any(|column| column == **name);
+        let wanted: Vec<&str> = wanted
+            .iter()
+            .chain(optional.iter().filter(present))
+            .copied()
             .collect();
         let places = wanted
             .iter()
@@ -56,7 +75,7 @@ impl Table {
                     help: "the row is cut off or has a stray comma: correct or remove it".into(),
                 });
             }
-            for ((column, &at), name) in table.columns.iter_mut().zip(&places).zip(wanted) {
+            for ((column, &at), name) in table.columns.iter_mut().zip(&places).zip(&wanted) {
                 column.push(number(
                     path,
                     line,

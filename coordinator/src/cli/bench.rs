@@ -1,8 +1,9 @@
-//! `horsehead bench`: what the machinery costs without physics.
-use super::{EXIT_CODES, Output, OutputChoice, bus, output};
+//! `horsehead bench`: what the machinery costs without physics, and what accuracy costs with it.
+use super::{EXIT_CODES, Output, OutputChoice, bus, integrators, output};
+use crate::runtime::{BenchPlan, Crew};
 use clap::{Args, Subcommand};
 
-/// Measure the machinery without physics.
+/// Measure what the machinery costs, or what accuracy costs.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -12,41 +13,85 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum What {
     /// The bus alone: no-op jobs to local workers.
-    #[command(after_help = format!("Example:\n  horsehead bench dispatch --workers 2 --jobs 20000\n\n{EXIT_CODES}"))]
+    #[command(after_help = format!("\
+Examples:
+  horsehead bench dispatch --workers 2 --jobs 20000
+  horsehead bench dispatch --sessions 512 --jobs 1000000 --result-bytes 300
+
+{EXIT_CODES}"))]
     Dispatch {
-        /// Worker processes to start.
-        #[arg(long, value_name = "N", default_value_t = 2, env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
-        workers: usize,
+        /// Worker processes to start, each with one slot process.
+        #[arg(long, value_name = "N", default_value_t = 2, env = "HORSEHEAD_WORKERS", value_parser = clap::value_parser!(u32).range(1..=1024))]
+        workers: u32,
+        /// Instead of processes, so many workers that are only sessions within this process, over
+        /// the memory link: no transport and no slots, the rest is real.
+        #[arg(long, value_name = "N", env = "HORSEHEAD_SESSIONS", value_parser = clap::value_parser!(u32).range(1..=16_384))]
+        sessions: Option<u32>,
         /// Jobs to do.
-        #[arg(long, value_name = "N", default_value_t = 10_000)]
-        jobs: usize,
+        #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
+        jobs: u64,
+        /// Bytes of each result: a score has about 300, one with its residual 10,000.
+        #[arg(long, value_name = "N", default_value_t = 10_000, env = "HORSEHEAD_RESULT_BYTES", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+        result_bytes: u32,
         #[command(flatten)]
         output: OutputChoice,
     },
+    Integrators(integrators::Arguments),
 }
 
 /// Measures and shows.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let What::Dispatch {
-        workers,
-        jobs,
-        output: OutputChoice { output },
-    } = &arguments.what;
-    if *output == Output::Table {
-        output::tell(&format!("{jobs} no-op jobs on {workers} workers"));
+    match &arguments.what {
+        What::Dispatch {
+            workers,
+            sessions,
+            jobs,
+            result_bytes,
+            output: OutputChoice { output },
+        } => {
+            let (crew, workers, of_what) = match sessions {
+                Some(sessions) => (
+                    Crew::Sessions,
+                    *sessions,
+                    "sessions of this process (memory link)",
+                ),
+                None => (
+                    Crew::Processes,
+                    *workers,
+                    "worker processes (TCP on loopback)",
+                ),
+            };
+            let plan = BenchPlan {
+                crew,
+                workers: workers as usize,
+                jobs: *jobs,
+                result_bytes: *result_bytes,
+            };
+            dispatch(plan, of_what, *output)
+        }
+        What::Integrators(arguments) => integrators::run(arguments),
     }
-    let result = bus::block_on(bus::bench(*workers, *jobs))?;
+}
+
+fn dispatch(plan: BenchPlan, of_what: &str, output: Output) -> anyhow::Result<()> {
+    if output == Output::Table {
+        let (jobs, workers) = (plan.jobs, plan.workers);
+        output::tell(&format!("{jobs} no-op jobs on {workers} {of_what}"));
+    }
+    let result = bus::block_on(bus::bench(plan))?;
     let table = || {
         format!(
             "round trip   {:>10.3} ms median, {:.3} ms at 99 %\n\
              throughput   {:>10.0} jobs/s\n\
-             coordinator  {:>10.1} us CPU per job, {:.1} MiB\n",
+             coordinator  {:>10.1} us CPU per job, {:.2} times as much for the last tenth as for \
+             the first; {:.1} MiB\n",
             result.rtt_ms.median,
             result.rtt_ms.p99,
             result.jobs_per_s,
             result.coordinator_cpu_us_per_job,
+            result.cost_ratio,
             result.coordinator_rss_mib
         )
     };
-    output::print(*output, table, &result)
+    output::print(output, table, &result)
 }

@@ -1,11 +1,12 @@
 //! Joins the commands to the dispatcher: the only file of the command line that names it.
 use super::{
+    Door,
     json::{BenchOutput, RoundTrip},
     problem::Usage,
 };
 use crate::{
     journal::JournalError,
-    runtime::{self, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
+    runtime::{self, BenchPlan, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
     study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
 };
 use link::{
@@ -27,10 +28,8 @@ pub(super) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION")
 pub(super) struct Options {
     /// Folder of the journal.
     pub(super) run_dir: PathBuf,
-    /// Where other machines may connect.
-    pub(super) listen: Option<String>,
-    /// Whether they may do so without certificates.
-    pub(super) insecure: bool,
+    /// How other machines may join.
+    pub(super) door: Door,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Which command the run belongs to.
@@ -43,8 +42,9 @@ impl Options {
     fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
         Ok(DispatchOptions {
             run_dir: self.run_dir,
-            listen: self.listen,
-            insecure: self.insecure,
+            listen: self.door.listen,
+            insecure: self.door.insecure,
+            tls: self.door.tls,
             local_workers: self.local_workers,
             case: case.clone(),
             header: RunHeader {
@@ -137,6 +137,7 @@ fn crew(snapshot: Snapshot) -> Crew {
         workers: workers.collect(),
         queued: snapshot.queued,
         running: snapshot.running,
+        spent: snapshot.spent,
     }
 }
 
@@ -149,6 +150,9 @@ fn refuse(error: &DispatchError) -> anyhow::Error {
              free one"
         }
         DispatchError::Link(LinkError::Transport { .. }) => "choose another address with --listen",
+        DispatchError::Link(LinkError::NoKeys { .. } | LinkError::Keys(_)) => {
+            "`horsehead keys new DIR --host NAME` makes certificates; --tls DIR uses them"
+        }
         DispatchError::Link(_) => "for example --listen tcp/127.0.0.1:7447",
         DispatchError::Journal(JournalError::Io { .. }) => {
             "choose a folder that can be written, with --run DIR"
@@ -214,21 +218,24 @@ pub(super) fn block_on<T>(future: impl Future<Output = anyhow::Result<T>>) -> an
 }
 
 /// Measures the dispatcher with no-op jobs, in a scratch folder.
-pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOutput> {
+pub(super) async fn bench(plan: BenchPlan) -> anyhow::Result<BenchOutput> {
     let scratch = tempfile::tempdir()?;
     let options = Options {
         run_dir: scratch.path().to_owned(),
-        listen: None,
-        insecure: false,
-        local_workers: workers,
+        door: Door::default(),
+        local_workers: 0,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };
     let options = options.for_dispatch(&empty_case()?)?;
-    let result = runtime::bench(options, jobs as u64)
+    let result = runtime::bench(options, plan)
         .await
         .map_err(|error| explain(&error))?;
     Ok(BenchOutput {
+        crew: match plan.crew {
+            runtime::Crew::Processes => "processes",
+            runtime::Crew::Sessions => "sessions",
+        },
         workers: result.workers,
         jobs: result.jobs,
         rtt_ms: RoundTrip {
@@ -237,6 +244,7 @@ pub(super) async fn bench(workers: usize, jobs: usize) -> anyhow::Result<BenchOu
         },
         jobs_per_s: result.jobs_per_s,
         coordinator_cpu_us_per_job: result.coordinator_cpu_us_per_job,
+        cost_ratio: result.cost_ratio,
         coordinator_rss_mib: result.coordinator_rss_mib,
     })
 }

@@ -1,9 +1,9 @@
 //! `horsehead calibrate`: identify the parameters, and show what it brought.
 use super::{
-    CaseChoice, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
+    CaseChoice, Door, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
     problem::Usage,
     progress::Display,
-    run_folder::{Begun, Manifest, RunFolder, command_line},
+    run_folder::{self, Begun, CALIBRATE, Manifest, RunFolder, command_line},
 };
 use crate::{
     cli::finish::{self, Session},
@@ -12,7 +12,7 @@ use crate::{
 use clap::Args;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, preset},
+    strategy::{CATALOGUE, Settings, memetic::window::WindowSettings, preset},
 };
 use std::{
     path::{Path, PathBuf},
@@ -25,6 +25,7 @@ use std::{
 Examples:
   horsehead calibrate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen tcp/127.0.0.1:7447
+  horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
 
 Presets:
 {}
@@ -42,12 +43,13 @@ pub(super) struct Arguments {
     /// Run folder [default: runs/CASE-PRESET-seedN].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
-    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
-    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
-    listen: Option<String>,
-    /// Allow other machines to connect without certificates.
-    #[arg(long, env = "HORSEHEAD_INSECURE")]
-    insecure: bool,
+    /// Of the preset `window`: an individual is bred from results that are this many behind, part
+    /// of what decides the result [default: that of the run, or 3 times the workers planned:
+    /// those started here, 40 at least with --listen].
+    #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    window: Option<u32>,
+    #[command(flatten)]
+    door: Door,
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
     workers: Option<usize>,
@@ -68,6 +70,43 @@ fn can_go_on(error: &anyhow::Error) -> bool {
         study,
         Some(StudyError::Interrupted | StudyError::Evaluator(_))
     )
+}
+
+/// Workers to plan for where any number of machines may connect.
+const LISTENING: usize = 40;
+
+/// Puts the window that was asked for, or that fits the workers planned, into settings that have
+/// one; a run that was begun keeps its own.
+fn set_window(
+    settings: &mut Settings,
+    arguments: &Arguments,
+    path: &Path,
+    local_workers: usize,
+) -> Result<(), Usage> {
+    let Settings::Window(window) = settings else {
+        return match arguments.window {
+            None => Ok(()),
+            Some(_) => Err(Usage {
+                message: format!("the preset `{}` has no --window", arguments.preset),
+                help: "say --preset window, or leave --window out".to_owned(),
+            }),
+        };
+    };
+    let earlier = RunFolder::open::<Settings>(path, CALIBRATE)
+        .ok()
+        .and_then(|(_, earlier, _)| match earlier.settings {
+            Settings::Window(earlier) => Some(earlier.window),
+            Settings::Memetic(_) | Settings::Quick(_) => None,
+        });
+    let planned = match arguments.door.listen {
+        Some(_) => local_workers.max(LISTENING),
+        None => local_workers,
+    };
+    window.window = match arguments.window {
+        Some(asked) => asked as usize,
+        None => earlier.unwrap_or_else(|| WindowSettings::window_for(planned)),
+    };
+    Ok(())
 }
 
 fn warn_of_lost_journal(folder: &Path) {
@@ -103,23 +142,27 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
+    let local_workers = arguments.workers.unwrap_or_else(cores);
+    let path = arguments
+        .run
+        .clone()
+        .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
+    let mut settings = (preset.settings)(&space);
+    set_window(&mut settings, arguments, &path, local_workers)?;
     let manifest = Manifest {
-        format: Manifest::format(),
+        kind: CALIBRATE.to_owned(),
+        format: run_folder::format(),
         program: bus::PROGRAM.to_owned(),
         command: command_line(),
         preset: preset.name.to_owned(),
         seed: arguments.seed,
-        settings: (preset.settings)(&space),
+        settings,
         case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
         synthetic,
         notes,
         wall_s: 0.0,
     };
-    let path = arguments
-        .run
-        .clone()
-        .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
     let Begun {
         folder,
         lost_journal,
@@ -130,15 +173,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         warn_of_lost_journal(&path);
     }
 
-    let local_workers = arguments.workers.unwrap_or_else(cores);
     let session = Session {
         folder: &folder,
         manifest: &manifest,
         case: &case,
         earlier_s: wall_s,
         started: Instant::now(),
-        listen: arguments.listen.clone(),
-        insecure: arguments.insecure,
+        door: arguments.door.clone(),
         local_workers,
         resumed,
         replay: false,

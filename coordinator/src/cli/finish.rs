@@ -1,24 +1,26 @@
 //! From a run folder to its result: the search (or its replay), the comparison, the files.
 use super::{
-    Output, bus,
+    Door, Output, bus,
     json::{self, Both, CalibrateOutput},
     output,
     run_folder::{Manifest, RunFolder, gene_file},
 };
 use crate::{
+    account, journal,
     report::{
         self, Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, WorkerUse,
         table,
     },
-    study::{self, Calibrated, Compared, Crew, Curves, Evaluator as _, Observe, Stop, Wanted},
+    study::{self, Calibrated, Compared, Curves, Observe, Stop, Wanted},
 };
 use protocol::{
     case::Case,
+    event::WorkerAccount,
     job::{Counters, Evaluation},
 };
 use search::{
     space::Space,
-    strategy::{Finish, Settings, Strategy as _},
+    strategy::{Finish, Settings, Strategy},
 };
 use std::{collections::BTreeMap, time::Instant};
 
@@ -30,8 +32,7 @@ pub(super) struct Session<'a> {
     /// Wall time of earlier sessions (s).
     pub(super) earlier_s: f64,
     pub(super) started: Instant,
-    pub(super) listen: Option<String>,
-    pub(super) insecure: bool,
+    pub(super) door: Door,
     /// Worker processes to start here.
     pub(super) local_workers: usize,
     /// Whether the run was begun by an earlier session.
@@ -45,7 +46,6 @@ pub(super) struct Found {
     calibrated: Calibrated,
     /// The calibrated condition first.
     compared: Vec<Compared>,
-    crew: Crew,
 }
 
 impl Session<'_> {
@@ -68,8 +68,7 @@ impl Session<'_> {
             .map_err(study::StudyError::from)?;
         let options = bus::Options {
             run_dir: self.folder.path().to_owned(),
-            listen: self.listen.clone(),
-            insecure: self.insecure,
+            door: self.door.clone(),
             local_workers: self.local_workers,
             kind: "calibrate".to_owned(),
             settings: self.manifest.settings_json()?,
@@ -83,7 +82,7 @@ impl Session<'_> {
             self.begun(bus.recorded())?;
         }
         observer.resumed(bus.recorded());
-        let found = self.work(&mut bus, &mut strategy, observer, stop).await;
+        let found = self.work(&mut bus, strategy.as_mut(), observer, stop).await;
         // while the run is still locked
         let remembered = if self.replay {
             Ok(())
@@ -113,7 +112,7 @@ impl Session<'_> {
     async fn work(
         &self,
         bus: &mut bus::Bus,
-        strategy: &mut search::strategy::Conductor,
+        strategy: &mut dyn Strategy,
         observer: &mut dyn Observe,
         stop: &mut Stop,
     ) -> Result<Found, study::StudyError> {
@@ -127,7 +126,6 @@ impl Session<'_> {
         Ok(Found {
             calibrated,
             compared,
-            crew: bus.crew(),
         })
     }
 }
@@ -273,6 +271,8 @@ fn result_object<'a>(
 
 fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibration> {
     let case = session.case;
+    // what workers of earlier sessions did is in the journal alone
+    let account = account::read(&session.folder.file(journal::FILE))?;
     let Calibrated { best, finish, log } = &found.calibrated;
     let mut notes = session.manifest.notes.clone();
     if !best.complete {
@@ -309,7 +309,8 @@ fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibrati
             genes: best.genes.clone(),
         },
         history: history.collect(),
-        workers: found.crew.workers.iter().map(worker_use).collect(),
+        workers: account.workers.iter().map(worker_use).collect(),
+        spent: account.spent,
         wall_s: session.wall_s(),
         finish: match finish {
             Finish::Planned => "everything that was planned has been evaluated".to_owned(),
@@ -320,14 +321,15 @@ fn calibration(session: &Session<'_>, found: &Found) -> anyhow::Result<Calibrati
     })
 }
 
-fn worker_use(worker: &study::WorkerStatus) -> WorkerUse {
+fn worker_use(worker: &WorkerAccount) -> WorkerUse {
+    let seconds = |us: u64| us as f64 / 1e6;
     WorkerUse {
-        name: worker.name.clone(),
+        name: worker.worker.to_string(),
         host: worker.host.clone(),
         slots: worker.slots,
         done: worker.done,
         failed: worker.failed,
-        busy_s: worker.busy_s,
-        present_s: worker.present_s,
+        busy_s: seconds(worker.spent.useful_us),
+        present_s: seconds(worker.spent.connected_us) / f64::from(worker.slots.max(1)),
     }
 }

@@ -1,6 +1,7 @@
 //! `horsehead head`: the flexible back head from its mesh.
 use super::{
-    EXIT_CODES, OutputChoice, bus, condition, head_files, interrupt, json, output, problem::Usage,
+    Door, EXIT_CODES, OutputChoice, bus, condition, head_files, interrupt, json, output,
+    problem::Usage,
 };
 use crate::{
     case::{self, HeadSource, QuasiStatic},
@@ -205,8 +206,7 @@ fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead>
         let mut stop = interrupt::listen();
         let options = bus::Options {
             run_dir: scratch.path().to_owned(),
-            listen: None,
-            insecure: false,
+            door: Door::default(),
             local_workers: 1,
             kind: "head".to_owned(),
             settings: serde_json::to_string(&spec.modes)?,

@@ -281,7 +281,9 @@ pub(super) struct Both<T> {
 /// Of `horsehead bench dispatch`.
 #[derive(Debug, Serialize)]
 pub(super) struct BenchOutput {
-    /// Worker processes.
+    /// `processes` over TCP on loopback, or `sessions` of this process over the memory link.
+    pub(super) crew: &'static str,
+    /// How many of them.
     pub(super) workers: usize,
     /// Jobs that were done.
     pub(super) jobs: u64,
@@ -289,8 +291,10 @@ pub(super) struct BenchOutput {
     pub(super) rtt_ms: RoundTrip,
     /// Throughput with every worker busy.
     pub(super) jobs_per_s: f64,
-    /// CPU time of this process per job (us).
+    /// CPU time of the coordinator per job (us).
     pub(super) coordinator_cpu_us_per_job: f64,
+    /// The same for the last tenth of the jobs over the first.
+    pub(super) cost_ratio: f64,
     /// Memory of this process (MiB).
     pub(super) coordinator_rss_mib: f64,
 }

@@ -212,6 +212,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
 #[test]
 fn a_bench_has_the_fields_that_programs_rely_on() {
     let object = BenchOutput {
+        crew: "processes",
         workers: 2,
         jobs: 1000,
         rtt_ms: RoundTrip {
@@ -220,6 +221,7 @@ fn a_bench_has_the_fields_that_programs_rely_on() {
         },
         jobs_per_s: 4000.0,
         coordinator_cpu_us_per_job: 120.0,
+        cost_ratio: 1.0,
         coordinator_rss_mib: 22.0,
     };
     let value = serde_json::to_value(&object).unwrap();
@@ -228,6 +230,8 @@ fn a_bench_has_the_fields_that_programs_rely_on() {
         [
             "coordinator_cpu_us_per_job",
             "coordinator_rss_mib",
+            "cost_ratio",
+            "crew",
             "jobs",
             "jobs_per_s",
             "rtt_ms",

@@ -7,11 +7,16 @@ mod bus;
 mod calibrate;
 mod case;
 mod completions;
+mod diagnose;
+mod diagnosis_json;
+mod explain;
 mod finish;
 mod head;
 mod head_files;
+mod integrators;
 mod interrupt;
 mod json;
+mod keys;
 mod output;
 mod problem;
 mod progress;
@@ -47,6 +52,7 @@ First steps:
   horsehead case check cases/cyjs10-5-37hb
   horsehead simulate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb
+  horsehead diagnose cases/cyjs10-5-37hb
 
 Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
@@ -55,9 +61,12 @@ enum Command {
     Simulate(simulate::Arguments),
     Calibrate(calibrate::Arguments),
     Verify(verify::Arguments),
+    Diagnose(diagnose::Arguments),
     Head(head::Arguments),
     Report(report::Arguments),
+    Explain(explain::Arguments),
     Case(case::Arguments),
+    Keys(keys::Arguments),
     Bench(bench::Arguments),
     Completions(completions::Arguments),
 }
@@ -89,6 +98,20 @@ struct CaseChoice {
     /// same machine.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     measured: Option<PathBuf>,
+}
+
+/// How workers on other machines may join; not at all by default.
+#[derive(Clone, Debug, Default, Args)]
+struct Door {
+    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
+    listen: Option<String>,
+    /// Folder of certificates for `quic/` addresses, as `horsehead keys new` makes it.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
+    /// Allow other machines to connect without certificates.
+    #[arg(long, env = "HORSEHEAD_INSECURE")]
+    insecure: bool,
 }
 
 /// A case that was read.
@@ -159,9 +182,12 @@ pub fn main() -> ExitCode {
         Command::Simulate(arguments) => simulate::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
+        Command::Diagnose(arguments) => diagnose::run(&arguments),
         Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
+        Command::Keys(arguments) => keys::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Completions(arguments) => completions::run(&arguments),
     };

@@ -1,7 +1,9 @@
 //! Progress on standard error: a bar on a terminal, else a line per generation or ten seconds.
 use super::output;
-use crate::study::{Crew, Observe, ProgressView};
+use crate::study::{Crew, Observe, ProgressView, Watch};
+use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
+use protocol::event::Spent;
 use std::{
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
@@ -45,6 +47,74 @@ impl Display {
     pub(super) fn clear(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows how a diagnosis comes along: the stage, its experiments, the workers.
+pub(super) struct StageDisplay {
+    bar: Option<ProgressBar>,
+    last: Instant,
+    stage: Option<Stage>,
+}
+
+impl StageDisplay {
+    pub(super) fn new() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{spinner} {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_spinner());
+            ProgressBar::new_spinner().with_style(style)
+        });
+        Self {
+            bar,
+            last: Instant::now(),
+            stage: None,
+        }
+    }
+
+    /// Takes the line away.
+    pub(super) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Watch for StageDisplay {
+    fn progress(&mut self, stage: Stage, done: u64, open: usize, crew: &dyn Fn() -> Crew) {
+        let now = Instant::now();
+        let silent = now.duration_since(self.last);
+        let patience = if self.bar.is_some() { LOOK } else { SILENCE };
+        if self.stage == Some(stage) && silent < patience {
+            return;
+        }
+        self.last = now;
+        self.stage = Some(stage);
+        let number = 1 + Stage::ALL
+            .iter()
+            .take_while(|other| **other != stage)
+            .count();
+        let attached = crew()
+            .workers
+            .iter()
+            .filter(|worker| worker.attached)
+            .count();
+        let workers = match attached {
+            0 => "waiting for workers".to_owned(),
+            1 => "1 worker".to_owned(),
+            several => format!("{several} workers"),
+        };
+        let line = format!(
+            "stage {number} of {}: {}  {done} simulations, {open} open  {workers}",
+            Stage::ALL.len(),
+            stage.name()
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(line);
+                bar.tick();
+            }
+            None => output::tell(&line),
         }
     }
 }
@@ -110,6 +180,7 @@ fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
         1 => "1 worker".to_owned(),
         several => format!("{several} workers"),
     });
+    parts.extend(slot_use(&crew.spent));
     if let Some(rate) = view.rate(elapsed) {
         parts.push(format!("{rate:.1}/s"));
     }
@@ -117,6 +188,24 @@ fn describe(view: &ProgressView, crew: &Crew, elapsed: Duration) -> String {
         parts.push(format!("{} left", clock(left)));
     }
     parts.join("  ")
+}
+
+/// What slots do beside what they are there for, as `slots 91 % useful, 8 % barrier`; nothing as
+/// long as there is little to go by.
+fn slot_use(spent: &Spent) -> Option<String> {
+    if spent.connected_us < 5_000_000 {
+        return None;
+    }
+    let percent = |us: u64| 100.0 * us as f64 / spent.connected_us as f64;
+    let kinds = spent
+        .kinds()
+        .into_iter()
+        .map(|(kind, us)| (kind, percent(us)));
+    let shown: Vec<String> = kinds
+        .filter(|(kind, share)| *kind == "useful" || *share >= 1.0)
+        .map(|(kind, share)| format!("{share:.0} % {kind}"))
+        .collect();
+    Some(format!("slots {}", shown.join(", ")))
 }
 
 /// `42 s`, `3 min 05 s`, `2 h 07 min`.
@@ -157,6 +246,18 @@ mod tests {
         assert_eq!(
             describe(&view, &crew, Duration::from_secs(20)),
             "generation or stage 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
+        );
+        crew.spent = Spent {
+            connected_us: 10_000_000,
+            useful_us: 8_950_000,
+            barrier_us: 1_000_000,
+            starved_us: 50_000,
+            ..Spent::default()
+        };
+        let line = describe(&view, &crew, Duration::from_secs(20));
+        assert!(
+            line.contains("1 worker  slots 90 % useful, 10 % barrier  10.0/s"),
+            "{line}"
         );
     }
 }

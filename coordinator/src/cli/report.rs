@@ -1,11 +1,11 @@
 //! `horsehead report`: the files of a finished run again, from its journal.
 use super::{
-    EXIT_CODES, OutputChoice, bus,
+    Door, EXIT_CODES, OutputChoice, bus,
     finish::{self, Session},
     interrupt,
     problem::Usage,
     progress::Silent,
-    run_folder::RunFolder,
+    run_folder::{self, RunFolder},
 };
 use clap::Args;
 use std::{path::PathBuf, time::Instant};
@@ -28,7 +28,8 @@ pub(super) struct Arguments {
 
 /// Replays the run and writes its files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (folder, manifest, case) = RunFolder::open(&arguments.run)?;
+    let (folder, manifest, case) =
+        RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
     if !folder.is_finished() {
         return Err(Usage {
             message: format!("{} is not finished", arguments.run.display()),
@@ -58,8 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         case: &case,
         earlier_s: manifest.wall_s,
         started: Instant::now(),
-        listen: None,
-        insecure: false,
+        door: Door::default(),
         local_workers: 0,
         resumed: true,
         replay: true,

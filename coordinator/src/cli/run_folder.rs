@@ -1,4 +1,4 @@
-//! The folder of a calibration: where its files lie and what is remembered of how it was begun.
+//! The folder of a run: where its files lie and what is remembered of how it was begun.
 //!
 //! `run.json` and `case.json` make the folder independent of the case folder: `verify` and
 //! `report` need nothing else. The journal, which the dispatcher keeps in the same folder, holds
@@ -17,21 +17,33 @@ use std::{
 /// Version of the two files.
 const FORMAT: u32 = 1;
 
-/// How a run was begun.
+/// The kind of a calibration; folders that name none hold one.
+pub(super) const CALIBRATE: &str = "calibrate";
+/// The kind of a diagnosis.
+pub(super) const DIAGNOSE: &str = "diagnose";
+
+fn calibrate() -> String {
+    CALIBRATE.to_owned()
+}
+
+/// How a run was begun; `S` is everything that decides its result beside case and seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Manifest {
+pub(super) struct Manifest<S = Settings> {
+    /// The command that it belongs to.
+    #[serde(default = "calibrate")]
+    pub(super) kind: String,
     /// Version of this file.
     pub(super) format: u32,
     /// Program and version that began the run.
     pub(super) program: String,
     /// Command line that begins, and continues, the run.
     pub(super) command: String,
-    /// Preset that the settings come from.
+    /// Preset that the settings come from; empty where there are none.
     pub(super) preset: String,
     /// Seed of every random choice.
     pub(super) seed: u64,
-    /// Everything that decides the search.
-    pub(super) settings: Settings,
+    /// Everything that decides the result.
+    pub(super) settings: S,
     /// Where the case was read from.
     pub(super) case_folder: PathBuf,
     /// Where the records came from.
@@ -45,7 +57,7 @@ pub(super) struct Manifest {
     pub(super) wall_s: f64,
 }
 
-impl Manifest {
+impl<S: Decides> Manifest<S> {
     /// What decides the result, as canonical JSON: the journal refuses to mix two of them.
     pub(super) fn settings_json(&self) -> anyhow::Result<String> {
         Ok(serde_json::to_string(&(self.seed, &self.settings))?)
@@ -54,13 +66,13 @@ impl Manifest {
     /// The command that goes on with the run in the folder where it lies now.
     pub(super) fn resume_command(&self, folder: &Path) -> String {
         let word = |path: &Path| quote(&path.display().to_string());
-        let mut command = format!(
-            "horsehead calibrate {} --preset {} --seed {} --run {}",
-            word(&self.case_folder),
-            quote(&self.preset),
-            self.seed,
-            word(folder)
-        );
+        let mut command = format!("horsehead {} {}", self.kind, word(&self.case_folder));
+        if !self.preset.is_empty() {
+            command.push_str(" --preset ");
+            command.push_str(&quote(&self.preset));
+        }
+        command.push_str(&format!(" --seed {} --run {}", self.seed, word(folder)));
+        command.push_str(&self.settings.arguments());
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
             || self.case_folder.ends_with(measured);
@@ -70,11 +82,37 @@ impl Manifest {
         }
         command
     }
+}
 
-    /// A new manifest of this program.
-    pub(super) const fn format() -> u32 {
-        FORMAT
+/// Version of the manifests of this program.
+pub(super) const fn format() -> u32 {
+    FORMAT
+}
+
+/// Settings that a manifest may hold.
+pub(super) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
+    /// What of them a command line must repeat beside preset and seed, with a space before it.
+    fn arguments(&self) -> String {
+        String::new()
     }
+}
+
+impl Decides for Settings {
+    fn arguments(&self) -> String {
+        match self {
+            Self::Window(settings) => format!(" --window {}", settings.window),
+            Self::Memetic(_) | Self::Quick(_) => String::new(),
+        }
+    }
+}
+
+/// What every manifest says, whatever kind of run it is of.
+#[derive(Debug, Deserialize)]
+struct Head {
+    format: u32,
+    program: String,
+    #[serde(default = "calibrate")]
+    kind: String,
 }
 
 /// A run folder.
@@ -104,7 +142,11 @@ impl RunFolder {
     ///
     /// # Errors
     /// If the folder holds another run or something else.
-    pub(super) fn begin(path: &Path, manifest: &Manifest, case: &Case) -> anyhow::Result<Begun> {
+    pub(super) fn begin<S: Decides>(
+        path: &Path,
+        manifest: &Manifest<S>,
+        case: &Case,
+    ) -> anyhow::Result<Begun> {
         let folder = Self {
             path: path.to_owned(),
         };
@@ -117,14 +159,14 @@ impl RunFolder {
                 wall_s: 0.0,
             });
         }
-        let (earlier, earlier_case) = folder.load()?;
+        let (earlier, earlier_case) = folder.load::<S>(&manifest.kind)?;
         let difference = if earlier.seed != manifest.seed {
             format!("its seed is {}, not {}", earlier.seed, manifest.seed)
         } else if earlier.settings != manifest.settings {
-            format!(
-                "its search settings differ (it was begun with preset {})",
-                earlier.preset
-            )
+            match earlier.preset.as_str() {
+                "" => "its settings differ".to_owned(),
+                preset => format!("its search settings differ (it was begun with preset {preset})"),
+            }
         } else if earlier_case != *case {
             "its case or its records differ".to_owned()
         } else {
@@ -175,45 +217,80 @@ impl RunFolder {
         fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
     }
 
-    /// Opens a run that was begun before.
+    /// The folder of a run of any kind.
     ///
     /// # Errors
-    /// If the folder holds no run, or one of another version.
-    pub(super) fn open(path: &Path) -> anyhow::Result<(Self, Manifest, Case)> {
+    /// If no run was begun there.
+    pub(super) fn at(path: &Path) -> Result<Self, Usage> {
         let folder = Self {
             path: path.to_owned(),
         };
-        if !folder.file("run.json").exists() {
-            return Err(Usage {
-                message: format!("{} is no run folder: it has no run.json", path.display()),
-                help: "`horsehead calibrate CASE` makes one below runs/".to_owned(),
-            }
-            .into());
+        if folder.file("run.json").exists() {
+            return Ok(folder);
         }
-        let (manifest, case) = folder.load()?;
+        Err(Usage {
+            message: format!("{} is no run folder: it has no run.json", path.display()),
+            help: "`horsehead calibrate CASE` and `horsehead diagnose CASE` make them below runs/"
+                .to_owned(),
+        })
+    }
+
+    /// Opens a run that was begun before.
+    ///
+    /// # Errors
+    /// If the folder holds no run, or one of another version or kind.
+    pub(super) fn open<S: Decides>(
+        path: &Path,
+        kind: &str,
+    ) -> anyhow::Result<(Self, Manifest<S>, Case)> {
+        let folder = Self::at(path)?;
+        let (manifest, case) = folder.load(kind)?;
         Ok((folder, manifest, case))
     }
 
-    fn load(&self) -> anyhow::Result<(Manifest, Case)> {
-        let manifest: Manifest = self.read_json("run.json")?;
-        if manifest.format != FORMAT {
+    /// The kind of run that a folder holds, if it holds one.
+    pub(super) fn kind(path: &Path) -> Option<String> {
+        let folder = Self {
+            path: path.to_owned(),
+        };
+        folder
+            .read_json::<Head>("run.json")
+            .ok()
+            .map(|head| head.kind)
+    }
+
+    fn load<S: Decides>(&self, kind: &str) -> anyhow::Result<(Manifest<S>, Case)> {
+        let head: Head = self.read_json("run.json")?;
+        if head.format != FORMAT {
             return Err(Usage {
                 message: format!(
                     "{} was made by {}, in a form this version does not read",
                     self.path.display(),
-                    manifest.program
+                    head.program
                 ),
                 help: "use that version, or begin a new run with --run".to_owned(),
             }
             .into());
         }
-        Ok((manifest, self.read_json("case.json")?))
+        if head.kind != kind {
+            return Err(Usage {
+                message: format!(
+                    "{} holds a run of `horsehead {}`, not of `horsehead {kind}`",
+                    self.path.display(),
+                    head.kind
+                ),
+                help: "name the folder of another run, or begin a new one with --run DIR"
+                    .to_owned(),
+            }
+            .into());
+        }
+        Ok((self.read_json("run.json")?, self.read_json("case.json")?))
     }
 
     /// Remembers how the run was begun and the time that was spent.
-    pub(super) fn spent(
+    pub(super) fn spent<S: Decides>(
         &self,
-        manifest: &Manifest,
+        manifest: &Manifest<S>,
         case: &Case,
         wall_s: f64,
     ) -> anyhow::Result<()> {

@@ -1,6 +1,6 @@
 //! `horsehead simulate`: one run of the machine.
 use super::{
-    CaseChoice, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
+    CaseChoice, Door, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
     problem::Usage,
     run_folder::{RunFolder, command_line},
 };
@@ -48,10 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let loaded = arguments.choice.load()?;
     let case = &loaded.case;
     let condition = condition(case, arguments.condition.as_deref())?;
-    let genes = match arguments.genes.as_str() {
-        "recommended" => case.recommended(),
-        file => crate::case::read_genes(Path::new(file), case)?,
-    };
+    let genes = individual(case, &arguments.genes)?;
     if let Some(folder) = &arguments.out {
         check_out(folder)?;
     }
@@ -108,8 +105,16 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     output::print(arguments.output.output, tables, &object)
 }
 
+/// Gene values by what was typed: `recommended`, or a gene file.
+pub(super) fn individual(case: &Case, typed: &str) -> anyhow::Result<Vec<f64>> {
+    Ok(match typed {
+        "recommended" => case.recommended(),
+        file => crate::case::read_genes(Path::new(file), case)?,
+    })
+}
+
 /// Refuses a folder that cannot be written, before anything is simulated for it.
-fn check_out(folder: &Path) -> Result<(), Usage> {
+pub(super) fn check_out(folder: &Path) -> Result<(), Usage> {
     let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
     match tried {
         Ok(_) => Ok(()),
@@ -153,8 +158,7 @@ pub(super) fn compare_once(
         let mut stop = interrupt::listen();
         let options = bus::Options {
             run_dir: scratch.path().to_owned(),
-            listen: None,
-            insecure: false,
+            door: Door::default(),
             local_workers: workers,
             kind: kind.to_owned(),
             settings,

@@ -1,6 +1,6 @@
 //! Habits of the command line: help, run folders, gene files.
 use super::{
-    run_folder::{Manifest, RunFolder, gene_file},
+    run_folder::{self, Manifest, RunFolder, gene_file},
     *,
 };
 use clap::CommandFactory as _;
@@ -13,7 +13,8 @@ fn shipped() -> PathBuf {
 fn manifest(case: &protocol::case::Case, seed: u64) -> Manifest {
     let space = Space::new(&case.genes).unwrap();
     Manifest {
-        format: Manifest::format(),
+        kind: run_folder::CALIBRATE.to_owned(),
+        format: run_folder::format(),
         program: bus::PROGRAM.to_owned(),
         command: "horsehead calibrate X".to_owned(),
         preset: "quick".to_owned(),
@@ -135,7 +136,8 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
         "{other}"
     );
     // the case comes back with every bit, so its hash and the journal still fit
-    let (_, _, kept) = RunFolder::open(&path).unwrap();
+    let (_, _, kept) =
+        RunFolder::open::<search::strategy::Settings>(&path, run_folder::CALIBRATE).unwrap();
     assert_eq!(kept, case);
     assert_eq!(
         bus::case_hash(&kept).unwrap(),

@@ -4,7 +4,7 @@ use super::{
     json::{self, VerifyOutput},
     load_case, output,
     problem::Usage,
-    run_folder::RunFolder,
+    run_folder::{self, RunFolder},
     simulate::{compare_once, run_name},
 };
 use crate::{report::table, study::Wanted};
@@ -39,7 +39,8 @@ pub(super) struct Arguments {
 /// Scores both parameter sets and shows them side by side.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
-    let (folder, manifest, mut case) = RunFolder::open(&arguments.run)?;
+    let (folder, manifest, mut case) =
+        RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
     if let Some(measured) = &arguments.measured {
         case = load_case(&manifest.case_folder, Some(measured))?.case;
     }

@@ -1,12 +1,15 @@
 //! Who gets which job.
 use super::{
-    Core, membership, result,
+    Core,
+    account::{self, Use},
+    membership, result,
     state::{Lease, Member},
+    tail,
 };
 use protocol::{
     id::{AttemptId, JobId, WorkerId},
     job::Failure,
-    message::{Attempt, Beat, Order, ToWorker},
+    message::{Attempt, Order, ToWorker},
 };
 use std::time::Duration;
 
@@ -33,7 +36,7 @@ pub(super) fn assign(core: &mut Core, now: Duration) {
         }
     }
     core.queue.extend(passed_over);
-    steal(core, now);
+    tail::steal(core, now);
 }
 
 /// The least loaded worker that may have the job.
@@ -42,12 +45,12 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
     let policy = &core.options.policy;
     let alone = membership::is_suspect(pending.failures, policy.suspect);
     let reserved = if alone { None } else { reserved(core) };
-    let room = |member: &Member| {
-        if alone {
-            1
-        } else {
-            policy.per_slot * member.slots()
-        }
+    let kind = pending.job.kind();
+    let ahead = core.times.needs_prefetch(kind, core.latency, policy);
+    let room = |member: &Member| match (alone, ahead) {
+        (true, _) => 1,
+        (false, true) => policy.per_slot * member.slots(),
+        (false, false) => member.slots(),
     };
     core.members
         .iter()
@@ -81,7 +84,8 @@ fn reserved(core: &Core) -> Option<WorkerId> {
         .flatten()
 }
 
-fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration) {
+/// Gives a worker a job.
+pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration) {
     let Some(pending) = core.jobs.get_mut(&job) else {
         return;
     };
@@ -93,26 +97,22 @@ fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration) {
         job,
         attempt: AttemptId(number),
     };
-    if pending.next > 0 {
+    if !pending.holders.is_empty() {
+        core.counts.copies += 1;
+    } else if pending.next > 0 {
         core.counts.repeated += 1;
     }
     pending.next += 1;
     pending.holders.push(worker);
-    let deadline = core
-        .times
-        .deadline(pending.failures.deadlines, &core.options.policy);
+    let (kind, overdue) = (pending.job.kind(), pending.failures.deadlines);
+    let deadline = core.times.deadline(kind, overdue, &core.options.policy);
     member.alone |= membership::is_suspect(pending.failures, core.options.policy.suspect);
-    member.leases.push(Lease {
-        attempt,
-        sent: now,
-        running: None,
-        deadline,
-    });
+    member.add_lease(Lease::new(attempt, deadline, now), &core.clocks);
     let order = order(attempt, deadline, &pending.job);
     core.send(worker, order);
 }
 
-fn order(attempt: Attempt, deadline: Duration, job: &protocol::job::Job) -> ToWorker {
+pub(super) fn order(attempt: Attempt, deadline: Duration, job: &protocol::job::Job) -> ToWorker {
     let deadline_ms = u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX);
     ToWorker::Run(Box::new(Order {
         attempt,
@@ -122,90 +122,21 @@ fn order(attempt: Attempt, deadline: Duration, job: &protocol::job::Job) -> ToWo
 }
 
 /// Takes a job from a worker and puts it back into the queue, unless someone else has it too.
-pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId) {
-    if let Some(member) = core.members.get_mut(&worker) {
-        member.drop_lease(job);
+pub(super) fn release(core: &mut Core, worker: WorkerId, job: JobId, what: Use) {
+    if let Some(member) = core.members.get_mut(&worker)
+        && let Some(lease) = member.drop_lease(job, &core.clocks)
+    {
+        account::attribute(member, &lease, what);
     }
+    requeue(core, worker, job);
+}
+
+/// A worker no longer holds a job: if nobody else does, it waits again.
+pub(super) fn requeue(core: &mut Core, worker: WorkerId, job: JobId) {
     if let Some(pending) = core.jobs.get_mut(&job) {
         pending.holders.retain(|holder| *holder != worker);
         if pending.holders.is_empty() {
             core.queue.insert(job);
-        }
-    }
-}
-
-/// If a worker says that it holds a queued job already, it may keep it: it is one that outlived
-/// the process that gave it out.
-pub(super) fn adopt(core: &mut Core, job: JobId, now: Duration) {
-    if !core.queue.contains(&job) {
-        return;
-    }
-    let claim = core.members.iter().find_map(|(id, member)| {
-        let claim = member.claims.iter().find(|attempt| attempt.job == job)?;
-        Some((*id, *claim))
-    });
-    let Some((worker, attempt)) = claim else {
-        return;
-    };
-    let Some(pending) = core.jobs.get_mut(&job) else {
-        return;
-    };
-    let Some(member) = core.members.get_mut(&worker) else {
-        return;
-    };
-    member.claims.retain(|claim| *claim != attempt);
-    let deadline = core
-        .times
-        .deadline(pending.failures.deadlines, &core.options.policy);
-    member.leases.push(Lease {
-        attempt,
-        sent: now,
-        running: None,
-        deadline,
-    });
-    pending.holders.push(worker);
-    core.queue.remove(&job);
-}
-
-/// Compares what a worker holds with what it should hold.
-pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
-    let computing = beat.running.iter().chain(&beat.waiting);
-    for attempt in computing.clone() {
-        let job = attempt.job;
-        let leased = core
-            .members
-            .get(&from)
-            .is_some_and(|member| member.holds(job));
-        if leased {
-            continue;
-        }
-        if core.has_finished(job) {
-            core.send(from, ToWorker::Cancel(*attempt));
-        } else if let Some(member) = core.members.get_mut(&from) {
-            member.claims.push(*attempt);
-            adopt(core, job, now);
-        }
-    }
-    let unmentioned = core.options.policy.unmentioned;
-    let Some(member) = core.members.get_mut(&from) else {
-        return;
-    };
-    let mut again = Vec::new();
-    for lease in &mut member.leases {
-        let attempt = lease.attempt;
-        let mentioned = computing
-            .clone()
-            .chain(&beat.finished)
-            .any(|held| *held == attempt);
-        if !mentioned && now.saturating_sub(lease.sent) > unmentioned {
-            lease.sent = now;
-            again.push((attempt, lease.deadline));
-        }
-    }
-    for (attempt, deadline) in again {
-        if let Some(pending) = core.jobs.get(&attempt.job) {
-            let order = order(attempt, deadline, &pending.job);
-            core.send(from, order);
         }
     }
 }
@@ -224,47 +155,8 @@ pub(super) fn check_overdue(core: &mut Core, now: Duration) {
     for (worker, attempt, deadline) in overdue {
         core.send(worker, ToWorker::Cancel(attempt));
         let limit_ms = u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX);
-        result::failed(
-            core,
-            worker,
-            attempt.job,
-            Failure::Deadline { limit_ms },
-            now,
-        );
-    }
-}
-
-/// With nothing left to give out, a worker without enough to do takes a waiting job from another.
-fn steal(core: &mut Core, now: Duration) {
-    if !core.queue.is_empty() {
-        return;
-    }
-    let after = core.options.policy.steal_after;
-    loop {
-        let idle = core.members.iter().find(|(_, member)| {
-            member.ready && !member.alone && member.leases.len() < member.slots()
-        });
-        let Some(idle) = idle.map(|(id, _)| *id) else {
-            return;
-        };
-        let waiting = core.members.iter().find_map(|(id, member)| {
-            let behind = member.leases.get(member.slots()..)?;
-            let lease = behind
-                .last()
-                .filter(|lease| now.saturating_sub(lease.sent) > after)?;
-            let refused = core
-                .jobs
-                .get(&lease.attempt.job)?
-                .refused_by
-                .contains(&idle);
-            (lease.running.is_none() && !refused && *id != idle).then_some((*id, lease.attempt))
-        });
-        let Some((busy, attempt)) = waiting else {
-            return;
-        };
-        core.send(busy, ToWorker::Cancel(attempt));
-        release(core, busy, attempt.job);
-        core.queue.remove(&attempt.job);
-        lease(core, idle, attempt.job, now);
+        release(core, worker, attempt.job, Use::Overdue);
+        let failure = Failure::Deadline { limit_ms };
+        result::failed(core, worker, attempt.job, failure, now);
     }
 }

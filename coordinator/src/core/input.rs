@@ -39,6 +39,8 @@ pub enum Input {
         /// Their jobs.
         jobs: Vec<JobId>,
     },
+    /// Whether the journal can be written; it can at the beginning.
+    Writable(bool),
     /// Time has passed.
     Tick,
     /// The run is over.

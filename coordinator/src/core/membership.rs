@@ -1,24 +1,21 @@
 //! Who takes part, and who is lost.
-use super::input::Command;
 use super::{
-    Core, assign,
+    Core,
+    account::{self, Clocks, Use},
+    admission, assign,
+    input::Command,
     notice::Notice,
     policy::Failures,
-    result,
-    state::{Member, Spent},
+    reconcile, result,
+    state::Member,
 };
 use protocol::{
-    announce::Announcement,
-    event::Event,
+    event::{Event, WorkerAccount},
     id::WorkerId,
     job::Failure,
     message::{Beat, FromWorker, ToWorker},
-    wire,
 };
 use std::time::Duration;
-
-/// More slots than any machine has: a number beyond it is a mistake.
-const MOST_SLOTS: u32 = 4096;
 
 pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: Duration) {
     let known = core
@@ -28,7 +25,7 @@ pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: D
         .is_some();
     match message {
         FromWorker::Announce(_) if core.closing => {}
-        FromWorker::Announce(announcement) => announce(core, from, *announcement, now),
+        FromWorker::Announce(announcement) => admission::announce(core, from, *announcement, now),
         FromWorker::Beat(beat) if known => beaten(core, from, &beat, now),
         FromWorker::Beat(_) => core.send(from, ToWorker::Identify),
         FromWorker::Done(done) => {
@@ -42,100 +39,15 @@ pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: D
     }
 }
 
-fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
-    if let Some(reason) = objection(core, &announcement) {
-        if core.refused.insert(from) {
-            let host = announcement.host;
-            core.notice(Notice::Refused {
-                worker: from,
-                host,
-                reason: reason.clone(),
-            });
-        }
-        core.send(from, ToWorker::Refused { reason });
-        return;
-    }
-    if !core.members.contains_key(&from) {
-        admit(core, from, announcement, now);
-    }
-    let (epoch, case, case_bytes) = (
-        core.options.epoch,
-        core.options.case,
-        core.options.case_bytes,
-    );
-    core.send(
-        from,
-        ToWorker::Admitted {
-            epoch,
-            case,
-            case_bytes,
-        },
-    );
-}
-
-fn objection(core: &Core, announcement: &Announcement) -> Option<String> {
-    if announcement.protocol != wire::VERSION {
-        return Some(format!(
-            "protocol is {}, this coordinator speaks {}: use the same build everywhere",
-            announcement.protocol,
-            wire::VERSION
-        ));
-    }
-    if !(1..=MOST_SLOTS).contains(&announcement.slots) {
-        return Some(format!(
-            "slots is {}, allowed are 1 to {MOST_SLOTS}: set --slots",
-            announcement.slots
-        ));
-    }
-    let expected = core.options.model_digest.as_ref()?;
-    (*expected != announcement.model_digest).then(|| {
-        format!(
-            "model_digest is {}, this run's is {expected}: use the same build of horsehead-worker \
-             on every machine",
-            announcement.model_digest
-        )
-    })
-}
-
-fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Duration) {
-    let (host, slots) = (announcement.host.clone(), announcement.slots);
-    let model_digest = announcement.model_digest.clone();
-    core.options
-        .model_digest
-        .get_or_insert_with(|| model_digest.clone());
-    core.refused.remove(&worker);
-    core.members.insert(
-        worker,
-        Member {
-            announcement,
-            since: now,
-            heard: now,
-            ready: false,
-            leases: Vec::new(),
-            alone: false,
-            claims: Vec::new(),
-            done: 0,
-            failed: 0,
-            spent: Spent::default(),
-        },
-    );
-    core.notice(Notice::Joined {
-        worker,
-        host: host.clone(),
-        slots,
-    });
-    core.out.push(Command::Record(Event::Joined {
-        worker,
-        host,
-        slots,
-        model_digest,
-    }));
-}
-
 fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
-    let case = core.options.case;
+    let Some(ready) = admission::is_ready(core, from, beat) else {
+        return;
+    };
     if let Some(member) = core.members.get_mut(&from) {
-        member.ready = beat.case == Some(case);
+        if member.ready != ready {
+            account::settle(member, &core.clocks);
+            member.ready = ready;
+        }
         for lease in &mut member.leases {
             if lease.running.is_none() && beat.running.contains(&lease.attempt) {
                 lease.running = Some(now);
@@ -143,7 +55,36 @@ fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
         }
         member.claims.clear();
     }
-    assign::reconcile(core, from, beat, now);
+    reconcile::reconcile(core, from, beat, now);
+    if beat.case.is_some() {
+        welcome(core, from, now);
+    }
+}
+
+/// Whether everyone is there who may hold jobs and results of the last process, or was waited for.
+pub(super) fn is_complete(core: &mut Core, now: Duration) -> bool {
+    let policy = &core.options.policy;
+    if core.reunion.is_none() && !core.options.expected.is_empty() {
+        core.reunion = Some(now + policy.reunion);
+    }
+    core.reunion.is_none_or(|until| {
+        let over = now >= until;
+        if over {
+            core.options.expected.clear();
+            core.reunion = None;
+        }
+        over
+    })
+}
+
+/// One of those who were waited for is back and has said what it holds.
+fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
+    if core.options.expected.remove(&worker)
+        && core.options.expected.is_empty()
+        && let Some(until) = core.reunion
+    {
+        core.reunion = Some(until.min(now + core.options.policy.delivery));
+    }
 }
 
 fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {
@@ -152,7 +93,7 @@ fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {
     };
     for lease in member.leases {
         // nobody is to blame
-        assign::release(core, worker, lease.attempt.job);
+        assign::requeue(core, worker, lease.attempt.job);
     }
     // it waits for this, lest the end of its connection be heard first and taken for a loss
     core.send(worker, ToWorker::Ended);
@@ -174,8 +115,8 @@ pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duratio
     for (place, lease) in member.leases.into_iter().enumerate() {
         let job = lease.attempt.job;
         // what still waited there is not to blame
+        assign::requeue(core, worker, job);
         if lease.running.is_none() && place >= slots {
-            assign::release(core, worker, job);
             continue;
         }
         let losses = core.jobs.get(&job).map_or(0, |job| job.failures.losses) + 1;
@@ -183,22 +124,44 @@ pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duratio
     }
 }
 
+/// Takes out a worker that must not take part after all; nobody is to blame for its jobs.
+pub(super) fn lose_refused(core: &mut Core, worker: WorkerId) -> Option<Member> {
+    let now = core.clocks.now;
+    let member = remove(core, worker, "it was refused", now)?;
+    for lease in &member.leases {
+        assign::requeue(core, worker, lease.attempt.job);
+    }
+    Some(member)
+}
+
+/// Takes a worker out; what it was computing is lost.
 fn remove(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) -> Option<Member> {
-    let member = core.members.remove(&worker)?;
-    core.counts.past.add(&account(&member, now));
+    let mut member = core.members.remove(&worker)?;
+    account::settle(&mut member, &core.clocks);
+    for lease in member.leases.clone() {
+        account::attribute(&mut member, &lease, Use::Lost);
+    }
+    for lease in &mut member.leases {
+        lease.held = Duration::ZERO;
+    }
+    let row = row(worker, &member, &core.clocks);
+    core.counts.past.add(&row.spent);
+    core.record_account(vec![row], now);
     let reason = reason.to_owned();
     core.out
         .push(Command::Record(Event::Left { worker, reason }));
     Some(member)
 }
 
-/// A worker's slot time until now.
-pub(super) fn account(member: &Member, now: Duration) -> Spent {
-    let connected = now.saturating_sub(member.since).as_micros();
-    let connected = u64::try_from(connected).unwrap_or(u64::MAX);
-    Spent {
-        connected_us: connected.saturating_mul(u64::from(member.announcement.slots)),
-        ..member.spent
+/// A worker's account until now.
+pub(super) fn row(worker: WorkerId, member: &Member, clocks: &Clocks) -> WorkerAccount {
+    WorkerAccount {
+        worker,
+        host: member.announcement.host.clone(),
+        slots: member.announcement.slots,
+        done: member.done,
+        failed: member.failed,
+        spent: account::statement(member, clocks),
     }
 }
 
@@ -211,7 +174,11 @@ pub(super) fn check_silence(core: &mut Core, now: Duration) {
         .map(|(id, _)| *id)
         .collect();
     for worker in silent {
-        lose(core, worker, "it fell silent", now);
+        let seconds = silence.as_secs_f64();
+        let reason = format!(
+            "nothing was heard of it for {seconds:.0} s: it is frozen, overloaded or cut off"
+        );
+        lose(core, worker, &reason, now);
     }
 }
 

@@ -10,24 +10,31 @@
 //! however late; further ones are acknowledged and dropped. A result is delivered as soon as it
 //! is accepted but acknowledged only once it is stored: a worker forgets nothing that a crash of
 //! this process could lose.
+mod account;
+mod admission;
 mod assign;
 mod input;
+mod job_set;
 mod membership;
 mod notice;
 mod policy;
+mod reconcile;
 mod result;
 mod snapshot;
 mod state;
+mod tail;
 #[cfg(test)]
 mod tests;
 
 pub use input::{Command, Input};
+pub use job_set::JobSet;
 pub use notice::{Notice, Stop};
 pub use policy::Policy;
 pub use snapshot::{Snapshot, WorkerSnapshot};
-pub use state::Spent;
 
+use account::Clocks;
 use protocol::{
+    event::{Account, Event, Spent, WorkerAccount},
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Job,
     message::{Attempt, Done, ToWorker},
@@ -53,8 +60,12 @@ pub struct CoreOptions {
     pub case_bytes: u64,
     /// Numerics that all workers of this run must have; none before the first.
     pub model_digest: Option<String>,
+    /// What the case's reference individual must come to; none before the first worker.
+    pub proof: Option<ContentHash>,
     /// Jobs whose results are in the journal.
-    pub finished: BTreeSet<JobId>,
+    pub finished: JobSet,
+    /// Workers that outlived the last process and may hold jobs and results of it.
+    pub expected: BTreeSet<WorkerId>,
     /// Times and limits.
     pub policy: Policy,
 }
@@ -69,7 +80,7 @@ pub struct Core {
     queue: BTreeSet<JobId>,
     /// Accepted, not yet stored: whom to acknowledge.
     storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
-    finished: BTreeSet<JobId>,
+    finished: JobSet,
     /// Results of jobs that were not submitted (yet).
     early: BTreeMap<JobId, (WorkerId, Done)>,
     times: policy::Times,
@@ -77,6 +88,17 @@ pub struct Core {
     last_call: Duration,
     lonely_since: Option<Duration>,
     told_lonely: bool,
+    /// Effects that all workers must know; none before the first.
+    effects: Option<Vec<String>>,
+    clocks: Clocks,
+    /// From an order to a slot without a job, to its result, less the time in the slot: an average
+    /// over the last few.
+    latency: Option<Duration>,
+    /// Until when nothing is given out, because workers that outlived the last process may have it.
+    reunion: Option<Duration>,
+    /// The journal cannot be written.
+    paused: bool,
+    accounted: Duration,
     closing: bool,
     out: Vec<Command>,
 }
@@ -88,6 +110,7 @@ struct Counts {
     failed: u32,
     succeeded: u64,
     repeated: u32,
+    copies: u32,
     duplicates: u64,
     past: Spent,
 }
@@ -110,6 +133,12 @@ impl Core {
             last_call: Duration::ZERO,
             lonely_since: None,
             told_lonely: false,
+            effects: None,
+            clocks: Clocks::default(),
+            latency: None,
+            reunion: None,
+            paused: false,
+            accounted: Duration::ZERO,
             closing: false,
             out: Vec::new(),
         }
@@ -118,6 +147,7 @@ impl Core {
     /// Takes note of something at a time since any fixed moment; what follows from it must be
     /// done in order.
     pub fn handle(&mut self, input: Input, now: Duration) -> Vec<Command> {
+        self.clocks.advance(now);
         membership::forgive_stall(self, now);
         match input {
             Input::Submit { id, job } => self.submit(id, job, now),
@@ -129,24 +159,61 @@ impl Core {
                 membership::check_silence(self, now);
                 assign::check_overdue(self, now);
                 membership::check_lonely(self, now);
+                tail::copy_slow(self, now);
+                if now.saturating_sub(self.accounted) >= self.options.policy.account {
+                    self.account(now);
+                }
             }
+            Input::Writable(writable) => self.paused = !writable,
             Input::Close => {
                 let members: Vec<WorkerId> = self.members.keys().copied().collect();
                 for to in members {
                     self.send(to, ToWorker::Ended);
                 }
+                self.account(now);
                 self.closing = true;
             }
         }
-        if !self.closing {
+        if !self.closing && !self.paused && membership::is_complete(self, now) {
             assign::assign(self, now);
         }
+        let waits = self.clocks_wait();
+        self.clocks.set_waiting(waits);
         mem::take(&mut self.out)
+    }
+
+    /// Whether idle slots wait for what others compute: everything asked for is given out.
+    fn clocks_wait(&self) -> bool {
+        self.queue.is_empty() && !self.jobs.is_empty() && !self.paused
+    }
+
+    /// Writes down how the present workers spent their time.
+    fn account(&mut self, now: Duration) {
+        self.accounted = now;
+        let workers: Vec<WorkerAccount> = self
+            .members
+            .iter()
+            .map(|(id, member)| membership::row(*id, member, &self.clocks))
+            .collect();
+        self.record_account(workers, now);
+    }
+
+    fn record_account(&mut self, workers: Vec<WorkerAccount>, now: Duration) {
+        if workers.is_empty() {
+            return;
+        }
+        let account = Account {
+            epoch: self.options.epoch,
+            at_ms: u64::try_from(now.as_millis()).unwrap_or(u64::MAX),
+            workers,
+        };
+        let event = Event::Accounted(Box::new(account));
+        self.out.push(Command::Record(event));
     }
 
     /// Whether the job has its result, stored or about to be.
     pub fn has_finished(&self, job: JobId) -> bool {
-        self.finished.contains(&job) || self.storing.contains_key(&job)
+        self.finished.contains(job) || self.storing.contains_key(&job)
     }
 
     /// Results that are not yet stored.
@@ -157,9 +224,11 @@ impl Core {
     /// The state at a time.
     pub fn snapshot(&self, now: Duration) -> Snapshot {
         let mut spent = self.counts.past;
+        let mut clocks = self.clocks;
+        clocks.advance(now);
         let mut workers = Vec::with_capacity(self.members.len());
         for (id, member) in &self.members {
-            let account = membership::account(member, now);
+            let account = account::statement(member, &clocks);
             spent.add(&account);
             workers.push(WorkerSnapshot {
                 id: *id,
@@ -179,8 +248,10 @@ impl Core {
             lost: self.counts.lost,
             failed: self.counts.failed,
             repeated: self.counts.repeated,
+            copies: self.counts.copies,
             duplicates: self.counts.duplicates,
             spent,
+            paused: self.paused,
         }
     }
 
@@ -199,7 +270,7 @@ impl Core {
         };
         self.jobs.insert(id, pending);
         self.queue.insert(id);
-        assign::adopt(self, id, now);
+        reconcile::adopt(self, id, now);
         if let Some((from, done)) = self.early.remove(&id) {
             result::done(self, from, done, now);
         }

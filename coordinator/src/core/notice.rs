@@ -120,7 +120,7 @@ impl fmt::Display for Notice {
                 "job {job} was running on {workers} workers when they were lost: from now on it \
                  runs alone"
             ),
-            Self::GivenUp { job, failure } => write!(to, "job {job} is given up: {failure:?}"),
+            Self::GivenUp { job, failure } => write!(to, "job {job} is given up: {failure}"),
             Self::Stalled { ms } => write!(
                 to,
                 "the coordinator stood still for {ms} ms; no worker is held responsible for it"
@@ -146,7 +146,7 @@ impl fmt::Display for Stop {
         match self {
             Self::EverythingFails { jobs, last } => write!(
                 to,
-                "all of the first {jobs} jobs failed and none succeeded; the last one: {last:?}"
+                "all of the first {jobs} jobs failed and none succeeded; the last one: {last}"
             ),
         }
     }

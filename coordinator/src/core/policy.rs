@@ -1,6 +1,21 @@
 //! The numbers that decide who counts as lost, and how often what is tried again.
+//!
+//! | what went wrong | tried again | until | then |
+//! |---|---|---|---|
+//! | the physics (a verdict) | never | | it is the job's result |
+//! | deadline | with twice the time | 2 attempts | a failed result, recorded |
+//! | crashed | on any worker | 2 attempts | a failed result, recorded |
+//! | lost | on any worker; alone on one after 2 | 4 workers | a failed result, recorded |
+//! | refused | on workers that have not refused | all have | handed on, not recorded |
+//! | misconfigured | never | | handed on, not recorded |
+//!
+//! What is recorded is part of the run and never computed again; another build or another case may
+//! do better with the last two. If the first 8 jobs all fail, the run stops.
 use protocol::job::Failure;
-use std::{collections::VecDeque, time::Duration};
+use std::{
+    collections::{BTreeMap, VecDeque},
+    time::Duration,
+};
 
 /// Times and limits; the defaults are measured to give no false loss on a machine with thirty
 /// times more runnable threads than cores.
@@ -10,6 +25,12 @@ pub struct Policy {
     pub silence: Duration,
     /// A job that a worker does not mention is sent again after so long (default 2 s).
     pub unmentioned: Duration,
+    /// A process that goes on with a run waits so long for workers that outlived the last one before
+    /// it gives out what they may hold (default 3 s: they try to connect every 2 s).
+    pub reunion: Duration,
+    /// After the last of them came back, it waits so long for the results they bring (default
+    /// 500 ms).
+    pub delivery: Duration,
     /// If the core is not called for so long, it stood still itself (default 1 s).
     pub stall: Duration,
     /// Jobs may wait so long without any worker before people are told (default 10 s).
@@ -17,17 +38,29 @@ pub struct Policy {
     /// A waiting job may be taken from a busy worker for an idle one after so long (default
     /// 50 ms): less would only move short jobs about.
     pub steal_after: Duration,
-    /// Jobs a worker holds per slot: one computes, one waits (default 2). More would queue bytes
-    /// towards a worker that may freeze.
+    /// Jobs a worker holds per slot at most: one computes, one waits (default 2). More would queue
+    /// bytes towards a worker that may freeze.
     pub per_slot: usize,
+    /// A second job is sent ahead only if without it a slot would spend more than this share of its
+    /// time waiting for the next order, in percent (default 4). Where jobs are long, what waits
+    /// behind a slow one would hold up a search that needs results in order.
+    pub prefetch_percent: u32,
     /// Deadline while fewer than [`Self::deadline_samples`] jobs are done (default 120 s).
     pub first_deadline: Duration,
     /// Least deadline (default 10 s).
     pub least_deadline: Duration,
-    /// Deadline over the median time of recent jobs (default 5).
+    /// Deadline over the time that 95 % of recent jobs of the kind needed (default 4).
     pub deadline_factor: u32,
-    /// Jobs that make a median (default 5).
+    /// Deadline over the longest time that any job of the kind needed in this process (default 2):
+    /// what has worked once must not come as a surprise.
+    pub longest_factor: u32,
+    /// Finished jobs of a kind before anything is concluded from their times (default 5).
     pub deadline_samples: usize,
+    /// When nothing is left to give out, an idle slot takes a copy of a job that has been computed
+    /// for this many times as long as 95 % of recent ones needed, in percent (default 150).
+    pub copy_percent: u32,
+    /// No copy is made of a job that has been computed for less (default 200 ms).
+    pub copy_least: Duration,
     /// Overdue attempts before a job is given up (default 2; each has twice the time).
     pub deadlines: u32,
     /// Crashed attempts before a job is given up (default 2): a slot that crashes ran nothing
@@ -37,6 +70,8 @@ pub struct Policy {
     pub suspect: u32,
     /// Lost workers before a job is given up (default 4).
     pub losses: u32,
+    /// Time between two accounts of slot time in the journal (default 60 s).
+    pub account: Duration,
     /// Failed jobs without any success before the run stops (default 8).
     pub hopeless: u32,
 }
@@ -46,18 +81,25 @@ impl Default for Policy {
         Self {
             silence: Duration::from_secs(4),
             unmentioned: Duration::from_secs(2),
+            reunion: Duration::from_secs(3),
+            delivery: Duration::from_millis(500),
             stall: Duration::from_secs(1),
             lonely: Duration::from_secs(10),
             steal_after: Duration::from_millis(50),
             per_slot: 2,
+            prefetch_percent: 4,
             first_deadline: Duration::from_mins(2),
             least_deadline: Duration::from_secs(10),
-            deadline_factor: 5,
+            deadline_factor: 4,
+            longest_factor: 2,
             deadline_samples: 5,
+            copy_percent: 150,
+            copy_least: Duration::from_millis(200),
             deadlines: 2,
             crashes: 2,
             suspect: 2,
             losses: 4,
+            account: Duration::from_mins(1),
             hopeless: 8,
         }
     }
@@ -96,42 +138,78 @@ impl Failures {
     }
 }
 
-/// Times of recent jobs, for deadlines.
+/// Times of finished jobs by kind, for deadlines and copies: a reduction of a head takes minutes
+/// where a simulation takes tenths of a second.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Times {
+pub(super) struct Times(BTreeMap<&'static str, Kind>);
+
+#[derive(Clone, Debug, Default)]
+struct Kind {
     recent: VecDeque<u64>,
-    median: Option<Duration>,
+    longest: Duration,
+    /// What 95 % of the recent jobs needed at most.
+    usual: Option<Duration>,
     since: usize,
 }
 
 impl Times {
     const KEPT: usize = 101;
     const RENEW: usize = 8;
+    /// Least share of recent jobs that needed no more than the usual time [percent].
+    const USUAL: usize = 95;
 
     /// A job took so long.
-    pub(super) fn add(&mut self, wall_us: u64, policy: &Policy) {
-        if self.recent.len() == Self::KEPT {
-            self.recent.pop_front();
+    pub(super) fn add(&mut self, kind: &'static str, wall_us: u64, policy: &Policy) {
+        let kind = self.0.entry(kind).or_default();
+        if kind.recent.len() == Self::KEPT {
+            kind.recent.pop_front();
         }
-        self.recent.push_back(wall_us);
-        self.since += 1;
-        let enough = self.recent.len() >= policy.deadline_samples;
-        if enough && (self.median.is_none() || self.since >= Self::RENEW) {
-            let mut sorted: Vec<u64> = self.recent.iter().copied().collect();
+        kind.recent.push_back(wall_us);
+        kind.longest = kind.longest.max(Duration::from_micros(wall_us));
+        kind.since += 1;
+        let enough = kind.recent.len() >= policy.deadline_samples;
+        if enough && (kind.usual.is_none() || kind.since >= Self::RENEW) {
+            let mut sorted: Vec<u64> = kind.recent.iter().copied().collect();
             sorted.sort_unstable();
-            self.median = sorted
-                .get(sorted.len() / 2)
-                .map(|us| Duration::from_micros(*us));
-            self.since = 0;
+            let at = (sorted.len() * Self::USUAL).div_ceil(100).saturating_sub(1);
+            kind.usual = sorted.get(at).map(|us| Duration::from_micros(*us));
+            kind.since = 0;
         }
     }
 
     /// Time for the next attempt of a job that was overdue `overdue` times.
-    pub(super) fn deadline(&self, overdue: u32, policy: &Policy) -> Duration {
-        let once = self.median.map_or(policy.first_deadline, |median| {
-            (median * policy.deadline_factor).max(policy.least_deadline)
+    pub(super) fn deadline(&self, kind: &'static str, overdue: u32, policy: &Policy) -> Duration {
+        let known = self.0.get(kind);
+        let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
+        let once = usual.map_or(policy.first_deadline, |(usual, longest)| {
+            usual
+                .saturating_mul(policy.deadline_factor)
+                .max(longest.saturating_mul(policy.longest_factor))
+                .max(policy.least_deadline)
         });
-        once * 2_u32.saturating_pow(overdue.min(8))
+        once.saturating_mul(2_u32.saturating_pow(overdue.min(8)))
+    }
+
+    /// Whether a slot would wait too long for its next order if it did not have it already, `latency`
+    /// being the time from a result to the next job's beginning; until something is known, it would.
+    pub(super) fn needs_prefetch(
+        &self,
+        kind: &'static str,
+        latency: Option<Duration>,
+        policy: &Policy,
+    ) -> bool {
+        let usual = self.0.get(kind).and_then(|kind| kind.usual);
+        let known = usual.zip(latency);
+        known.is_none_or(|(usual, latency)| {
+            latency.saturating_mul(100) > usual.saturating_mul(policy.prefetch_percent)
+        })
+    }
+
+    /// How long a job must have been computed before an idle slot may take a copy of it; none
+    /// before anything is known.
+    pub(super) fn copy_after(&self, kind: &'static str, policy: &Policy) -> Option<Duration> {
+        let usual = self.0.get(kind)?.usual?;
+        Some((usual.saturating_mul(policy.copy_percent) / 100).max(policy.copy_least))
     }
 }
 
@@ -139,19 +217,57 @@ impl Times {
 mod tests {
     use super::*;
 
-    #[test]
-    fn deadlines_follow_the_median_not_the_mean() {
-        let policy = Policy::default();
+    fn after(seconds: impl IntoIterator<Item = u64>) -> Times {
         let mut times = Times::default();
-        assert_eq!(times.deadline(0, &policy), Duration::from_mins(2));
-        for seconds in [7, 8, 9, 900, 8] {
-            times.add(seconds * 1_000_000, &policy);
+        for seconds in seconds {
+            times.add("score", seconds * 1_000_000, &Policy::default());
         }
-        assert_eq!(times.deadline(0, &policy), Duration::from_secs(40));
-        assert_eq!(times.deadline(1, &policy), Duration::from_secs(80));
-        for _ in 0..200 {
-            times.add(1_000, &policy);
+        times
+    }
+
+    #[test]
+    fn a_deadline_follows_the_quantile_of_its_own_kind() {
+        let policy = Policy::default();
+        let none = Times::default();
+        assert_eq!(none.deadline("score", 0, &policy), Duration::from_mins(2));
+        let times = after([7, 8, 9, 10, 8]);
+        assert_eq!(times.deadline("score", 0, &policy), Duration::from_secs(40));
+        assert_eq!(times.deadline("score", 1, &policy), Duration::from_secs(80));
+        assert_eq!(
+            times.deadline("score", 2, &policy),
+            Duration::from_secs(160)
+        );
+        assert_eq!(
+            times.deadline("reduce_head", 0, &policy),
+            Duration::from_mins(2),
+            "nothing is known of that kind"
+        );
+    }
+
+    /// Most runs fail early and are short: those that work must not be taken for overdue.
+    #[test]
+    fn many_short_failures_do_not_shorten_the_deadline_of_good_runs() {
+        let policy = Policy::default();
+        let times = after((0..100).map(|n| if n % 10 == 0 { 30 } else { 1 }));
+        assert_eq!(
+            times.deadline("score", 0, &policy),
+            Duration::from_secs(120)
+        );
+        // only one in fifty works: the longest that ever did still has time
+        let times = after((0..100).map(|n| if n == 7 { 30 } else { 1 }));
+        assert_eq!(times.deadline("score", 0, &policy), Duration::from_secs(60));
+    }
+
+    #[test]
+    fn no_deadline_is_below_the_least_and_a_liar_cannot_overflow_it() {
+        let policy = Policy::default();
+        let times = after([0; 50]);
+        assert_eq!(times.deadline("score", 0, &policy), policy.least_deadline);
+        assert_eq!(times.copy_after("score", &policy), Some(policy.copy_least));
+        let mut times = Times::default();
+        for _ in 0..9 {
+            times.add("score", u64::MAX, &policy);
         }
-        assert_eq!(times.deadline(0, &policy), Duration::from_secs(10));
+        assert!(times.deadline("score", 8, &policy) > Duration::from_hours(1000));
     }
 }

@@ -1,9 +1,12 @@
 //! What becomes of results and failures.
 use super::{
-    Core, assign,
+    Core,
+    account::{self, Use},
+    assign,
     input::Command,
     membership,
     notice::{Notice, Stop},
+    reconcile,
 };
 use protocol::{
     event::Finished,
@@ -22,14 +25,11 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     if let Some(waiting) = core.storing.get_mut(&job) {
         if !waiting.contains(&(from, done.attempt)) {
             waiting.push((from, done.attempt));
-            if let Some(member) = core.members.get_mut(&from) {
-                member.spent.duplicate_us += done.wall_us;
-            }
         }
         core.counts.duplicates += 1;
         return;
     }
-    if core.finished.contains(&job) {
+    if core.finished.contains(job) {
         core.send(from, ToWorker::Stored(vec![done.attempt]));
         core.counts.duplicates += 1;
         return;
@@ -40,41 +40,51 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         }
         return;
     };
-    if pending.work != done.work {
-        // an answer to another question, of another run or build: forget it
+    let held = core.members.get(&from).is_some_and(|member| {
+        let mut leases = member.leases.iter();
+        leases.any(|lease| lease.attempt == done.attempt)
+    });
+    let (wall_us, kind) = (done.wall_us, pending.job.kind());
+    let failure = if pending.work == done.work {
+        match done.outcome {
+            Outcome::Failed(failure) => failure,
+            outcome @ (Outcome::Scored(_)
+            | Outcome::Simulated(_)
+            | Outcome::Observed(_)
+            | Outcome::Described(_)
+            | Outcome::HeadReduced(_)
+            | Outcome::Nothing(_)) => {
+                if let Some(member) = core.members.get_mut(&from) {
+                    member.done += 1;
+                }
+                core.times.add(kind, wall_us, &core.options.policy);
+                core.counts.succeeded += 1;
+                accept(core, Some(from), Done { outcome, ..done });
+                return;
+            }
+        }
+    } else if held {
+        // it was given this job and did another: it reads jobs in another way than we do
+        Failure::Refused {
+            reason: format!(
+                "it answered for the work {} when it was given {}; use the same build of \
+                 horsehead-worker on every machine",
+                done.work, pending.work
+            ),
+        }
+    } else {
+        // an answer to another question, of another run: forget it
         core.send(from, ToWorker::Stored(vec![done.attempt]));
         return;
+    };
+    core.send(from, ToWorker::Stored(vec![done.attempt]));
+    if let Some(member) = core.members.get_mut(&from) {
+        member.failed += 1;
     }
-    match done.outcome {
-        Outcome::Failed(failure) => {
-            let held = core.members.get(&from).is_some_and(|member| {
-                member
-                    .leases
-                    .iter()
-                    .any(|lease| lease.attempt == done.attempt)
-            });
-            core.send(from, ToWorker::Stored(vec![done.attempt]));
-            if let Some(member) = core.members.get_mut(&from) {
-                member.failed += 1;
-                member.spent.failed_us += done.wall_us;
-            }
-            // a failure of an attempt that was taken away says nothing about the job
-            if held {
-                failed(core, from, job, failure, now);
-            }
-        }
-        Outcome::Scored(_)
-        | Outcome::Simulated(_)
-        | Outcome::HeadReduced(_)
-        | Outcome::Nothing(_) => {
-            if let Some(member) = core.members.get_mut(&from) {
-                member.done += 1;
-                member.spent.useful_us += done.wall_us;
-            }
-            core.times.add(done.wall_us, &core.options.policy);
-            core.counts.succeeded += 1;
-            accept(core, Some(from), done);
-        }
+    // a failure of an attempt that was taken away says nothing about the job
+    if held {
+        assign::release(core, from, job, Use::Failed(wall_us));
+        failed(core, from, job, failure, now);
     }
 }
 
@@ -86,11 +96,23 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
     };
     core.queue.remove(&job);
     for holder in pending.holders {
-        let lease = core
-            .members
-            .get_mut(&holder)
-            .and_then(|member| member.drop_lease(job));
-        if let (Some(lease), false) = (lease, Some(holder) == from) {
+        let Some(member) = core.members.get_mut(&holder) else {
+            continue;
+        };
+        let Some(lease) = member.drop_lease(job, &core.clocks) else {
+            continue;
+        };
+        if Some(holder) == from {
+            if lease.prompt {
+                let fresh = lease
+                    .held
+                    .saturating_sub(Duration::from_micros(done.wall_us));
+                let before = core.latency.unwrap_or(fresh);
+                core.latency = Some((before * 7 + fresh) / 8);
+            }
+            account::attribute(member, &lease, Use::Useful(done.wall_us));
+        } else {
+            account::attribute(member, &lease, Use::Speculative);
             core.send(holder, ToWorker::Cancel(lease.attempt));
         }
     }
@@ -126,7 +148,7 @@ pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
     }
 }
 
-/// An attempt failed: try again, or give the job up.
+/// An attempt failed, whose worker no longer holds it: try again, or give the job up.
 pub(super) fn failed(
     core: &mut Core,
     worker: WorkerId,
@@ -134,7 +156,6 @@ pub(super) fn failed(
     failure: Failure,
     now: Duration,
 ) {
-    assign::release(core, worker, job);
     let policy = &core.options.policy;
     let Some(pending) = core.jobs.get_mut(&job) else {
         return;
@@ -159,7 +180,7 @@ pub(super) fn failed(
     if !again {
         give_up(core, job, failure);
     }
-    assign::adopt(core, job, now);
+    reconcile::adopt(core, job, now);
 }
 
 fn give_up(core: &mut Core, job: JobId, failure: Failure) {
@@ -199,6 +220,8 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
         Outcome::Failed(_)
         | Outcome::Scored(_)
         | Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::Described(_)
         | Outcome::HeadReduced(_)
         | Outcome::Nothing(_) => {
             accept(core, None, done);

@@ -1,6 +1,5 @@
 //! The state of a run at a moment, for progress lines and reports.
-use super::state::Spent;
-use protocol::id::WorkerId;
+use protocol::{event::Spent, id::WorkerId};
 
 /// A moment of a run.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -17,12 +16,16 @@ pub struct Snapshot {
     pub lost: u32,
     /// Jobs given up by this process.
     pub failed: u32,
-    /// Attempts beyond the first of their job, by this process.
+    /// Attempts after one that was lost or failed, by this process.
     pub repeated: u32,
+    /// Copies of slow jobs that idle workers were given, by this process.
+    pub copies: u32,
     /// Results that came after another had been accepted.
     pub duplicates: u64,
-    /// Slot time of all workers by use.
+    /// Slot time of all workers by use, those that left included.
     pub spent: Spent,
+    /// Whether the journal cannot be written, so that nothing is given out.
+    pub paused: bool,
 }
 
 /// A worker at a moment.

@@ -1,5 +1,8 @@
 //! What the core remembers of jobs and workers.
-use super::policy::Failures;
+use super::{
+    account::{Clocks, Purse, settle},
+    policy::Failures,
+};
 use protocol::{
     announce::Announcement,
     id::{ContentHash, JobId, WorkerId},
@@ -30,6 +33,24 @@ pub(super) struct Lease {
     /// When the worker first said that it computes it.
     pub(super) running: Option<Duration>,
     pub(super) deadline: Duration,
+    /// How long it has been computing, as far as the account of its worker is settled.
+    pub(super) held: Duration,
+    /// It was sent to a slot that had nothing to do.
+    pub(super) prompt: bool,
+}
+
+impl Lease {
+    /// A job that was just sent.
+    pub(super) const fn new(attempt: Attempt, deadline: Duration, sent: Duration) -> Self {
+        Self {
+            attempt,
+            sent,
+            running: None,
+            deadline,
+            held: Duration::ZERO,
+            prompt: false,
+        }
+    }
 }
 
 /// An admitted worker.
@@ -38,7 +59,7 @@ pub(super) struct Member {
     pub(super) announcement: Announcement,
     pub(super) since: Duration,
     pub(super) heard: Duration,
-    /// It has the case and may be given jobs.
+    /// It has the case, has proved that it computes as the others do, and may be given jobs.
     pub(super) ready: bool,
     /// In the order in which they were sent; about the first `slots` of them compute.
     pub(super) leases: Vec<Lease>,
@@ -48,7 +69,7 @@ pub(super) struct Member {
     pub(super) claims: Vec<Attempt>,
     pub(super) done: u64,
     pub(super) failed: u64,
-    pub(super) spent: Spent,
+    pub(super) purse: Purse,
 }
 
 impl Member {
@@ -60,7 +81,19 @@ impl Member {
         self.leases.iter().any(|lease| lease.attempt.job == job)
     }
 
-    pub(super) fn drop_lease(&mut self, job: JobId) -> Option<Lease> {
+    /// How many slots have nothing to compute.
+    pub(super) fn idle(&self) -> usize {
+        self.slots().saturating_sub(self.leases.len())
+    }
+
+    pub(super) fn add_lease(&mut self, lease: Lease, clocks: &Clocks) {
+        settle(self, clocks);
+        let prompt = self.idle() > 0;
+        self.leases.push(Lease { prompt, ..lease });
+    }
+
+    pub(super) fn drop_lease(&mut self, job: JobId, clocks: &Clocks) -> Option<Lease> {
+        settle(self, clocks);
         let at = self
             .leases
             .iter()
@@ -68,36 +101,5 @@ impl Member {
         let lease = self.leases.remove(at);
         self.alone &= !self.leases.is_empty();
         Some(lease)
-    }
-}
-
-/// Slot time by use \[us\].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Spent {
-    /// Slots times the time they were connected.
-    pub connected_us: u64,
-    /// On accepted results.
-    pub useful_us: u64,
-    /// On attempts that failed.
-    pub failed_us: u64,
-    /// On results that others had brought before.
-    pub duplicate_us: u64,
-}
-
-impl Spent {
-    /// Slot time without a job, or with one that was lost \[us\].
-    pub const fn idle_us(&self) -> u64 {
-        self.connected_us
-            .saturating_sub(self.useful_us)
-            .saturating_sub(self.failed_us)
-            .saturating_sub(self.duplicate_us)
-    }
-
-    /// Adds another account.
-    pub const fn add(&mut self, other: &Self) {
-        self.connected_us += other.connected_us;
-        self.useful_us += other.useful_us;
-        self.failed_us += other.failed_us;
-        self.duplicate_us += other.duplicate_us;
     }
 }

@@ -5,13 +5,18 @@
 //! ```
 //!
 //! Each record carries its own mark and checksum, so that a flipped byte, a zeroed block or a
-//! torn tail costs the records it touched and no other. Readers are folds over the events
-//! ([`fold`]). The writer ([`Journal`]) holds a lock, so that one run has one writer.
+//! torn tail costs the records it touched and no other. What the run *is* stands in the first
+//! record, in every later opening's, and in a file of its own ([`HEAD`]): no single damage makes
+//! a run impossible to continue. Readers are folds over the events ([`fold`]). The writer
+//! ([`Journal`]) holds a lock, so that one run has one writer; on a full disk it waits.
+mod head;
+mod open;
 mod read;
 mod write;
 
+pub use open::{Begun, Journal};
 pub use read::{Damage, Entry, ReadReport, fold};
-pub use write::{Appended, Begun, Journal};
+pub use write::Appended;
 
 use protocol::{event::RunHeader, wire::WireError};
 use serde_json::Value;
@@ -23,6 +28,8 @@ use std::{
 
 /// Name of the journal within a run's folder.
 pub const FILE: &str = "journal.hhj";
+/// Name of the copy of the journal's first record within a run's folder.
+pub const HEAD: &str = "journal.head";
 /// Name of the lock within a run's folder.
 pub const LOCK: &str = "lock";
 
@@ -69,10 +76,10 @@ pub enum JournalError {
         /// What differs, with both values.
         what: Vec<String>,
     },
-    /// The first record, which says what the run is, is lost.
+    /// Every record that says what the run is, is lost, and so is the copy beside the journal.
     #[error(
-        "the journal {} has lost its first record, so it cannot be continued: choose another run \
-         folder",
+        "nothing says any more what run the journal {} belongs to (every copy of its first record \
+         is lost), so it cannot be continued: choose another run folder",
         path.display()
     )]
     Headless {

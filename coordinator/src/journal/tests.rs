@@ -56,7 +56,12 @@ fn read(path: &Path) -> (BTreeMap<u64, Event>, Option<RunId>, Vec<Damage>) {
         Event::Finished(finished) => {
             results.insert(finished.job().0, Event::Finished(finished));
         }
-        Event::Opened { .. } | Event::Joined { .. } | Event::Left { .. } | Event::Closed => {}
+        Event::Opened { .. }
+        | Event::Joined { .. }
+        | Event::Left { .. }
+        | Event::Closed
+        | Event::Proved { .. }
+        | Event::Accounted(_) => {}
     });
     (results, begun, report.unwrap().damage)
 }
@@ -176,9 +181,30 @@ fn every_truncation_loses_only_the_cut_records() {
     assert_eq!(kept, 0);
 }
 
-/// A flipped byte costs one record; the one before and the one behind it stay.
+/// Whether the next process goes on with a damaged journal: it keeps the run's name and every
+/// result that can be read, computes the others again, and never names an attempt as before.
+fn goes_on(folder: &Path, bytes: &[u8], jobs: u64, what: &str) -> usize {
+    fs::write(folder.join(FILE), bytes).unwrap();
+    let (results, _, _) = read(&folder.join(FILE));
+    expect_true(&results);
+    let (journal, begun) = open(folder).unwrap_or_else(|error| panic!("{what}: {error}"));
+    assert_eq!(begun.run, RunId(5), "{what}");
+    assert!(begun.epoch >= 2, "{what}: epoch {}", begun.epoch);
+    assert_eq!(journal.finished().count(), results.len(), "{what}");
+    for job in (1..=jobs).filter(|job| !results.contains_key(job)) {
+        assert_eq!(journal.recall(JobId(job)).unwrap(), None, "{what}");
+        journal.append(result(job)).unwrap();
+    }
+    drop(journal);
+    let (all, _, _) = read(&folder.join(FILE));
+    expect_true(&all);
+    assert_eq!(all.len() as u64, jobs, "{what}");
+    results.len()
+}
+
+/// A flipped byte costs one record; those before and behind it stay, and the run goes on.
 #[test]
-fn every_flipped_byte_loses_one_record() {
+fn every_flipped_byte_loses_one_record_and_the_run_goes_on() {
     let folder = tempfile::tempdir().unwrap();
     let whole = written(folder.path(), 5);
     let path = folder.path().join(FILE);
@@ -193,51 +219,103 @@ fn every_flipped_byte_loses_one_record() {
             assert!(lost <= 1, "{lost} lost by byte {at}");
             assert_eq!(damage.len(), 1, "byte {at}");
         }
+        let mut bytes = whole.clone();
+        bytes[at] ^= 0xff;
+        goes_on(folder.path(), &bytes, 5, &format!("byte {at}"));
     }
 }
 
-/// A block of zeros, as a file system leaves it after a crash, costs the records under it.
+/// The copy of the first record is not needed while the journal has its own, and whatever becomes
+/// of it does no harm.
 #[test]
-fn a_zeroed_block_loses_only_what_it_covers() {
+fn damage_of_the_copy_does_no_harm() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = written(folder.path(), 3);
+    let copy = fs::read(folder.path().join(HEAD)).unwrap();
+    for at in 0..copy.len() {
+        let mut bytes = copy.clone();
+        bytes[at] ^= 0xff;
+        fs::write(folder.path().join(HEAD), &bytes).unwrap();
+        assert_eq!(goes_on(folder.path(), &whole, 3, &format!("copy {at}")), 3);
+        assert_eq!(fs::read(folder.path().join(HEAD)).unwrap(), copy, "mended");
+    }
+    fs::remove_file(folder.path().join(HEAD)).unwrap();
+    assert_eq!(goes_on(folder.path(), &whole, 3, "no copy"), 3);
+}
+
+/// A block of zeros, as a file system leaves it after a crash, costs the records under it,
+/// wherever it lies.
+#[test]
+fn every_zeroed_block_loses_only_what_it_covers() {
+    const BLOCK: usize = 8192;
     let folder = tempfile::tempdir().unwrap();
     let whole = written(folder.path(), 400);
-    let path = folder.path().join(FILE);
     let record = record_length();
-    let from = whole.len() / 2;
-    let mut bytes = whole;
-    bytes[from..from + 8192].fill(0);
-    fs::write(&path, &bytes).unwrap();
-    let (results, begun, damage) = read(&path);
-    expect_true(&results);
-    assert_eq!(begun, Some(RunId(5)));
-    let lost = 400 - results.len();
-    assert!(
-        (8192 / record..=8192 / record + 2).contains(&lost),
-        "{lost} lost"
-    );
-    assert_eq!(damage.len(), 1);
-    assert!(damage[0].to_string().contains("skipped"));
-    let (journal, begun) = open(folder.path()).unwrap();
-    assert_eq!(
-        (journal.finished().count(), begun.report.damage.len()),
-        (results.len(), 1)
-    );
+    assert!(whole.len() > 5 * BLOCK, "{}", whole.len());
+    // aligned as on a disk, and the same moved by odd numbers
+    for shift in [0, 1, 511, 4096] {
+        for from in (shift..whole.len()).step_by(BLOCK) {
+            let to = (from + BLOCK).min(whole.len());
+            let mut bytes = whole.clone();
+            bytes[from..to].fill(0);
+            let kept = goes_on(folder.path(), &bytes, 400, &format!("zeros from {from}"));
+            let lost = 400 - kept;
+            let most = (to - from).div_ceil(record) + 1;
+            assert!(
+                lost <= most,
+                "{lost} lost by zeros from {from}, {most} touched"
+            );
+        }
+    }
+}
+
+/// A journal that fits into one block is lost with it, but not the run.
+#[test]
+fn a_journal_of_zeros_is_begun_anew_under_its_own_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = written(folder.path(), 3);
+    let zeros = vec![0; whole.len()];
+    assert_eq!(goes_on(folder.path(), &zeros, 3, "all zeros"), 0);
+    let zeros = vec![0; 3 * 8192];
+    assert_eq!(goes_on(folder.path(), &zeros, 3, "more zeros"), 0);
 }
 
 fn record_length() -> usize {
     protocol::wire::encode(&result(1)).unwrap().len() + RECORD_HEADER
 }
 
+/// What is left then might be of another case: no result could be trusted.
 #[test]
-fn a_journal_without_its_first_record_is_not_continued() {
+fn a_journal_of_which_nothing_says_what_it_is_is_not_continued() {
     let folder = tempfile::tempdir().unwrap();
     let mut bytes = written(folder.path(), 2);
     bytes[6] ^= 0xff;
     fs::write(folder.path().join(FILE), bytes).unwrap();
+    fs::remove_file(folder.path().join(HEAD)).unwrap();
     assert!(matches!(
         open(folder.path()),
         Err(JournalError::Headless { .. })
     ));
+}
+
+/// A copy that was left beside an empty journal binds nobody; beside results it does.
+#[test]
+fn a_copy_of_another_run_refuses_only_if_there_is_something_to_mix() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bytes = written(folder.path(), 2);
+    bytes[6] ^= 0xff;
+    let other = RunHeader {
+        settings: "{}".to_owned(),
+        ..header()
+    };
+    fs::write(folder.path().join(FILE), &bytes).unwrap();
+    assert!(matches!(
+        Journal::open(folder.path(), &other, RunId(6), 1, |_| {}),
+        Err(JournalError::Differs { .. })
+    ));
+    fs::write(folder.path().join(FILE), []).unwrap();
+    let (_, begun) = Journal::open(folder.path(), &other, RunId(6), 1, |_| {}).unwrap();
+    assert_eq!((begun.run, begun.epoch), (RunId(6), 1));
 }
 
 #[test]

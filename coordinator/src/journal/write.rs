@@ -1,47 +1,21 @@
-//! Writing a journal: one thread, one flush for all records that wait.
-use super::{
-    FILE, JournalError, LOCK, MARK, RECORD_HEADER, differences,
-    read::{Entry, ReadReport, checksum, fold},
-};
-use protocol::{
-    event::{Event, Finished, RunHeader},
-    id::{JobId, RunId},
-    wire,
-};
+//! Writing a journal: one thread, one flush for all records that wait, and patience with a disk
+//! that is full.
+use super::{MARK, RECORD_HEADER, read::checksum};
+use protocol::{event::Event, id::JobId, wire};
 use std::{
-    collections::BTreeMap,
-    fs::{File, OpenOptions, TryLockError},
+    fs::File,
     io::{self, Seek, SeekFrom, Write},
-    os::unix::fs::FileExt,
-    path::{Path, PathBuf},
-    sync::mpsc,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
     thread,
     time::Duration,
 };
 
 /// Pause between attempts to write to a full disk.
 const RETRY: Duration = Duration::from_secs(1);
-
-/// More unreadable bytes than this (bytes) are not just a first record cut short, but a journal of
-/// something else: it is left alone.
-const UNFINISHED: u64 = 4096;
-
-fn torn_bytes(report: &ReadReport) -> u64 {
-    report.damage.iter().map(|damage| damage.bytes).sum()
-}
-
-/// What an opened journal says of its run.
-#[derive(Clone, Debug)]
-pub struct Begun {
-    /// The run's name.
-    pub run: RunId,
-    /// Which coordinator process this is, from 1.
-    pub epoch: u32,
-    /// Numerics of the run's first worker.
-    pub model_digest: Option<String>,
-    /// What reading it was like.
-    pub report: ReadReport,
-}
 
 /// What the writing thread says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,243 +28,8 @@ pub enum Appended {
     Resumed,
 }
 
-/// A journal open for writing; one per run at a time.
-#[derive(Debug)]
-pub struct Journal {
-    path: PathBuf,
-    /// For reading results back.
-    file: File,
-    index: BTreeMap<JobId, Entry>,
-    to_writer: Option<mpsc::Sender<Event>>,
-    writer: Option<thread::JoinHandle<()>>,
-    /// Held until the process ends.
-    _lock: File,
-}
-
-impl Journal {
-    /// Opens the journal of a run folder, or begins it; `said` is called from the writing thread.
-    ///
-    /// # Errors
-    /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Headless`] or
-    /// [`JournalError::Io`].
-    pub fn open(
-        folder: &Path,
-        header: &RunHeader,
-        fresh: RunId,
-        at_unix_ms: u64,
-        said: impl FnMut(Appended) + Send + 'static,
-    ) -> Result<(Self, Begun), JournalError> {
-        let failed = |doing, path: &Path| {
-            let path = path.to_owned();
-            move |source| JournalError::Io {
-                doing,
-                path,
-                source,
-            }
-        };
-        std::fs::create_dir_all(folder).map_err(failed("create", folder))?;
-        let lock = lock(folder)?;
-        let path = folder.join(FILE);
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(&path)
-            .map_err(failed("open", &path))?;
-        let mut past = Past::default();
-        let report = fold(&path, |entry, event| past.apply(entry, event))?;
-        let known = identify(folder, header, &past, &report)?;
-        // a torn tail is of no use to anyone
-        file.set_len(report.end).map_err(failed("shorten", &path))?;
-        file.seek(SeekFrom::End(0)).map_err(failed("open", &path))?;
-        let run = known.unwrap_or(fresh);
-        if known.is_none() {
-            let begun = Event::Begun {
-                run,
-                header: header.clone(),
-            };
-            append(&mut file, &begun).map_err(failed("write", &path))?;
-        }
-        let epoch = past.epoch + 1;
-        append(&mut file, &Event::Opened { epoch, at_unix_ms }).map_err(failed("write", &path))?;
-        file.sync_data().map_err(failed("write", &path))?;
-        // the folder's own entry of the file must be safe too
-        let synced = File::open(folder).and_then(|folder| folder.sync_all());
-        synced.map_err(failed("write", folder))?;
-        let reader = File::open(&path).map_err(failed("open", &path))?;
-        let (to_writer, events) = mpsc::channel();
-        let writer = thread::Builder::new()
-            .name("journal".to_owned())
-            .spawn(move || {
-                Writer {
-                    file,
-                    said,
-                    paused: false,
-                }
-                .run(&events);
-            })
-            .map_err(failed("start the thread of", &path))?;
-        let begun = Begun {
-            run,
-            epoch,
-            model_digest: past.model_digest,
-            report,
-        };
-        let journal = Self {
-            path,
-            file: reader,
-            index: past.index,
-            to_writer: Some(to_writer),
-            writer: Some(writer),
-            _lock: lock,
-        };
-        Ok((journal, begun))
-    }
-
-    /// Jobs whose results the journal held when it was opened.
-    pub fn finished(&self) -> impl Iterator<Item = JobId> + '_ {
-        self.index.keys().copied()
-    }
-
-    /// A result from before this process; `None` if there is none.
-    ///
-    /// # Errors
-    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read again.
-    pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
-        let Some(entry) = self.index.get(&job) else {
-            return Ok(None);
-        };
-        let mut body = vec![0; entry.length as usize];
-        self.file
-            .read_exact_at(&mut body, entry.at)
-            .map_err(|source| JournalError::Io {
-                doing: "read",
-                path: self.path.clone(),
-                source,
-            })?;
-        match wire::decode(&body)? {
-            Event::Finished(finished) => Ok(Some(*finished)),
-            Event::Begun { .. }
-            | Event::Opened { .. }
-            | Event::Joined { .. }
-            | Event::Left { .. }
-            | Event::Closed => Ok(None),
-        }
-    }
-
-    /// Hands an event to the writing thread.
-    ///
-    /// # Errors
-    /// [`JournalError::Closed`] if that thread has ended.
-    pub fn append(&self, event: Event) -> Result<(), JournalError> {
-        let sent = self
-            .to_writer
-            .as_ref()
-            .is_some_and(|to| to.send(event).is_ok());
-        if sent {
-            Ok(())
-        } else {
-            Err(JournalError::Closed)
-        }
-    }
-
-    /// Waits until everything is on the disk.
-    pub fn close(&mut self) {
-        self.to_writer = None;
-        if let Some(writer) = self.writer.take()
-            && writer.join().is_err()
-        {
-            tracing::error!("the journal's thread panicked");
-        }
-    }
-
-    /// Number of results it held when it was opened.
-    pub fn len(&self) -> usize {
-        self.index.len()
-    }
-
-    /// Whether it holds no result.
-    pub fn is_empty(&self) -> bool {
-        self.index.is_empty()
-    }
-}
-
-impl Drop for Journal {
-    fn drop(&mut self) {
-        self.close();
-    }
-}
-
-/// What the past of a run says, folded.
-#[derive(Default)]
-struct Past {
-    begun: Option<(RunId, RunHeader)>,
-    epoch: u32,
-    model_digest: Option<String>,
-    index: BTreeMap<JobId, Entry>,
-}
-
-impl Past {
-    fn apply(&mut self, entry: Entry, event: Event) {
-        match event {
-            Event::Begun { run, header } => self.begun = self.begun.take().or(Some((run, header))),
-            Event::Opened { epoch, .. } => self.epoch = self.epoch.max(epoch),
-            Event::Joined { model_digest, .. } => {
-                self.model_digest.get_or_insert(model_digest);
-            }
-            Event::Finished(finished) => {
-                // should a job ever be there twice, the first counts
-                self.index.entry(finished.job()).or_insert(entry);
-            }
-            Event::Left { .. } | Event::Closed => {}
-        }
-    }
-}
-
-/// The run of a journal; none if it is yet to be begun.
-fn identify(
-    folder: &Path,
-    header: &RunHeader,
-    past: &Past,
-    report: &ReadReport,
-) -> Result<Option<RunId>, JournalError> {
-    match &past.begun {
-        Some((run, was)) if was == header => Ok(Some(*run)),
-        Some((_, was)) => Err(JournalError::Differs {
-            folder: folder.to_owned(),
-            what: differences(was, header),
-        }),
-        None if report.records == 0 && torn_bytes(report) <= UNFINISHED => Ok(None),
-        None => Err(JournalError::Headless {
-            path: folder.join(FILE),
-        }),
-    }
-}
-
-fn lock(folder: &Path) -> Result<File, JournalError> {
-    let path = folder.join(LOCK);
-    let failed = |source| JournalError::Io {
-        doing: "lock",
-        path: path.clone(),
-        source,
-    };
-    let lock = OpenOptions::new()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(&path);
-    let lock = lock.map_err(failed)?;
-    match lock.try_lock() {
-        Ok(()) => Ok(lock),
-        Err(TryLockError::WouldBlock) => Err(JournalError::Locked {
-            folder: folder.to_owned(),
-        }),
-        Err(TryLockError::Error(source)) => Err(failed(source)),
-    }
-}
-
-fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
+/// Encodes an event as a record.
+pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
     let body = wire::encode(event)?;
     let length = u32::try_from(body.len()).map_err(|_| wire::WireError::TooLong {
         bytes: body.len(),
@@ -304,40 +43,82 @@ fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
     Ok(record)
 }
 
-fn append(file: &mut File, event: &Event) -> io::Result<()> {
-    file.write_all(&record(event).map_err(io::Error::other)?)
+/// What records are written to.
+pub(super) trait Medium {
+    /// Adds bytes at the end; after an error any part of them may be there.
+    fn add(&mut self, bytes: &[u8]) -> io::Result<()>;
+    /// Makes what was added safe.
+    fn flush(&mut self) -> io::Result<()>;
+    /// Shortens to a length (bytes).
+    fn cut(&mut self, length: u64) -> io::Result<()>;
 }
 
-struct Writer<F> {
-    file: File,
+impl Medium for File {
+    fn add(&mut self, bytes: &[u8]) -> io::Result<()> {
+        self.write_all(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.sync_data()
+    }
+
+    fn cut(&mut self, length: u64) -> io::Result<()> {
+        self.set_len(length)?;
+        self.seek(SeekFrom::Start(length)).map(drop)
+    }
+}
+
+/// The writing thread's state.
+pub(super) struct Writer<M, F> {
+    medium: M,
+    /// End of the last record that is safe (bytes).
+    end: u64,
+    /// Something may lie behind it.
+    soiled: bool,
     said: F,
+    closing: Arc<AtomicBool>,
     paused: bool,
+    retry: Duration,
 }
 
-impl<F: FnMut(Appended)> Writer<F> {
-    fn run(&mut self, events: &mpsc::Receiver<Event>) {
+impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
+    /// Writes from `end` (bytes) on; `closing` makes it give up on a disk that takes nothing.
+    pub(super) const fn new(medium: M, end: u64, said: F, closing: Arc<AtomicBool>) -> Self {
+        Self {
+            medium,
+            end,
+            soiled: false,
+            said,
+            closing,
+            paused: false,
+            retry: RETRY,
+        }
+    }
+
+    /// Writes until the sender is gone.
+    pub(super) fn run(&mut self, events: &mpsc::Receiver<Event>) {
         while let Ok(first) = events.recv() {
             let mut batch = Vec::new();
             let mut jobs = Vec::new();
             for event in std::iter::once(first).chain(events.try_iter()) {
                 match record(&event) {
-                    Ok(record) => batch.extend_from_slice(&record),
+                    Ok(record) => {
+                        batch.extend_from_slice(&record);
+                        if let Event::Finished(finished) = &event {
+                            jobs.push(finished.job());
+                        }
+                    }
                     // unreachable for what came over the wire, which has the same limit
                     Err(error) => tracing::error!(%error, "an event cannot be recorded"),
                 }
-                if let Event::Finished(finished) = &event {
-                    jobs.push(finished.job());
-                }
             }
-            while let Err(error) = self.write(&batch) {
-                if !self.paused {
-                    self.paused = true;
-                    (self.said)(Appended::Paused(error.to_string()));
-                }
-                thread::sleep(RETRY);
-            }
-            if std::mem::take(&mut self.paused) {
-                (self.said)(Appended::Resumed);
+            if !self.insist(&batch) {
+                tracing::error!(
+                    "{} results were not written: no worker was told to forget them, they are \
+                     computed or handed in again",
+                    jobs.len()
+                );
+                return;
             }
             if !jobs.is_empty() {
                 (self.said)(Appended::Stored(jobs));
@@ -345,17 +126,187 @@ impl<F: FnMut(Appended)> Writer<F> {
         }
     }
 
-    /// Writes all or nothing.
+    /// Tries until it is done; `false` if the journal is being closed and it cannot be done.
+    fn insist(&mut self, batch: &[u8]) -> bool {
+        while let Err(error) = self.write(batch) {
+            if self.closing.load(Ordering::Relaxed) {
+                return false;
+            }
+            if !self.paused {
+                self.paused = true;
+                (self.said)(Appended::Paused(error.to_string()));
+            }
+            // closing ends this pause at once
+            thread::park_timeout(self.retry);
+        }
+        if std::mem::take(&mut self.paused) {
+            (self.said)(Appended::Resumed);
+        }
+        true
+    }
+
+    /// Writes all or nothing: what an attempt before left behind is cut off first.
     fn write(&mut self, batch: &[u8]) -> io::Result<()> {
-        let before = self.file.stream_position()?;
-        let written = self
-            .file
-            .write_all(batch)
-            .and_then(|()| self.file.sync_data());
-        if written.is_err() {
-            self.file.set_len(before)?;
-            self.file.seek(SeekFrom::Start(before))?;
+        if self.soiled {
+            self.medium.cut(self.end)?;
+            self.soiled = false;
+        }
+        self.soiled = true;
+        let written = self.medium.add(batch).and_then(|()| self.medium.flush());
+        if written.is_ok() {
+            self.soiled = false;
+            self.end += batch.len() as u64;
+        } else if self.medium.cut(self.end).is_ok() {
+            // no torn record is left behind should this process end now
+            self.soiled = false;
         }
         written
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::{
+        event::Finished,
+        id::{AttemptId, ContentHash},
+        job::Outcome,
+        message::Attempt,
+    };
+    use std::sync::Mutex;
+
+    /// A disk with room for so many bytes, that writes as much as fits and then complains.
+    #[derive(Clone)]
+    struct Full(Arc<Mutex<State>>);
+
+    struct State {
+        bytes: Vec<u8>,
+        room: usize,
+        /// Flushes and cuts that fail before one succeeds.
+        bad: usize,
+        attempts: usize,
+    }
+
+    impl State {
+        fn mishap(&mut self) -> io::Result<()> {
+            if self.bad > 0 {
+                self.bad -= 1;
+                return Err(io::Error::from(io::ErrorKind::Other));
+            }
+            Ok(())
+        }
+    }
+
+    impl Medium for Full {
+        fn add(&mut self, bytes: &[u8]) -> io::Result<()> {
+            let mut state = self.0.lock().unwrap();
+            state.attempts += 1;
+            let fits = bytes.len().min(state.room - state.bytes.len());
+            state.bytes.extend_from_slice(&bytes[..fits]);
+            if fits == bytes.len() {
+                Ok(())
+            } else {
+                Err(io::Error::from(io::ErrorKind::StorageFull))
+            }
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            self.0.lock().unwrap().mishap()
+        }
+
+        fn cut(&mut self, length: u64) -> io::Result<()> {
+            let mut state = self.0.lock().unwrap();
+            state.mishap()?;
+            state.bytes.truncate(usize::try_from(length).unwrap());
+            Ok(())
+        }
+    }
+
+    fn result(job: u64) -> Event {
+        Event::Finished(Box::new(Finished {
+            attempt: Attempt {
+                job: JobId(job),
+                attempt: AttemptId(1),
+            },
+            work: ContentHash::of(b"work"),
+            worker: None,
+            wall_us: 1,
+            outcome: Outcome::Nothing(vec![3; 50]),
+        }))
+    }
+
+    /// Writes results 0 to `jobs` onto a disk that is full and misbehaves; `relief` is called at
+    /// the first pause.
+    fn written(
+        jobs: u64,
+        state: State,
+        relief: impl Fn(&mut State, &AtomicBool),
+    ) -> (Vec<u8>, Vec<Appended>) {
+        let (to, events) = mpsc::channel();
+        for job in 0..jobs {
+            to.send(result(job)).unwrap();
+        }
+        drop(to);
+        let disk = Full(Arc::new(Mutex::new(state)));
+        let (shared, closing) = (disk.clone(), Arc::new(AtomicBool::new(false)));
+        let (mut heard, flag) = (Vec::new(), Arc::clone(&closing));
+        let said = |what: Appended| {
+            if matches!(what, Appended::Paused(_)) {
+                relief(&mut shared.0.lock().unwrap(), &flag);
+            }
+            heard.push(what);
+        };
+        let mut writer = Writer::new(disk.clone(), 0, said, closing);
+        writer.retry = Duration::from_millis(1);
+        writer.run(&events);
+        drop(writer);
+        let bytes = disk.0.lock().unwrap().bytes.clone();
+        (bytes, heard)
+    }
+
+    fn whole(jobs: u64) -> Vec<u8> {
+        (0..jobs)
+            .flat_map(|job| record(&result(job)).unwrap())
+            .collect()
+    }
+
+    #[test]
+    fn a_full_disk_pauses_and_loses_nothing_wherever_it_fills_up() {
+        let expected = whole(4);
+        for room in 0..expected.len() {
+            for bad in 0..4 {
+                let state = State {
+                    bytes: Vec::new(),
+                    room,
+                    bad,
+                    attempts: 0,
+                };
+                let (bytes, heard) = written(4, state, |state, _| state.room = usize::MAX);
+                assert_eq!(bytes, expected, "room {room}, {bad} mishaps");
+                assert!(
+                    matches!(
+                        &heard[..],
+                        [Appended::Paused(_), Appended::Resumed, Appended::Stored(jobs)]
+                            if jobs.len() == 4
+                    ),
+                    "room {room}: {heard:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_run_that_ends_while_the_disk_is_full_leaves_whole_records_and_acknowledges_nothing() {
+        let state = State {
+            bytes: Vec::new(),
+            room: whole(4).len() - 1,
+            bad: 0,
+            attempts: 0,
+        };
+        let (bytes, heard) = written(4, state, |_, closing| {
+            closing.store(true, Ordering::Relaxed);
+        });
+        assert!(bytes.is_empty(), "{bytes:?}");
+        assert!(matches!(&heard[..], [Appended::Paused(_)]), "{heard:?}");
     }
 }

@@ -3,8 +3,9 @@
 //! An empty field is a value that does not exist; numbers are written with all their digits.
 use super::data::{ConditionResult, HistoryPoint, Run, SingleRun};
 use super::words::condition_name;
+use crate::study::WorkPrecision;
 use protocol::case::{Case, GaugeRecord};
-use protocol::job::Simulation;
+use protocol::job::{Simulation, Verdict};
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.
@@ -165,6 +166,46 @@ pub fn history(to: impl Write, case: &Case, history: &[HistoryPoint]) -> Result<
         // every record has as many fields as the head, whatever the log holds
         fields.resize(width, String::new());
         writer.write_record(fields)?;
+    }
+    Ok(writer.flush()?)
+}
+
+/// Writes a comparison of methods: one row per run; the error is empty where the run did not end.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub fn work_precision(to: impl Write, all: &WorkPrecision) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    writer.write_record([
+        "integrator",
+        "tolerance",
+        "longest_step_s",
+        "complete",
+        "steps",
+        "rejected_steps",
+        "newton_iterations",
+        "jacobians",
+        "factorizations",
+        "wall_s",
+        "error_over_range",
+        "energy_error",
+    ])?;
+    for point in &all.points {
+        let counters = &point.counters;
+        writer.write_record([
+            point.integrator.as_str().to_owned(),
+            point.tolerance.to_string(),
+            point.longest_step_s.to_string(),
+            (point.verdict == Verdict::Complete).to_string(),
+            counters.steps.to_string(),
+            counters.rejected_steps.to_string(),
+            counters.newton_iterations.to_string(),
+            counters.jacobians.to_string(),
+            counters.factorizations.to_string(),
+            field(Some(point.wall_s)),
+            field(point.error),
+            field(Some(point.energy_error)),
+        ])?;
     }
     Ok(writer.flush()?)
 }

@@ -2,6 +2,7 @@
 //!
 //! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
 use protocol::case::Case;
+use protocol::event::Spent;
 use protocol::job::{Evaluation, Simulation};
 
 /// One parameter set of a calibration.
@@ -118,6 +119,8 @@ pub struct Calibration {
     pub history: Vec<HistoryPoint>,
     /// Who computed.
     pub workers: Vec<WorkerUse>,
+    /// How all slots spent their time, in all sessions of the run.
+    pub spent: Spent,
     /// Wall time of the whole run, in seconds.
     pub wall_s: f64,
     /// Why the search ended, in words.

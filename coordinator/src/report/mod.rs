@@ -7,6 +7,7 @@ pub mod chart;
 mod color;
 pub mod csv;
 mod data;
+pub mod diagnosis;
 pub mod html;
 mod number;
 mod section;
@@ -18,6 +19,7 @@ pub use data::{
     Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, SingleRun, WorkerUse,
 };
 
+use crate::study::WorkPrecision;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -114,6 +116,25 @@ pub fn write_simulation(folder: &Path, run: &SingleRun) -> Result<Vec<PathBuf>, 
     let figures = chart::simulation(&run.case, run.condition, &run.simulation)?;
     written.extend(write_figures(folder, &figures)?);
     Ok(written)
+}
+
+/// Writes a comparison of methods of integration into a folder, which is made if it does not exist:
+/// `integrators.svg` and `integrators.csv`. Returns the paths.
+///
+/// # Errors
+/// [`ReportError`] when the figure cannot be drawn or a file cannot be written.
+pub fn write_work_precision(
+    folder: &Path,
+    all: &WorkPrecision,
+) -> Result<Vec<PathBuf>, ReportError> {
+    let figure = chart::work_precision(all)?;
+    let name = format!("{}.svg", file_stem(&figure.name));
+    Ok(vec![
+        write(folder, &name, &figure.svg)?,
+        stream(folder, "integrators.csv", |file| {
+            csv::work_precision(file, all)
+        })?,
+    ])
 }
 
 fn write_figures(folder: &Path, figures: &[chart::Figure]) -> Result<Vec<PathBuf>, ReportError> {

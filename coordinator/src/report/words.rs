@@ -3,7 +3,7 @@
 //! Says what the data say and no more; every sentence stands by itself.
 use super::data::{Calibration, ConditionResult};
 use super::number::{figure, percent, unit};
-use protocol::case::{Case, Gene};
+use protocol::case::{Case, Gene, Integrator};
 use protocol::job::{ChannelScore, PhysicsFailure, Reached, Verdict};
 
 /// What to know of records that come from no test.
@@ -20,6 +20,18 @@ pub fn failure(kind: PhysicsFailure) -> &'static str {
         PhysicsFailure::TumbledCylinder => "a rope cylinder turned over",
         PhysicsFailure::StepUnderflow => "the step size fell below its limit",
         PhysicsFailure::Budget => "the iteration budget was used up",
+    }
+}
+
+/// A method of integration, as people call it.
+pub const fn integrator_name(integrator: Integrator) -> &'static str {
+    match integrator {
+        Integrator::TrBdf2 => "TR-BDF2",
+        Integrator::Esdirk4 => "ESDIRK4",
+        Integrator::Rodas4 => "RODAS4",
+        Integrator::GeneralizedAlpha => "generalised-alpha",
+        Integrator::Bdf => "BDF, order ≤ 2",
+        Integrator::Bdf5 => "BDF, order ≤ 5",
     }
 }
 

@@ -1,6 +1,10 @@
-//! The bus alone: jobs that do nothing, over real workers and a real journal.
+//! The bus alone: jobs that do nothing, over a real journal; workers are real processes, or
+//! sessions within this process where there are to be more of them than the machine can bear.
+mod sessions;
+
 use super::{Dispatch, DispatchError, DispatchOptions};
 use protocol::{id::JobId, job::Job};
+use sessions::Sessions;
 use std::{
     fs,
     time::{Duration, Instant},
@@ -8,15 +12,40 @@ use std::{
 
 /// Bytes of a job on its way to a worker, about those of a gene vector with its frame.
 const JOB_BYTES: usize = 1000;
-/// Bytes of a result, about those of a residual vector.
-const RESULT_BYTES: u32 = 10_000;
 /// Most jobs that are done one at a time, for the round trip.
 const ALONE: u64 = 1000;
+/// Jobs asked for ahead, per worker: enough to keep them busy.
+const AHEAD: u64 = 4;
+/// Parts of the measurement whose cost is compared.
+const PARTS: u64 = 10;
+
+/// Who does the jobs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Crew {
+    /// Worker processes with one slot process each, over TCP on loopback.
+    Processes,
+    /// Sessions of one thread of this process, over the memory link: frames, core and journal are
+    /// the real ones, transport and slots are not there.
+    Sessions,
+}
+
+/// What to measure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BenchPlan {
+    /// Who does the jobs.
+    pub crew: Crew,
+    /// How many of them.
+    pub workers: usize,
+    /// Jobs done as fast as possible.
+    pub jobs: u64,
+    /// Bytes of each result; a residual vector has about 10,000, a score 300.
+    pub result_bytes: u32,
+}
 
 /// What the bus costs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BenchResult {
-    /// Local workers with one slot each.
+    /// Workers with one slot each.
     pub workers: usize,
     /// Jobs done as fast as possible.
     pub jobs: u64,
@@ -26,8 +55,11 @@ pub struct BenchResult {
     pub rtt_p99_ms: f64,
     /// Jobs per second with all workers busy.
     pub jobs_per_s: f64,
-    /// Processor time of this process per job, with all workers busy \[us\].
+    /// Processor time of the coordinator per job, with all workers busy \[us\]: of this process,
+    /// less the thread of sessions.
     pub coordinator_cpu_us_per_job: f64,
+    /// The same for the last tenth of the jobs over the first: what stored results cost \[1\].
+    pub cost_ratio: f64,
     /// Memory of this process at the end (MiB).
     pub coordinator_rss_mib: f64,
 }
@@ -36,55 +68,98 @@ pub struct BenchResult {
 ///
 /// # Errors
 /// As [`Dispatch::open`] and [`Dispatch::next`].
-pub async fn bench(options: DispatchOptions, jobs: u64) -> Result<BenchResult, DispatchError> {
-    let workers = options.local_workers;
-    let mut dispatch = Dispatch::open(options).await?;
-    let mut id = 0;
+pub async fn bench(
+    mut options: DispatchOptions,
+    plan: BenchPlan,
+) -> Result<BenchResult, DispatchError> {
+    let (mut dispatch, sessions) = match plan.crew {
+        Crew::Processes => {
+            options.local_workers = plan.workers;
+            (Dispatch::open(options).await?, None)
+        }
+        Crew::Sessions => {
+            let mut sessions = None;
+            let dispatch = Dispatch::over(&options, |_, blob| {
+                let (end, started) = Sessions::start(plan.workers, blob);
+                sessions = Some(started);
+                end
+            })?;
+            (dispatch, sessions)
+        }
+    };
+    let mut load = Load {
+        plan,
+        next: 0,
+        open: 0,
+    };
     // the first jobs wait for the workers to start
-    for _ in 0..2 * workers.max(1) {
-        submit(&mut dispatch, &mut id)?;
-    }
-    for _ in 0..2 * workers.max(1) {
-        dispatch.next().await?;
-    }
+    load.run(&mut dispatch, 2 * plan.workers.max(1) as u64)
+        .await?;
     let mut trips = Vec::new();
-    for _ in 0..jobs.clamp(1, ALONE) {
+    for _ in 0..plan.jobs.clamp(1, ALONE) {
         let begun = Instant::now();
-        submit(&mut dispatch, &mut id)?;
-        dispatch.next().await?;
+        load.run(&mut dispatch, 1).await?;
         trips.push(begun.elapsed());
     }
     trips.sort_unstable();
-    let (begun, cpu) = (Instant::now(), cpu_time());
-    for _ in 0..jobs {
-        submit(&mut dispatch, &mut id)?;
+    let cost = || cpu_time(|thread| thread != sessions::THREAD);
+    let begun = Instant::now();
+    let mut marks = vec![cost()];
+    for part in 0..PARTS {
+        let jobs = plan.jobs * (part + 1) / PARTS - plan.jobs * part / PARTS;
+        load.run(&mut dispatch, jobs).await?;
+        marks.push(cost());
     }
-    for _ in 0..jobs {
-        dispatch.next().await?;
-    }
-    let (wall, cpu) = (begun.elapsed(), cpu_time().saturating_sub(cpu));
+    let wall = begun.elapsed();
+    let part = |n: usize| marks[n + 1].saturating_sub(marks[n]).as_secs_f64();
+    let cpu = marks[marks.len() - 1].saturating_sub(marks[0]);
     let coordinator_rss_mib = resident_mib();
     dispatch.close().await?;
+    drop(sessions);
     Ok(BenchResult {
-        workers,
-        jobs,
+        workers: plan.workers,
+        jobs: plan.jobs,
         rtt_median_ms: quantile_ms(&trips, 50),
         rtt_p99_ms: quantile_ms(&trips, 99),
-        jobs_per_s: jobs as f64 / wall.as_secs_f64(),
-        coordinator_cpu_us_per_job: cpu.as_secs_f64() * 1e6 / jobs.max(1) as f64,
+        jobs_per_s: plan.jobs as f64 / wall.as_secs_f64(),
+        coordinator_cpu_us_per_job: cpu.as_secs_f64() * 1e6 / plan.jobs.max(1) as f64,
+        cost_ratio: part(marks.len() - 2) / part(0),
         coordinator_rss_mib,
     })
 }
 
-fn submit(dispatch: &mut Dispatch, id: &mut u64) -> Result<(), DispatchError> {
-    let payload = vec![7; JOB_BYTES];
-    let job = Job::Nothing {
-        payload,
-        reply_bytes: RESULT_BYTES,
-        delay_ms: 0,
-    };
-    *id += 1;
-    dispatch.submit(JobId(*id - 1), job)
+/// Jobs that do nothing.
+struct Load {
+    plan: BenchPlan,
+    next: u64,
+    open: u64,
+}
+
+impl Load {
+    /// Has so many jobs done, some asked for ahead.
+    async fn run(&mut self, dispatch: &mut Dispatch, jobs: u64) -> Result<(), DispatchError> {
+        let until = self.next + jobs;
+        let ahead = AHEAD * self.plan.workers.max(1) as u64;
+        while self.next < until || self.open > 0 {
+            while self.next < until && self.open < ahead {
+                self.submit(dispatch)?;
+            }
+            dispatch.next().await?;
+            self.open -= 1;
+        }
+        Ok(())
+    }
+
+    fn submit(&mut self, dispatch: &mut Dispatch) -> Result<(), DispatchError> {
+        let job = Job::Nothing {
+            payload: vec![7; JOB_BYTES],
+            reply_bytes: self.plan.result_bytes,
+            delay_ms: 0,
+        };
+        self.next += 1;
+        self.open += 1;
+        dispatch.submit(JobId(self.next - 1), job)
+    }
 }
 
 fn quantile_ms(sorted: &[Duration], percent: usize) -> f64 {
@@ -94,13 +169,16 @@ fn quantile_ms(sorted: &[Duration], percent: usize) -> f64 {
         .map_or(f64::NAN, |trip| trip.as_secs_f64() * 1e3)
 }
 
-/// Processor time of all living threads of this process; zero where the system does not say.
-fn cpu_time() -> Duration {
+/// Processor time of the living threads of this process that are counted, by name; zero where the
+/// system does not say.
+fn cpu_time(counts: impl Fn(&str) -> bool) -> Duration {
     let threads = fs::read_dir("/proc/self/task")
         .into_iter()
         .flatten()
         .flatten();
     let nanos = threads.filter_map(|thread| {
+        let name = fs::read_to_string(thread.path().join("comm")).ok()?;
+        counts(name.trim_end()).then_some(())?;
         let stat = fs::read_to_string(thread.path().join("schedstat")).ok()?;
         stat.split_whitespace().next()?.parse::<u64>().ok()
     });

@@ -27,6 +27,8 @@ use tokio::{
 
 /// How often the core looks at its clocks.
 const TICK: Duration = Duration::from_millis(250);
+/// How old a snapshot may be: making one costs more than a result does.
+const FRESH: Duration = Duration::from_millis(20);
 /// How long the last results may take to reach the disk at the end.
 const LAST_WRITE: Duration = Duration::from_secs(1);
 
@@ -50,6 +52,8 @@ pub(super) struct Engine<L> {
     shown: Arc<Mutex<Snapshot>>,
     begun: Instant,
     replayed: u64,
+    /// When the snapshot has to be renewed because something happened.
+    stale_at: Option<tokio::time::Instant>,
 }
 
 impl<L: CoordinatorEnd> Engine<L> {
@@ -81,6 +85,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             shown,
             begun,
             replayed: 0,
+            stale_at: None,
         }
     }
 
@@ -103,6 +108,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                     self.handle(Input::Tick);
                     self.show();
                 }
+                () = until(self.stale_at) => self.show(),
             }
         }
         self.close().await
@@ -151,11 +157,17 @@ impl<L: CoordinatorEnd> Engine<L> {
     fn appended(&mut self, appended: Appended) {
         match appended {
             Appended::Stored(jobs) => self.handle(Input::Stored { jobs }),
-            Appended::Paused(why) => tracing::error!(
-                "the journal cannot be written ({why}): results wait, nothing is lost; make room \
-                 on the disk"
-            ),
-            Appended::Resumed => tracing::warn!("the journal is written again"),
+            Appended::Paused(why) => {
+                self.handle(Input::Writable(false));
+                tracing::error!(
+                    "the journal cannot be written ({why}): the run pauses, results wait, nothing \
+                     is lost; make room on the disk and it goes on by itself"
+                );
+            }
+            Appended::Resumed => {
+                self.handle(Input::Writable(true));
+                tracing::warn!("the journal is written again: the run goes on");
+            }
         }
     }
 
@@ -173,6 +185,8 @@ impl<L: CoordinatorEnd> Engine<L> {
     }
 
     fn handle(&mut self, input: Input) {
+        self.stale_at
+            .get_or_insert_with(|| tokio::time::Instant::now() + FRESH);
         for command in self.core.handle(input, self.begun.elapsed()) {
             match command {
                 Command::Send { to, message } => self.send(to, &message),
@@ -218,7 +232,8 @@ impl<L: CoordinatorEnd> Engine<L> {
         drop(self.deliver.send(completed));
     }
 
-    fn show(&self) {
+    fn show(&mut self) {
+        self.stale_at = None;
         let snapshot = self.core.snapshot(self.begun.elapsed());
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
@@ -254,6 +269,13 @@ impl<L: CoordinatorEnd> Engine<L> {
             replayed: self.replayed,
             wall_s: now.as_secs_f64(),
         }
+    }
+}
+
+async fn until(moment: Option<tokio::time::Instant>) {
+    match moment {
+        Some(moment) => tokio::time::sleep_until(moment).await,
+        None => std::future::pending().await,
     }
 }
 

@@ -8,10 +8,10 @@ mod error;
 mod local;
 pub mod locate;
 
-pub use crate::core::{Policy, Snapshot, Spent, WorkerSnapshot};
-pub use bench::{BenchResult, bench};
+pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
+pub use bench::{BenchPlan, BenchResult, Crew, bench};
 pub use error::DispatchError;
-pub use protocol::event::RunHeader;
+pub use protocol::event::{RunHeader, Spent};
 
 use crate::{
     core::{Core, CoreOptions},
@@ -20,8 +20,9 @@ use crate::{
 use engine::{Engine, Request};
 use link::{
     Blob, CoordinatorEnd, LinkError,
+    keys::{Keys, Role},
     locator::{Locator, Protocol},
-    zenoh::{CoordinatorOptions, TlsFiles, ZenohCoordinator},
+    zenoh::{CoordinatorOptions, ZenohCoordinator},
 };
 use local::LocalWorkers;
 use protocol::{
@@ -31,6 +32,7 @@ use protocol::{
     wire,
 };
 use std::{
+    collections::BTreeSet,
     net::{TcpListener, UdpSocket},
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
@@ -50,6 +52,8 @@ pub struct DispatchOptions {
     pub listen: Option<String>,
     /// Whether that address may be unencrypted and open to the network.
     pub insecure: bool,
+    /// Folder of the coordinator's key material, for QUIC addresses.
+    pub tls: Option<PathBuf>,
     /// Worker processes to start on this machine, with one slot each.
     pub local_workers: usize,
     /// What the jobs are about.
@@ -100,11 +104,11 @@ impl Dispatch {
     /// there is no worker program, [`DispatchError::NobodyToAsk`] without any workers.
     pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
         let (listen, local) = addresses(&options)?;
-        let tls = TlsFiles::from_env();
         // a folder that was made for a run that cannot begin would only be in the way
         for locator in &listen {
-            admissible(locator, options.insecure, tls.as_ref())?;
+            admissible(locator, options.insecure)?;
         }
+        let keys = keys(&options, &listen)?;
         let program = match local {
             Some(_) => Some(locate::worker_program()?),
             None => None,
@@ -115,7 +119,7 @@ impl Dispatch {
         let link_options = CoordinatorOptions {
             listen,
             insecure,
-            tls,
+            keys,
             run,
             blob,
         };
@@ -204,7 +208,7 @@ impl Dispatch {
             .unwrap_or(Err(DispatchError::Closed))
     }
 
-    /// The state of the run, at most a quarter of a second old.
+    /// The state of the run, some hundredths of a second old at most.
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot
             .lock()
@@ -263,7 +267,14 @@ impl Parts {
             case: blob.hash,
             case_bytes: blob.bytes.len() as u64,
             model_digest: begun.model_digest,
+            proof: begun.proof,
             finished: journal.finished().collect(),
+            // local workers end with their coordinator
+            expected: if options.listen.is_some() {
+                begun.present
+            } else {
+                BTreeSet::new()
+            },
             policy: Policy::default(),
         });
         Ok(Self {
@@ -277,26 +288,29 @@ impl Parts {
 }
 
 /// Whether one may and can listen there, before anything is made or started for it.
-fn admissible(
-    locator: &Locator,
-    insecure: bool,
-    tls: Option<&TlsFiles>,
-) -> Result<(), DispatchError> {
+fn admissible(locator: &Locator, insecure: bool) -> Result<(), DispatchError> {
     locator.permit(insecure)?;
-    let host = locator.host.trim_start_matches('[').trim_end_matches(']');
-    let at = (host, locator.port);
+    let at = (locator.bare_host(), locator.port);
     let tried = match locator.protocol {
         Protocol::Tcp => TcpListener::bind(at).map(drop),
-        Protocol::Quic if tls.is_none() => {
-            let locator = locator.to_string();
-            return Err(LinkError::NoCertificates { locator }.into());
-        }
         Protocol::Quic => UdpSocket::bind(at).map(drop),
     };
     tried.map_err(|source| DispatchError::Listen {
         locator: locator.to_string(),
         source,
     })
+}
+
+/// The key material, read and checked if an address needs it.
+fn keys(options: &DispatchOptions, listen: &[Locator]) -> Result<Option<Keys>, DispatchError> {
+    let Some(secured) = listen.iter().find(|at| at.protocol == Protocol::Quic) else {
+        return Ok(None);
+    };
+    let folder = options.tls.as_ref().ok_or_else(|| LinkError::NoKeys {
+        locator: secured.to_string(),
+    })?;
+    let keys = Keys::read(folder, Role::Coordinator).map_err(LinkError::from)?;
+    Ok(Some(keys))
 }
 
 /// Where to listen, and which of it local workers use.

@@ -60,6 +60,11 @@ pub async fn calibrate<E: Evaluator>(
         let Some(proposal) = open.remove(&completed.id) else {
             continue;
         };
+        if let Outcome::Scored(evaluation) = &completed.outcome
+            && !evaluation.residual_mpa.is_empty()
+        {
+            strategy.tell_residual(proposal.id, evaluation.residual_mpa.clone());
+        }
         let entry = entry(proposal, completed.outcome)?;
         strategy.tell(entry.id, entry.told());
         view.apply(&entry, completed.replayed);
@@ -90,7 +95,8 @@ fn score(case: &Case, proposal: &Proposal) -> Job {
     Job::Score(ScoreSpec {
         condition: case.objective.condition,
         genes: proposal.genes.clone(),
-        with_residual: false,
+        effects: Vec::new(),
+        with_residual: proposal.purpose.wants_residual(),
     })
 }
 
@@ -103,9 +109,11 @@ fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
             Some(error) => Err(error),
             None => Ok(Entry::lost(proposal, failure)),
         },
-        Outcome::Simulated(_) | Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
-            Err(StudyError::WrongKind { id: proposal.id })
-        }
+        Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::Described(_)
+        | Outcome::HeadReduced(_)
+        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: proposal.id }),
     }
 }
 
@@ -115,9 +123,8 @@ fn check_initial(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<
     let initial_open = open
         .values()
         .any(|proposal| proposal.purpose == Purpose::Initial);
-    let only_initial = log.entries().all(|entry| entry.purpose == Purpose::Initial);
     let all_failed = log.entries().all(|entry| entry.ending != Ending::Complete);
-    if initial_open || !only_initial || !all_failed {
+    if initial_open || !all_failed {
         return Ok(());
     }
     let (how, physics) = log.failures();

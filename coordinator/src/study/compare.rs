@@ -74,6 +74,7 @@ pub async fn compare<E: Evaluator>(
                 let spec = ScoreSpec {
                     condition,
                     genes,
+                    effects: Vec::new(),
                     with_residual: false,
                 };
                 evaluator.submit(first, Job::Score(spec))?;
@@ -82,7 +83,9 @@ pub async fn compare<E: Evaluator>(
             let spec = SimulateSpec {
                 condition: one.condition,
                 genes: genes.clone(),
+                effects: Vec::new(),
                 motion_step_deg: one.motion_step_deg,
+                integration: None,
             };
             evaluator.submit(first + 1, Job::Simulate(spec))?;
             open.insert(first + 1, (group, position));
@@ -98,7 +101,10 @@ pub async fn compare<E: Evaluator>(
         match completed.outcome {
             Outcome::Scored(evaluation) => pair.evaluation = Some(evaluation),
             Outcome::Simulated(simulation) => pair.simulation = Some(*simulation),
-            Outcome::HeadReduced(_) | Outcome::Nothing(_) => {
+            Outcome::Observed(_)
+            | Outcome::Described(_)
+            | Outcome::HeadReduced(_)
+            | Outcome::Nothing(_) => {
                 return Err(StudyError::WrongKind { id: completed.id });
             }
             Outcome::Failed(failure) => {

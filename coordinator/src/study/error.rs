@@ -38,12 +38,18 @@ pub enum StudyError {
         physics: Option<PhysicsFailure>,
     },
     /// A parameter set that is to be compared could not be evaluated.
-    #[error("{what} could not be evaluated: {}", describe(failure))]
+    #[error("{what} could not be evaluated: {failure}")]
     Unavailable {
         /// Which.
         what: String,
         /// What happened.
         failure: Failure,
+    },
+    /// Not even the most accurate run completes a revolution.
+    #[error("the individual does not complete a revolution: {}", kind.as_str())]
+    NoTruth {
+        /// How it ends.
+        kind: PhysicsFailure,
     },
     /// A worker answered a job with the result of another kind of job.
     #[error("job {id} was answered with the result of another kind of job")]
@@ -87,23 +93,11 @@ impl StudyError {
             Self::AllFailed { physics: None, .. } => {
                 "no simulation was even finished: look at the workers' own messages"
             }
+            Self::NoTruth { .. } => "choose one that does, with --genes FILE",
             Self::Unavailable { .. } => "the same command tries again",
             Self::WrongKind { .. } => "the worker is of another version: replace it",
             Self::Interrupted => return None,
         };
         Some(text.to_owned())
-    }
-}
-
-/// A failure of the infrastructure, in words.
-pub(super) fn describe(failure: &Failure) -> String {
-    match failure {
-        Failure::Deadline { limit_ms } => {
-            format!("it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
-        }
-        Failure::Crashed { how } => format!("the process that computed it ended: {how}"),
-        Failure::Lost { workers } => format!("{workers} workers were lost over it"),
-        Failure::Refused { reason } => format!("the worker refused it: {reason}"),
-        Failure::Misconfigured { field, problem } => format!("{field}: {problem}"),
     }
 }

@@ -1,5 +1,8 @@
 //! What a study needs of whoever evaluates: take jobs, give results, say who is at work.
-use protocol::job::{Job, Outcome};
+use protocol::{
+    event::Spent,
+    job::{Job, Outcome},
+};
 use std::fmt;
 
 /// Evaluates jobs in any order.
@@ -58,6 +61,8 @@ pub struct Crew {
     pub queued: usize,
     /// Jobs that are being computed.
     pub running: usize,
+    /// How all slots spent their time in this session.
+    pub spent: Spent,
 }
 
 /// One worker.

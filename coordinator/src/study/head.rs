@@ -32,9 +32,11 @@ pub async fn reduce_head(
                 failure,
             }
         })),
-        Outcome::Scored(_) | Outcome::Simulated(_) | Outcome::Nothing(_) => {
-            Err(StudyError::WrongKind { id: completed.id })
-        }
+        Outcome::Scored(_)
+        | Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::Described(_)
+        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: completed.id }),
     }
 }
 

@@ -1,5 +1,4 @@
 //! The evaluation log: every individual of a run in index order, and its digest.
-use super::error::describe;
 use protocol::job::{Evaluation, Failure, PhysicsFailure, Verdict};
 use search::strategy::{Proposal, Purpose, Told};
 use std::collections::BTreeMap;
@@ -21,7 +20,7 @@ impl Ending {
         match self {
             Self::Complete => None,
             Self::Physics(kind) => Some(kind.as_str().replace('_', " ")),
-            Self::Infrastructure(failure) => Some(describe(failure)),
+            Self::Infrastructure(failure) => Some(failure.to_string()),
         }
     }
 }

@@ -6,21 +6,25 @@
 //! arrive: what they return is a function of the case, the settings and the seed.
 mod calibrate;
 mod compare;
+mod diagnose;
 mod digest;
 mod error;
 mod evaluator;
 mod head;
+mod integrators;
 mod log;
 mod progress;
 
 pub use calibrate::{Calibrated, Observe, Stop, calibrate};
 pub use compare::{Compared, Curves, Wanted, compare};
+pub use diagnose::{Account, Diagnosed, Watch, diagnose_on, library};
 pub use digest::simulation_digest;
 pub use error::StudyError;
 pub use evaluator::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus};
 pub use head::{
     HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, reduce_head, wrapped_turn,
 };
+pub use integrators::{FixedPrice, WorkPlan, WorkPoint, WorkPrecision, work_precision};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 

@@ -63,7 +63,9 @@ impl Evaluator for Oracle {
         let outcome = known.unwrap_or_else(|| match &job {
             Job::Score(spec) => (self.answer)(&self.space, id, spec),
             Job::Simulate(spec) => Outcome::Simulated(Box::new(curves(spec.genes[0]))),
-            Job::ReduceHead(_) | Job::Nothing { .. } => Outcome::Nothing(Vec::new()),
+            Job::Observe(_) | Job::ReduceHead(_) | Job::Describe | Job::Nothing { .. } => {
+                Outcome::Nothing(Vec::new())
+            }
         });
         self.answered.insert(id, outcome.clone());
         Ok(Completed {
@@ -164,7 +166,7 @@ async fn run(oracle: &mut Oracle, case: &Case) -> Result<(Calibrated, Quiet), St
     let mut strategy = settings().build(&oracle.space, 3)?;
     let (_sender, mut stop) = watch::channel(false);
     let mut observer = Quiet(Vec::new());
-    let found = calibrate(oracle, case, &mut strategy, &mut observer, &mut stop).await?;
+    let found = calibrate(oracle, case, strategy.as_mut(), &mut observer, &mut stop).await?;
     Ok((found, observer))
 }
 

@@ -40,6 +40,52 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "unknown variant `N/mm`", "did you mean `N/m`?"],
     ),
     (
+        "an effect's value without unit",
+        |c| c.effect("parameters = { moment = { value = 1500.0 } }"),
+        &["case.toml", "missing field `unit`"],
+    ),
+    (
+        "an effect's unit unknown",
+        |c| c.effect("parameters = { moment = { value = 1.5, unit = \"kN.m\" } }"),
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.unit` = \"kN.m\"",
+            "did you mean `N.m`?",
+        ],
+    ),
+    (
+        "an effect's value not finite",
+        |c| c.effect("parameters = { moment = { value = inf, unit = \"N.m\" } }"),
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.value` = inf",
+            "a finite number of N.m",
+        ],
+    ),
+    (
+        "an effect's interval beside its value",
+        |c| {
+            c.effect(
+                "parameters = { moment = { value = 9.0, unit = \"N.m\", ci95 = [1.0, 2.0] } }",
+            );
+        },
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.ci95` = [1, 2]",
+            "two finite numbers around the value, 9",
+        ],
+    ),
+    (
+        "an effect twice",
+        |c| c.effect("\n[[effects]]\nid = \"pivot_friction\""),
+        &["case.toml", "`effects[1].id`", "duplicate effect"],
+    ),
+    (
+        "an effect's key unknown",
+        |c| c.effect("parametres = {}"),
+        &["case.toml", "did you mean `parameters`?"],
+    ),
+    (
         "unit of another quantity",
         |c| {
             c.replace(

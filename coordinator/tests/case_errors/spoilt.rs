@@ -51,6 +51,12 @@ impl Copy {
         fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
     }
 
+    /// Adds an effect with further lines.
+    pub(super) fn effect(&self, lines: &str) {
+        let added = format!("[[effects]]\nid = \"pivot_friction\"\n{lines}\n\n[objective]");
+        self.replace(TOML, "[objective]", &added);
+    }
+
     /// Rewrites the lines of a CSV file; line 1 is the header.
     pub(super) fn lines(&self, file: &str, rewrite: impl Fn(usize, &str) -> Option<String>) {
         let path = self.path(file);

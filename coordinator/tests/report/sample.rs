@@ -8,6 +8,7 @@ use protocol::case::{
     GeneName, Influence, LoadCard, ModalHead, Objective, Offset, Rod, RopeEnds, Ropes, RunSettings,
     Smoothing, Suspension, TurnSense,
 };
+use protocol::event::Spent;
 use protocol::job::{
     ChannelScore, Counters, Energy, Evaluation, PhysicsFailure, Reached, Simulation, Verdict,
 };
@@ -157,6 +158,8 @@ pub(crate) fn case() -> Case {
                 tangential_mpa_per_n: Vec::new(),
             },
         },
+        effects: Vec::new(),
+        effect_units: Vec::new(),
         genes: genes(),
         conditions: vec![condition("5rpm", 5.0), condition("4rpm", 4.0)],
         objective: Objective {
@@ -169,6 +172,7 @@ pub(crate) fn case() -> Case {
             lead_in_deg: 30.0,
             ramp_s: 2.0,
             integrator: protocol::case::Integrator::Esdirk4,
+            spectral_radius: 0.5,
             longest_step_s: 0.03,
             tolerance: 1.0,
             modes: 6,
@@ -512,6 +516,16 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
                 present_s: 300.0,
             })
             .collect(),
+        // three workers of two slots for 300 s each
+        spent: Spent {
+            connected_us: 1_800_000_000,
+            useful_us: 1_380_000_000,
+            barrier_us: 340_000_000,
+            starved_us: 50_000_000,
+            speculative_us: 20_000_000,
+            failed_us: 10_000_000,
+            lost_us: 0,
+        },
         wall_s: 304.0,
         finish: "the last generation was reached".to_owned(),
         conditions,

@@ -1,6 +1,6 @@
 //! Addresses of the form `PROTOCOL/HOST:PORT`, and which of them may be listened on.
 use crate::LinkError;
-use std::net::{IpAddr, TcpListener};
+use std::net::{IpAddr, TcpListener, UdpSocket};
 
 /// An address of the bus, taken apart.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -20,6 +20,16 @@ pub enum Protocol {
     Tcp,
     /// Encrypted and authenticated both ways.
     Quic,
+}
+
+impl Protocol {
+    /// As written in a locator.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tcp => "tcp",
+            Self::Quic => "quic",
+        }
+    }
 }
 
 impl Locator {
@@ -54,9 +64,14 @@ impl Locator {
         })
     }
 
+    /// The host without the brackets of an IPv6 address.
+    pub fn bare_host(&self) -> &str {
+        self.host.trim_start_matches('[').trim_end_matches(']')
+    }
+
     /// Whether only this machine can reach it.
     pub fn is_loopback(&self) -> bool {
-        let bare = self.host.trim_start_matches('[').trim_end_matches(']');
+        let bare = self.bare_host();
         bare == "localhost" || bare.parse::<IpAddr>().is_ok_and(|ip| ip.is_loopback())
     }
 
@@ -80,9 +95,12 @@ impl Locator {
     /// [`LinkError::Transport`] if the machine has none.
     pub fn with_free_port(mut self) -> Result<Self, LinkError> {
         if self.port == 0 {
-            let bare = self.host.trim_start_matches('[').trim_end_matches(']');
-            self.port = TcpListener::bind((bare, 0))
-                .and_then(|listener| listener.local_addr())
+            let any = (self.bare_host(), 0);
+            let found = match self.protocol {
+                Protocol::Tcp => TcpListener::bind(any).and_then(|socket| socket.local_addr()),
+                Protocol::Quic => UdpSocket::bind(any).and_then(|socket| socket.local_addr()),
+            };
+            self.port = found
                 .map_err(|error| LinkError::Transport {
                     doing: format!("find a free port on {}", self.host),
                     reason: error.to_string(),
@@ -109,11 +127,7 @@ impl Locator {
 
 impl std::fmt::Display for Locator {
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let protocol = match self.protocol {
-            Protocol::Tcp => "tcp",
-            Protocol::Quic => "quic",
-        };
-        write!(to, "{protocol}/{}:{}", self.host, self.port)
+        write!(to, "{}/{}:{}", self.protocol.name(), self.host, self.port)
     }
 }
 

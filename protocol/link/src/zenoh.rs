@@ -5,7 +5,9 @@
 //! drops, on a thread of its own; receivers are callbacks into a bounded channel, because the
 //! default handler would hold up the receiving thread of all workers. `tls/` is not offered: it
 //! corrupts memory in zenoh 1.10.2 (upstream issue 2557).
+mod access;
 mod coordinator;
+mod names;
 mod sender;
 mod worker;
 
@@ -14,17 +16,11 @@ pub use worker::ZenohWorker;
 
 use crate::{
     LinkError,
+    keys::Keys,
     locator::{Locator, Protocol},
 };
 use serde_json::{Value, json};
-use std::{env, path::PathBuf, time::Duration};
-
-/// Environment variable: path of the certificate authority (PEM).
-pub const TLS_CA: &str = "HORSEHEAD_TLS_CA";
-/// Environment variable: path of this end's certificate (PEM).
-pub const TLS_CERTIFICATE: &str = "HORSEHEAD_TLS_CERTIFICATE";
-/// Environment variable: path of this end's private key (PEM, PKCS#8).
-pub const TLS_KEY: &str = "HORSEHEAD_TLS_KEY";
+use std::{collections::BTreeSet, time::Duration};
 
 /// Frames that may wait to be read before further ones are dropped (and repeated by their
 /// senders).
@@ -32,56 +28,23 @@ const INBOX: usize = 16 << 10;
 /// Longest time that closing a session may take: with a dead peer zenoh needs 10 s.
 const CLOSE: Duration = Duration::from_secs(2);
 
-/// Where the key material of one end lies.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct TlsFiles {
-    /// Certificate of the authority that signed both ends.
-    pub ca: PathBuf,
-    /// Certificate of this end.
-    pub certificate: PathBuf,
-    /// Private key of this end.
-    pub key: PathBuf,
-}
-
-impl TlsFiles {
-    /// Reads the three variables; `None` unless all are set.
-    pub fn from_env() -> Option<Self> {
-        let path = |name| {
-            env::var_os(name)
-                .filter(|value| !value.is_empty())
-                .map(PathBuf::from)
-        };
-        Some(Self {
-            ca: path(TLS_CA)?,
-            certificate: path(TLS_CERTIFICATE)?,
-            key: path(TLS_KEY)?,
-        })
-    }
-
-    fn listening(&self) -> Value {
-        json!({
-            "root_ca_certificate": self.ca, "listen_certificate": self.certificate,
-            "listen_private_key": self.key, "enable_mtls": true, "close_link_on_expiration": true,
-        })
-    }
-
-    fn connecting(&self) -> Value {
-        json!({
-            "root_ca_certificate": self.ca, "connect_certificate": self.certificate,
-            "connect_private_key": self.key, "enable_mtls": true, "verify_name_on_connect": true,
-        })
-    }
-}
+/// How long a peer may take to open a session once it is connected \[ms\]: silent ones hold the
+/// places of others for so long.
+const ACCEPT_MS: u64 = 4000;
 
 /// What a session of either end is made of.
-fn common(tls: &Value) -> Value {
+fn common(locators: &[&Locator], tls: &Value) -> Value {
+    // no other protocol than those asked for: a peer cannot choose a weaker one
+    let protocols: BTreeSet<&str> = locators.iter().map(|at| at.protocol.name()).collect();
     json!({
         "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
         "adminspace": { "enabled": false },
         "transport": {
-            "unicast": { "max_sessions": 2000, "accept_pending": 1000 },
+            "unicast": {
+                "max_sessions": 2000, "accept_pending": 1000, "accept_timeout": ACCEPT_MS,
+            },
             "link": {
-                "protocols": ["tcp", "quic"],
+                "protocols": protocols,
                 "tx": { "lease": 3000, "keep_alive": 6 },
                 "rx": { "max_message_size": 64 << 20 },
                 "tls": tls,
@@ -90,18 +53,26 @@ fn common(tls: &Value) -> Value {
     })
 }
 
-fn tls_for(
+fn connecting(keys: &Keys) -> Value {
+    json!({
+        "root_ca_certificate": keys.ca(), "connect_certificate": keys.certificate(),
+        "connect_private_key": keys.key(), "enable_mtls": true, "verify_name_on_connect": true,
+        "close_link_on_expiration": true,
+    })
+}
+
+/// The key material that some addresses need: that of the first QUIC one, if there is one.
+fn needed<'a>(
     locators: &[&Locator],
-    tls: Option<&TlsFiles>,
-    section: fn(&TlsFiles) -> Value,
-) -> Result<Value, LinkError> {
-    let Some(secured) = locators
+    keys: Option<&'a Keys>,
+) -> Result<Option<&'a Keys>, LinkError> {
+    let secured = locators
         .iter()
-        .find(|locator| locator.protocol == Protocol::Quic)
-    else {
-        return Ok(json!({}));
+        .find(|locator| locator.protocol == Protocol::Quic);
+    let Some(secured) = secured else {
+        return Ok(None);
     };
-    tls.map(section).ok_or_else(|| LinkError::NoCertificates {
+    keys.map(Some).ok_or_else(|| LinkError::NoKeys {
         locator: secured.to_string(),
     })
 }

@@ -4,12 +4,14 @@
 //! The coordinator reads and validates case *files* and builds this; its encoded bytes travel as
 //! one blob, named by their content hash. Nothing here knows of files, of TOML or of dynamics.
 mod condition;
+mod effect;
 mod gene;
 mod head;
 mod machine;
 mod objective;
 
 pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
+pub use effect::{EffectSetting, merged};
 pub use gene::{Gene, GeneName};
 pub use head::{Influence, ModalHead, StressRecovery, WeightAxes};
 pub use machine::{
@@ -44,6 +46,11 @@ pub struct Case {
     pub back_head: BackHead,
     /// Modes and influence lines of the back head.
     pub modal_head: ModalHead,
+    /// What the machine has beside the above: effects with their numbers.
+    pub effects: Vec<EffectSetting>,
+    /// Units in which the case states those numbers, effect by effect in the same order; a worker
+    /// refuses one that is not its own. Empty where nobody stated any.
+    pub effect_units: Vec<Vec<String>>,
     /// The unknown numbers, in the order of every gene vector.
     pub genes: Vec<Gene>,
     /// Working conditions with their records.
@@ -66,12 +73,19 @@ pub struct RunSettings {
     pub ramp_s: f64,
     /// Method of integration.
     pub integrator: Integrator,
+    /// Spectral radius at infinite frequency of [`Integrator::GeneralizedAlpha`], 0 to 1 \[1\].
+    #[serde(default = "half")]
+    pub spectral_radius: f64,
     /// Longest step \[s\]; it bounds how coarsely the rope's own modes are resolved.
     pub longest_step_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,
     /// Number of head modes that are simulated.
     pub modes: usize,
+}
+
+const fn half() -> f64 {
+    0.5
 }
 
 /// Methods of integration.
@@ -82,6 +96,38 @@ pub enum Integrator {
     TrBdf2,
     /// Fourth order, five implicit stages a step.
     Esdirk4,
+    /// Rosenbrock method of fourth order: six linear solutions a step, a new factorisation each.
+    Rodas4,
+    /// Generalised-alpha, second order, one implicit stage a step.
+    GeneralizedAlpha,
+    /// Backward differentiation of variable step, orders 1 and 2.
+    Bdf,
+    /// The same with orders 1 to 5, for comparison: they are unstable on lightly damped modes.
+    Bdf5,
+}
+
+impl Integrator {
+    /// Every method.
+    pub const ALL: [Self; 6] = [
+        Self::TrBdf2,
+        Self::Esdirk4,
+        Self::Rodas4,
+        Self::GeneralizedAlpha,
+        Self::Bdf,
+        Self::Bdf5,
+    ];
+
+    /// As written in case files.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::TrBdf2 => "tr_bdf2",
+            Self::Esdirk4 => "esdirk4",
+            Self::Rodas4 => "rodas4",
+            Self::GeneralizedAlpha => "generalized_alpha",
+            Self::Bdf => "bdf",
+            Self::Bdf5 => "bdf5",
+        }
+    }
 }
 
 impl Case {

@@ -2,19 +2,23 @@
 //!
 //! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
 //! retried. [`Failure`] is infrastructure: the job could not be done.
+mod observe;
 mod reduce_head;
 mod score;
 mod simulate;
 mod verdict;
 
+pub use observe::{Observation, ObserveSpec, Refinement};
 pub use reduce_head::{
     HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
 };
 pub use score::{ChannelScore, Evaluation, ScoreSpec};
-pub use simulate::{Energy, Motion, SimulateSpec, Simulation};
+pub use simulate::{Energy, Integration, Motion, SimulateSpec, Simulation};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
+use crate::announce::EffectDescriptor;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// One unit of work; a pure function of itself and the case it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,8 +27,12 @@ pub enum Job {
     Score(ScoreSpec),
     /// Simulate and return the curves.
     Simulate(SimulateSpec),
+    /// Simulate and return the measured channels alone.
+    Observe(ObserveSpec),
     /// Reduce the flexible back head from its mesh to modes and influence lines.
     ReduceHead(Box<ReduceHeadSpec>),
+    /// Say which effects the model can add to a machine.
+    Describe,
     /// Do nothing, return at once: measures the bus.
     Nothing {
         /// Bytes that travel to the worker.
@@ -43,7 +51,9 @@ impl Job {
         match self {
             Self::Score(_) => "score",
             Self::Simulate(_) => "simulate",
+            Self::Observe(_) => "observe",
             Self::ReduceHead(_) => "reduce_head",
+            Self::Describe => "describe",
             Self::Nothing { .. } => "nothing",
         }
     }
@@ -56,8 +66,12 @@ pub enum Outcome {
     Scored(Evaluation),
     /// Of [`Job::Simulate`].
     Simulated(Box<Simulation>),
+    /// Of [`Job::Observe`].
+    Observed(Observation),
     /// Of [`Job::ReduceHead`].
     HeadReduced(Box<ReducedHead>),
+    /// Of [`Job::Describe`].
+    Described(Vec<EffectDescriptor>),
     /// Of [`Job::Nothing`].
     Nothing(#[serde(with = "byte_string")] Vec<u8>),
     /// The job could not be done.
@@ -102,6 +116,20 @@ impl Failure {
         match self {
             Self::Deadline { .. } | Self::Crashed { .. } | Self::Lost { .. } => true,
             Self::Refused { .. } | Self::Misconfigured { .. } => false,
+        }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Deadline { limit_ms } => {
+                write!(to, "it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
+            }
+            Self::Crashed { how } => write!(to, "the process that computed it ended: {how}"),
+            Self::Lost { workers } => write!(to, "{workers} workers were lost over it"),
+            Self::Refused { reason } => write!(to, "the worker refused it: {reason}"),
+            Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Simulate a condition and compare it with its gauge record.
 use super::{Counters, Verdict};
+use crate::case::EffectSetting;
 use serde::{Deserialize, Serialize};
 
 /// Which individual to score, against what.
@@ -9,6 +10,8 @@ pub struct ScoreSpec {
     pub condition: usize,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
+    /// Effects beside those of the case; the same identifier replaces the case's.
+    pub effects: Vec<EffectSetting>,
     /// Whether the residual vector is wanted too.
     pub with_residual: bool,
 }
@@ -24,7 +27,8 @@ pub struct Evaluation {
     /// One entry per gauge of the record; empty unless complete.
     pub channels: Vec<ChannelScore>,
     /// Measured minus simulated stress after offset removal \[MPa\], gauges of the objective one
-    /// after the other on the output grid; empty unless asked for and complete.
+    /// after the other on the output grid, each scaled such that the squared length of the whole is
+    /// the objective; empty unless asked for and complete.
     pub residual_mpa: Vec<f64>,
     /// What it cost.
     pub counters: Counters,

@@ -1,5 +1,6 @@
 //! Simulate a condition and return everything that can be drawn.
 use super::{Counters, Verdict};
+use crate::case::{EffectSetting, Integrator};
 use serde::{Deserialize, Serialize};
 
 /// What to simulate.
@@ -9,8 +10,26 @@ pub struct SimulateSpec {
     pub condition: usize,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
+    /// Effects beside those of the case; the same identifier replaces the case's.
+    pub effects: Vec<EffectSetting>,
     /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
     pub motion_step_deg: f64,
+    /// How to integrate, instead of as the case says.
+    pub integration: Option<Integration>,
+}
+
+/// How one run is integrated, for comparisons of methods.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Integration {
+    /// Method.
+    pub integrator: Integrator,
+    /// Longest step \[s\].
+    pub longest_step_s: f64,
+    /// Tolerance, relative to the built-in error scales; so large a one that no step is ever
+    /// rejected makes the longest step a fixed one.
+    pub tolerance: f64,
+    /// Newton iterations after which the run ends; without, as many as any run may take.
+    pub budget: Option<u64>,
 }
 
 /// Curves of one revolution; every vector has one entry per crank angle reached.

@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use simulation::drive::Drive;
-use simulation::integrator::tableau::CATALOGUE;
+use simulation::integrator::method::CATALOGUE;
 use simulation::model::{Individual, Machine};
 use simulation::observe::Recorder;
 use simulation::reference;
@@ -86,7 +86,7 @@ fn runs(criterion: &mut Criterion) {
                 longest_step: 0.03,
                 ..RunSettings::default()
             };
-            group.bench_function(format!("{name}, {}", method.name), |b| {
+            group.bench_function(format!("{name}, {}", method.name()), |b| {
                 b.iter(|| simulate(&machine, &law, &settings, &mut Recorder::gauges_only()));
             });
         }

@@ -59,7 +59,7 @@ impl Drive {
 
     /// Crank and load at time `t`.
     pub fn state(&self, machine: &Machine, t: f64) -> DriveState {
-        let [turn, rate, acceleration] = self.turn(t);
+        let [turn, rate, acceleration] = machine.hooks.turn(self.turn(t));
         let crank = &machine.description.crank;
         let angle = machine.bottom.pin + crank.sense * turn;
         let (w, dw) = (crank.sense * rate, crank.sense * acceleration);

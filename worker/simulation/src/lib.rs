@@ -13,6 +13,7 @@
     reason = "notation of mechanics: R_WB is a rotation, r_wb would be another thing"
 )]
 pub mod drive;
+pub mod effect;
 pub mod element;
 pub mod flexible;
 pub mod integrator;

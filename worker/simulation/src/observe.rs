@@ -1,5 +1,6 @@
 //! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
 use crate::drive::DriveState;
+use crate::effect::Sampled;
 use crate::integrator::State;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
@@ -187,7 +188,11 @@ impl Recorder {
 impl Observe for Recorder {
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
         self.force.resize(state.q.len(), 0.0);
-        system.forces(state.t, &state.q, &state.v, &mut self.force);
+        if self.gauges_only {
+            system.equations.back_loads(state, &mut self.force);
+        } else {
+            system.forces(state.t, &state.q, &state.v, &mut self.force);
+        }
         let system = &mut system.equations;
         let drive = system.drive_state(state.t);
         let at = Instant {
@@ -196,14 +201,22 @@ impl Observe for Recorder {
             q: &state.q,
             v: &state.v,
         };
-        let stress = gauge_stress(system, &at, state);
+        let mut stress = gauge_stress(system, &at, state);
+        let machine = system.machine;
+        let hooks = &machine.hooks;
+        let recorded = system.drive.turn(state.t)[0] - hooks.index_offset();
+        let sampled = Sampled {
+            individual: system,
+            beam: state.q[machine.layout.beam()],
+            elapsed: recorded / std::f64::consts::TAU,
+        };
+        hooks.read(&sampled, &mut stress);
         for (curve, stress) in self.curves.gauge.iter_mut().zip(stress) {
             curve.push(stress);
         }
         if self.gauges_only {
             return;
         }
-        let machine = system.machine;
         let layout = machine.layout;
         let c = &mut self.curves;
         c.back_tension
@@ -228,6 +241,10 @@ impl Observe for Recorder {
         if self.shape_every > 0 && index.is_multiple_of(self.shape_every) {
             c.shapes.push(shape(index, system, &drive, state));
         }
+    }
+
+    fn complete(&mut self, machine: &Machine, spacing: f64) {
+        machine.hooks.read_series(spacing, &mut self.curves.gauge);
     }
 }
 

@@ -3,6 +3,7 @@
 //!
 //! Two programs that agree on every bit of [`bits`] integrate the same equations with the same
 //! arithmetic; a changed law, tolerance or elementary function shows.
+use crate::effect::{Asked, Parameter, Selection, catalogue};
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
 use crate::model::description::{
@@ -106,7 +107,30 @@ pub fn law() -> RopeLaw {
 ///
 /// Empty if the description is refused, which a test rules out.
 pub fn bits() -> (Vec<u64>, Statistics) {
-    let Ok(machine) = Machine::new(description(), 2) else {
+    bits_with(&Selection::default())
+}
+
+/// The same with every named effect at its typical size and every generic force at a tenth of it.
+pub fn bits_with_effects() -> (Vec<u64>, Statistics) {
+    let asked: Vec<Asked<'_>> = catalogue()
+        .iter()
+        .map(|d| {
+            let share = if d.generic { 0.1 } else { 1.0 };
+            let value = |p: &Parameter| p.absent + share * (p.typical - p.absent);
+            Asked {
+                id: &d.id,
+                parameters: d.parameters.iter().map(|p| (p.name, value(p))).collect(),
+            }
+        })
+        .collect();
+    Selection::new(&asked).map_or_else(
+        |_| (Vec::new(), Statistics::default()),
+        |selection| bits_with(&selection),
+    )
+}
+
+fn bits_with(selection: &Selection) -> (Vec<u64>, Statistics) {
+    let Ok(machine) = Machine::with_effects(description(), 2, selection) else {
         return (Vec::new(), Statistics::default());
     };
     let settings = RunSettings {
@@ -130,5 +154,13 @@ mod tests {
         assert!(first.iter().all(|bits| f64::from_bits(*bits).is_finite()));
         assert!(statistics.steps > 100);
         assert_eq!(bits(), (first, statistics));
+    }
+
+    #[test]
+    fn the_run_with_every_effect_completes_and_repeats_bit_for_bit() {
+        let (first, statistics) = bits_with_effects();
+        assert_eq!(first.len(), 4 * 72);
+        assert!(first.iter().all(|bits| f64::from_bits(*bits).is_finite()));
+        assert_eq!(bits_with_effects(), (first, statistics));
     }
 }

@@ -111,6 +111,7 @@ impl Setup {
             inner: &self.joint,
             base: base.held(),
             head: head.held(),
+            axial: None,
         }
     }
 }
@@ -258,6 +259,10 @@ impl Equations for Rig {
                 }
             }
         }
+    }
+
+    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered) {
+        self.setup.chain.add_spin_tangent(state, gamma, matrix);
     }
 
     fn newton_norm(&self, change: &[f64]) -> f64 {

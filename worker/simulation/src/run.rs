@@ -1,7 +1,8 @@
 //! One simulation: settle, lead in, one recorded revolution.
 use crate::drive::Drive;
 use crate::integrator::adaptive::{Adaptive, StepUnderflow};
-use crate::integrator::tableau::{ESDIRK4, Tableau};
+use crate::integrator::method::Method;
+use crate::integrator::tableau::ESDIRK4;
 use crate::integrator::{State, dense::interpolate};
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Powers};
@@ -15,7 +16,7 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub struct RunSettings {
     /// Method of integration.
-    pub method: &'static Tableau,
+    pub method: Method,
     /// Turn angle before bottom dead centre at which the crank starts \[rad\].
     pub lead_in: f64,
     /// Time to full speed \[s\].
@@ -40,7 +41,7 @@ pub struct RunSettings {
 impl Default for RunSettings {
     fn default() -> Self {
         Self {
-            method: &ESDIRK4,
+            method: Method::RungeKutta(&ESDIRK4),
             lead_in: TAU / 6.0,
             ramp: 1.5,
             samples: 720,
@@ -66,6 +67,9 @@ impl RunSettings {
 pub trait Observe {
     /// `state` is the interpolated state at sample `index`; the loads of `system` belong to it.
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
+
+    /// The revolution is complete; its samples lie `spacing` \[s\] apart.
+    fn complete(&mut self, _machine: &Machine, _spacing: f64) {}
 }
 
 /// What a run gives besides its samples.
@@ -89,7 +93,7 @@ pub fn simulate(
     observer: &mut dyn Observe,
 ) -> RunResult {
     let drive = Drive {
-        start: -settings.lead_in,
+        start: -settings.lead_in + machine.hooks.index_offset().min(0.0),
         ramp: settings.ramp,
         speed: machine.description.crank.speed,
     };
@@ -156,14 +160,15 @@ fn revolve(
     start: Vec<f64>,
     observer: &mut dyn Observe,
 ) -> RunResult {
-    let n = start.len();
     let tolerance = settings.tolerance;
-    let mut method = Adaptive::new(settings.method, n, tolerance, settings.longest_step);
+    let mut method = Adaptive::new(settings.method, system, tolerance, settings.longest_step);
     let mut from = State::at_rest(0.0, start);
     let mut to = from.clone();
     let mut between = from.clone();
     let drive = system.equations.drive;
-    let (begin, end) = (drive.time_at(0.0), drive.time_at(TAU));
+    let zero = system.equations.machine.hooks.index_offset();
+    let (begin, end) = (drive.time_at(zero), drive.time_at(TAU + zero));
+    system.equations.remember(&from);
     let mut sample = 0;
     let mut ledger = Ledger::default();
     let verdict = loop {
@@ -201,7 +206,7 @@ fn revolve(
         );
         while sample < settings.samples {
             let turn = TAU * sample as f64 / settings.samples as f64;
-            let t = drive.time_at(turn);
+            let t = drive.time_at(zero + turn);
             if t > to.t + 1e-9 {
                 break;
             }
@@ -209,8 +214,13 @@ fn revolve(
             observer.sample(sample, system, &between);
             sample += 1;
         }
+        system.equations.remember(&to);
         std::mem::swap(&mut from, &mut to);
     };
+    if verdict == Verdict::Complete {
+        let spacing = TAU / drive.speed / settings.samples as f64;
+        observer.complete(system.equations.machine, spacing);
+    }
     RunResult {
         verdict,
         statistics: system.statistics,

@@ -9,7 +9,7 @@ pub struct Statistics {
     pub error_rejections: u64,
     /// Steps rejected because Newton's method did not converge.
     pub newton_rejections: u64,
-    /// Newton iterations.
+    /// Newton iterations; a stage of a Rosenbrock method, one linear solution, counts as one.
     pub newton_iterations: u64,
     /// Evaluations of the generalised forces.
     pub force_evaluations: u64,

@@ -1,4 +1,5 @@
 //! The equations of motion as an integrator sees them.
+use crate::integrator::State;
 use crate::linear::{Bordered, SingularPivot};
 use crate::model::Powers;
 use crate::statistics::Statistics;
@@ -25,6 +26,10 @@ pub trait Equations {
         coefficients: (f64, f64),
         matrix: &mut Bordered,
     );
+
+    /// Adds what [`Equations::tangent`] leaves out of `-gamma D - K`: the derivatives of velocity
+    /// terms and of `M(q) a`, `state` being coordinates, rates and accelerations.
+    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered);
 
     /// Largest change over all coordinates, in units of Newton's accuracy.
     fn newton_norm(&self, change: &[f64]) -> f64;
@@ -104,6 +109,33 @@ impl<E: Equations> System<E> {
         self.matrix.factorize()
     }
 
+    /// Fills `matrix` with the complete `mu M - gamma D - K`, `K` the derivative of `Q - M a` by the
+    /// coordinates, at the state of the last force evaluation.
+    pub fn exact_tangent(
+        &mut self,
+        state: &State,
+        coefficients: (f64, f64),
+        matrix: &mut Bordered,
+    ) {
+        self.statistics.jacobians += 1;
+        exact_tangent(&mut self.equations, state, coefficients, matrix);
+    }
+
+    /// Factorises the same.
+    ///
+    /// # Errors
+    /// The unknown whose pivot vanished.
+    pub fn factorize_exact(
+        &mut self,
+        state: &State,
+        coefficients: (f64, f64),
+    ) -> Result<(), SingularPivot> {
+        self.statistics.jacobians += 1;
+        exact_tangent(&mut self.equations, state, coefficients, &mut self.matrix);
+        self.statistics.factorizations += 1;
+        self.matrix.factorize()
+    }
+
     /// Accelerations at a motion that does not start from equilibrium: `M a = Q`.
     ///
     /// Solved as `(mu M - K) x = Q`, `a = mu x` with a `mu` beside which `K` is below rounding.
@@ -131,6 +163,16 @@ impl<E: Equations> System<E> {
     pub fn solve(&self, x: &mut [f64]) {
         self.matrix.solve(x);
     }
+}
+
+fn exact_tangent<E: Equations>(
+    equations: &mut E,
+    State { t, q, v, a }: &State,
+    coefficients: (f64, f64),
+    matrix: &mut Bordered,
+) {
+    equations.tangent(*t, (q, v), coefficients, matrix);
+    equations.add_spin_tangent((q, v, a), coefficients.1, matrix);
 }
 
 impl<E: Static> System<E> {

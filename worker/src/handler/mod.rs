@@ -1,17 +1,19 @@
 //! From a job to its outcome.
 //!
 //! A handler is a pure function of the case and the job. It knows nothing of slots or links.
+mod observe;
 mod reduce_head;
 mod score;
 mod simulate;
 
 use crate::convert;
 use protocol::{
-    case::Case,
+    case::{Case, EffectSetting},
     id::ContentHash,
     job::{Failure, Job, Outcome},
 };
 use simulation::model::Machine;
+use std::borrow::Cow;
 
 /// Everything that jobs on one case share, built once.
 #[derive(Debug)]
@@ -43,21 +45,27 @@ impl Prepared {
             Job::Simulate(spec) => {
                 simulate::run(self, spec).map(|done| Outcome::Simulated(Box::new(done)))
             }
+            Job::Observe(spec) => observe::run(self, spec).map(Outcome::Observed),
             Job::ReduceHead(spec) => {
                 reduce_head::run(spec).map(|done| Outcome::HeadReduced(Box::new(done)))
             }
+            Job::Describe => return Outcome::Described(convert::effect::descriptors()),
             Job::Nothing { .. } => return nothing(job),
         };
         outcome.unwrap_or_else(Outcome::Failed)
     }
 
-    fn machine(&self, condition: usize) -> Result<&Machine, Failure> {
-        self.machines
-            .get(condition)
-            .ok_or_else(|| Failure::Misconfigured {
-                field: "conditions".to_owned(),
-                problem: format!("has no entry {condition}"),
-            })
+    /// The machine of a condition; one that a job's own effects ask for is built for that job.
+    fn machine_with(
+        &self,
+        condition: usize,
+        effects: &[EffectSetting],
+    ) -> Result<Cow<'_, Machine>, Failure> {
+        if !effects.is_empty() {
+            return convert::machine_with(&self.case, condition, effects).map(Cow::Owned);
+        }
+        let machine = self.machines.get(condition).map(Cow::Borrowed);
+        machine.ok_or_else(|| convert::no_condition(condition))
     }
 }
 
@@ -79,11 +87,16 @@ pub fn nothing(job: &Job) -> Outcome {
     Outcome::Nothing(vec![0; *reply_bytes as usize])
 }
 
-/// Names the numerics of this build by the bits of a reference run: equal digests promise equal
-/// results. Takes as long as that run, some hundredths of a second.
+/// Names the numerics of this build by the bits of two reference runs, without effects and with all of
+/// them, and by the catalogue's units and bounds: equal digests promise equal results. Takes as long
+/// as those runs, some tenths of a second.
 pub fn model_digest() -> String {
-    let (bits, statistics) = simulation::reference::bits();
-    let mut bytes: Vec<u8> = bits.iter().flat_map(|bits| bits.to_le_bytes()).collect();
-    bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
+    let mut bytes = Vec::new();
+    let plain = simulation::reference::bits();
+    for (bits, statistics) in [plain, simulation::reference::bits_with_effects()] {
+        bytes.extend(bits.iter().flat_map(|bits| bits.to_le_bytes()));
+        bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
+    }
+    bytes.extend_from_slice(format!("{:?}", convert::effect::descriptors()).as_bytes());
     ContentHash::of(&bytes).to_string()
 }

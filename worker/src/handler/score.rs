@@ -21,9 +21,9 @@ const FAILED_UNDER_LOAD: f64 = 1e7;
 pub(super) fn run(prepared: &Prepared, spec: &ScoreSpec) -> Result<Evaluation, Failure> {
     let law = convert::rope_law(&prepared.case, &spec.genes)?;
     let settings = convert::run_settings(&prepared.case);
-    let machine = prepared.machine(spec.condition)?;
+    let machine = prepared.machine_with(spec.condition, &spec.effects)?;
     let mut recorder = Recorder::gauges_only();
-    let result = simulate(machine, &law, &settings, &mut recorder);
+    let result = simulate(&machine, &law, &settings, &mut recorder);
     let verdict = convert::verdict(&result.verdict);
     let counters = convert::counters(&result.statistics);
     if let Verdict::Failed { reached, .. } = verdict {
@@ -141,13 +141,19 @@ fn weighted(objective: &Objective, compared: &[Compared]) -> Result<f64, Failure
     Ok(sum)
 }
 
-/// Residuals of the objective's gauges, one after the other.
+/// Residuals of the objective's gauges, one after the other, scaled such that the squared length of
+/// the whole is the objective.
 fn residual(objective: &Objective, compared: &[Compared]) -> Vec<f64> {
+    let scaled = |(gauge, weight): &(u8, f64)| {
+        let found = compared.iter().find(|c| c.score.gauge == *gauge)?;
+        let scale = (weight / found.residual.len() as f64).sqrt();
+        Some(found.residual.iter().map(move |r| scale * r))
+    };
     objective
         .gauges
         .iter()
-        .filter_map(|(gauge, _)| compared.iter().find(|c| c.score.gauge == *gauge))
-        .flat_map(|c| c.residual.iter().copied())
+        .filter_map(scaled)
+        .flatten()
         .collect()
 }
 

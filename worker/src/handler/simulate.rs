@@ -1,7 +1,7 @@
 //! Simulates an individual and returns every curve that can be drawn.
 use crate::convert;
 use crate::handler::Prepared;
-use protocol::job::{Energy, Failure, Motion, SimulateSpec, Simulation};
+use protocol::job::{Energy, Failure, Integration, Motion, SimulateSpec, Simulation};
 use simulation::observe::{Curves, Recorder, Shape};
 use simulation::run::{RunResult, simulate};
 use std::time::Instant;
@@ -12,7 +12,8 @@ use std::time::Instant;
 /// [`Failure::Misconfigured`] when genes or condition do not fit the case.
 pub(super) fn run(prepared: &Prepared, spec: &SimulateSpec) -> Result<Simulation, Failure> {
     let law = convert::rope_law(&prepared.case, &spec.genes)?;
-    let settings = convert::run_settings(&prepared.case);
+    check(spec.integration.as_ref())?;
+    let settings = convert::overridden(&prepared.case, spec.integration.as_ref());
     let step = prepared.case.run.output_step_deg;
     let shape_every = if spec.motion_step_deg > 0.0 {
         #[expect(
@@ -27,23 +28,32 @@ pub(super) fn run(prepared: &Prepared, spec: &SimulateSpec) -> Result<Simulation
     } else {
         0
     };
-    let machine = prepared.machine(spec.condition)?;
-    let lowest = machine.description.front_arc.radius * machine.bottom.beam;
+    let machine = prepared.machine_with(spec.condition, &spec.effects)?;
     let mut recorder = Recorder::everything(shape_every);
     let started = Instant::now();
-    let result = simulate(machine, &law, &settings, &mut recorder);
+    let result = simulate(&machine, &law, &settings, &mut recorder);
     let wall_s = started.elapsed().as_secs_f64();
-    let height = suspension_zero(machine, lowest);
+    let height = machine.lowest_suspension;
     Ok(assemble(&recorder.curves, &result, step, height, wall_s))
 }
 
-/// Height in the ground frame of the suspension point's lowest design position \[m\]: the front rope
-/// hangs from the arc's height, unstretched.
-fn suspension_zero(machine: &simulation::model::Machine, lowest: f64) -> f64 {
-    let d = &machine.description;
-    let rope = d.rope.front as f64 * d.rope.pitch;
-    let wrapped = d.front_arc.radius * d.front_arc.anchor + lowest;
-    wrapped - rope
+/// Whether another integration can be done at all.
+fn check(integration: Option<&Integration>) -> Result<(), Failure> {
+    let Some(other) = integration else {
+        return Ok(());
+    };
+    for (field, value) in [
+        ("integration.longest_step_s", other.longest_step_s),
+        ("integration.tolerance", other.tolerance),
+    ] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Failure::Misconfigured {
+                field: field.to_owned(),
+                problem: format!("is {value}; it must be a positive number"),
+            });
+        }
+    }
+    Ok(())
 }
 
 fn assemble(

@@ -1,5 +1,5 @@
 //! The process of one slot, seen from its worker.
-use super::CaseBytes;
+use super::{CaseBytes, SlotOptions};
 use crate::stream;
 use protocol::{
     id::ContentHash,
@@ -7,14 +7,21 @@ use protocol::{
     message::{FromSlot, ToSlot},
     wire::Kind,
 };
-use rustix::process::{Pid, Signal, kill_process_group};
+use rustix::process::{Pid, Signal, kill_process, kill_process_group};
 use std::{
+    fs,
     io::{self, BufReader},
     os::unix::process::{CommandExt, ExitStatusExt},
-    path::Path,
-    process::{self, ChildStdin, Command, Stdio},
+    process::{self, ChildStdin, Command, ExitStatus, Stdio},
+    sync::atomic::{AtomicU64, Ordering},
     thread,
 };
+
+/// Environment variable that names the slot process to everything it starts.
+const MARK: &str = "HORSEHEAD_SLOT_PROCESS";
+
+/// Numbers the slot processes of this worker.
+static NUMBER: AtomicU64 = AtomicU64::new(0);
 
 /// A running slot process; ended with everything it started when dropped.
 #[derive(Debug)]
@@ -22,17 +29,24 @@ pub(super) struct Child {
     process: process::Child,
     input: ChildStdin,
     case: Option<ContentHash>,
+    /// What everything it starts has in its environment.
+    mark: String,
+    memory_mib: u64,
 }
 
 impl Child {
     /// Starts a process; `said` is called from a thread for each message and with `None` when its
     /// output ends.
     pub(super) fn start(
-        program: &Path,
+        options: &SlotOptions,
         said: impl Fn(Option<FromSlot>) + Send + 'static,
     ) -> io::Result<Self> {
-        let mut process = Command::new(program)
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let mark = format!("{}.{number}", process::id());
+        let mut process = Command::new(&options.program)
             .arg("slot")
+            .args(["--memory", &options.memory_mib.to_string()])
+            .env(MARK, &mark)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             // a group of its own: ended as a whole, and out of reach of Ctrl-C
@@ -45,6 +59,8 @@ impl Child {
             process,
             input,
             case: None,
+            mark,
+            memory_mib: options.memory_mib,
         };
         thread::Builder::new()
             .name("slot-output".to_owned())
@@ -72,11 +88,7 @@ impl Child {
     pub(super) fn end(mut self) -> String {
         self.kill();
         match self.process.wait() {
-            Ok(status) => match (status.signal(), status.code()) {
-                (Some(signal), _) => format!("ended by signal {signal}"),
-                (None, Some(code)) => format!("ended with status {code}"),
-                (None, None) => "ended without a status".to_owned(),
-            },
+            Ok(status) => words(status, self.memory_mib),
             Err(error) => format!("its end is unknown: {error}"),
         }
     }
@@ -100,6 +112,7 @@ impl Child {
             // fails if the whole group has ended by itself
             drop(kill_process_group(group, Signal::KILL).map_err(io::Error::from));
         }
+        end_marked(&self.mark);
     }
 }
 
@@ -107,5 +120,39 @@ impl Drop for Child {
     fn drop(&mut self) {
         self.kill();
         drop(self.process.wait());
+    }
+}
+
+/// How a process ended, with what is likely behind it.
+fn words(status: ExitStatus, memory_mib: u64) -> String {
+    match (status.signal(), status.code()) {
+        (Some(6), _) if memory_mib > 0 => format!(
+            "ended by signal 6: a bug, or more memory than the {memory_mib} MiB that a slot may \
+             have (--slot-memory)"
+        ),
+        (Some(signal), _) => format!("ended by signal {signal}"),
+        (None, Some(code)) => format!("ended with status {code}"),
+        (None, None) => "ended without a status".to_owned(),
+    }
+}
+
+/// Ends whatever left the process group of a slot, or outlived the process that started it.
+fn end_marked(mark: &str) {
+    let entry = format!("{MARK}={mark}");
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    for process in processes {
+        let name = process.file_name();
+        let Some(pid) = name.to_str().and_then(|name| name.parse().ok()) else {
+            continue;
+        };
+        // unreadable are those of other users, and those that have just ended
+        let environment = fs::read(process.path().join("environ")).unwrap_or_default();
+        let marked = environment
+            .split(|byte| *byte == 0)
+            .any(|variable| variable == entry.as_bytes());
+        if let (true, Some(pid)) = (marked, Pid::from_raw(pid)) {
+            // fails if it has just ended
+            drop(kill_process(pid, Signal::KILL).map_err(io::Error::from));
+        }
     }
 }

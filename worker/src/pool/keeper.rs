@@ -1,11 +1,10 @@
 //! The thread that keeps one slot busy and within its deadlines.
-use super::{Freed, Task, child::Child};
+use super::{Freed, SlotOptions, Task, child::Child};
 use protocol::{
     job::{Failure, Outcome},
     message::{Attempt, FromSlot},
 };
 use std::{
-    path::PathBuf,
     sync::mpsc::{Receiver, RecvTimeoutError, Sender},
     time::{Duration, Instant},
 };
@@ -26,7 +25,7 @@ pub(super) enum ToKeeper {
 #[derive(Debug)]
 pub(super) struct Keeper {
     slot: usize,
-    program: PathBuf,
+    options: SlotOptions,
     to_self: Sender<ToKeeper>,
     freed: UnboundedSender<Freed>,
     child: Option<Child>,
@@ -45,13 +44,13 @@ struct Current {
 impl Keeper {
     pub(super) const fn new(
         slot: usize,
-        program: PathBuf,
+        options: SlotOptions,
         to_self: Sender<ToKeeper>,
         freed: UnboundedSender<Freed>,
     ) -> Self {
         Self {
             slot,
-            program,
+            options,
             to_self,
             freed,
             child: None,
@@ -114,7 +113,7 @@ impl Keeper {
         if self.child.is_none() {
             self.number += 1;
             let (number, to_self) = (self.number, self.to_self.clone());
-            let child = Child::start(&self.program, move |message| {
+            let child = Child::start(&self.options, move |message| {
                 // a keeper that has ended needs no news
                 drop(to_self.send(ToKeeper::Said(number, message)));
             });

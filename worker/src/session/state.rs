@@ -1,5 +1,9 @@
 //! What a worker holds, and what it does with each message.
-use super::{Ending, SessionOptions, case::Incoming};
+use super::{
+    Ending, SessionOptions,
+    case::Incoming,
+    proof::{self, Proof},
+};
 use crate::{
     outbox::Outbox,
     pool::{CaseBytes, Freed, Pool, Task},
@@ -38,6 +42,7 @@ pub(super) struct State {
     run: RunId,
     admitted: bool,
     case: Option<CaseBytes>,
+    proof: Proof,
     incoming: Option<Incoming>,
     pub(super) fetching: JoinSet<Result<Vec<u8>, LinkError>>,
     waiting: VecDeque<Order>,
@@ -62,6 +67,7 @@ impl State {
             run: RunId::default(),
             admitted: false,
             case: None,
+            proof: Proof::Missing,
             incoming: None,
             fetching: JoinSet::new(),
             waiting: VecDeque::new(),
@@ -167,9 +173,11 @@ impl State {
                 if let Some(case) = incoming.take(&piece) {
                     tracing::debug!(hash = %case.hash, bytes = case.bytes.len(), "the case is here");
                     self.case = Some(case);
+                    self.proof = Proof::Missing;
                     self.incoming = None;
-                    self.next_beat = Duration::ZERO;
-                    self.send_beat(link);
+                    if let Some(refused) = self.prove() {
+                        return refused;
+                    }
                 }
                 self.fetch(link);
             }
@@ -178,6 +186,24 @@ impl State {
             (Ok(Ok(_)) | Err(_), _) => {}
         }
         Step::Go
+    }
+
+    /// Begins to compute the reference individual of the case, if that is still to be done and a
+    /// slot is free.
+    fn prove(&mut self) -> Option<Step> {
+        let Some(case) = self.case.as_ref().filter(|_| self.proof == Proof::Missing) else {
+            return None;
+        };
+        let slot = (0..self.pool.len()).find(|slot| !self.running.contains_key(slot))?;
+        match proof::task(case) {
+            Ok(task) => {
+                self.proof = Proof::Running;
+                self.running.insert(slot, (task.attempt, case.hash));
+                self.pool.run(slot, task);
+                None
+            }
+            Err(reason) => Some(Step::End(Ending::Refused(reason))),
+        }
     }
 
     fn take<L: WorkerEnd>(&mut self, link: &mut L, order: Order, now: Duration) {
@@ -245,6 +271,15 @@ impl State {
     ) -> Step {
         self.last_work = now;
         let held = self.running.remove(&freed.slot);
+        if freed.attempt == proof::ATTEMPT {
+            match Proof::of(freed.outcome) {
+                Ok(proof) => self.proof = proof,
+                Err(reason) => return Step::End(Ending::Refused(reason)),
+            }
+            self.send_beat(link);
+            self.fill();
+            return Step::Go;
+        }
         if let (Some(outcome), Some((attempt, work))) = (freed.outcome, held) {
             let wall_us = u64::try_from(freed.wall.as_micros()).unwrap_or(u64::MAX);
             let done = Done {
@@ -267,6 +302,9 @@ impl State {
             self.send(link, Lane::Data, &FromWorker::Done(Box::new(done)));
         }
         self.fetch(link);
+        if let Some(refused) = self.prove() {
+            return refused;
+        }
         if now >= self.next_beat {
             self.beat(link, now);
         }
@@ -297,7 +335,13 @@ impl State {
         let beat = Beat {
             number: self.beats,
             case: self.case.as_ref().map(|case| case.hash),
-            running: self.running.values().map(|(attempt, _)| *attempt).collect(),
+            proof: self.proof.known(),
+            running: self
+                .running
+                .values()
+                .map(|(attempt, _)| *attempt)
+                .filter(|attempt| *attempt != proof::ATTEMPT)
+                .collect(),
             waiting: self.waiting.iter().map(|order| order.attempt).collect(),
             finished: self.outbox.attempts(),
         };

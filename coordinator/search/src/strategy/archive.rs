@@ -11,6 +11,8 @@ pub struct Evaluated {
     pub genes: Vec<f64>,
     /// What came back.
     pub told: Told,
+    /// The residual vector, for a piece that wanted it.
+    pub residual: Option<Vec<f64>>,
 }
 
 /// All results of a run, found again by the exact bits of their genes.

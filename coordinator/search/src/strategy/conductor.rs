@@ -20,6 +20,8 @@ pub struct Conductor {
     open: BTreeMap<u64, Vec<f64>>,
     outbox: Vec<Proposal>,
     early: BTreeMap<u64, Told>,
+    /// Residual vectors of proposals that wanted one.
+    residuals: BTreeMap<u64, Vec<f64>>,
     next_id: u64,
     generation: u32,
     /// Generations of the pieces that are done.
@@ -39,6 +41,7 @@ impl Conductor {
             open: BTreeMap::new(),
             outbox: Vec::new(),
             early: BTreeMap::new(),
+            residuals: BTreeMap::new(),
             next_id: 0,
             generation: 0,
             generations_done: 0,
@@ -46,11 +49,6 @@ impl Conductor {
         };
         conductor.advance();
         conductor
-    }
-
-    /// Everything evaluated so far, in id order.
-    pub fn archive(&self) -> &Archive {
-        &self.archive
     }
 
     /// Plans batches until one needs an evaluation or nothing is left.
@@ -80,7 +78,13 @@ impl Conductor {
         let entries = self.archive.entries();
         let results: Vec<Evaluated> = std::mem::take(&mut self.slots)
             .into_iter()
-            .filter_map(|id| entries.get(usize::try_from(id).ok()?).cloned())
+            .filter_map(|id| {
+                let entry = entries.get(usize::try_from(id).ok()?)?;
+                Some(Evaluated {
+                    residual: self.residuals.get(&id).cloned(),
+                    ..entry.clone()
+                })
+            })
             .collect();
         if let Some(piece) = self.pieces.front_mut() {
             piece.absorb(&results);
@@ -92,8 +96,12 @@ impl Conductor {
         let mut fresh: BTreeMap<Vec<u64>, u64> = BTreeMap::new();
         for Draft { genes, purpose } in batch.drafts {
             let known = if self.reuse_clones {
+                // a result that is known without its residual is no use where that is wanted
+                let serves =
+                    |id: &u64| !purpose.wants_residual() || self.residuals.contains_key(id);
                 let met = self.archive.find(&genes).map(|entry| entry.id);
-                met.or_else(|| fresh.get(&key(&genes)).copied())
+                met.filter(serves)
+                    .or_else(|| fresh.get(&key(&genes)).copied())
             } else {
                 None
             };
@@ -135,9 +143,16 @@ impl Strategy for Conductor {
                     id: first,
                     genes,
                     told,
+                    residual: None,
                 });
             }
             self.advance();
+        }
+    }
+
+    fn tell_residual(&mut self, id: u64, residual: Vec<f64>) {
+        if self.open.contains_key(&id) {
+            self.residuals.entry(id).or_insert(residual);
         }
     }
 
@@ -181,5 +196,9 @@ impl Strategy for Conductor {
             fitness: best.told.fitness,
             complete: best.told.survived(),
         })
+    }
+
+    fn archive(&self) -> &Archive {
+        &self.archive
     }
 }

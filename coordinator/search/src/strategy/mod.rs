@@ -1,12 +1,13 @@
 //! The strategies there are, and what they have in common.
 //!
-//! Every strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a
+//! A strategy is a sequence of *pieces* (an initial design, a memetic search, a line scan, a
 //! refinement), each of which plans one batch of points at a time; the [`Conductor`] gives the
-//! points their ids, waits for the results in any order and hands them on in id order. A new
-//! strategy costs one file and one line in [`CATALOGUE`].
+//! points their ids, waits for the results in any order and hands them on in id order. One needs no
+//! batches: [`memetic::window`]. A new strategy costs one file and one line in [`CATALOGUE`].
 mod archive;
 mod conductor;
 mod design;
+pub mod levenberg;
 pub mod memetic;
 pub mod quick;
 pub mod refine;
@@ -29,6 +30,11 @@ pub trait Strategy {
     /// consumed in id order, so nothing ever depends on arrival. A result told twice is ignored.
     fn tell(&mut self, id: u64, result: Told);
 
+    /// Takes the residual vector of a proposal whose purpose wants one, before its result: in units
+    /// in which its squared length is the fitness.
+    /// A strategy that wants none ignores it.
+    fn tell_residual(&mut self, _id: u64, _residual: Vec<f64>) {}
+
     /// Why the search is over, if it is.
     fn finished(&self) -> Option<Finish>;
 
@@ -37,6 +43,9 @@ pub trait Strategy {
 
     /// The best individual so far: complete before failed, then by fitness, then by id.
     fn best(&self) -> Option<Best>;
+
+    /// Every result that was consumed, in id order.
+    fn archive(&self) -> &Archive;
 }
 
 /// An individual to evaluate.
@@ -68,6 +77,8 @@ pub enum Purpose {
     Scan,
     /// Step of a local refinement.
     Refinement,
+    /// Column or step of a descent of the residual vector.
+    LeastSquares,
 }
 
 impl Purpose {
@@ -80,7 +91,13 @@ impl Purpose {
             Self::MutationTrial => "mutation_trial",
             Self::Scan => "scan",
             Self::Refinement => "refinement",
+            Self::LeastSquares => "least_squares",
         }
+    }
+
+    /// Whether the residual vector is wanted beside the fitness.
+    pub const fn wants_residual(self) -> bool {
+        matches!(self, Self::LeastSquares)
     }
 }
 
@@ -201,8 +218,10 @@ pub struct Draft {
 pub enum Settings {
     /// The memetic algorithm of the reference paper.
     Memetic(memetic::MemeticSettings),
-    /// A short memetic search with line scans.
+    /// A short memetic search with line scans and refinement.
     Quick(quick::QuickSettings),
+    /// The memetic algorithm without generations.
+    Window(memetic::window::WindowSettings),
 }
 
 /// Settings that no search can be made of.
@@ -226,11 +245,12 @@ impl Settings {
     ///
     /// # Errors
     /// If a setting lies outside its range.
-    pub fn build(&self, space: &Space, seed: u64) -> Result<Conductor, SettingsError> {
-        match self {
-            Self::Memetic(settings) => memetic::build(settings, space, seed),
-            Self::Quick(settings) => quick::build(settings, space, seed),
-        }
+    pub fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
+        Ok(match self {
+            Self::Memetic(settings) => Box::new(memetic::build(settings, space, seed)?),
+            Self::Quick(settings) => Box::new(quick::build(settings, space, seed)?),
+            Self::Window(settings) => Box::new(memetic::window::build(settings, space, seed)?),
+        })
     }
 }
 
@@ -252,6 +272,11 @@ pub const CATALOGUE: &[Preset] = &[
         settings: |space| Settings::Quick(quick::QuickSettings::for_space(space)),
     },
     Preset {
+        name: "least-squares",
+        summary: "a short memetic search and line scans, then Levenberg-Marquardt on the residual",
+        settings: |space| Settings::Quick(quick::QuickSettings::least_squares(space)),
+    },
+    Preset {
         name: "paper",
         summary: "the reference paper's memetic algorithm: 80 individuals, 60 generations",
         settings: |_| Settings::Memetic(memetic::MemeticSettings::paper()),
@@ -260,6 +285,11 @@ pub const CATALOGUE: &[Preset] = &[
         name: "paper-batch",
         summary: "the same with 40 + 40 climbing trials at once, the best of which wins",
         settings: |_| Settings::Memetic(memetic::MemeticSettings::paper_batch()),
+    },
+    Preset {
+        name: "window",
+        summary: "the same without generations: no worker waits, and the bits are still the same",
+        settings: |_| Settings::Window(memetic::window::WindowSettings::for_workers(16)),
     },
 ];
 

@@ -13,6 +13,7 @@ use super::{
     file,
     note::Note,
 };
+use discrepancy::record::Record;
 use protocol::case::{GaugeRecord, GaugeTrace};
 use samples::Samples;
 use sheet::Sheet;
@@ -21,6 +22,8 @@ use std::path::{Path, PathBuf};
 /// What a record is asked to agree with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Expected<'a> {
+    /// Position of the condition in the case.
+    pub(super) index: usize,
     /// Name of the condition, for messages.
     pub(super) condition: &'a str,
     /// Speed of the condition [1/min].
@@ -48,10 +51,20 @@ pub struct RecordFacts {
     pub stated_noise_mpa: Option<f64>,
 }
 
+/// Reads the samples of a record alone, without its sheet and without a case; how many there are.
+///
+/// # Errors
+/// Everything that makes the samples unusable, with row and column; `path` is only named.
+pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
+    Samples::read(path, csv).map(|samples| samples.angle_deg.len())
+}
+
 /// A record that was read.
 #[derive(Debug)]
 pub(super) struct Read {
     pub(super) record: GaugeRecord,
+    /// Every cycle by itself, with what was recorded beside the gauges.
+    pub(super) cycles: Record,
     pub(super) facts: RecordFacts,
     pub(super) notes: Vec<Note>,
 }
@@ -110,8 +123,15 @@ pub(super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseErr
     }
     let record = average(path, &cycles, expected.step_deg)?;
     remark(path, &cycles, &samples, &facts, expected, &mut notes);
+    let stated = sheet.stated(&cycles.channels, samples.step_deg / expected.step_deg);
     Ok(Read {
         record,
+        cycles: Record {
+            condition: expected.index,
+            channels: cycles.channels,
+            cycles: cycles.single,
+            stated,
+        },
         facts,
         notes,
     })

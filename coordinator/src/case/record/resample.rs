@@ -9,6 +9,7 @@
 //! amplifier leaves nothing there: nothing aliases that matters. Where a cycle has samples on one
 //! side only, or fewer than three, it has no value, and the other cycles stand for it.
 use super::samples::Samples;
+use discrepancy::record::{Curves, Source};
 
 /// Resampled cycles.
 #[derive(Debug)]
@@ -21,6 +22,11 @@ pub(super) struct Cycles {
     pub(super) spread: Vec<Vec<f64>>,
     /// Grid angles that some whole cycle lacks.
     pub(super) gaps: usize,
+    /// Which channel each curve of a cycle is.
+    pub(super) channels: Vec<Source>,
+    /// Every whole cycle; where it has a gap, the mean of the others stands. Empty where every cycle
+    /// lacks an angle.
+    pub(super) single: Vec<Curves>,
 }
 
 /// Share of the grid a cycle must cover to count as whole.
@@ -46,13 +52,27 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
             let at = |window: &Option<Window>| window.as_ref().map(|w| w.apply(stress));
             windows.iter().map(at).collect()
         };
-        values.push(samples.stress_mpa.iter().map(resample).collect());
+        let others = samples.others.iter().map(|(_, curve)| curve);
+        values.push(
+            samples
+                .stress_mpa
+                .iter()
+                .chain(others)
+                .map(resample)
+                .collect(),
+        );
     }
+    let gauges = (1..)
+        .zip(&samples.stress_mpa)
+        .map(|(number, _)| Source::Gauge(number));
+    let others = samples.others.iter().map(|(source, _)| *source);
     let mut cycles = Cycles {
         gaps: 0,
         mean: Vec::new(),
         spread: Vec::new(),
         whole,
+        channels: gauges.chain(others).collect(),
+        single: filled(&values),
     };
     for gauge in 0..samples.stress_mpa.len() {
         let column = |at: usize| {
@@ -74,6 +94,26 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
             .count();
     }
     cycles
+}
+
+/// The cycles with their gaps filled by the mean of the others; none if an angle is missing in all.
+fn filled(cycles: &[Vec<Vec<Option<f64>>>]) -> Vec<Curves> {
+    let mean = |channel: usize, at: usize| {
+        let there = cycles.iter().filter_map(|cycle| cycle[channel][at]);
+        mean_and_spread(there).0
+    };
+    let channel = |(c, curve): (usize, &Vec<Option<f64>>)| -> Option<Vec<f64>> {
+        let values = curve.iter().enumerate();
+        values
+            .map(|(at, value)| value.or_else(|| mean(c, at)))
+            .collect()
+    };
+    let cycle = |cycle: &Vec<Vec<Option<f64>>>| cycle.iter().enumerate().map(channel).collect();
+    cycles
+        .iter()
+        .map(cycle)
+        .collect::<Option<Vec<Curves>>>()
+        .unwrap_or_default()
 }
 
 /// Number of grid angles of a turn.

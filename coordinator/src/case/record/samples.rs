@@ -3,9 +3,10 @@ use super::super::{
     error::{CaseError, damaged},
     table::Table,
 };
+use discrepancy::record::Source;
 use std::path::Path;
 
-/// Columns of a record that are used; load, position and torque are for the reader.
+/// Columns that a record must have.
 pub(super) const COLUMNS: [&str; 6] = [
     "time_s",
     "crank_deg",
@@ -15,6 +16,12 @@ pub(super) const COLUMNS: [&str; 6] = [
     "stress_4_mpa",
 ];
 
+/// Columns that a diagnosis uses where there are any.
+const OPTIONAL: [(&str, Source); 2] = [
+    ("polished_rod_position_m", Source::Position),
+    ("crank_torque_nm", Source::Torque),
+];
+
 /// A record as it was sampled.
 #[derive(Debug)]
 pub(super) struct Samples {
@@ -22,6 +29,8 @@ pub(super) struct Samples {
     pub(super) angle_deg: Vec<f64>,
     /// Stress of gauges 1 to 4 \[MPa\].
     pub(super) stress_mpa: Vec<Vec<f64>>,
+    /// What was recorded beside the gauges (m, N m).
+    pub(super) others: Vec<(Source, Vec<f64>)>,
     /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
     /// Usual time between samples \[s\].
@@ -39,10 +48,11 @@ impl Samples {
     /// Everything a table may have wrong; times that repeat or run backwards; angles outside
     /// 0 to 360 or running backwards; stress that is not MPa by its magnitude; a dead gauge.
     pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
-        let table = Table::read(path, bytes, &COLUMNS)?;
-        let [time, crank, stress @ ..] = table.columns.as_slice() else {
+        let table = Table::read_with(path, bytes, &COLUMNS, &OPTIONAL.map(|(name, _)| name))?;
+        let [time, crank, rest @ ..] = table.columns.as_slice() else {
             return Err(damaged(path, "no columns", "copy it again"));
         };
+        let (stress, others) = rest.split_at(COLUMNS.len() - 2);
         if time.len() < 4 {
             return Err(damaged(
                 path,
@@ -69,6 +79,16 @@ impl Samples {
             .sum();
         Ok(Self {
             stress_mpa: stress.to_vec(),
+            others: table
+                .names
+                .iter()
+                .skip(COLUMNS.len())
+                .zip(others)
+                .filter_map(|(name, values)| {
+                    let source = OPTIONAL.iter().find(|(known, _)| known == name)?.1;
+                    Some((source, values.clone()))
+                })
+                .collect(),
             angle_deg,
             pulses_s,
             step_s,

@@ -4,6 +4,7 @@ use super::super::{
     error::CaseError,
     note::Note,
 };
+use discrepancy::record::{Source, Stated};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -15,6 +16,38 @@ pub(super) struct Sheet {
     pub(super) samples_recorded: Option<u64>,
     pub(super) samples_lost: Option<u64>,
     pub(super) gauges: Gauges,
+    #[serde(default)]
+    crank: Crank,
+    #[serde(default)]
+    load: Load,
+    #[serde(default)]
+    position: Position,
+    #[serde(default)]
+    torque: Torque,
+}
+
+/// The crank's part of a data sheet.
+#[derive(Debug, Default, Deserialize)]
+struct Crank {
+    index_tolerance_deg: Option<f64>,
+}
+
+/// The load cell's part of a data sheet.
+#[derive(Debug, Default, Deserialize)]
+struct Load {
+    cycle_to_cycle_variation: Option<f64>,
+}
+
+/// The position's part of a data sheet.
+#[derive(Debug, Default, Deserialize)]
+struct Position {
+    noise_rms_m: Option<f64>,
+}
+
+/// The torque's part of a data sheet.
+#[derive(Debug, Default, Deserialize)]
+struct Torque {
+    noise_rms_nm: Option<f64>,
 }
 
 /// The gauges' part of a data sheet.
@@ -23,6 +56,7 @@ pub(super) struct Gauges {
     pub(super) unit: String,
     pub(super) resolution_mpa: Option<f64>,
     pub(super) noise_rms_mpa: Option<f64>,
+    noise_correlation_per_sample: Option<f64>,
 }
 
 /// Keys of a sheet that are understood, or known and for the reader only.
@@ -41,6 +75,25 @@ const KNOWN: &[&str] = &[
 ];
 
 impl Sheet {
+    /// What the sheet says of the measurement, for channels that are sampled `grid` times as densely
+    /// on the output grid as in the record.
+    pub(super) fn stated(&self, channels: &[Source], grid: f64) -> Stated {
+        let noise = |source: &Source| match source {
+            Source::Gauge(_) => self.gauges.noise_rms_mpa,
+            Source::Position => self.position.noise_rms_m,
+            Source::Torque => self.torque.noise_rms_nm,
+        };
+        Stated {
+            load_scatter: self.load.cycle_to_cycle_variation.unwrap_or(0.0),
+            angle_tolerance_deg: self.crank.index_tolerance_deg.unwrap_or(0.0),
+            noise: channels.iter().map(noise).collect(),
+            noise_correlation: self
+                .gauges
+                .noise_correlation_per_sample
+                .map_or(0.0, |rho| libm::pow(rho, 1.0 / grid)),
+        }
+    }
+
     /// Reads and checks a data sheet.
     ///
     /// # Errors
@@ -56,12 +109,52 @@ impl Sheet {
         )?;
         document.within("sample_rate_hz", sheet.sample_rate_hz, 1.0..=1.0e5, "Hz")?;
         let chain = [
-            ("gauges.resolution_mpa", sheet.gauges.resolution_mpa),
-            ("gauges.noise_rms_mpa", sheet.gauges.noise_rms_mpa),
+            (
+                "gauges.resolution_mpa",
+                sheet.gauges.resolution_mpa,
+                100.0,
+                "MPa",
+            ),
+            (
+                "gauges.noise_rms_mpa",
+                sheet.gauges.noise_rms_mpa,
+                100.0,
+                "MPa",
+            ),
+            (
+                "gauges.noise_correlation_per_sample",
+                sheet.gauges.noise_correlation_per_sample,
+                0.999,
+                "1",
+            ),
+            (
+                "crank.index_tolerance_deg",
+                sheet.crank.index_tolerance_deg,
+                90.0,
+                "deg",
+            ),
+            (
+                "load.cycle_to_cycle_variation",
+                sheet.load.cycle_to_cycle_variation,
+                1.0,
+                "1",
+            ),
+            (
+                "position.noise_rms_m",
+                sheet.position.noise_rms_m,
+                10.0,
+                "m",
+            ),
+            (
+                "torque.noise_rms_nm",
+                sheet.torque.noise_rms_nm,
+                1.0e6,
+                "N m",
+            ),
         ];
-        for (field, value) in chain {
+        for (field, value, highest, unit) in chain {
             if let Some(value) = value {
-                document.within(field, value, 0.0..=100.0, "MPa")?;
+                document.within(field, value, 0.0..=highest, unit)?;
             }
         }
         if sheet.gauges.unit != "MPa" {

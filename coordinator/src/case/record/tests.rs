@@ -19,6 +19,7 @@ fn sampled(
         .collect();
     let last = angle_deg.last().unwrap();
     Samples {
+        others: Vec::new(),
         stress_mpa: vec![angle_deg.iter().map(|angle| stress(*angle)).collect()],
         pulses_s: (1..=floor(last / 360.0))
             .map(|turn| turn as f64 * 12.0)

@@ -12,6 +12,7 @@ mod panel;
 mod revolution;
 mod scale;
 mod strip;
+mod work;
 mod worker;
 
 pub use card::card;
@@ -21,6 +22,7 @@ pub use gene::genes;
 pub use overlay::overlay;
 pub(super) use revolution::player;
 pub use revolution::{gauges, motion, tension, torque};
+pub use work::work_precision;
 pub use worker::workers;
 
 use super::data::ConditionResult;

@@ -1,6 +1,9 @@
 //! Who computed, and how busy they were.
 use super::{Rendered, Section, Subject, figure};
-use crate::report::{chart, table};
+use crate::{
+    account,
+    report::{chart, table},
+};
 use maud::html;
 
 pub(super) const SECTION: Section = Section {
@@ -17,6 +20,8 @@ fn render(subject: Subject<'_>) -> Rendered {
     Ok((!calibration.workers.is_empty()).then(|| {
         html! {
             @if let Some(drawn) = &drawn { (figure(drawn)) }
+            (table::markup(&table::slot_time(&calibration.spent)))
+            ul { @for reason in account::reasons(&calibration.spent) { li { (reason) } } }
             (table::markup(&table::workers(&calibration.workers)))
         }
     }))

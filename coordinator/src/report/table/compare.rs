@@ -1,7 +1,7 @@
-//! Recommended against optimised parameters (paper, Tables 3 and 4), and the workers' table.
+//! Recommended against optimised parameters (paper, Tables 3 and 4).
 use super::{Label, Row, Table};
-use crate::report::data::{Calibration, ConditionResult, Run, WorkerUse};
-use crate::report::number::{NONE, count, duration, figure, fixed, percent, ratio, unit};
+use crate::report::data::{Calibration, ConditionResult, Run};
+use crate::report::number::{NONE, figure, fixed, percent, ratio, unit};
 use crate::report::words::{self, condition_name};
 use protocol::case::{Case, GeneName};
 use protocol::job::{ChannelScore, Verdict};
@@ -256,39 +256,4 @@ fn failures(result: &ConditionResult) -> Vec<String> {
         }
     })
     .collect()
-}
-
-/// What each worker did.
-pub fn workers(workers: &[WorkerUse]) -> Table {
-    let rows = workers.iter().map(|worker| {
-        Row::new(
-            worker.name.clone(),
-            [
-                worker.host.clone(),
-                worker.slots.to_string(),
-                count(worker.done),
-                count(worker.failed),
-                duration(worker.busy_s),
-                worker.busy_share().map_or_else(|| NONE.to_owned(), percent),
-            ],
-        )
-    });
-    Table {
-        title: "Workers".to_owned(),
-        head: [
-            "worker",
-            "host",
-            "slots",
-            "jobs done",
-            "failed",
-            "computing",
-            "busy",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Busy: time spent on accepted results over slots times the time attached.".to_owned(),
-        ],
-    }
 }

@@ -1,15 +1,19 @@
 //! Tables from one description: for the terminal and for HTML.
 //!
-//! Here is only how a table is set; `compare`, `head` and `single` fill it.
+//! Here is only how a table is set; `compare`, `head`, `single` and `worker` fill it.
 mod compare;
 mod gap;
 mod head;
 mod single;
+mod work;
+mod worker;
 
-pub use compare::{table_3, table_4, workers};
+pub use compare::{table_3, table_4};
 pub use gap::gap;
 pub use head::{head_modes, head_statics};
 pub use single::{balance, genes, simulation};
+pub use work::work_precision;
+pub use worker::{slot_time, workers};
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};

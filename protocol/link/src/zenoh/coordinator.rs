@@ -1,11 +1,20 @@
 //! The coordinator's end: an embedded router with its listeners.
-use super::{INBOX, TlsFiles, close, common, open, sender::Sender, tls_for, transport};
-use crate::{Blob, CoordinatorEnd, Heard, LinkError, locator::Locator};
+use super::{INBOX, access, close, common, names::Names, needed, open, sender::Sender, transport};
+use crate::{
+    Blob, CoordinatorEnd, Heard, LinkError,
+    gate::{Gate, Inner},
+    keys::Keys,
+    locator::{Locator, Protocol},
+};
 use protocol::{
     id::{RunId, WorkerId},
     key::{self, Lane},
 };
-use serde_json::json;
+use serde_json::{Value, json};
+use std::{
+    net::Ipv4Addr,
+    sync::{Arc, Mutex, PoisonError},
+};
 use tokio::sync::mpsc;
 use zenoh::{Session, bytes::Encoding, sample::SampleKind};
 
@@ -16,8 +25,8 @@ pub struct CoordinatorOptions {
     pub listen: Vec<Locator>,
     /// Whether unencrypted addresses may be open to the network.
     pub insecure: bool,
-    /// Key material for QUIC.
-    pub tls: Option<TlsFiles>,
+    /// Key material for QUIC, with the names that may join.
+    pub keys: Option<Keys>,
     /// The run it works for.
     pub run: RunId,
     /// What workers may fetch.
@@ -32,39 +41,50 @@ pub struct ZenohCoordinator {
     heard: mpsc::Receiver<Heard>,
     run: RunId,
     listening: Vec<Locator>,
+    names: Arc<Mutex<Names>>,
+    gates: Vec<Gate>,
 }
 
 impl ZenohCoordinator {
     /// Opens the router and starts to listen.
     ///
     /// # Errors
-    /// [`LinkError::Exposed`] or [`LinkError::NoCertificates`] for addresses that may not be
+    /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be
     /// listened on as they are; [`LinkError::Transport`] if the address is taken.
     pub async fn open(options: CoordinatorOptions) -> Result<Self, LinkError> {
         let CoordinatorOptions {
             listen,
             insecure,
-            tls,
+            keys,
             run,
             blob,
         } = options;
-        let mut listening = Vec::new();
+        let mut locators = Vec::new();
         for locator in listen {
             locator.permit(insecure)?;
-            listening.push(locator.with_free_port()?);
+            locators.push(locator.with_free_port()?);
         }
-        let references: Vec<&Locator> = listening.iter().collect();
-        let mut config = common(&tls_for(&references, tls.as_ref(), TlsFiles::listening)?);
-        let names: Vec<String> = listening.iter().map(ToString::to_string).collect();
+        let references: Vec<&Locator> = locators.iter().collect();
+        let keys = needed(&references, keys.as_ref())?;
+        let (mut config, gates) = match keys {
+            Some(keys) => behind_gates(&locators, keys)?,
+            None => (common(&references, &json!({})), Vec::new()),
+        };
+        let at: Vec<String> = locators.iter().map(ToString::to_string).collect();
         config["mode"] = json!("router");
-        config["listen"] = json!({ "endpoints": names, "exit_on_failure": true, "timeout_ms": 0 });
         config["connect"] = json!({ "endpoints": [] });
-        let session = open(&config, &format!("listen on {}", names.join(", "))).await?;
+        if gates.is_empty() {
+            config["listen"]["endpoints"] = json!(at);
+        }
+        config["listen"]["exit_on_failure"] = json!(true);
+        config["listen"]["timeout_ms"] = json!(0);
+        let session = open(&config, &format!("listen on {}", at.join(", "))).await?;
+        let names = Arc::new(Mutex::new(Names::default()));
         let (to, heard) = mpsc::channel(INBOX);
         for lane in [Lane::Data, Lane::Control] {
-            subscribe(&session, lane, to.clone()).await?;
+            subscribe(&session, lane, to.clone(), Arc::clone(&names)).await?;
         }
-        watch_presence(&session, run, to).await?;
+        watch_presence(&session, run, to, Arc::clone(&names)).await?;
         serve(&session, run, blob).await?;
         let sender = Sender::start(session.clone())
             .map_err(|error| transport("start the sending thread", &error))?;
@@ -73,7 +93,9 @@ impl ZenohCoordinator {
             sender,
             heard,
             run,
-            listening,
+            listening: locators,
+            names,
+            gates,
         })
     }
 
@@ -85,8 +107,17 @@ impl ZenohCoordinator {
 
 impl CoordinatorEnd for ZenohCoordinator {
     fn send(&mut self, to: WorkerId, lane: Lane, frame: Vec<u8>) {
-        self.sender
-            .send(key::to_worker(self.run, to, lane), lane, frame);
+        let key = {
+            let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+            names
+                .of(to)
+                .map(|name| key::to_worker(self.run, name, lane))
+        };
+        if let Some(key) = key {
+            self.sender.send(key, lane, frame);
+        } else {
+            tracing::debug!(%to, "a frame was not sent: the worker is gone");
+        }
     }
 
     async fn receive(&mut self) -> Option<Heard> {
@@ -96,7 +127,38 @@ impl CoordinatorEnd for ZenohCoordinator {
     async fn close(self) {
         self.sender.finish().await;
         close(self.session).await;
+        for gate in self.gates {
+            gate.close().await;
+        }
     }
+}
+
+/// The router's configuration behind gates, and a gate for each QUIC address.
+///
+/// The router itself listens for QUIC on a free port of loopback alone, and takes nobody there but
+/// who comes through a gate.
+fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>), LinkError> {
+    let inside = Locator {
+        protocol: Protocol::Quic,
+        host: Ipv4Addr::LOCALHOST.to_string(),
+        port: 0,
+    }
+    .with_free_port()?;
+    let router = (Ipv4Addr::LOCALHOST, inside.port).into();
+    let inner = Arc::new(Inner::make(router, keys.workers())?);
+    let (mut endpoints, mut gates) = (vec![inside.to_string()], Vec::new());
+    for at in locators {
+        if at.protocol == Protocol::Tcp {
+            endpoints.push(at.to_string());
+            continue;
+        }
+        gates.push(Gate::open(at, keys, Arc::clone(&inner))?);
+    }
+    let references: Vec<&Locator> = locators.iter().collect();
+    let mut config = common(&references, inner.listening());
+    config["access_control"] = access::control(keys.workers(), endpoints.len() > 1);
+    config["listen"]["endpoints"] = json!(endpoints);
+    Ok((config, gates))
 }
 
 fn offer(to: &mpsc::Sender<Heard>, heard: Heard) {
@@ -109,11 +171,16 @@ async fn subscribe(
     session: &Session,
     lane: Lane,
     to: mpsc::Sender<Heard>,
+    names: Arc<Mutex<Names>>,
 ) -> Result<(), LinkError> {
     session
         .declare_subscriber(key::all_from_workers(lane))
         .callback(move |sample| {
             if let Some(worker) = key::worker_of(sample.key_expr().as_str()) {
+                let worker = names
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .note(worker);
                 offer(
                     &to,
                     Heard::Frame(worker, sample.payload().to_bytes().into_owned()),
@@ -129,6 +196,7 @@ async fn watch_presence(
     session: &Session,
     run: RunId,
     to: mpsc::Sender<Heard>,
+    names: Arc<Mutex<Names>>,
 ) -> Result<(), LinkError> {
     session
         .liveliness()
@@ -137,6 +205,11 @@ async fn watch_presence(
             if sample.kind() == SampleKind::Delete
                 && let Some(worker) = key::worker_of(sample.key_expr().as_str())
             {
+                let worker = worker.id();
+                names
+                    .lock()
+                    .unwrap_or_else(PoisonError::into_inner)
+                    .forget(worker);
                 offer(&to, Heard::Gone(worker));
             }
         })

@@ -1,9 +1,10 @@
 //! A worker's end: a client with one address.
-use super::{INBOX, TlsFiles, close, common, open, sender::Sender, tls_for, transport};
-use crate::{LinkError, WorkerEnd, locator::Locator};
+use super::{INBOX, close, common, connecting, needed, open, sender::Sender, transport};
+use crate::{LinkError, WorkerEnd, handshake, keys::Keys, locator::Locator};
 use protocol::{
-    id::{ContentHash, RunId, WorkerId},
+    id::{ContentHash, RunId},
     key::{self, Lane},
+    name::WorkerName,
 };
 use serde_json::json;
 use std::{future::Future, time::Duration};
@@ -21,7 +22,7 @@ const PIECE: Duration = Duration::from_secs(10);
 /// A worker on the bus.
 #[derive(Debug)]
 pub struct ZenohWorker {
-    id: WorkerId,
+    name: WorkerName,
     session: Session,
     sender: Sender,
     frames: mpsc::Receiver<Vec<u8>>,
@@ -29,16 +30,33 @@ pub struct ZenohWorker {
 }
 
 impl ZenohWorker {
-    /// Connects; later interruptions are repaired by the session itself.
+    /// Connects; later interruptions are repaired by the session itself. `process` tells this
+    /// worker from others with the same certificate, or without any.
     ///
     /// # Errors
-    /// [`LinkError::Transport`] if nobody listens there within 10 s: try again.
+    /// What is wrong with the key material or the address, or why one end refuses the other's
+    /// certificate; [`LinkError::may_pass`] says whether trying again may help.
     pub async fn open(
         connect: &Locator,
-        tls: Option<&TlsFiles>,
-        id: WorkerId,
+        keys: Option<&Keys>,
+        process: u64,
     ) -> Result<Self, LinkError> {
-        let mut config = common(&tls_for(&[connect], tls, TlsFiles::connecting)?);
+        let keys = needed(&[connect], keys)?;
+        let name = if let Some(keys) = keys {
+            handshake::shake(connect, keys).await?;
+            // checked when the keys were read
+            WorkerName::of(keys.owner(), process).map_err(|source| {
+                LinkError::Keys(crate::keys::KeyError::Name {
+                    path: keys.certificate(),
+                    source,
+                })
+            })?
+        } else {
+            handshake::knock(connect).await?;
+            WorkerName::anyone(process)
+        };
+        let tls = keys.map_or_else(|| json!({}), connecting);
+        let mut config = common(&[connect], &tls);
         config["mode"] = json!("client");
         config["listen"] = json!({ "endpoints": [] });
         config["connect"] = json!({
@@ -48,7 +66,7 @@ impl ZenohWorker {
         let session = open(&config, &format!("connect to {connect}")).await?;
         let (to, frames) = mpsc::channel(INBOX);
         session
-            .declare_subscriber(key::all_to_worker(id))
+            .declare_subscriber(key::all_to_worker(&name))
             .callback(move |sample| {
                 if to
                     .try_send(sample.payload().to_bytes().into_owned())
@@ -63,7 +81,7 @@ impl ZenohWorker {
         let sender = Sender::start(session.clone())
             .map_err(|error| transport("start the sending thread", &error))?;
         Ok(Self {
-            id,
+            name,
             session,
             sender,
             frames,
@@ -75,7 +93,7 @@ impl ZenohWorker {
 impl WorkerEnd for ZenohWorker {
     fn send(&mut self, run: RunId, lane: Lane, frame: Vec<u8>) {
         self.sender
-            .send(key::from_worker(run, self.id, lane), lane, frame);
+            .send(key::from_worker(run, &self.name, lane), lane, frame);
     }
 
     async fn receive(&mut self) -> Option<Vec<u8>> {
@@ -87,7 +105,7 @@ impl WorkerEnd for ZenohWorker {
         let token = self
             .session
             .liveliness()
-            .declare_token(key::alive(run, self.id))
+            .declare_token(key::alive(run, &self.name))
             .await
             .map_err(|error| transport("show presence", &error))?;
         self.token = Some(token);

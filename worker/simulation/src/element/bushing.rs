@@ -8,6 +8,7 @@
 //! `F_I = -[k2 d + c2 V + e ((k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`,
 //! `V = v_I - v_J - w_J x d`, and the same for the torque with the rotation vector `Theta` and
 //! `w = w_I - w_J`. On J acts `F_J = -F_I`, `T_J = -T_I - d x F_I` (Eq. 2).
+use super::ForceElement;
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
 use nalgebra::{Matrix3, Vector3};
 
@@ -161,6 +162,28 @@ impl Bushing {
         }
     }
 
+    /// Extension along the axis \[m\] and its rate [m/s].
+    pub fn extension(&self, i: &Marker, j: &Marker) -> [f64; 2] {
+        let Deformation { e, d, V, .. } = self.deformation(i, j);
+        [e.dot(&d), e.dot(&V)]
+    }
+
+    /// Adds a pull along the axis \[N\], of which `lost` [W] is taken out, to a load.
+    pub fn add_pull(
+        &self,
+        (i, j): (&Marker, &Marker),
+        (pull, lost): (f64, f64),
+        load: &mut LinkLoad,
+    ) {
+        let Deformation { e, d, .. } = self.deformation(i, j);
+        let force = e * -pull;
+        load.force += force;
+        load.torque_i += i.rho.cross(&force);
+        load.torque_j -= (d + j.rho).cross(&force);
+        load.axial -= pull;
+        load.dissipated += lost;
+    }
+
     /// Stored energy \[J\]. Exact while torsion and bending do not mix (planar motion).
     pub fn energy(&self, i: &Marker, j: &Marker) -> f64 {
         let [k1, k2] = self.stiffness;
@@ -173,15 +196,32 @@ impl Bushing {
 
     /// Derivatives of [`Self::load`] by the motion of I and of J.
     pub fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
-        let [k1, k2] = self.stiffness;
-        let [c1, c2] = self.damping;
+        self.tangent_with(i, j, load, None)
+    }
+
+    /// The same with a further pull along the axis: itself \[N\], and its derivatives by extension
+    /// and by rate.
+    pub fn tangent_with(
+        &self,
+        i: &Marker,
+        j: &Marker,
+        load: &LinkLoad,
+        further: Option<[f64; 3]>,
+    ) -> [LinkTangent; 2] {
+        let [mut k1, k2] = self.stiffness;
+        let [mut c1, c2] = self.damping;
         let [k4, k5] = self.rotational_stiffness;
         let [c4, c5] = self.rotational_damping;
         let Deformation { e, d, V, theta, w } = self.deformation(i, j);
+        let mut pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
+        if let Some([force, by_extension, by_rate]) = further {
+            pull += force;
+            k1 += by_extension;
+            c1 += by_rate;
+        }
         let ee = e * e.transpose();
         let K = M3::from_diagonal_element(k2) + ee * (k1 - k2);
         let C = M3::from_diagonal_element(c2) + ee * (c1 - c2);
-        let pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
         let G = M3::from_diagonal_element(pull) + e * (d * (k1 - k2) + V * (c1 - c2)).transpose();
         let (skew_e, rho_i, rho_j) = (skew(&e), skew(&i.rho), skew(&j.rho));
         let relative = skew(&i.w) - skew(&j.w);
@@ -237,114 +277,16 @@ impl Bushing {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn example() -> Bushing {
-        Bushing {
-            stiffness: [7.0, 3.0],
-            damping: [0.9, 0.4],
-            rotational_stiffness: [1.7, 2.3],
-            rotational_damping: [0.6, 0.8],
-        }
+impl ForceElement for Bushing {
+    fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
+        Self::load(self, i, j)
     }
 
-    fn rotation(theta: &V3) -> M3 {
-        nalgebra::Rotation3::new(*theta).into_inner()
+    fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
+        Self::tangent(self, i, j, load)
     }
 
-    fn markers() -> [Marker; 2] {
-        let marker = |s: f64| Marker {
-            p: V3::new(0.3 + s, -0.2 * s, 0.5),
-            rho: V3::new(0.21, 0.1 * s, -0.15 * s),
-            v: V3::new(0.3, 0.5 * s, -0.2),
-            w: V3::new(-0.7 * s, 0.4, 0.9),
-            R: rotation(&V3::new(0.4 * s, -0.3, 0.6 + 0.2 * s)),
-        };
-        [marker(1.0), marker(1.4)]
-    }
-
-    /// Moves a marker's body: the marker is fixed on it, so arm and frame turn along.
-    fn moved(m: &Marker, kind: usize, k: usize, h: f64) -> Marker {
-        let mut d = V3::zeros();
-        d[k] = h;
-        let mut m = *m;
-        match kind {
-            0 => m.p += d,
-            1 => m.v += d,
-            2 => {
-                let R = rotation(&d);
-                m.rho = R * m.rho;
-                m.R = R * m.R;
-            }
-            _ => m.w += d,
-        }
-        m
-    }
-
-    #[test]
-    fn tangent_is_the_derivative_of_the_load() {
-        let element = example();
-        let at = markers();
-        let load = element.load(&at[0], &at[1]);
-        let tangents = element.tangent(&at[0], &at[1], &load);
-        let h = 1e-6;
-        for (body, tangent) in tangents.iter().enumerate() {
-            for (kind, analytic) in [tangent.p, tangent.v, tangent.a, tangent.w]
-                .iter()
-                .enumerate()
-            {
-                for k in 0..3 {
-                    let at_step = |h: f64| {
-                        let mut m = at;
-                        m[body] = moved(&m[body], kind, k, h);
-                        let l = element.load(&m[0], &m[1]);
-                        [l.force, l.torque_i, l.torque_j]
-                    };
-                    let (plus, minus) = (at_step(h), at_step(-h));
-                    for row in 0..3 {
-                        let difference = (plus[row] - minus[row]) / (2.0 * h);
-                        let error = (difference - analytic[row].column(k)).norm();
-                        assert!(
-                            error < 1e-7,
-                            "body {body} kind {kind} column {k} row {row}: {error}"
-                        );
-                    }
-                }
-            }
-        }
-    }
-
-    #[test]
-    fn action_equals_reaction_and_power_balances() {
-        let element = example();
-        let [i, j] = markers();
-        let load = element.load(&i, &j);
-        // moments about the origin vanish: T_J = -T_I - d x F_I
-        let moment = load.torque_i + load.torque_j + (i.p - j.p).cross(&load.force);
-        assert!(moment.norm() < 1e-14, "{moment}");
-
-        // with k4 = k5 the law derives from its energy: dE/dt = -(power) - dissipation
-        let element = Bushing {
-            rotational_stiffness: [2.3, 2.3],
-            ..element
-        };
-        let load = element.load(&i, &j);
-        let power =
-            load.force.dot(&(i.v - j.v)) + load.torque_i.dot(&i.w) + load.torque_j.dot(&j.w);
-        let advance = |m: &Marker, h: f64| Marker {
-            p: m.p + m.v * h,
-            rho: rotation(&(m.w * h)) * m.rho,
-            R: rotation(&(m.w * h)) * m.R,
-            ..*m
-        };
-        let energy = |h: f64| element.energy(&advance(&i, h), &advance(&j, h));
-        let rate = (energy(1e-6) - energy(-1e-6)) / 2e-6;
-        assert!(
-            (rate + power + load.dissipated).abs() < 1e-7,
-            "{rate} {power}"
-        );
-        assert!(load.dissipated > 0.0);
+    fn energy(&self, i: &Marker, j: &Marker) -> f64 {
+        Self::energy(self, i, j)
     }
 }

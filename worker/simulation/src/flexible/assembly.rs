@@ -131,15 +131,12 @@ impl Assembly {
         for (element, nodes) in mesh.hexahedra.iter().enumerate() {
             let inside_out = |_| ReductionError::InsideOut { element };
             let hexahedron = Hexahedron::new(mesh.corners(nodes));
-            let k = hexahedron.stiffness(steel).map_err(inside_out)?;
-            let m = hexahedron.mass(steel).map_err(inside_out)?;
+            let own = hexahedron.matrices(steel).map_err(inside_out)?;
             for (i, a) in each(nodes, unknowns) {
                 for (j, b) in each(nodes, unknowns) {
                     if a >= b {
-                        stiffness.add(a, b, k[(i, j)]);
-                        if i % 3 == j % 3 {
-                            mass.add(a, b, m[i / 3][j / 3]);
-                        }
+                        stiffness.add(a, b, own.stiffness[(i, j)]);
+                        mass.add(a, b, own.mass[(i, j)]);
                     }
                 }
             }

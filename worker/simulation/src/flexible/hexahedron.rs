@@ -3,16 +3,32 @@
 //! Displacement is `sum_i N_i d_i + sum_k (1 - xi_k^2) a_k`. The nine amplitudes `a` belong to the
 //! element alone and are condensed out; they let a brick bend without locking ([Wilson1973]). Their
 //! gradients are taken with the Jacobian of the element's centre and scaled by `det J0 / det J`, so
-//! that they integrate to zero and distorted elements pass the patch test ([Taylor1976]). All
-//! integrals by 2 x 2 x 2 Gauss points. Knows one element, no mesh.
+//! that they integrate to zero and distorted elements pass the patch test ([Taylor1976]). They move
+//! mass too: the inertia of the whole displacement is condensed by the same static shapes (Guyan
+//! 1965), without which a thin plate of one brick rings up to 2 % too high. All integrals by
+//! 2 x 2 x 2 Gauss points. Knows one element, no mesh.
+//!
+//! `CalculiX`'s C3D8I is the same element without the factor `det J0 / det J`, for which it fails the
+//! patch test; so changed, this one gives its frequencies to 1e-4, and as it stands to 0.6 %.
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Displacements of one element, node by node.
 pub(super) const DOFS: usize = 24;
 /// Amplitudes of the incompatible modes.
 const INNER: usize = 9;
-/// Stiffness of one element [N/m]; rows and columns node by node, x y z.
-pub(super) type Stiffness = SMatrix<f64, DOFS, DOFS>;
+/// Nodes and incompatible modes.
+const SHAPES: usize = 8 + INNER / 3;
+/// A matrix of one element; rows and columns node by node, x y z.
+pub(super) type Square = SMatrix<f64, DOFS, DOFS>;
+
+/// What one element weighs in a structure.
+#[derive(Clone, Debug)]
+pub(super) struct Matrices {
+    /// Stiffness after condensation of the incompatible modes [N/m].
+    pub(super) stiffness: Square,
+    /// Mass after the same condensation \[kg\].
+    pub(super) mass: Square,
+}
 
 /// Isotropic, linear elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,16 +113,17 @@ impl Hexahedron {
         CORNERS.map(|corner| corner.map(|sign| sign * at))
     }
 
-    /// Stiffness after condensation of the incompatible modes [N/m].
+    /// Stiffness and mass after condensation of the incompatible modes.
     ///
     /// # Errors
     /// [`InsideOut`] if the Jacobian is not positive at an integration point or the centre.
-    pub(super) fn stiffness(&self, steel: &Steel) -> Result<Stiffness, InsideOut> {
+    pub(super) fn matrices(&self, steel: &Steel) -> Result<Matrices, InsideOut> {
         const ALL: usize = DOFS + INNER;
         let lame = steel.lame();
         let center = jacobian(&self.nodes, &[0.0; 3]);
         let center_inverse = center.try_inverse().ok_or(InsideOut)?;
         let mut full = Box::new(SMatrix::<f64, ALL, ALL>::zeros());
+        let mut weight = [[0.0; SHAPES]; SHAPES];
         for point in Self::gauss() {
             let jacobian = jacobian(&self.nodes, &point);
             let volume = jacobian.determinant();
@@ -114,7 +131,7 @@ impl Hexahedron {
                 return Err(InsideOut);
             }
             let inverse = jacobian.try_inverse().ok_or(InsideOut)?;
-            let mut gradients = [Vector3::zeros(); 8 + 3];
+            let mut gradients = [Vector3::zeros(); SHAPES];
             for (gradient, slope) in gradients.iter_mut().zip(slopes(&point)) {
                 *gradient = inverse * slope;
             }
@@ -123,33 +140,17 @@ impl Hexahedron {
                 *gradient = center_inverse.column(k) * (-2.0 * point[k] * ratio);
             }
             add_point(&mut full, &gradients, lame, volume);
+            add_weight(&mut weight, &point, steel.density * volume);
         }
         let outer = full.fixed_view::<DOFS, DOFS>(0, 0);
         let mixed = full.fixed_view::<INNER, DOFS>(DOFS, 0).into_owned();
         let inner = full.fixed_view::<INNER, INNER>(DOFS, DOFS).into_owned();
-        let answer = inner.cholesky().ok_or(InsideOut)?.solve(&mixed);
-        Ok(outer - mixed.transpose() * answer)
-    }
-
-    /// Consistent mass between nodes \[kg\], the same for every direction; 8 x 8.
-    ///
-    /// # Errors
-    /// [`InsideOut`] if the Jacobian is not positive at an integration point.
-    pub(super) fn mass(&self, steel: &Steel) -> Result<[[f64; 8]; 8], InsideOut> {
-        let mut mass = [[0.0; 8]; 8];
-        for point in Self::gauss() {
-            let volume = jacobian(&self.nodes, &point).determinant();
-            if volume <= 0.0 {
-                return Err(InsideOut);
-            }
-            let shape = shape(&point);
-            for (row, a) in mass.iter_mut().zip(shape) {
-                for (entry, b) in row.iter_mut().zip(shape) {
-                    *entry += steel.density * volume * a * b;
-                }
-            }
-        }
-        Ok(mass)
+        // the incompatible modes follow the nodes by minus this
+        let follow = inner.cholesky().ok_or(InsideOut)?.solve(&mixed);
+        Ok(Matrices {
+            stiffness: outer - mixed.transpose() * follow,
+            mass: condensed(&weight, &follow),
+        })
     }
 
     /// Stress at the centre \[Pa\]: xx, yy, zz, xy, yz, zx. The incompatible modes have no slope
@@ -181,7 +182,7 @@ impl Hexahedron {
 /// is `lambda g_i g_j' + mu (g_j g_i' + g_i . g_j)`.
 fn add_point<const ALL: usize>(
     full: &mut SMatrix<f64, ALL, ALL>,
-    gradients: &[Vector3<f64>; 11],
+    gradients: &[Vector3<f64>; SHAPES],
     (first, shear): (f64, f64),
     volume: f64,
 ) {
@@ -199,4 +200,38 @@ fn add_point<const ALL: usize>(
             }
         }
     }
+}
+
+/// Adds one integration point to the mass between shapes, the same for every direction.
+fn add_weight(weight: &mut [[f64; SHAPES]; SHAPES], point: &[f64; 3], mass: f64) {
+    let nodes = shape(point);
+    let shapes: [f64; SHAPES] = std::array::from_fn(|i| {
+        nodes
+            .get(i)
+            .copied()
+            .unwrap_or_else(|| 1.0 - point[i - 8] * point[i - 8])
+    });
+    for (row, a) in weight.iter_mut().zip(shapes) {
+        for (entry, b) in row.iter_mut().zip(shapes) {
+            *entry += mass * a * b;
+        }
+    }
+}
+
+/// `T' M T` with the mass of all shapes and `T = (1, -follow)`.
+fn condensed(weight: &[[f64; SHAPES]; SHAPES], follow: &SMatrix<f64, INNER, DOFS>) -> Square {
+    // M T, of which every direction is its own
+    let part = |shape: usize, k: usize, column: usize| {
+        let own = if column % 3 == k {
+            weight[shape][column / 3]
+        } else {
+            0.0
+        };
+        let inner = (0..INNER / 3).map(|m| weight[shape][8 + m] * follow[(3 * m + k, column)]);
+        own - inner.sum::<f64>()
+    };
+    let outer = Square::from_fn(|row, column| part(row / 3, row % 3, column));
+    let inner =
+        SMatrix::<f64, INNER, DOFS>::from_fn(|row, column| part(8 + row / 3, row % 3, column));
+    outer - follow.transpose() * inner
 }

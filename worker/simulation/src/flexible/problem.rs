@@ -5,11 +5,12 @@ use super::{
     ReductionError,
     arc::{Rim, Station},
     assembly::{Assembly, Factor, Unknowns},
-    eigen::{dot, lowest},
-    hexahedron::{Hexahedron, Steel},
+    eigen::lowest,
+    hexahedron::{DOFS, Hexahedron, Steel},
     mesh::{Half, Mesh},
     reduction::{Family, Mode, Reduction, Request, Row, Wrap},
 };
+use nalgebra::SVector;
 
 /// Motions of the whole body per unit base acceleration: along x, along y, about the origin.
 fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
@@ -252,15 +253,14 @@ fn mass_times<const N: usize>(
 ) -> Result<[Vec<[f64; 3]>; N], ReductionError> {
     let mut products = [(); N].map(|()| vec![[0.0; 3]; mesh.nodes.len()]);
     for (element, nodes) in mesh.hexahedra.iter().enumerate() {
-        let mass = Hexahedron::new(mesh.corners(nodes))
-            .mass(steel)
+        let own = Hexahedron::new(mesh.corners(nodes))
+            .matrices(steel)
             .map_err(|_| ReductionError::InsideOut { element })?;
         for (product, field) in products.iter_mut().zip(fields) {
-            for (&a, row) in nodes.iter().zip(&mass) {
-                for axis in 0..3 {
-                    let values = nodes.map(|node| field[node][axis]);
-                    product[a][axis] += dot(row, &values);
-                }
+            let values = SVector::<f64, DOFS>::from_fn(|i, _| field[nodes[i / 3]][i % 3]);
+            let force = own.mass * values;
+            for (i, force) in force.iter().enumerate() {
+                product[nodes[i / 3]][i % 3] += force;
             }
         }
     }

@@ -1,13 +1,14 @@
 //! Steps of a size that follows the local error: tries one after the other, counts what fails.
-use super::esdirk::{Esdirk, Step};
+use super::State;
+use super::method::Method;
 use super::step_control::StepControl;
-use super::{State, tableau::Tableau};
+use super::stepper::{Step, Stepper};
 use crate::system::{Equations, System};
 
 /// A method with its step size.
-#[derive(Clone, Debug)]
-pub struct Adaptive {
-    method: Esdirk,
+#[derive(Debug)]
+pub struct Adaptive<E> {
+    method: Box<dyn Stepper<E>>,
     control: StepControl,
     /// Size of the next step \[s\].
     step: f64,
@@ -30,17 +31,18 @@ const REGAIN: f64 = 1.1;
 /// Shortest step; a run that needs shorter ones ends \[s\].
 const SHORTEST_STEP: f64 = 1e-9;
 
-impl Adaptive {
-    /// For `n` coordinates, local error `tolerance` and steps of at most `longest` \[s\].
-    pub fn new(tableau: &'static Tableau, n: usize, tolerance: f64, longest: f64) -> Self {
+impl<E: Equations> Adaptive<E> {
+    /// For a system, local error `tolerance` and steps of at most `longest` \[s\].
+    pub fn new(method: Method, system: &System<E>, tolerance: f64, longest: f64) -> Self {
+        let method = method.stepper(system, tolerance);
         Self {
-            method: Esdirk::new(tableau, n, tolerance),
             control: StepControl {
-                order: tableau.error_order,
+                order: method.error_order(),
                 tolerance,
                 longest,
                 shortest: SHORTEST_STEP,
             },
+            method,
             step: 1e-3_f64.min(longest),
             trusted: longest,
             since: LONG_AGO,
@@ -52,7 +54,7 @@ impl Adaptive {
     ///
     /// # Errors
     /// [`StepUnderflow`] when failures have made the step too short.
-    pub fn attempt<E: Equations>(
+    pub fn attempt(
         &mut self,
         system: &mut System<E>,
         from: &State,
@@ -74,6 +76,7 @@ impl Adaptive {
         match self.method.step(system, from, step, to) {
             Err(_) => {
                 system.statistics.newton_rejections += 1;
+                self.method.reject();
                 self.step = 0.3 * step;
                 if self.since < LONG_AGO {
                     self.trusted = TRUST * step;
@@ -83,13 +86,17 @@ impl Adaptive {
             }
             Ok(done) if done.error > tolerance || !done.error.is_finite() => {
                 system.statistics.error_rejections += 1;
+                self.control.order = self.method.error_order();
+                self.method.reject();
                 self.step = step * self.control.factor(done.error).min(0.7);
                 Ok(None)
             }
             Ok(done) => {
                 system.statistics.steps += 1;
-                self.method.accept();
-                let next = self.control.next(step, done.error).min(self.trusted);
+                self.control.order = self.method.error_order();
+                self.method.accept(&system.equations, to);
+                let next = self.method.next(&self.control, step, done.error);
+                let next = next.min(self.trusted);
                 self.trusted = (self.trusted * REGAIN).min(self.control.longest);
                 self.since = (self.since + 1).min(LONG_AGO);
                 self.step = if step < self.step {

@@ -4,18 +4,10 @@
 //! Every implicit stage is `q = base_q + c v`, `v = base_v + c a`, `M a = Q(q, v, t)` with the same
 //! `c`, so one factorisation of `M / c^2 - D / c - K` serves all of them.
 use super::newton::{Newton, NotConverged, Stage};
+use super::stepper::{Step, Stepper, add_work};
 use super::{State, tableau::Tableau};
 use crate::model::Powers;
 use crate::system::{Equations, System};
-
-/// Result of one step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// Local error in units of the error norm.
-    pub error: f64,
-    /// Work done during the step: input, output, dissipated \[J\].
-    pub work: Powers,
-}
 
 /// A method with its buffers.
 #[derive(Clone, Debug)]
@@ -42,51 +34,6 @@ impl Esdirk {
             base_v: vec![0.0; n],
             error: vec![0.0; n],
         }
-    }
-
-    /// One step of size `h` from `from` into `to`.
-    ///
-    /// # Errors
-    /// [`NotConverged`] when a stage could not be solved; `to` is then meaningless.
-    pub fn step<E: Equations>(
-        &mut self,
-        system: &mut System<E>,
-        from: &State,
-        h: f64,
-        to: &mut State,
-    ) -> Result<Step, NotConverged> {
-        let tableau = self.tableau;
-        let last = tableau.stages() - 1;
-        let c = tableau.diagonal * h;
-        self.stages[0].0.copy_from_slice(&from.v);
-        self.stages[0].1.copy_from_slice(&from.a);
-        for i in 1..=last {
-            self.bases(i, h, from);
-            self.predict(i, c, to);
-            let stage = Stage {
-                t: from.t + tableau.nodes[i] * h,
-                c,
-                base_q: &self.base_q,
-                base_v: &self.base_v,
-            };
-            self.newton
-                .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
-            self.powers[i] = system.equations.powers(stage.t, &to.q, &to.v, &to.a);
-            if i < last {
-                self.stages[i].0.copy_from_slice(&to.v);
-                self.stages[i].1.copy_from_slice(&to.a);
-            }
-        }
-        to.t = from.t + h;
-        self.estimate(h, to);
-        let error = system.equations.error_norm(&self.error);
-        let work = self.work(h);
-        Ok(Step { error, work })
-    }
-
-    /// Takes the powers of the accepted step's end as those of the next one's start.
-    pub fn accept(&mut self) {
-        self.powers[0] = self.powers[self.tableau.stages() - 1];
     }
 
     /// What coordinates and rates of stage `i` are without its own rate and acceleration.
@@ -141,11 +88,56 @@ impl Esdirk {
     fn work(&self, h: f64) -> Powers {
         let mut work = Powers::default();
         for (i, power) in self.powers.iter().enumerate() {
-            let weight = h * self.tableau.weight(i);
-            work.input += weight * power.input;
-            work.output += weight * power.output;
-            work.dissipated += weight * power.dissipated;
+            add_work(&mut work, h * self.tableau.weight(i), power);
         }
         work
+    }
+}
+
+impl<E: Equations> Stepper<E> for Esdirk {
+    fn step(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        h: f64,
+        to: &mut State,
+    ) -> Result<Step, NotConverged> {
+        let tableau = self.tableau;
+        let last = tableau.stages() - 1;
+        let c = tableau.diagonal * h;
+        self.stages[0].0.copy_from_slice(&from.v);
+        self.stages[0].1.copy_from_slice(&from.a);
+        for i in 1..=last {
+            self.bases(i, h, from);
+            self.predict(i, c, to);
+            let stage = Stage {
+                t: from.t + tableau.nodes[i] * h,
+                c,
+                d: c,
+                base_q: &self.base_q,
+                base_v: &self.base_v,
+            };
+            self.newton
+                .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
+            self.powers[i] = system.equations.powers(stage.t, &to.q, &to.v, &to.a);
+            if i < last {
+                self.stages[i].0.copy_from_slice(&to.v);
+                self.stages[i].1.copy_from_slice(&to.a);
+            }
+        }
+        to.t = from.t + h;
+        self.estimate(h, to);
+        let error = system.equations.error_norm(&self.error);
+        let work = self.work(h);
+        Ok(Step { error, work })
+    }
+
+    fn accept(&mut self, _: &E, _: &State) {
+        // the powers at this step's end are those at the next one's start
+        self.powers[0] = self.powers[self.tableau.stages() - 1];
+    }
+
+    fn error_order(&self) -> f64 {
+        self.tableau.error_order
     }
 }

@@ -47,13 +47,15 @@ impl RefactorPolicy {
     }
 }
 
-/// One stage `q = base_q + c v`, `v = base_v + c a`, `M a = Q`, at time `t`.
+/// One stage `q = base_q + c v`, `v = base_v + d a`, `M a = Q`, at time `t`.
 #[derive(Clone, Copy, Debug)]
 pub struct Stage<'a> {
     /// Time of the stage \[s\].
     pub t: f64,
     /// Coefficient c \[s\].
     pub c: f64,
+    /// Coefficient d \[s\], the same as c for most methods; d/c must not change from stage to stage.
+    pub d: f64,
     /// What the coordinates are without this stage's rate.
     pub base_q: &'a [f64],
     /// What the rates are without this stage's acceleration.
@@ -98,6 +100,7 @@ impl Newton {
         (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
     ) -> Result<(), NotConverged> {
         let gamma = 1.0 / stage.c;
+        let mu = gamma * (1.0 / stage.d);
         let mut fresh = false;
         predict(stage, q, v, a);
         system.residual(stage.t, q, v, a, &mut self.change);
@@ -115,7 +118,7 @@ impl Newton {
                 let change = relax * self.change[i];
                 q[i] += change;
                 v[i] += gamma * change;
-                a[i] += gamma * gamma * change;
+                a[i] += mu * change;
                 self.change[i] = change;
             }
             let norm = system.equations.newton_norm(&self.change);
@@ -163,7 +166,8 @@ impl Newton {
         v: &[f64],
     ) -> Result<(), NotConverged> {
         let gamma = 1.0 / stage.c;
-        let made = system.factorize(stage.t, (q, v), (gamma * gamma, gamma));
+        let mu = gamma * (1.0 / stage.d);
+        let made = system.factorize(stage.t, (q, v), (mu, gamma));
         if made.is_err() {
             self.policy.spoiled();
             return Err(NotConverged);
@@ -177,6 +181,6 @@ impl Newton {
 fn predict(stage: &Stage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
     for i in 0..q.len() {
         q[i] = stage.base_q[i] + stage.c * v[i];
-        a[i] = (v[i] - stage.base_v[i]) / stage.c;
+        a[i] = (v[i] - stage.base_v[i]) / stage.d;
     }
 }

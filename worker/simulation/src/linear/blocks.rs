@@ -34,6 +34,9 @@ pub struct Blocks<const N: usize> {
     corner_pivots: Vec<usize>,
 }
 
+/// Border columns of a block, border rows of it, and the corner.
+type BorderMut<'a, const N: usize> = (&'a mut [Column<N>], &'a mut [Column<N>], &'a mut [f64]);
+
 impl<const N: usize> Blocks<N> {
     /// An empty matrix for chains of the given numbers of blocks.
     pub fn new(chains: &[usize], border: usize) -> Self {
@@ -112,9 +115,55 @@ impl<const N: usize> Blocks<N> {
         self.corner[column * self.border + row] += value;
     }
 
-    /// `y = A x` of the assembled (not factorised) matrix; for tests and checks.
+    /// What couples `block` with the first `reach` unknowns of the border, and the border with itself:
+    /// border columns of its rows, border rows of its columns, and the corner, column by column.
+    #[inline]
+    pub fn border_mut(&mut self, block: usize, reach: usize) -> BorderMut<'_, N> {
+        self.touches[block] = self.touches[block].max(reach);
+        let of = block * self.border..block * self.border + reach;
+        (
+            &mut self.right[of.clone()],
+            &mut self.bottom[of],
+            &mut self.corner,
+        )
+    }
+
+    /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
+    ///
+    /// # Panics
+    /// In debug builds, between blocks that are not neighbours of one chain.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        let base = self.diagonal.len() * N;
+        let split = |i: usize| (i / N, i % N);
+        match (row < base, column < base) {
+            (false, false) => self.add_corner(row - base, column - base, value),
+            (true, false) => self.add_right(split(row).0, split(row).1, column - base, value),
+            (false, true) => {
+                self.add_bottom(split(column).0, row - base, split(column).1, value);
+            }
+            (true, true) => {
+                let ((b, r), (c, k)) = (split(row), split(column));
+                debug_assert!(b.abs_diff(c) <= 1, "blocks {b} and {c} are no neighbours");
+                let block = match c.cmp(&b) {
+                    std::cmp::Ordering::Equal => &mut self.diagonal[b],
+                    std::cmp::Ordering::Greater => &mut self.upper[b],
+                    std::cmp::Ordering::Less => &mut self.lower[c],
+                };
+                block[(r, k)] += value;
+            }
+        }
+    }
+
+    /// `A x` of the assembled (not factorised) matrix.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; self.len()];
+        self.multiply(x, &mut y);
+        y
+    }
+
+    /// `y = A x` of the assembled (not factorised) matrix.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
         let base = self.diagonal.len() * N;
         let part = |b: usize| column::<N>(x, b);
         let mut first = 0;
@@ -140,7 +189,6 @@ impl<const N: usize> Blocks<N> {
                 y[base + row] += self.corner[k * self.border + row] * x[base + k];
             }
         }
-        y
     }
 
     /// Factorises in place; the assembled entries are lost.

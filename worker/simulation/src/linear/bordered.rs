@@ -97,9 +97,22 @@ impl Bordered {
         either!(self, blocks => blocks.add_corner(row, column, value));
     }
 
-    /// `y = A x` of the assembled (not factorised) matrix; for tests and checks.
+    /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
+    ///
+    /// # Panics
+    /// In debug builds, between blocks that are not neighbours of one chain.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        either!(self, blocks => blocks.add(row, column, value));
+    }
+
+    /// `A x` of the assembled (not factorised) matrix.
     pub fn product(&self, x: &[f64]) -> Vec<f64> {
         either!(self, blocks => blocks.product(x))
+    }
+
+    /// `y = A x` of the assembled (not factorised) matrix.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        either!(self, blocks => blocks.multiply(x, y));
     }
 
     /// Factorises in place; the assembled entries are lost.

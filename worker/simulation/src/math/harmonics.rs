@@ -3,19 +3,25 @@ use crate::math::elementary::sin_cos;
 
 /// Keeps the mean and the first `kept` harmonics of a periodic table.
 pub fn low_pass(values: &[f64], kept: u32) -> Vec<f64> {
+    filter(values, kept, |_| [1.0, 0.0])
+}
+
+/// Multiplies harmonic `h` of a periodic table, as an amplitude of `exp(i h phi)`, by a complex gain
+/// (real and imaginary part); the mean stays, harmonics above `highest` are dropped.
+pub fn filter(values: &[f64], highest: u32, gain: impl Fn(u32) -> [f64; 2]) -> Vec<f64> {
     let n = values.len();
     let count = n.max(1) as f64;
     let mean = values.iter().sum::<f64>() / count;
-    let mut smooth = vec![mean; n];
-    for harmonic in 1..=kept {
+    let mut filtered = vec![mean; n];
+    let phases: Vec<(f64, f64)> = (0..n)
+        .map(|step| sin_cos(std::f64::consts::TAU * step as f64 / count))
+        .collect();
+    for harmonic in 1..=highest {
         if 2 * harmonic as usize > n {
             break;
         }
-        let phase = |i: usize| {
-            // reduced in integers, so that far samples lose no precision
-            let step = (harmonic as usize * i) % n;
-            sin_cos(std::f64::consts::TAU * step as f64 / count)
-        };
+        // reduced in integers, so that far samples lose no precision
+        let phase = |i: usize| phases[(harmonic as usize * i) % n];
         let (mut a, mut b) = (0.0, 0.0);
         for (i, value) in values.iter().enumerate() {
             let (s, c) = phase(i);
@@ -23,12 +29,14 @@ pub fn low_pass(values: &[f64], kept: u32) -> Vec<f64> {
             b += value * s;
         }
         let scale = if 2 * harmonic as usize == n { 1.0 } else { 2.0 } / count;
-        for (i, out) in smooth.iter_mut().enumerate() {
+        let [re, im] = gain(harmonic);
+        let (cosine, sine) = (a * re + b * im, b * re - a * im);
+        for (i, out) in filtered.iter_mut().enumerate() {
             let (s, c) = phase(i);
-            *out += scale * (a * c + b * s);
+            *out += scale * (cosine * c + sine * s);
         }
     }
-    smooth
+    filtered
 }
 
 #[cfg(test)]
@@ -51,6 +59,12 @@ mod tests {
         let cut = low_pass(&sum, 5);
         for (cut, wave) in cut.iter().zip(wave(3)) {
             assert!((cut - 7.0 - wave).abs() < 1e-13);
+        }
+        // a third of the derivative of the third harmonic is its cosine
+        let turned = filter(&wave(3), 24, |h| [0.0, f64::from(h) / 3.0]);
+        for (i, turned) in turned.iter().enumerate() {
+            let c = sin_cos(std::f64::consts::TAU * (3 * i) as f64 / n as f64 + 0.4).1;
+            assert!((turned - c).abs() < 1e-13);
         }
         let all = low_pass(&sum, 24);
         assert!(all.iter().zip(&sum).all(|(a, b)| (a - b).abs() < 1e-13));

@@ -4,6 +4,7 @@
 //! `d = R + sum_k q_k phi_k(s) - |g - C(theta)|`, `s = arg(g - C) - theta`; the rope's radius is
 //! part of `R`. The generalised force is `-f grad d`. A cylinder touches along its length: the law
 //! is integrated by three Gauss points, whose weights share the cylinder's coefficients.
+use crate::effect::Profile;
 use crate::math::elementary::{atan2, sin_cos};
 use crate::math::spline::sum::Sum;
 use crate::math::spline::{Place, Splines};
@@ -32,6 +33,8 @@ pub struct Surface<'a> {
     pub beam: [f64; 2],
     /// What bends it, if anything does.
     pub bend: Option<Bend<'a>>,
+    /// Where a bent surface is not the circle, if anywhere.
+    pub profile: Option<&'a Profile>,
 }
 
 /// Deflection of an arc by modes.
@@ -120,6 +123,7 @@ impl<'a> Surface<'a> {
             radius: arc.radius,
             beam,
             bend,
+            profile: None,
         }
     }
 
@@ -168,6 +172,12 @@ impl<'a> Surface<'a> {
             slope = [deflected.first, deflected.second];
             rate = bulging;
             place = Some(at);
+            if let Some(profile) = self.profile {
+                let [height, first, second] = profile.height(angle);
+                bulge += height;
+                slope[0] += first;
+                slope[1] += second;
+            }
         }
         let by_point = tangent * (slope[0] * inverse) - normal;
         let by_beam = -by_point.dot(&self.center_by_beam) - slope[0];

@@ -28,13 +28,15 @@ pub struct Powers {
 impl Machine {
     /// Fills the poses of all cylinders and the deflection of the back head's arc.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
-        let modal = self.layout.beam() + 1..;
-        scratch
-            .deflection
-            .weigh(&self.radial, &q[modal.clone()], &v[modal]);
+        self.deflect(q, v, &mut scratch.deflection);
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
             chain.pose(q, v, state);
         }
+    }
+
+    fn deflect(&self, q: &[f64], v: &[f64], deflection: &mut Sum) {
+        let modal = self.layout.beam() + 1..;
+        deflection.weigh(&self.radial, &q[modal.clone()], &v[modal]);
     }
 
     /// Generalised forces `Q(q, v, t)` into `force`; joint and contact loads stay in `scratch`.
@@ -42,22 +44,33 @@ impl Machine {
         force.fill(0.0);
         self.pose(at.q, at.v, scratch);
         self.weights(at, force);
-        for (k, chain) in self.chains.iter().enumerate() {
-            let state = &mut scratch.chains[k];
-            chain.add_weights(&self.gravity(), state, force);
-            let joints = self.joints(k, at);
-            chain.add_joints(&joints, state, force);
-            self.end_forces(k, at, &joints, scratch, force);
-            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            let (blocks, border) = force.split_at_mut(self.layout.beam());
-            chain.add_contact(
-                &surface,
-                &at.ropes.contact,
-                &mut scratch.chains[k],
-                blocks,
-                border,
-            );
+        for k in 0..self.chains.len() {
+            self.chain_forces(k, at, scratch, force);
         }
+        self.hooks.add_forces(at, force);
+    }
+
+    /// Poses and loads of the back rope alone into `scratch`: what acts on the back head. `force` is
+    /// spoiled.
+    pub(crate) fn back_loads(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
+        force.fill(0.0);
+        self.deflect(at.q, at.v, &mut scratch.deflection);
+        self.chains[0].pose(at.q, at.v, &mut scratch.chains[0]);
+        self.chain_forces(0, at, scratch, force);
+    }
+
+    /// Adds the forces of and on a rope whose poses are in `scratch`.
+    fn chain_forces(&self, k: usize, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
+        let chain = &self.chains[k];
+        let state = &mut scratch.chains[k];
+        chain.add_weights(&self.gravity(), state, force);
+        let joints = self.joints(k, at);
+        chain.add_joints(&joints, state, force);
+        self.end_forces(k, at, &joints, scratch, force);
+        let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+        let (blocks, border) = force.split_at_mut(self.layout.beam());
+        let state = &mut scratch.chains[k];
+        chain.add_contact(&surface, &at.ropes.contact, state, blocks, border);
     }
 
     /// Acceleration of gravity as a vector [m/s2].
@@ -134,7 +147,10 @@ impl Machine {
             sum: deflection,
             modal_rate: &v[beam + 1..],
         });
-        Surface::new(self.arc(chain), [q[beam], v[beam]], bend)
+        Surface {
+            profile: bend.and_then(|_| self.hooks.profile()),
+            ..Surface::new(self.arc(chain), [q[beam], v[beam]], bend)
+        }
     }
 
     /// `out -= M(q) a`.
@@ -188,6 +204,7 @@ impl Machine {
             let rate = v[self.layout.mode(k)];
             dissipated += 2.0 * head.damping_ratio * head.frequencies[k] * rate * rate;
         }
+        dissipated += self.hooks.lost(at);
         Powers {
             input: pin.dot(&at.drive.pin[1]),
             output: at.drive.load * v[self.layout.suspension()],
@@ -226,7 +243,19 @@ impl Machine {
                 &scratch.chains[k],
             );
         }
-        sum
+        sum + self.hooks.energy(at)
+    }
+
+    /// What of the potential at rest that effects add is no stored energy \[J\].
+    pub(crate) fn potential_beyond_energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+        if self.hooks.is_empty() {
+            return 0.0;
+        }
+        let chains = self.chains.iter().zip(&scratch.chains).enumerate();
+        let along: f64 = chains
+            .map(|(k, (chain, state))| chain.potential_beyond_energy(&self.joints(k, at), state))
+            .sum();
+        along + self.hooks.potential_beyond_energy(at)
     }
 
     fn kinetic(&self, at: &Instant<'_>) -> f64 {

@@ -52,6 +52,51 @@ impl<'a> Individual<'a> {
         self.at.1 = state;
     }
 
+    /// Force of the back rope on its head, contact and anchor together, in W \[N\].
+    ///
+    /// From the balance of rope and load path: the wrapped rope and the head together are pulled by
+    /// the joint before the first cylinder that touches.
+    pub fn head_push(&self) -> [f64; 2] {
+        let back = &self.scratch.chains[0];
+        let first = back.contact.iter().position(|&force| force > 0.0);
+        let joint = first.unwrap_or(self.machine.layout.back);
+        // the joint's force on its outer cylinder points back along the free rope
+        let force = back.joints[joint].force;
+        [force.x, force.y]
+    }
+
+    /// Evaluates the loads of the back rope alone, which is what gauge stress needs; `force` is a
+    /// buffer that is spoiled.
+    pub(crate) fn back_loads(&mut self, state: &State, force: &mut [f64]) {
+        let drive = &self.drive_state(state.t);
+        let at = Instant {
+            ropes: &self.ropes,
+            drive,
+            q: &state.q,
+            v: &state.v,
+        };
+        self.machine.back_loads(&at, &mut self.scratch, force);
+    }
+
+    /// Lets laws with a past remember an accepted state.
+    pub fn remember(&mut self, state: &State) {
+        if !self.machine.hooks.has_axial() {
+            return;
+        }
+        let drive = &self.drive_state(state.t);
+        self.machine.pose(&state.q, &state.v, &mut self.scratch);
+        let at = Instant {
+            ropes: &self.ropes,
+            drive,
+            q: &state.q,
+            v: &state.v,
+        };
+        for (k, chain) in self.machine.chains.iter().enumerate() {
+            let joints = self.machine.joints(k, &at);
+            chain.remember(&joints, &mut self.scratch.chains[k]);
+        }
+    }
+
     /// Kinetic plus potential energy without the load's \[J\].
     pub fn energy(&mut self, state: &State) -> f64 {
         let drive = &self.drive_state(state.t);
@@ -94,6 +139,12 @@ impl Equations for Individual<'_> {
         let at = Instant { ropes, drive, q, v };
         self.machine
             .tangent(&at, coefficients, &self.scratch, matrix);
+    }
+
+    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered) {
+        for chain in &self.machine.chains {
+            chain.add_spin_tangent(state, gamma, matrix);
+        }
     }
 
     fn newton_norm(&self, change: &[f64]) -> f64 {
@@ -147,6 +198,7 @@ impl Static for Individual<'_> {
             v: still,
         };
         self.machine.potential(&at, &self.scratch)
+            + self.machine.potential_beyond_energy(&at, &self.scratch)
             + drive.load * q[self.machine.layout.suspension()]
     }
 

@@ -6,7 +6,7 @@
 //! `P.t(Psi) - h'(psi) + R (psi - psi_anchor) = L` (length of rope and rod).
 //! `h` is the effective back arm: `d theta / d phi = (dP/dphi . t) / h`.
 use crate::math::elementary::sin_cos;
-use crate::model::description::{Arc, Crank};
+use crate::model::description::{Arc, Crank, Description};
 
 /// One solved position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +43,15 @@ pub struct DoesNotClose {
 }
 
 impl Mechanism {
+    /// That of a description, rope and rod of their unstretched length.
+    pub fn of(d: &Description) -> Self {
+        Self {
+            crank: d.crank,
+            arc: d.back_arc,
+            length: d.rope.back as f64 * d.rope.pitch + d.rod.length,
+        }
+    }
+
     /// The crank pin at an angle \[m\].
     pub fn pin(&self, angle: f64) -> [f64; 2] {
         let (s, c) = sin_cos(angle);

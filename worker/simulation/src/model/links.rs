@@ -26,7 +26,7 @@ impl Machine {
     }
 
     /// The joints of a chain at an instant.
-    pub(crate) fn joints<'a>(&self, chain: usize, at: &Instant<'a>) -> Joints<'a> {
+    pub(crate) fn joints<'a>(&'a self, chain: usize, at: &Instant<'a>) -> Joints<'a> {
         Joints {
             inner: &at.ropes.joint,
             base: Some(Held {
@@ -37,6 +37,11 @@ impl Machine {
                 marker: self.anchor_marker(chain, at),
                 law: &at.ropes.anchor,
             }),
+            axial: {
+                let pitch = self.description.rope.pitch;
+                let stiffness = at.ropes.joint.stiffness[0] * pitch;
+                self.hooks.axial(chain, at.drive, stiffness, pitch)
+            },
         }
     }
 

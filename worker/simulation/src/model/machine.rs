@@ -1,4 +1,5 @@
 //! A machine ready to be simulated: constants derived once from a description.
+use crate::effect::{Cycle, Hooks, Selection};
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::math::elementary::sin_cos;
 use crate::math::spline::{Splines, sum::Sum};
@@ -16,6 +17,9 @@ pub struct Machine {
     pub layout: Layout,
     /// Bottom dead centre of the inextensible mechanism: where the turn angle is zero.
     pub bottom: Position,
+    /// Height in W of the suspension point's lowest design position \[m\]: bottom dead centre without
+    /// effects, the front rope unstretched.
+    pub lowest_suspension: f64,
     /// Horizontal place of the guided suspension point \[m\].
     pub suspension_x: f64,
     pub(crate) radial: Splines,
@@ -26,6 +30,8 @@ pub struct Machine {
     pub(crate) chains: [Chain; 2],
     pub(crate) normal_influence: Splines,
     pub(crate) tangential_influence: Splines,
+    /// What effects add.
+    pub(crate) hooks: Hooks,
 }
 
 /// The ropes of one individual: coefficients scaled to the pitch of the chain.
@@ -81,6 +87,50 @@ impl Machine {
     /// [`InvalidDescription`] naming the number or table that is wrong.
     pub fn new(description: Description, modes: usize) -> Result<Self, InvalidDescription> {
         check(&description, modes)?;
+        let bottom = Mechanism::of(&description).bottom_dead_centre()?;
+        let lowest = lowest_suspension(&description, &bottom);
+        Self::assemble(description, modes, bottom, lowest)
+    }
+
+    /// As [`Self::new`], with effects. Turn 0 stays where the machine without them has its bottom
+    /// dead centre: that is where its crank is marked.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_effects(
+        description: Description,
+        modes: usize,
+        selection: &Selection,
+    ) -> Result<Self, InvalidDescription> {
+        if selection.is_empty() {
+            return Self::new(description, modes);
+        }
+        check(&description, modes)?;
+        let marked = Mechanism::of(&description).bottom_dead_centre()?;
+        let lowest = lowest_suspension(&description, &marked);
+        let (mut edited, mut kept) = (description, modes);
+        for effect in &selection.effects {
+            effect.describe(&mut edited, &mut kept);
+        }
+        check(&edited, kept)?;
+        let mechanism = Mechanism::of(&edited);
+        let bottom = mechanism.position(marked.pin, marked.beam, marked.tangent)?;
+        let cycle = Cycle::new(&edited, &mechanism, &bottom)?;
+        let mut machine = Self::assemble(edited, kept, bottom, lowest)?;
+        let mut hooks = Hooks::default();
+        for effect in &selection.effects {
+            effect.install(&machine, &cycle, &mut hooks);
+        }
+        machine.hooks = hooks;
+        Ok(machine)
+    }
+
+    fn assemble(
+        description: Description,
+        modes: usize,
+        bottom: Position,
+        lowest_suspension: f64,
+    ) -> Result<Self, InvalidDescription> {
         let d = &description;
         let layout = Layout {
             back: d.rope.back,
@@ -88,12 +138,6 @@ impl Machine {
             modes,
             motion: Motion::Plane,
         };
-        let mechanism = Mechanism {
-            crank: d.crank,
-            arc: d.back_arc,
-            length: d.rope.back as f64 * d.rope.pitch + d.rod.length,
-        };
-        let bottom = mechanism.bottom_dead_centre()?;
         let chain = |k: usize, count: usize| {
             let first = layout.base_block(k) + 1;
             let chain = Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density);
@@ -119,6 +163,7 @@ impl Machine {
         Ok(Self {
             layout,
             bottom,
+            lowest_suspension,
             suspension_x: d.front_arc.center[0] + d.front_arc.radius,
             card: Splines::periodic(
                 0.0,
@@ -130,6 +175,7 @@ impl Machine {
             normal_influence: influence(&d.head.normal_influence),
             tangential_influence: influence(&d.head.tangential_influence),
             radial,
+            hooks: Hooks::default(),
             description,
         })
     }
@@ -221,6 +267,13 @@ impl Scratch {
     pub(crate) fn deepest(&self) -> f64 {
         self.chains[0].deepest.max(self.chains[1].deepest)
     }
+}
+
+fn lowest_suspension(d: &Description, bottom: &Position) -> f64 {
+    let rope = d.rope.front as f64 * d.rope.pitch;
+    let lowest = d.front_arc.radius * bottom.beam;
+    let wrapped = d.front_arc.radius * d.front_arc.anchor + lowest;
+    wrapped - rope
 }
 
 fn check(d: &Description, modes: usize) -> Result<(), InvalidDescription> {

@@ -23,4 +23,4 @@ pub(crate) use links::turned;
 pub use machine::{InvalidDescription, Machine, Ropes, Scratch};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -46,6 +46,7 @@ impl Machine {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             chain.add_contact_tangent(&surface, &at.ropes.contact, state, gamma, matrix);
         }
+        self.hooks.add_tangent(at, gamma, matrix);
     }
 
     fn inertia_blocks(&self, q: &[f64], mu: f64, matrix: &mut Bordered) {

@@ -13,7 +13,7 @@ fn machines() -> [Machine; 2] {
 }
 
 /// A state near the working position, disturbed in every coordinate so that nothing vanishes.
-fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
     let layout = machine.layout;
     let law = reference::law();
     let drive = drive(0.0);
@@ -83,7 +83,7 @@ fn drive(t: f64) -> DriveState {
 }
 
 /// Coordinates that are not locked.
-fn free(machine: &Machine) -> impl Iterator<Item = usize> {
+pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     let layout = machine.layout;
     let width = layout.motion.width();
     (0..layout.len()).filter(move |&i| {
@@ -116,7 +116,7 @@ fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<
         .collect()
 }
 
-fn unit(n: usize, i: usize) -> Vec<f64> {
+pub(crate) fn unit(n: usize, i: usize) -> Vec<f64> {
     let mut x = vec![0.0; n];
     x[i] = 1.0;
     x

@@ -1,6 +1,14 @@
-//! The same bits whatever the processor's fused operations.
+//! The same bits whatever the processor, the optimisation, the number of threads.
+//!
+//! `tests/determinism.sh` builds this test for several instruction sets and optimisation levels; each
+//! build must reproduce the digest below.
 use simulation::reference;
 use std::process::Command;
+
+/// Digest and work of the reference run, on every machine and in every build. A change of the laws,
+/// of a tolerance or of the order of a sum changes it: copy the new one from the message, and say in
+/// the changelog why results change.
+const REFERENCE: &str = "digest 0";
 
 /// Digest of the reference run's bits and work: FNV-1a, to be compared as text.
 fn digest() -> String {
@@ -12,6 +20,24 @@ fn digest() -> String {
             (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
         });
     format!("digest {hash:016x} {statistics:?}")
+}
+
+#[test]
+fn every_build_reproduces_the_reference_run() {
+    assert_eq!(digest(), REFERENCE);
+}
+
+/// Runs side by side share nothing.
+#[test]
+fn bits_do_not_depend_on_the_number_of_threads() {
+    let alone = digest();
+    for threads in [2, 5] {
+        let digests: Vec<String> = std::thread::scope(|scope| {
+            let runs: Vec<_> = (0..threads).map(|_| scope.spawn(digest)).collect();
+            runs.into_iter().map(|run| run.join().unwrap()).collect()
+        });
+        assert!(digests.iter().all(|digest| *digest == alone));
+    }
 }
 
 /// Run by the test below in a process of its own.

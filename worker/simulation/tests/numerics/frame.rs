@@ -1,45 +1,8 @@
 //! Nothing depends on where the world's axes lie.
 use crate::rope::*;
 use nalgebra::Rotation3;
-use simulation::element::bushing::{Bushing, Marker};
 use simulation::rig::{Drum, End, Rig, Setup};
 use simulation::system::{Equations, System};
-
-/// A bushing's load turns with the world, and does not know its origin.
-#[test]
-fn bushing_turns_with_the_world() {
-    let law = Bushing {
-        stiffness: [7.0, 3.0],
-        damping: [0.9, 0.4],
-        rotational_stiffness: [1.7, 2.3],
-        rotational_damping: [0.6, 0.8],
-    };
-    let marker = |s: f64| Marker {
-        p: V3::new(0.3 + s, -0.2 * s, 0.5),
-        rho: V3::new(0.21, 0.1 * s, -0.15 * s),
-        v: V3::new(0.3, 0.5 * s, -0.2),
-        w: V3::new(-0.7 * s, 0.4, 0.9),
-        R: Rotation3::new(V3::new(0.4 * s, -0.3, 0.6 + 0.2 * s)).into_inner(),
-    };
-    let turn = Rotation3::new(V3::new(0.7, -1.3, 2.1)).into_inner();
-    let shift = V3::new(3.0, -7.0, 11.0);
-    let moved = |m: &Marker| Marker {
-        p: turn * m.p + shift,
-        rho: turn * m.rho,
-        v: turn * m.v,
-        w: turn * m.w,
-        R: turn * m.R,
-    };
-    let (i, j) = (marker(1.0), marker(1.4));
-    let here = law.load(&i, &j);
-    let there = law.load(&moved(&i), &moved(&j));
-    assert!((turn * here.force - there.force).norm() < 1e-13);
-    assert!((turn * here.torque_i - there.torque_i).norm() < 1e-13);
-    assert!((turn * here.torque_j - there.torque_j).norm() < 1e-13);
-    assert!((here.axial - there.axial).abs() < 1e-13);
-    assert!((here.dissipated - there.dissipated).abs() < 1e-13);
-    assert!((law.energy(&i, &j) - law.energy(&moved(&i), &moved(&j))).abs() < 1e-13);
-}
 
 /// A whole rig in motion, contact and dead loads included, turned about z and moved: forces on the
 /// centres turn along, forces on the angles and the energy stay.

@@ -12,7 +12,9 @@
 mod bounce;
 mod box_of_genes;
 mod determinism;
+mod effect;
 mod energy;
+mod forced;
 mod frame;
 mod order;
 mod plane;

@@ -2,8 +2,9 @@
 use nalgebra::Vector3;
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::adaptive::Adaptive;
-use simulation::integrator::tableau::{ESDIRK4, Tableau};
-use simulation::integrator::{State, esdirk::Step};
+use simulation::integrator::method::Method;
+use simulation::integrator::tableau::ESDIRK4;
+use simulation::integrator::{State, stepper::Step};
 use simulation::model::chain::Chain;
 use simulation::model::description::RopeLaw;
 use simulation::rig::{End, Rig, Setup};
@@ -122,7 +123,7 @@ pub(crate) fn settled_straight(setup: &Setup) -> (System<Rig>, Vec<f64>) {
 /// How a rig is integrated.
 #[derive(Clone, Copy)]
 pub(crate) struct Course {
-    pub(crate) method: &'static Tableau,
+    pub(crate) method: Method,
     pub(crate) tolerance: f64,
     pub(crate) longest: f64,
 }
@@ -130,7 +131,7 @@ pub(crate) struct Course {
 impl Course {
     pub(crate) fn accurate(tolerance: f64) -> Self {
         Self {
-            method: &ESDIRK4,
+            method: Method::RungeKutta(&ESDIRK4),
             tolerance,
             longest: 0.01,
         }
@@ -155,12 +156,7 @@ pub(crate) fn advance(
     until: f64,
     mut each: impl FnMut(&State, &State, &Step),
 ) {
-    let mut method = Adaptive::new(
-        course.method,
-        state.q.len(),
-        course.tolerance,
-        course.longest,
-    );
+    let mut method = Adaptive::new(course.method, system, course.tolerance, course.longest);
     let mut to = state.clone();
     while state.t < until - 1e-12 {
         if let Some(step) = method.attempt(system, state, until, &mut to).unwrap() {

@@ -1,6 +1,9 @@
 //! Chromosomes: one code of `bits` bits per gene, and what they stand for.
 use super::settings::{Encoding, MemeticSettings, Scale};
-use crate::space::{Interval, Space};
+use crate::{
+    random::Stream,
+    space::{Interval, Space},
+};
 
 /// One code per gene. Bit k of the string is bit `k % bits` of gene `k / bits`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +51,15 @@ impl Codec {
     /// The largest code.
     pub(super) const fn largest(&self) -> u32 {
         (1 << self.bits) - 1
+    }
+
+    /// A chromosome in which every bit is even odds.
+    pub(super) fn random(&self, stream: &mut Stream) -> Chromosome {
+        let code = |_| {
+            let bits = stream.bits() >> (u64::BITS - self.bits);
+            u32::try_from(bits).unwrap_or(u32::MAX)
+        };
+        Chromosome((0..self.intervals.len()).map(code).collect())
     }
 
     /// Gene values [declared units], inside the bounds.

@@ -71,7 +71,7 @@ impl Climb {
         Self {
             generation,
             trials,
-            diversity: diversity(craft, population),
+            diversity: diversity(&craft.codec, population),
             attempts: Vec::new(),
         }
     }
@@ -229,18 +229,18 @@ fn literal_trials(craft: &Craft, generation: u32, population: usize) -> Vec<Tria
 
 /// Twice the mean share of bits in which the population differs from its elite: 1 for a random
 /// population, 0 for clones.
-fn diversity(craft: &Craft, population: &[Individual]) -> f64 {
+pub(super) fn diversity(codec: &Codec, population: &[Individual]) -> f64 {
     let elite = &population[best(population)].chromosome;
     let bits: u32 = population
         .iter()
         .map(|one| distance(&one.chromosome, elite))
         .sum();
     let mean = f64::from(bits) / population.len() as f64;
-    (2.0 * mean / craft.codec.length() as f64).min(1.0)
+    (2.0 * mean / codec.length() as f64).min(1.0)
 }
 
 /// 1 to 4 bits, more in a diverse population.
-fn adaptive_bits(diversity: f64) -> usize {
+pub(super) fn adaptive_bits(diversity: f64) -> usize {
     match 3.0 * diversity {
         x if x < 0.5 => 1,
         x if x < 1.5 => 2,

@@ -9,6 +9,7 @@ mod climb;
 mod selection;
 mod settings;
 mod variation;
+pub mod window;
 
 pub use settings::{
     Acceptance, Climbers, Crossover, Encoding, FlippedBits, MemeticSettings, MutationUnit,
@@ -99,15 +100,8 @@ impl Memetic {
 
     fn initial(&self) -> Vec<Chromosome> {
         let (codec, size) = (&self.craft.codec, self.craft.settings.population);
-        let genes = codec.length() / codec.bits() as usize;
-        let random = (0..size).map(|index| {
-            let mut stream = self.craft.streams.at(0, Phase::Initial, index);
-            let code = |_| {
-                let bits = stream.bits() >> (u64::BITS - codec.bits());
-                u32::try_from(bits).unwrap_or(u32::MAX)
-            };
-            Chromosome((0..genes).map(code).collect())
-        });
+        let random = (0..size)
+            .map(|index| codec.random(&mut self.craft.streams.at(0, Phase::Initial, index)));
         let mut population: Vec<_> = self.start.iter().take(size).cloned().collect();
         population.extend(random.skip(population.len()));
         population

@@ -2,7 +2,7 @@
 use super::*;
 use crate::{
     strategy::{
-        Finish, Settings, Strategy,
+        Finish, Settings,
         tests::{Record, run},
     },
     test_function::{self, SPHERE, TestFunction},
@@ -28,7 +28,11 @@ fn search(
         .build(&space, seed)
         .unwrap();
     (
-        run(&mut strategy, &|genes| function.tell(&space, genes), None),
+        run(
+            strategy.as_mut(),
+            &|genes| function.tell(&space, genes),
+            None,
+        ),
         settings,
     )
 }

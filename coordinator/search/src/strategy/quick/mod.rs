@@ -9,6 +9,7 @@
 use super::{
     Conductor, Piece, SettingsError,
     design::latin_hypercube,
+    levenberg::{Levenberg, LevenbergSettings},
     memetic::{Memetic, MemeticSettings},
     refine::{Refine, RefineSettings},
     require,
@@ -32,6 +33,8 @@ pub enum Part {
     Scan(ScanSettings),
     /// A refinement around the best point.
     Refine(RefineSettings),
+    /// A descent of the residual vector from the best points.
+    LeastSquares(LevenbergSettings),
 }
 
 /// Settings of the quick search.
@@ -114,6 +117,25 @@ impl QuickSettings {
             trust,
         }
     }
+
+    /// The same with descents of the residual vector in place of the refinements.
+    pub fn least_squares(space: &Space) -> Self {
+        let mut settings = Self::for_space(space);
+        let starts = [3, 1];
+        let refinements = settings
+            .parts
+            .iter_mut()
+            .filter(|p| matches!(p, Part::Refine(_)));
+        for (part, starts) in refinements.zip(starts) {
+            *part = Part::LeastSquares(LevenbergSettings {
+                starts,
+                iterations: 6,
+                apart: 0.03,
+                step: 0.01,
+            });
+        }
+        settings
+    }
 }
 
 /// The search over a space.
@@ -146,6 +168,7 @@ pub fn build(
             }
             Part::Scan(scan) => Box::new(Scan::new(scan.clone(), space)?),
             Part::Refine(refine) => Box::new(Refine::new(refine.clone(), space, streams)?),
+            Part::LeastSquares(settings) => Box::new(Levenberg::new(settings.clone(), space)?),
         });
     }
     Ok(Conductor::new(pieces, true))

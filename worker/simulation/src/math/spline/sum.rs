@@ -26,13 +26,14 @@ impl Sum {
         self.knots.resize(points, [0.0; 4]);
         let curves = splines.knots.chunks_exact(splines.curves.max(1));
         for (sum, knots) in self.knots.iter_mut().zip(curves) {
-            *sum = [0.0; 4];
-            for ((&[value, bend], weight), rate) in knots.iter().zip(weights).zip(rates) {
-                sum[0] += weight * value;
-                sum[1] += weight * bend;
-                sum[2] += rate * value;
-                sum[3] += rate * bend;
+            let (mut at, mut moving) = ([0.0; 2], [0.0; 2]);
+            for ((knot, weight), rate) in knots.iter().zip(weights).zip(rates) {
+                for k in 0..2 {
+                    at[k] += weight * knot[k];
+                    moving[k] += rate * knot[k];
+                }
             }
+            *sum = [at[0], at[1], moving[0], moving[1]];
         }
     }
 

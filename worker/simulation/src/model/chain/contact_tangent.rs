@@ -5,7 +5,7 @@
 //! and rate, `H` the second derivatives of the penetration.
 use super::{Chain, ChainState};
 use crate::element::impact::Impact;
-use crate::linear::Bordered;
+use crate::linear::{Block, Blocks, Bordered};
 use crate::model::MAX_MODES;
 use crate::model::contact::{Curvature, Surface, Touch};
 use crate::model::pose::InPlane;
@@ -56,21 +56,27 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) {
-        for (j, pose) in state.poses.iter().enumerate() {
-            self.add_touching(surface, law, (self.first + j, pose), gamma, matrix);
-        }
-        for (j, pose) in state.plane.iter().enumerate() {
-            self.add_touching(surface, law, (self.first + j, pose), gamma, matrix);
+        match matrix {
+            Bordered::Plane(blocks) => {
+                for (j, pose) in state.plane.iter().enumerate() {
+                    self.add_touching(surface, law, (self.first + j, pose), gamma, blocks);
+                }
+            }
+            Bordered::Space(blocks) => {
+                for (j, pose) in state.poses.iter().enumerate() {
+                    self.add_touching(surface, law, (self.first + j, pose), gamma, blocks);
+                }
+            }
         }
     }
 
-    fn add_touching<const A: usize>(
+    fn add_touching<const A: usize, const N: usize>(
         &self,
         surface: &Surface<'_>,
         law: &Impact,
         (block, pose): (usize, &impl InPlane<A>),
         gamma: f64,
-        matrix: &mut Bordered,
+        blocks: &mut Blocks<N>,
     ) {
         let half = 0.5 * self.pitch;
         let modes = surface.modes();
@@ -100,12 +106,12 @@ impl Chain {
                 by_rate,
                 by_place: V2::zeros(),
                 border: [BorderColumn::default(); MAX_MODES + 1],
-                angles: self.motion.width() - A,
+                angles: N - A,
             };
             point.differentiate(surface, &velocity, stiff, &shape[..modes]);
-            point.add_cylinder(matrix, block, pose);
-            if matrix.border() > 0 {
-                point.add_border(matrix, block, pose, modes);
+            point.add_cylinder(blocks.diagonal_mut(block), pose);
+            if blocks.border() > 0 {
+                point.add_border(blocks, block, pose, modes);
             }
         }
     }
@@ -156,14 +162,13 @@ impl Point {
         pose.axis_by().map(|axis| axis * self.along)
     }
 
-    fn add_cylinder<const A: usize>(
+    fn add_cylinder<const A: usize, const N: usize>(
         &self,
-        matrix: &mut Bordered,
-        block: usize,
+        block: &mut Block<N>,
         pose: &impl InPlane<A>,
     ) {
         let angles = self.angles;
-        let mut add = |row, column, value| matrix.add_diagonal(block, row, column, value);
+        let mut add = |row, column, value: f64| block[(row, column)] += value;
         let gradient = self.touch.by_point;
         let core = gradient * self.by_place.transpose() + self.curvature.point * self.force;
         let (arms, turning) = (self.arms(pose), self.turning(pose));
@@ -189,9 +194,9 @@ impl Point {
         }
     }
 
-    fn add_border<const A: usize>(
+    fn add_border<const A: usize, const N: usize>(
         &self,
-        matrix: &mut Bordered,
+        blocks: &mut Blocks<N>,
         block: usize,
         pose: &impl InPlane<A>,
         modes: usize,
@@ -200,21 +205,18 @@ impl Point {
         let (arms, turning) = (self.arms(pose), self.turning(pose));
         let (_, angle_by_beam) = self.curvature.angle_by;
         let border = &self.border[..=modes];
+        let (right, bottom, corner) = blocks.border_mut(block, modes + 1);
+        let width = corner.len().isqrt();
         for (k, of) in border.iter().enumerate() {
             let column = self.touch.by_point * of.force_by + of.mixed * self.force;
             let row = self.by_place * of.gradient + of.mixed * self.force;
             for r in 0..2 {
-                matrix.add_right(block, r, k, column[r]);
-                matrix.add_bottom(block, k, r, row[r]);
+                right[k][r] += column[r];
+                bottom[k][r] += row[r];
             }
             for (a, arm) in arms.iter().enumerate() {
-                matrix.add_right(block, angles + a, k, column.dot(arm));
-                matrix.add_bottom(
-                    block,
-                    k,
-                    angles + a,
-                    row.dot(arm) + of.gradient * turning[a],
-                );
+                right[k][angles + a] += column.dot(arm);
+                bottom[k][angles + a] += row.dot(arm) + of.gradient * turning[a];
             }
             for (m, other) in border.iter().enumerate() {
                 let bend = match (k, m) {
@@ -223,7 +225,7 @@ impl Point {
                     (_, 0) => angle_by_beam * of.slope,
                     _ => 0.0,
                 };
-                matrix.add_corner(k, m, of.gradient * other.force_by + bend * self.force);
+                corner[m * width + k] += of.gradient * other.force_by + bend * self.force;
             }
         }
     }

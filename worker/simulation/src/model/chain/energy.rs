@@ -9,6 +9,22 @@ use nalgebra::Vector3;
     reason = "one file per term of the equations"
 )]
 impl Chain {
+    /// What of the potential at rest of laws along the rope is no stored energy \[J\].
+    pub(crate) fn potential_beyond_energy(&self, joints: &Joints<'_>, state: &ChainState) -> f64 {
+        let mut sum = 0.0;
+        if joints.axial.is_none() {
+            return sum;
+        }
+        for joint in 1..self.count {
+            if let Some(([i, j], law)) = self.link(joint, joints, state)
+                && let Some(along) = self.along(joint, joints, state, (&i, &j))
+            {
+                sum += along.other * law.extension(&i, &j)[0];
+            }
+        }
+        sum
+    }
+
     /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders
     /// to `sum` \[J\].
     pub(crate) fn add_potential(
@@ -20,11 +36,14 @@ impl Chain {
         state: &ChainState,
     ) {
         for joint in 0..=self.count {
-            if self.in_plane(joint) {
+            if self.in_plane(joint, joints) {
                 let [i, j] = self.plane_markers(joint, &state.plane);
                 *sum += joints.inner.plane_energy(&i, &j);
             } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
                 *sum += law.energy(&i, &j);
+                if let Some(along) = self.along(joint, joints, state, (&i, &j)) {
+                    *sum += along.energy;
+                }
             }
         }
         if let Some((surface, law)) = contact {

@@ -1,5 +1,7 @@
 //! Forces of weight and joints on the cylinders of a chain.
 use super::{Chain, ChainState, Joints};
+use crate::effect::Along;
+use crate::element::bushing::Marker;
 use crate::linear::BLOCK;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
@@ -58,43 +60,78 @@ impl Chain {
         state: &mut ChainState,
         force: &mut [f64],
     ) {
-        if self.motion == Motion::Plane {
-            self.add_plane_joints(joints, state, force);
-            return;
-        }
+        self.add_plane_joints(joints, state, force);
         for joint in 0..=self.count {
+            if self.in_plane(joint, joints) {
+                continue;
+            }
             let Some(([i, j], law)) = self.link(joint, joints, state) else {
                 continue;
             };
-            let load = law.load(&i, &j);
-            let at = (self.first + joint) * BLOCK;
+            let mut load = law.load(&i, &j);
+            if let Some(along) = self.along(joint, joints, state, (&i, &j)) {
+                let lost = along.other * law.extension(&i, &j)[1];
+                law.add_pull((&i, &j), (along.spring + along.other, lost), &mut load);
+            }
             if joint > 0 {
-                add_wrench(
-                    &state.poses[joint - 1],
-                    &-load.force,
-                    &load.torque_j,
-                    &mut force[at - BLOCK..],
-                );
+                self.add_wrench(joint - 1, state, [&-load.force, &load.torque_j], force);
             }
             if joint < self.count {
-                add_wrench(
-                    &state.poses[joint],
-                    &load.force,
-                    &load.torque_i,
-                    &mut force[at..],
-                );
+                self.add_wrench(joint, state, [&load.force, &load.torque_i], force);
             }
             state.joints[joint] = load;
         }
     }
-}
 
-fn add_wrench(pose: &Pose, force: &V3, torque: &V3, at: &mut [f64]) {
-    for k in 0..3 {
-        at[k] += force[k];
+    /// What laws along the rope pull in a joint between two cylinders, markers I and J.
+    pub(super) fn along(
+        &self,
+        joint: usize,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        (i, j): (&Marker, &Marker),
+    ) -> Option<Along> {
+        let laws = joints.axial.filter(|_| joint > 0 && joint < self.count)?;
+        let [extension, rate] = joints.inner.extension(i, j);
+        Some(laws.pull(extension, rate, state.memory.get(joint).copied()))
     }
-    let turning = pose.angular().tr_mul(torque);
-    for k in 0..3 {
-        at[3 + k] += turning[k];
+
+    /// Lets laws with a past remember the step that ended in these poses.
+    pub(crate) fn remember(&self, joints: &Joints<'_>, state: &mut ChainState) {
+        let Some(laws) = joints.axial else { return };
+        let first = state.memory.is_empty();
+        state.memory.resize(self.count + 1, [0.0; 2]);
+        for joint in 1..self.count {
+            let Some(([i, j], law)) = self.link(joint, joints, state) else {
+                continue;
+            };
+            let [extension, rate] = law.extension(&i, &j);
+            let before = (!first).then(|| state.memory[joint]);
+            let Some(memory) = laws.remember(extension, rate, before) else {
+                state.memory.clear();
+                return;
+            };
+            state.memory[joint] = memory;
+        }
+    }
+
+    /// Adds a force on cylinder `j` and a torque about its centre.
+    fn add_wrench(&self, j: usize, state: &ChainState, on: [&V3; 2], force: &mut [f64]) {
+        let [push, torque] = on;
+        let at = (self.first + j) * self.motion.width();
+        match self.motion {
+            Motion::Plane => {
+                force[at] += push.x;
+                force[at + 1] += push.y;
+                force[at + 2] += torque.z;
+            }
+            Motion::Space => {
+                let turning = state.poses[j].angular().tr_mul(torque);
+                for k in 0..3 {
+                    force[at + k] += push[k];
+                    force[at + 3 + k] += turning[k];
+                }
+            }
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Inertia of the cylinders of a chain.
 use super::Chain;
-use crate::linear::Bordered;
+use crate::linear::{BLOCK, Bordered};
 use crate::math::elementary::sin_cos;
 use crate::model::layout::Motion;
 
@@ -62,6 +62,66 @@ impl Chain {
                 }
             }
         }
+    }
+
+    /// Adds to `-gamma D - K` the derivatives of the velocity terms and of `M(q) a`.
+    pub(crate) fn add_spin_tangent(
+        &self,
+        (q, v, a): (&[f64], &[f64], &[f64]),
+        gamma: f64,
+        matrix: &mut Bordered,
+    ) {
+        // in the plane inertia is constant
+        let Bordered::Space(matrix) = matrix else {
+            return;
+        };
+        for j in 0..self.count {
+            let at = (self.first + j) * BLOCK + 3;
+            let turns = at..at + 3;
+            let by = self.spin_derivatives(q[at + 1], &v[turns.clone()], &a[turns]);
+            let block = matrix.diagonal_mut(self.first + j);
+            for (row, (by_tilt, by_rate)) in by.iter().enumerate() {
+                block[(3 + row, 4)] -= by_tilt;
+                for (column, by_rate) in by_rate.iter().enumerate() {
+                    block[(3 + row, 3 + column)] -= gamma * by_rate;
+                }
+            }
+        }
+    }
+
+    /// Derivatives of the three generalised inertial torques of a cylinder by its tilt and by the
+    /// rates of its angles.
+    fn spin_derivatives(&self, tilt: f64, v: &[f64], a: &[f64]) -> [(f64, [f64; 3]); 3] {
+        let [along, across] = self.inertia;
+        let (s, c) = sin_cos(tilt);
+        let [r1, r2, r3] = [v[0], v[1], v[2]];
+        let spin = along * (r1 - s * r3);
+        let double = c * c - s * s;
+        [
+            (
+                along * (c * a[2] - s * r2 * r3),
+                [0.0, along * c * r3, along * c * r2],
+            ),
+            (
+                s * r3 * spin + along * c * c * r3 * r3 - across * double * r3 * r3,
+                [
+                    -along * c * r3,
+                    0.0,
+                    -c * spin + along * c * s * r3 - 2.0 * across * c * s * r3,
+                ],
+            ),
+            (
+                -s * r2 * spin - along * c * c * r2 * r3
+                    + (2.0 * across - along) * double * r2 * r3
+                    - 2.0 * (along - across) * s * c * a[2]
+                    + along * c * a[0],
+                [
+                    along * c * r2,
+                    c * spin + (2.0 * across - along) * s * c * r3,
+                    2.0 * (across - along) * s * c * r2,
+                ],
+            ),
+        ]
     }
 
     /// Adds `lambda W`: `W` measures a metre of a cylinder, or a turn that moves its end by as much.

@@ -12,6 +12,7 @@ mod inertia;
 mod plane;
 mod tangent;
 
+use crate::effect::{AxialLaws, Memory};
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::math::spline::sum::Spread;
 use crate::model::contact::GAUSS;
@@ -59,6 +60,8 @@ pub struct Joints<'a> {
     pub base: Option<Held<'a>>,
     /// What holds the last cylinder, if anything does.
     pub head: Option<Held<'a>>,
+    /// Laws of effects along the rope, between its cylinders.
+    pub axial: Option<AxialLaws<'a>>,
 }
 
 /// Poses and loads of a chain at the last evaluation of its forces; allocated once.
@@ -78,6 +81,9 @@ pub struct ChainState {
     pub deepest: f64,
     /// Power that the contact's damping takes \[W\].
     pub dissipated: f64,
+    /// What laws along the rope remember of the last accepted step, joint by joint; empty where
+    /// none has a past, or before the run has begun to move.
+    pub memory: Vec<Memory>,
 }
 
 impl ChainState {
@@ -102,10 +108,12 @@ impl ChainState {
             pressure: Spread::default(),
             deepest: 0.0,
             dissipated: 0.0,
+            memory: Vec::new(),
         }
     }
 
     /// Pose of cylinder `j` in space.
+    #[inline]
     pub fn pose(&self, j: usize) -> Pose {
         self.plane
             .get(j)
@@ -149,8 +157,7 @@ impl Chain {
         self.first * width..(self.first + self.count) * width
     }
 
-    /// Markers I and J of a joint and its law; nothing where an end is free. Between cylinders that
-    /// move in the plane there are plane markers instead.
+    /// Markers I and J of a joint and its law; nothing where an end is free.
     fn link<'a>(
         &self,
         joint: usize,
@@ -167,8 +174,8 @@ impl Chain {
             let j = on_cylinder(&state.pose(joint - 1), half);
             return Some(([held.marker, j], held.law));
         }
-        let j = on_cylinder(&state.poses[joint - 1], half);
-        Some(([on_cylinder(&state.poses[joint], -half), j], joints.inner))
+        let j = on_cylinder(&state.pose(joint - 1), half);
+        Some(([on_cylinder(&state.pose(joint), -half), j], joints.inner))
     }
 }
 

@@ -1,10 +1,11 @@
 //! Joints between cylinders that move in the plane, and their tangent.
 //!
-//! The joints that hold a chain's ends have their spatial form here too: there are two of them.
+//! Joints that hold a chain's ends, and all joints of a rope with further laws along it, keep their
+//! spatial form.
 use super::tangent::Side;
 use super::{Chain, ChainState, Joints};
 use crate::element::plane::{PlaneColumn, PlaneMarker};
-use crate::linear::{Block, Blocks};
+use crate::linear::{Block, Bordered};
 use crate::model::layout::Motion;
 use crate::model::pose::PlanePose;
 
@@ -13,9 +14,13 @@ use crate::model::pose::PlanePose;
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Whether a joint lies between two cylinders that move in the plane.
-    pub(super) const fn in_plane(&self, joint: usize) -> bool {
-        matches!(self.motion, Motion::Plane) && joint > 0 && joint < self.count
+    /// Whether a joint is treated here: between two cylinders that move in the plane, and nothing
+    /// but a bushing.
+    pub(super) const fn in_plane(&self, joint: usize, joints: &Joints<'_>) -> bool {
+        matches!(self.motion, Motion::Plane)
+            && joints.axial.is_none()
+            && joint > 0
+            && joint < self.count
     }
 
     /// Markers I and J of a joint between two cylinders.
@@ -25,29 +30,17 @@ impl Chain {
         [on(&poses[joint], -half), on(&poses[joint - 1], half)]
     }
 
-    /// Adds the joints' forces on cylinders that move in the plane; the loads stay in `state`.
+    /// Adds the forces of the joints that are treated here; their loads stay in `state`.
     pub(super) fn add_plane_joints(
         &self,
         joints: &Joints<'_>,
         state: &mut ChainState,
         force: &mut [f64],
     ) {
-        let force = &mut force[self.range()];
-        for joint in [0, self.count] {
-            let Some(([i, j], law)) = self.link(joint, joints, state) else {
-                continue;
-            };
-            let load = law.load(&i, &j);
-            let (at, sign, torque) = if joint == 0 {
-                (0, 1.0, load.torque_i.z)
-            } else {
-                ((joint - 1) * 3, -1.0, load.torque_j.z)
-            };
-            force[at] += sign * load.force.x;
-            force[at + 1] += sign * load.force.y;
-            force[at + 2] += torque;
-            state.joints[joint] = load;
+        if !self.in_plane(1, joints) {
+            return;
         }
+        let force = &mut force[self.range()];
         for joint in 1..self.count {
             let [i, j] = self.plane_markers(joint, &state.plane);
             let load = joints.inner.plane_load(&i, &j);
@@ -68,14 +61,20 @@ impl Chain {
         }
     }
 
-    /// Subtracts the tangent of the joints between the cylinders.
+    /// Subtracts the tangent of the joints that are treated here.
     pub(super) fn add_plane_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        matrix: &mut Blocks<3>,
+        matrix: &mut Bordered,
     ) {
+        let Bordered::Plane(matrix) = matrix else {
+            return;
+        };
+        if !self.in_plane(1, joints) {
+            return;
+        }
         for joint in 1..self.count {
             let [i, j] = self.plane_markers(joint, &state.plane);
             let force = state.joints[joint].force.xy();

@@ -4,7 +4,7 @@
 //! holds it: the cylinder's own block is filled here, the rest is handed to the holder.
 use super::{Chain, ChainState, Joints};
 use crate::element::bushing::LinkTangent;
-use crate::linear::{BLOCK, Block, Blocks, Bordered};
+use crate::linear::{Block, Bordered};
 use crate::model::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
 
@@ -51,15 +51,11 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) -> [Option<EndTangent>; 2] {
-        match matrix {
-            Bordered::Plane(matrix) => {
-                self.add_plane_tangent(joints, state, gamma, matrix);
-            }
-            Bordered::Space(matrix) => {
-                self.add_turning(state, matrix);
-                for joint in 1..self.count {
-                    self.add_inner_tangent(joint, joints, state, gamma, matrix);
-                }
+        self.add_plane_tangent(joints, state, gamma, matrix);
+        self.add_turning(state, matrix);
+        for joint in 1..self.count {
+            if !self.in_plane(joint, joints) {
+                self.add_inner_tangent(joint, joints, state, gamma, matrix);
             }
         }
         [(0, 0, Side::I), (self.count, self.count - 1, Side::J)].map(|(joint, cylinder, side)| {
@@ -73,12 +69,9 @@ impl Chain {
             let by_cylinder = CylinderColumns::new(&by_own, &pose, gamma);
             let mut own = Block::zeros();
             subtract_own(&mut own, &by_cylinder, &pose.angular(), side);
-            let kept = self.motion.kept();
-            for (c, &column) in kept.iter().enumerate() {
-                for (r, &row) in kept.iter().enumerate() {
-                    matrix.add_diagonal(self.first + cylinder, r, c, own[(row, column)]);
-                }
-            }
+            self.each_kept(&own, |r, c, value| {
+                matrix.add_diagonal(self.first + cylinder, r, c, value);
+            });
             Some(EndTangent {
                 by_body,
                 by_cylinder,
@@ -86,8 +79,22 @@ impl Chain {
         })
     }
 
-    /// The torques of both joints of a cylinder turn with its angles.
-    fn add_turning(&self, state: &ChainState, matrix: &mut Blocks<BLOCK>) {
+    /// Calls `add(row, column, value)` for those entries of a block in space that the cylinders'
+    /// coordinates have.
+    fn each_kept(&self, block: &Block, mut add: impl FnMut(usize, usize, f64)) {
+        let kept = self.motion.kept();
+        for (c, &column) in kept.iter().enumerate() {
+            for (r, &row) in kept.iter().enumerate() {
+                add(r, c, block[(row, column)]);
+            }
+        }
+    }
+
+    /// The torques of both joints of a cylinder turn with its angles, unless all is in the plane.
+    fn add_turning(&self, state: &ChainState, matrix: &mut Bordered) {
+        let Bordered::Space(matrix) = matrix else {
+            return;
+        };
         for (j, pose) in state.poses.iter().enumerate() {
             let torque = state.joints[j].torque_i + state.joints[j + 1].torque_j;
             let turning = pose.torque_by_angles(&torque);
@@ -98,31 +105,39 @@ impl Chain {
         }
     }
 
-    /// A joint between two cylinders in space.
+    /// A joint between two cylinders, in its spatial form.
     fn add_inner_tangent(
         &self,
         joint: usize,
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        matrix: &mut Blocks<BLOCK>,
+        matrix: &mut Bordered,
     ) {
         let Some(([i, j], law)) = self.link(joint, joints, state) else {
             return;
         };
-        let [by_i, by_j] = law.tangent(&i, &j, &state.joints[joint]);
-        let (pose_i, pose_j) = (&state.poses[joint], &state.poses[joint - 1]);
-        let columns_i = CylinderColumns::new(&by_i, pose_i, gamma);
-        let columns_j = CylinderColumns::new(&by_j, pose_j, gamma);
-        let (angular_i, angular_j) = (pose_i.angular(), pose_j.angular());
+        let further = self
+            .along(joint, joints, state, (&i, &j))
+            .map(|along| [along.spring + along.other, along.by_place, along.by_rate]);
+        let [by_i, by_j] = law.tangent_with(&i, &j, &state.joints[joint], further);
+        let (pose_i, pose_j) = (state.pose(joint), state.pose(joint - 1));
+        let columns_i = CylinderColumns::new(&by_i, &pose_i, gamma);
+        let columns_j = CylinderColumns::new(&by_j, &pose_j, gamma);
+        let rows = |columns: &CylinderColumns, pose: &Pose, side: Side| {
+            let mut block = Block::zeros();
+            subtract_own(&mut block, columns, &pose.angular(), side);
+            block
+        };
         let block = self.first + joint;
-        let own = matrix.diagonal_mut(block - 1);
-        subtract_own(own, &columns_j, &angular_j, Side::J);
-        let (upper, lower) = matrix.coupling_mut(block - 1);
-        subtract_own(upper, &columns_i, &angular_j, Side::J);
-        subtract_own(lower, &columns_j, &angular_i, Side::I);
-        let own = matrix.diagonal_mut(block);
-        subtract_own(own, &columns_i, &angular_i, Side::I);
+        let own_j = rows(&columns_j, &pose_j, Side::J);
+        self.each_kept(&own_j, |r, c, x| matrix.add_diagonal(block - 1, r, c, x));
+        let upper = rows(&columns_i, &pose_j, Side::J);
+        self.each_kept(&upper, |r, c, x| matrix.add_upper(block - 1, r, c, x));
+        let lower = rows(&columns_j, &pose_i, Side::I);
+        self.each_kept(&lower, |r, c, x| matrix.add_lower(block - 1, r, c, x));
+        let own_i = rows(&columns_i, &pose_i, Side::I);
+        self.each_kept(&own_i, |r, c, x| matrix.add_diagonal(block, r, c, x));
     }
 }
 

@@ -1,0 +1,83 @@
+//! Where experiments are done: whoever simulates batches of points.
+use crate::record::{Curves, Source};
+use protocol::job::{Observation, ObserveSpec, Verdict};
+
+/// A part of the diagnosis, for progress and for accounts of time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Stage {
+    /// A way into the valley in which the machine's resonances fit.
+    Basin,
+    /// Fit of all genes in the metric of the tests.
+    Recalibrate,
+    /// How much the discretisation matters.
+    Preflight,
+    /// Maps of the disagreement.
+    Where,
+    /// Signatures and tests of all effects.
+    What,
+    /// Refits of the suspects.
+    Refit,
+    /// The gap before and after.
+    Show,
+}
+
+impl Stage {
+    /// Every stage, in order.
+    pub const ALL: [Self; 7] = [
+        Self::Basin,
+        Self::Recalibrate,
+        Self::Preflight,
+        Self::Where,
+        Self::What,
+        Self::Refit,
+        Self::Show,
+    ];
+
+    /// In a word or two.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Basin => "way into the valley",
+            Self::Recalibrate => "recalibration",
+            Self::Preflight => "numerical check",
+            Self::Where => "where",
+            Self::What => "what",
+            Self::Refit => "refits",
+            Self::Show => "show",
+        }
+    }
+}
+
+/// Simulates.
+pub trait Laboratory {
+    /// Why no experiment can be done any more.
+    type Error;
+
+    /// Does a batch; observations in its order, nothing for an experiment that did not run to its
+    /// end.
+    ///
+    /// # Errors
+    /// If nobody can do experiments any more, or the user stops.
+    fn observe(
+        &mut self,
+        stage: Stage,
+        batch: Vec<ObserveSpec>,
+    ) -> impl Future<Output = Result<Vec<Option<Observation>>, Self::Error>>;
+}
+
+/// The channels of an observation, in the order of a record; nothing unless it is complete.
+pub fn channels(observation: &Observation, sources: &[Source]) -> Option<Curves> {
+    if observation.verdict != Verdict::Complete {
+        return None;
+    }
+    let curve = |source: &Source| match source {
+        Source::Gauge(number) => observation
+            .gauge_mpa
+            .get(usize::from(*number).checked_sub(1)?),
+        Source::Position => Some(&observation.suspension_m),
+        Source::Torque => Some(&observation.crank_torque_n_m),
+    };
+    sources
+        .iter()
+        .map(|source| curve(source).cloned())
+        .collect()
+}

@@ -1,0 +1,46 @@
+//! Thresholds of a diagnosis, fixed before any record is seen.
+use serde::{Deserialize, Serialize};
+
+/// How a diagnosis decides. The defaults are those of every published result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Highest order of the crank that is compared.
+    pub orders: usize,
+    /// Level of the family of all effects' tests.
+    pub alpha: f64,
+    /// Suspects that are refitted with all genes free.
+    pub suspects: usize,
+    /// Nats, times the squared misfit, that an effect must gain to be believed.
+    pub gain: f64,
+    /// Share of the removable gap that an effect must close to be more than a trace.
+    pub practical: f64,
+    /// Effects that are added at most.
+    pub rounds: usize,
+    /// Factor by which a form of force without a cause must beat the best name.
+    pub generic_factor: f64,
+    /// Noise sets that the angle map is held against.
+    pub draws: usize,
+    /// Cylinder length of the numerical check and, where it matters, of the last refits, as a share
+    /// of the case's.
+    pub refinement: f64,
+    /// Effects that are not considered.
+    pub without: Vec<String>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            orders: 120,
+            alpha: 0.01,
+            suspects: 8,
+            gain: 3.0,
+            practical: 0.05,
+            rounds: 3,
+            generic_factor: 1.15,
+            draws: 400,
+            refinement: 0.5,
+            without: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! The stages of a diagnosis, in order: each plans experiments, absorbs what they show and hands on.
+pub mod basin;
+pub mod preflight;
+pub mod recalibrate;
+pub mod refit;
+pub mod show;
+pub mod suspect;
+pub mod whereabouts;

@@ -1,0 +1,226 @@
+//! The library under suspicion: a signature of every effect at the fitted point, and its score test.
+//!
+//! Signatures are differences at the effect's typical size, taken again where that changes the
+//! curves too much to be linear or too little to be seen; effects whose law has a shape (an angle, a
+//! width, a ratio) are tried at several values of it, and the best of k tries is judged as such.
+use crate::bench::{Bench, Fit};
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::{Model, absent, bounds, shapes, sizes};
+use crate::score::{Score, family_wise, score};
+use crate::tangent::Tangent;
+use nalgebra::{DMatrix, DVector};
+use protocol::announce::{EffectDescriptor, Sign};
+
+/// An effect with its test.
+#[derive(Clone, Debug)]
+pub struct Suspect {
+    /// What it is.
+    pub effect: EffectDescriptor,
+    /// The test; nothing where the effect could not be simulated.
+    pub score: Option<Score>,
+    /// Scaled values of its parameters that the test suggests.
+    pub start: Vec<f64>,
+    /// Whitened change per unit of each size; columns in the order of the sizes.
+    pub signature: DMatrix<f64>,
+    /// How many shapes were tried.
+    pub tries: usize,
+}
+
+impl Suspect {
+    /// Tail probability, the best of several shapes counted as such.
+    pub fn p_value(&self) -> f64 {
+        self.score
+            .as_ref()
+            .map_or(1.0, |score| family_wise(score.p_value, self.tries))
+    }
+
+    /// The statistic; 0 without a test or where the estimate has the wrong sign.
+    pub fn statistic(&self) -> f64 {
+        self.score.as_ref().map_or(0.0, |score| {
+            if score.p_value < 1.0 {
+                score.statistic
+            } else {
+                0.0
+            }
+        })
+    }
+}
+
+/// A signature to be taken: an effect at some shape, one of its sizes at some value.
+#[derive(Clone, Debug)]
+struct Probe {
+    effect: usize,
+    shape: Vec<f64>,
+    size: usize,
+    amount: f64,
+    column: Option<DVector<f64>>,
+}
+
+/// Projected change of the curves, in standard deviations, that a signature should make.
+const WANTED: f64 = 4.0;
+/// Changes outside this range are taken again.
+const USABLE: [f64; 2] = [1.0, 20.0];
+/// Values of each shape that are tried.
+const SHAPES: usize = 6;
+
+/// Tests effects on a fit's residual; `inflation` is that of the metric's variances.
+///
+/// # Errors
+/// Of the laboratory.
+pub async fn examine<L: Laboratory>(
+    lab: &mut L,
+    bench: &Bench,
+    fit: &Fit,
+    effects: &[EffectDescriptor],
+    inflation: f64,
+) -> Result<Vec<Suspect>, L::Error> {
+    let tangent = Tangent::new(fit.search.best(), fit.variables());
+    let mut probes = plan(effects);
+    take(lab, bench, fit, effects, &mut probes).await?;
+    adjust(effects, &mut probes, &tangent);
+    take(lab, bench, fit, effects, &mut probes).await?;
+    let residual = &fit.search.best().residual;
+    Ok(effects
+        .iter()
+        .enumerate()
+        .map(|(k, effect)| judge(k, effect, &probes, (residual, &tangent, inflation)))
+        .collect())
+}
+
+/// One probe per size and shape; shapes are varied one at a time.
+fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
+    let mut probes = Vec::new();
+    for (k, effect) in effects.iter().enumerate() {
+        for shape in shape_choices(effect) {
+            for size in sizes(effect) {
+                let p = &effect.parameters[size];
+                probes.push(Probe {
+                    effect: k,
+                    shape: shape.clone(),
+                    size,
+                    amount: (p.typical - p.absent) / p.scale,
+                    column: None,
+                });
+            }
+        }
+    }
+    probes
+}
+
+/// Parameter vectors without size: typical shapes, then each shape over its range.
+fn shape_choices(effect: &EffectDescriptor) -> Vec<Vec<f64>> {
+    let typical = absent(effect);
+    let mut choices = vec![typical.clone()];
+    for k in shapes(effect) {
+        let [lower, upper] = bounds(&effect.parameters[k]);
+        for i in 0..SHAPES {
+            let mut one = typical.clone();
+            one[k] = lower + (upper - lower) * (i as f64 + 0.5) / SHAPES as f64;
+            choices.push(one);
+        }
+    }
+    choices
+}
+
+/// Simulates what has no column yet.
+async fn take<L: Laboratory>(
+    lab: &mut L,
+    bench: &Bench,
+    fit: &Fit,
+    effects: &[EffectDescriptor],
+    probes: &mut [Probe],
+) -> Result<(), L::Error> {
+    let open: Vec<&mut Probe> = probes.iter_mut().filter(|p| p.column.is_none()).collect();
+    let models: Vec<(Model, Vec<f64>)> = open
+        .iter()
+        .map(|probe| {
+            let mut own = probe.shape.clone();
+            own[probe.size] = probe.amount;
+            let x = fit.x().iter().copied().chain(own).collect();
+            (fit.model.with(&effects[probe.effect]), x)
+        })
+        .collect();
+    let points: Vec<(&Model, &[f64])> = models.iter().map(|(m, x)| (m, x.as_slice())).collect();
+    let curves = bench.curves(lab, Stage::What, &points).await?;
+    let base = bench.metric.whiten(&fit.curves);
+    for (probe, curves) in open.into_iter().zip(curves) {
+        if let Some(curves) = curves {
+            probe.column = Some((bench.metric.whiten(&curves) - &base) / probe.amount);
+        }
+    }
+    Ok(())
+}
+
+/// Chooses another amount for signatures that were too large, too small or failed.
+fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
+    for probe in probes {
+        let parameter = &effects[probe.effect].parameters[probe.size];
+        let [lower, upper] = bounds(parameter);
+        let amount = match &probe.column {
+            None => 0.25 * probe.amount,
+            Some(column) => {
+                let change = tangent.project(column).norm() * probe.amount.abs();
+                if !(change > 0.0) || (USABLE[0]..=USABLE[1]).contains(&change) {
+                    continue;
+                }
+                probe.amount * (WANTED / change).clamp(1e-2, 10.0)
+            }
+        };
+        let amount = amount.clamp(lower, upper);
+        if amount != 0.0 && (amount / probe.amount - 1.0).abs() > 0.05 {
+            probe.amount = amount;
+            probe.column = None;
+        }
+    }
+}
+
+/// The test of one effect: the best of its shapes.
+fn judge(
+    k: usize,
+    effect: &EffectDescriptor,
+    probes: &[Probe],
+    (residual, tangent, inflation): (&DVector<f64>, &Tangent, f64),
+) -> Suspect {
+    let sizes = sizes(effect);
+    let positive: Vec<bool> = sizes
+        .iter()
+        .map(|&k| effect.parameters[k].sign == Sign::Positive)
+        .collect();
+    let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
+    let mut best: Option<(Score, Vec<f64>, DMatrix<f64>)> = None;
+    let mut tries = 0;
+    for group in own.chunks(sizes.len().max(1)) {
+        let columns: Option<Vec<DVector<f64>>> = group.iter().map(|p| p.column.clone()).collect();
+        let Some(columns) = columns.filter(|c| !c.is_empty()) else {
+            continue;
+        };
+        tries += 1;
+        let signature = DMatrix::from_columns(&columns);
+        let found = score(residual, &signature, &positive, tangent, inflation);
+        let better = best.as_ref().is_none_or(|(other, ..)| {
+            found.p_value < other.p_value
+                || (found.p_value <= other.p_value && found.statistic > other.statistic)
+        });
+        if better {
+            let shape = group.first().map(|p| p.shape.clone()).unwrap_or_default();
+            best = Some((found, shape, signature));
+        }
+    }
+    let (score, mut start, signature) = match best {
+        Some((score, shape, signature)) => (Some(score), shape, signature),
+        None => (None, absent(effect), DMatrix::zeros(residual.len(), 0)),
+    };
+    if let Some(score) = &score {
+        for (&k, size) in sizes.iter().zip(&score.size) {
+            let [lower, upper] = bounds(&effect.parameters[k]);
+            start[k] = size.clamp(lower, upper);
+        }
+    }
+    Suspect {
+        effect: effect.clone(),
+        score,
+        start,
+        signature,
+        tries: tries.max(1),
+    }
+}

@@ -1,0 +1,111 @@
+//! The three maps of where simulation and measurement part.
+use crate::bench::{Bench, Fit};
+use crate::laboratory::{Laboratory, Stage};
+use crate::locate::{angle, joint, order};
+use crate::model::{Model, absent};
+use crate::settings::Settings;
+use crate::tangent::Tangent;
+use nalgebra::DMatrix;
+use protocol::announce::EffectDescriptor;
+use std::collections::BTreeMap;
+
+/// Where the disagreement lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Where {
+    /// Crank angle x channel.
+    pub angle: angle::AngleMap,
+    /// Channel x order.
+    pub order: order::OrderMap,
+    /// Joints at which a periodic force would explain it, the most likely first.
+    pub joints: Vec<joint::JointEvidence>,
+    /// How many of them are not told apart.
+    pub equivalent: usize,
+}
+
+/// Highest harmonic of the latent forces.
+const HARMONICS: usize = 5;
+
+/// Draws the maps of a fit's residual.
+///
+/// # Errors
+/// Of the laboratory.
+pub async fn look<L: Laboratory>(
+    lab: &mut L,
+    bench: &Bench,
+    fit: &Fit,
+    library: &[EffectDescriptor],
+    (settings, freedom): (&Settings, f64),
+    phi: f64,
+) -> Result<Where, L::Error> {
+    let tangent = Tangent::new(fit.search.best(), fit.variables());
+    let residual = &fit.search.best().residual;
+    let latents = latents(lab, bench, fit, library).await?;
+    let joints = joint::rank(&latents, residual, &tangent);
+    Ok(Where {
+        angle: angle::map(residual, &bench.metric, &tangent, settings.draws, 0.05),
+        order: order::map(residual, &bench.metric, &tangent, freedom, 0.05),
+        equivalent: joint::indistinguishable(&joints, phi),
+        joints,
+    })
+}
+
+/// The order of a periodic probe, from its identifier `probe.JOINT.cosH`, `.sinH` or `.const`.
+pub fn probe_order(id: &str) -> Option<usize> {
+    let form = id.rsplit('.').next()?;
+    if form == "const" {
+        return Some(0);
+    }
+    let digits = form
+        .strip_prefix("cos")
+        .or_else(|| form.strip_prefix("sin"))?;
+    digits.parse().ok()
+}
+
+/// Signatures of the periodic probes, joint by joint.
+async fn latents<L: Laboratory>(
+    lab: &mut L,
+    bench: &Bench,
+    fit: &Fit,
+    library: &[EffectDescriptor],
+) -> Result<Vec<joint::Latent>, L::Error> {
+    let probes: Vec<(&EffectDescriptor, usize)> = library
+        .iter()
+        .filter(|effect| effect.generic)
+        .filter_map(|effect| Some((effect, probe_order(&effect.id)?)))
+        .filter(|(_, order)| *order <= HARMONICS)
+        .collect();
+    let models: Vec<(Model, Vec<f64>)> = probes
+        .iter()
+        .map(|(effect, _)| probed(fit, effect))
+        .collect();
+    let points: Vec<(&Model, &[f64])> = models.iter().map(|(m, x)| (m, x.as_slice())).collect();
+    let curves = bench.curves(lab, Stage::Where, &points).await?;
+    let base = bench.metric.whiten(&fit.curves);
+    let mut joints: BTreeMap<&str, (Vec<nalgebra::DVector<f64>>, Vec<usize>)> = BTreeMap::new();
+    for ((effect, order), curves) in probes.iter().zip(curves) {
+        let Some(curves) = curves else { continue };
+        let entry = joints.entry(effect.joint.as_str()).or_default();
+        entry.0.push(bench.metric.whiten(&curves) - &base);
+        entry.1.push(*order);
+    }
+    Ok(joints
+        .into_iter()
+        .map(|(joint, (columns, orders))| joint::Latent {
+            joint: joint.to_owned(),
+            columns: DMatrix::from_columns(&columns),
+            orders,
+        })
+        .collect())
+}
+
+/// A fitted point with one effect at its typical size.
+fn probed(fit: &Fit, effect: &EffectDescriptor) -> (Model, Vec<f64>) {
+    let mut x = fit.x().to_vec();
+    let mut own = absent(effect);
+    for k in crate::model::sizes(effect) {
+        let p = &effect.parameters[k];
+        own[k] = (p.typical - p.absent) / p.scale;
+    }
+    x.extend(own);
+    (fit.model.with(effect), x)
+}

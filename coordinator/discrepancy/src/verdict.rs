@@ -1,0 +1,82 @@
+//! What a diagnosis says: a total function of its tests.
+use serde::Serialize;
+
+/// The answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// No test rejects: what remains is noise, down to the detection limits.
+    NothingDetected,
+    /// One effect explains it, and every rival is rejected.
+    Named,
+    /// One of several effects explains it; the record cannot tell which.
+    Ambiguous,
+    /// Something acts that is not in the library; a form of force at a joint describes it best.
+    Unlisted,
+    /// There is a disagreement, or a fit, that this record cannot resolve; the reason is given.
+    Unresolved,
+}
+
+/// What the tests of a diagnosis found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Findings {
+    /// The fit converged and the model is fine enough: tests mean what they say.
+    pub sound: bool,
+    /// Some family of tests rejects.
+    pub rejected: bool,
+    /// Effects that were added, each believed and worth it.
+    pub added: usize,
+    /// Members of the largest ambiguity set among the added effects.
+    pub rivals: usize,
+    /// A form of force without a cause beats every name.
+    pub generic: bool,
+}
+
+/// The verdict of findings. Every combination has one, and a rejection is never "nothing".
+pub const fn verdict(findings: &Findings) -> Verdict {
+    if !findings.sound {
+        return Verdict::Unresolved;
+    }
+    if findings.generic {
+        return Verdict::Unlisted;
+    }
+    match (findings.added, findings.rivals) {
+        (0, _) if findings.rejected => Verdict::Unresolved,
+        (0, _) => Verdict::NothingDetected,
+        (_, 0 | 1) => Verdict::Named,
+        _ => Verdict::Ambiguous,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_combination_has_a_verdict_and_a_rejection_is_never_nothing() {
+        let flags = [false, true];
+        for sound in flags {
+            for rejected in flags {
+                for generic in flags {
+                    for added in 0..4 {
+                        for rivals in 0..5 {
+                            let said = verdict(&Findings {
+                                sound,
+                                rejected,
+                                added,
+                                rivals,
+                                generic,
+                            });
+                            if rejected || added > 0 || generic {
+                                assert_ne!(said, Verdict::NothingDetected);
+                            }
+                            if !sound {
+                                assert_eq!(said, Verdict::Unresolved);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

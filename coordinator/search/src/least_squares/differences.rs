@@ -1,0 +1,150 @@
+//! Columns of a Jacobian by differences, with a second try on the other side for a point that could
+//! not be evaluated.
+use super::{Settings, Variable};
+use nalgebra::{DMatrix, DVector};
+
+/// One evaluation beside the point.
+#[derive(Clone, Debug)]
+pub(super) struct Difference {
+    variable: usize,
+    /// Signed step.
+    step: f64,
+    /// The residual there; none while it is awaited, and none inside if it could not be evaluated.
+    found: Option<Option<DVector<f64>>>,
+}
+
+/// The differences of all columns.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    differences: Vec<Difference>,
+    retried: bool,
+}
+
+impl Columns {
+    pub(super) fn new(x: &[f64], variables: &[Variable], steps: &[f64], central: bool) -> Self {
+        let mut differences = Vec::new();
+        for (variable, v) in variables.iter().enumerate() {
+            let up = steps[variable];
+            // a variable beside its bound is differenced inwards
+            let (first, second) = if x[variable] + up <= v.upper {
+                (up, -up)
+            } else {
+                (-up, up)
+            };
+            let mut add = |step: f64| {
+                let moved = x[variable] + step;
+                if moved >= v.lower && moved <= v.upper {
+                    differences.push(Difference {
+                        variable,
+                        step,
+                        found: None,
+                    });
+                }
+            };
+            add(first);
+            if central {
+                add(second);
+            }
+        }
+        Self {
+            differences,
+            retried: false,
+        }
+    }
+
+    fn open(&self) -> impl Iterator<Item = &Difference> {
+        self.differences.iter().filter(|d| d.found.is_none())
+    }
+
+    /// The points that are awaited.
+    pub(super) fn points(&self, x: &[f64]) -> Vec<Vec<f64>> {
+        let point = |d: &Difference| {
+            let mut point = x.to_vec();
+            point[d.variable] += d.step;
+            point
+        };
+        self.open().map(point).collect()
+    }
+
+    pub(super) fn absorb(
+        &mut self,
+        x: &[f64],
+        variables: &[Variable],
+        residuals: Vec<Option<DVector<f64>>>,
+    ) {
+        let awaited = self.differences.iter_mut().filter(|d| d.found.is_none());
+        for (difference, residual) in awaited.zip(residuals) {
+            difference.found = Some(residual);
+        }
+        if !self.retried {
+            self.retried = true;
+            self.retry(x, variables);
+        }
+    }
+
+    /// A column without any value is tried once more on the other side, with half the step.
+    fn retry(&mut self, x: &[f64], variables: &[Variable]) {
+        let mut again = Vec::new();
+        for (variable, v) in variables.iter().enumerate() {
+            let mut own = self.differences.iter().filter(|d| d.variable == variable);
+            let Some(first) = own.clone().next() else {
+                continue;
+            };
+            let step = -0.5 * first.step;
+            let moved = x[variable] + step;
+            let evaluated = own.any(|d| matches!(d.found, Some(Some(_))));
+            if !evaluated && moved >= v.lower && moved <= v.upper {
+                again.push(Difference {
+                    variable,
+                    step,
+                    found: None,
+                });
+            }
+        }
+        self.differences.extend(again);
+    }
+
+    pub(super) fn is_complete(&self) -> bool {
+        self.open().next().is_none()
+    }
+
+    /// The Jacobian, and by how much the largest step of each variable changed the residual.
+    pub(super) fn jacobian(
+        &self,
+        residual: &DVector<f64>,
+        count: usize,
+    ) -> (DMatrix<f64>, Vec<f64>) {
+        let mut jacobian = DMatrix::zeros(residual.len(), count);
+        let mut changes = vec![0.0; count];
+        for variable in 0..count {
+            let own: Vec<(f64, &DVector<f64>)> = self
+                .differences
+                .iter()
+                .filter(|d| d.variable == variable)
+                .filter_map(|d| Some((d.step, d.found.as_ref()?.as_ref()?)))
+                .collect();
+            let column = match own.as_slice() {
+                [] => continue,
+                [(step, there)] => (*there - residual) / *step,
+                [(a, at_a), (b, at_b), ..] => (*at_a - *at_b) / (a - b),
+            };
+            changes[variable] = own
+                .iter()
+                .map(|(_, there)| (*there - residual).norm())
+                .fold(0.0, f64::max);
+            jacobian.set_column(variable, &column);
+        }
+        (jacobian, changes)
+    }
+}
+
+/// The step that would have changed the residual as much as wanted, within its range.
+pub(super) fn next_step(step: f64, variable: &Variable, change: f64, settings: &Settings) -> f64 {
+    let wanted = if change > 0.0 {
+        step * (settings.change / change).clamp(0.1, 10.0)
+    } else {
+        step
+    };
+    let range = settings.step_range;
+    wanted.clamp(variable.step / range, variable.step * range)
+}

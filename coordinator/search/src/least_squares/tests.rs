@@ -1,0 +1,147 @@
+//! The search on functions whose minimum is known, with failures and bounds in the way.
+use super::*;
+
+fn variable(start: f64, lower: f64, upper: f64) -> Variable {
+    Variable {
+        start,
+        lower,
+        upper,
+        step: 1e-4,
+        prior: None,
+    }
+}
+
+fn tight() -> Settings {
+    Settings {
+        iterations: 60,
+        gradient: 1e-9,
+        decrease: 1e-14,
+        change: 1e-4,
+        ..Settings::default()
+    }
+}
+
+fn run(search: &mut LeastSquares, residual: impl Fn(&[f64]) -> Option<Vec<f64>>) -> Ended {
+    loop {
+        if let Some(ended) = search.ended() {
+            return ended;
+        }
+        let results = search
+            .plan()
+            .iter()
+            .map(|x| residual(x).map(DVector::from_vec))
+            .collect();
+        search.absorb(results);
+    }
+}
+
+fn rosenbrock(x: &[f64]) -> Vec<f64> {
+    vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]
+}
+
+#[test]
+fn the_curved_valley_is_followed_to_its_end() {
+    let mut search = LeastSquares::new(
+        vec![variable(-1.2, -5.0, 5.0), variable(1.0, -5.0, 5.0)],
+        tight(),
+    );
+    run(&mut search, |x| Some(rosenbrock(x)));
+    for x in &search.best().x {
+        assert!((x - 1.0).abs() < 1e-6, "{:?}", search.best().x);
+    }
+    assert!(search.work().0 < 400, "{:?}", search.work());
+}
+
+#[test]
+fn an_exponential_is_fitted_as_by_the_normal_equations_of_its_logarithm() {
+    let model = |x: &[f64]| -> Vec<f64> {
+        (0..20)
+            .map(|i| {
+                let t = 0.1 * f64::from(i);
+                x[0] * (-x[1] * t).exp() - 3.0 * (-1.7 * t).exp()
+            })
+            .collect()
+    };
+    for central in [false, true] {
+        let settings = Settings { central, ..tight() };
+        let mut search = LeastSquares::new(
+            vec![variable(1.0, 0.1, 10.0), variable(0.3, 0.0, 9.0)],
+            settings,
+        );
+        assert_eq!(run(&mut search, |x| Some(model(x))), Ended::Converged);
+        let x = &search.best().x;
+        assert!(
+            (x[0] - 3.0).abs() < 1e-6 && (x[1] - 1.7).abs() < 1e-6,
+            "{x:?}"
+        );
+        assert!(search.gradient_ratio() < 1e-2);
+    }
+}
+
+#[test]
+fn a_bound_holds_and_the_others_still_converge() {
+    let mut search = LeastSquares::new(
+        vec![variable(0.0, -5.0, 0.5), variable(3.0, -5.0, 5.0)],
+        tight(),
+    );
+    run(&mut search, |x| {
+        Some(vec![x[0] - 2.0, x[1] - x[0], 0.3 * (x[1] - 1.0)])
+    });
+    let x = &search.best().x;
+    assert!((x[0] - 0.5).abs() < 1e-12, "{x:?}");
+    let expected = (0.5 + 0.09) / 1.09;
+    assert!((x[1] - expected).abs() < 1e-6, "{x:?} {expected}");
+}
+
+#[test]
+fn points_that_fail_are_missing_values() {
+    // everything above 2.5 cannot be evaluated, the start lies just below, the minimum at 1
+    let fails = |x: &[f64]| (x[0] <= 2.5).then(|| vec![x[0] * x[0] - 1.0, 0.1 * (x[1] - 4.0)]);
+    let mut search = LeastSquares::new(
+        vec![variable(2.49995, -5.0, 5.0), variable(0.0, -5.0, 5.0)],
+        tight(),
+    );
+    run(&mut search, fails);
+    let x = &search.best().x;
+    assert!(
+        (x[0] - 1.0).abs() < 1e-6 && (x[1] - 4.0).abs() < 1e-6,
+        "{x:?}"
+    );
+    assert!(search.work().1 > 0);
+
+    let mut search = LeastSquares::new(vec![variable(3.0, -5.0, 5.0)], tight());
+    assert_eq!(run(&mut search, |_| None), Ended::StartFailed);
+}
+
+#[test]
+fn a_prior_pulls_as_its_width_says_and_moves_what_the_data_do_not_see() {
+    let prior = |mean, deviation| Some(Prior { mean, deviation });
+    let mut variables = vec![variable(0.0, -9.0, 9.0), variable(5.0, -9.0, 9.0)];
+    variables[0].prior = prior(0.0, 0.5);
+    variables[1].prior = prior(2.0, 1.0);
+    let mut search = LeastSquares::new(variables, tight());
+    run(&mut search, |x| Some(vec![x[0] - 1.0]));
+    let x = &search.best().x;
+    // (x - 1) + 4 x = 0
+    assert!(
+        (x[0] - 0.2).abs() < 1e-6 && (x[1] - 2.0).abs() < 1e-6,
+        "{x:?}"
+    );
+}
+
+#[test]
+fn a_known_start_is_not_evaluated_again_and_the_last_jacobian_is_fresh() {
+    let start = [0.4, 0.1];
+    let known = DVector::from_vec(rosenbrock(&start));
+    let variables = vec![variable(9.0, -5.0, 5.0), variable(9.0, -5.0, 5.0)];
+    let mut search = LeastSquares::from_known(variables, tight(), (&start, known));
+    assert_eq!(search.plan().len(), 2);
+    run(&mut search, |x| Some(rosenbrock(x)));
+    let best = search.best();
+    let expected = DMatrix::from_row_slice(2, 2, &[-20.0 * best.x[0], 10.0, -1.0, 0.0]);
+    assert!(
+        (&best.jacobian - expected).norm() < 1e-2,
+        "{}",
+        best.jacobian
+    );
+}

@@ -1,0 +1,179 @@
+//! Least squares as a piece of a strategy: from the best points so far, down the residual vector.
+//!
+//! The residual of an individual, in units in which its squared length is the fitness, says for
+//! every sample which way to go; a step of this piece costs one point per gene and a fan of damped
+//! tries, and near a minimum gains more than any search that sees the fitness alone.
+use super::{Archive, Batch, Draft, Evaluated, Piece, Purpose, SettingsError, require};
+use crate::{
+    least_squares::{LeastSquares, Settings, Variable},
+    space::Space,
+};
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+
+/// A descent of the residual vector.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LevenbergSettings {
+    /// Descents side by side, from the best points that lie apart.
+    pub starts: usize,
+    /// Most Jacobians of each.
+    pub iterations: u32,
+    /// How far two starts must lie apart in some gene (decades).
+    pub apart: f64,
+    /// First difference step (decades).
+    pub step: f64,
+}
+
+impl LevenbergSettings {
+    /// # Errors
+    /// If a setting lies outside its range.
+    pub(super) fn check(&self) -> Result<(), SettingsError> {
+        let (starts, iterations) = (self.starts as f64, f64::from(self.iterations));
+        require(
+            self.starts >= 1,
+            "least-squares starts",
+            starts,
+            "at least 1",
+        )?;
+        require(
+            self.iterations >= 1,
+            "least-squares iterations",
+            iterations,
+            "at least 1",
+        )?;
+        require(
+            self.apart >= 0.0,
+            "least-squares apart",
+            self.apart,
+            "0 or more",
+        )?;
+        require(self.step > 0.0, "least-squares step", self.step, "above 0")
+    }
+}
+
+/// Descents as a piece of a strategy.
+pub struct Levenberg {
+    settings: LevenbergSettings,
+    space: Space,
+    /// The descents with the number of points that each awaits; none before the first batch.
+    searches: Option<Vec<(LeastSquares, usize)>>,
+    round: u32,
+}
+
+impl Levenberg {
+    /// # Errors
+    /// If a setting lies outside its range.
+    pub fn new(settings: LevenbergSettings, space: &Space) -> Result<Self, SettingsError> {
+        settings.check()?;
+        Ok(Self {
+            settings,
+            space: space.clone(),
+            searches: None,
+            round: 0,
+        })
+    }
+
+    /// Descents from the best points that lie apart.
+    fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
+        let mut starts: Vec<(Vec<f64>, f64)> = Vec::new();
+        for one in archive.ranked() {
+            let x = self.space.decades(&one.genes);
+            let near = |(other, _): &(Vec<f64>, f64)| {
+                other
+                    .iter()
+                    .zip(&x)
+                    .all(|(a, b)| (a - b).abs() < self.settings.apart)
+            };
+            if !starts.iter().any(near) {
+                starts.push((x, one.told.fitness));
+            }
+            if starts.len() == self.settings.starts {
+                break;
+            }
+        }
+        let search = |(x, fitness): (Vec<f64>, f64)| {
+            let settings = Settings {
+                iterations: self.settings.iterations,
+                // a tenth of the residual: far above rounding, within what is nearly linear
+                change: 0.1 * libm::sqrt(fitness),
+                ..Settings::default()
+            };
+            (LeastSquares::new(self.variables(&x), settings), 0)
+        };
+        starts.into_iter().map(search).collect()
+    }
+
+    fn variables(&self, x: &[f64]) -> Vec<Variable> {
+        let axes = self.space.axes().iter().zip(x);
+        axes.map(|(axis, start)| {
+            let interval = axis.interval();
+            Variable {
+                start: *start,
+                lower: interval.from,
+                upper: interval.to,
+                step: self.settings.step,
+                prior: None,
+            }
+        })
+        .collect()
+    }
+}
+
+impl Piece for Levenberg {
+    fn plan(&mut self, archive: &Archive) -> Option<Batch> {
+        if self.searches.is_none() {
+            self.searches = Some(self.begin(archive));
+        }
+        let mut drafts = Vec::new();
+        for (search, awaited) in self.searches.iter_mut().flatten() {
+            let points = search.plan();
+            *awaited = points.len();
+            drafts.extend(points.iter().map(|x| Draft {
+                genes: self.space.values(x),
+                purpose: Purpose::LeastSquares,
+            }));
+        }
+        if drafts.is_empty() {
+            return None;
+        }
+        self.round += 1;
+        Some(Batch {
+            generation: self.round,
+            drafts,
+        })
+    }
+
+    fn absorb(&mut self, results: &[Evaluated]) {
+        let mut results = results.iter();
+        for (search, awaited) in self.searches.iter_mut().flatten() {
+            if *awaited > 0 {
+                let own = results.by_ref().take(*awaited);
+                let residual = |one: &Evaluated| {
+                    let residual = one.residual.clone().filter(|_| one.told.survived())?;
+                    Some(DVector::from_vec(residual))
+                };
+                search.absorb(own.map(residual).collect());
+            }
+        }
+    }
+
+    /// Two rounds per Jacobian: its columns, and the fan.
+    fn generations(&self) -> u32 {
+        match &self.searches {
+            Some(searches) if searches.iter().all(|(s, _)| s.ended().is_some()) => self.round,
+            Some(_) | None => (1 + 2 * self.settings.iterations).max(self.round),
+        }
+    }
+
+    fn remaining(&self) -> u64 {
+        let rounds = self.generations().saturating_sub(self.round);
+        let per_round = (self.space.dimension() as u64 + 5) / 2;
+        let awaited = self
+            .searches
+            .iter()
+            .flatten()
+            .map(|(_, awaited)| *awaited as u64);
+        awaited.sum::<u64>() + u64::from(rounds) * per_round * self.settings.starts as u64
+    }
+}

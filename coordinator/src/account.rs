@@ -1,0 +1,186 @@
+//! How the slots of a run spent their time, and why: a fold over its journal.
+//!
+//! It adds up what the core wrote down (one row per worker and coordinator process) and puts the
+//! causes into words. It decides nothing, and knows neither workers nor sockets.
+use crate::journal::{self, Damage, JournalError};
+use protocol::{
+    event::{Event, Spent, WorkerAccount},
+    id::WorkerId,
+};
+use std::{collections::BTreeMap, path::Path};
+
+/// Shares below this are not worth a word \[1\].
+const NOTABLE: f64 = 0.02;
+
+/// What a journal says of the use of slot time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct RunAccount {
+    /// Coordinator processes that worked on the run.
+    pub processes: u32,
+    /// Results recorded.
+    pub results: u64,
+    /// Attempts that failed, on any worker.
+    pub failed: u64,
+    /// Every worker, added up over the coordinator's processes.
+    pub workers: Vec<WorkerAccount>,
+    /// All of them together.
+    pub spent: Spent,
+    /// Why workers went, with how often; the most frequent first.
+    pub left: Vec<(String, u64)>,
+    /// What of the journal could not be read.
+    pub damage: Vec<Damage>,
+}
+
+/// Reads the account of a journal.
+///
+/// # Errors
+/// [`JournalError::Io`] if it cannot be read.
+pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
+    let mut account = RunAccount::default();
+    let mut rows: BTreeMap<(WorkerId, u32), WorkerAccount> = BTreeMap::new();
+    let mut left: BTreeMap<String, u64> = BTreeMap::new();
+    let report = journal::fold(path, |_, event| match event {
+        Event::Opened { .. } => account.processes += 1,
+        Event::Finished(_) => account.results += 1,
+        Event::Left { reason, .. } => *left.entry(reason).or_default() += 1,
+        Event::Accounted(said) => {
+            for row in said.workers {
+                // the last word about a worker in a process counts
+                rows.insert((row.worker, said.epoch), row);
+            }
+        }
+        Event::Begun { .. } | Event::Joined { .. } | Event::Closed | Event::Proved { .. } => {}
+    })?;
+    account.damage = report.damage;
+    for row in rows.into_values() {
+        account.spent.add(&row.spent);
+        account.failed += row.failed;
+        match account.workers.last_mut() {
+            Some(last) if last.worker == row.worker => {
+                last.done += row.done;
+                last.failed += row.failed;
+                last.spent.add(&row.spent);
+            }
+            Some(_) | None => account.workers.push(row),
+        }
+    }
+    account.left = left.into_iter().collect();
+    account
+        .left
+        .sort_by_key(|(_, times)| std::cmp::Reverse(*times));
+    Ok(account)
+}
+
+impl RunAccount {
+    /// Why slots were not useful, in words, the greatest share first.
+    pub fn reasons(&self) -> Vec<String> {
+        reasons(&self.spent)
+    }
+}
+
+/// Why slot time was not useful, in words, the greatest share first; one sentence if it was.
+pub fn reasons(spent: &Spent) -> Vec<String> {
+    if spent.connected_us == 0 {
+        return vec!["no worker was connected for a measurable time".to_owned()];
+    }
+    let mut kinds: Vec<(&str, f64)> = spent
+        .kinds()
+        .into_iter()
+        .map(|(kind, us)| (kind, us as f64 / spent.connected_us as f64))
+        .filter(|(kind, share)| *kind != "useful" && *share >= NOTABLE)
+        .collect();
+    kinds.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let sentence = |(kind, share): &(&str, f64)| {
+        let why = match *kind {
+            "barrier" => {
+                "barrier: everything asked for was given out and the search waited for the last \
+                 results; a search without generations (--preset window) or fewer workers leave \
+                 less idle"
+            }
+            "starved" => {
+                "starved: slots waited for the case, for the next order, for a journal that could \
+                 not be written, or the run asked for nothing; look at the network, at the \
+                 coordinator's load and at the disk"
+            }
+            "speculative" => {
+                "speculative: copies of slow jobs that were not needed in the end; some workers \
+                 are slower than others"
+            }
+            "failed" => {
+                "failed: attempts that crashed or ran out of time; the warnings of the run name \
+                 the jobs"
+            }
+            _ => {
+                "lost: attempts on workers that were lost, or that nobody answered for; see why \
+                 workers left"
+            }
+        };
+        format!("{:.0} % {why}", 100.0 * share)
+    };
+    if kinds.is_empty() {
+        return vec!["slots were busy with results nearly all the time".to_owned()];
+    }
+    kinds.iter().map(sentence).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::journal::Journal;
+    use protocol::{
+        event::{Account, RunHeader},
+        id::{ContentHash, RunId},
+    };
+
+    fn row(worker: u64, useful_us: u64, barrier_us: u64) -> WorkerAccount {
+        WorkerAccount {
+            worker: WorkerId(worker),
+            host: "host".to_owned(),
+            slots: 1,
+            done: 3,
+            failed: 1,
+            spent: Spent {
+                connected_us: useful_us + barrier_us,
+                useful_us,
+                barrier_us,
+                ..Spent::default()
+            },
+        }
+    }
+
+    #[test]
+    fn the_last_account_of_each_process_counts_and_processes_add_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = RunHeader {
+            kind: "test".to_owned(),
+            case: ContentHash::of(b""),
+            settings: String::new(),
+        };
+        let accounted = |epoch, workers| {
+            Event::Accounted(Box::new(Account {
+                epoch,
+                at_ms: 1,
+                workers,
+            }))
+        };
+        for epoch in 1..=2 {
+            let (journal, begun) =
+                Journal::open(folder.path(), &header, RunId(1), 0, |_| {}).unwrap();
+            assert_eq!(begun.epoch, epoch);
+            let early = accounted(epoch, vec![row(1, 10, 10)]);
+            let late = accounted(epoch, vec![row(1, 60, 20), row(2, 20, 0)]);
+            for event in [early, late] {
+                journal.append(event).unwrap();
+            }
+        }
+        let account = read(&folder.path().join(journal::FILE)).unwrap();
+        assert_eq!((account.processes, account.workers.len()), (2, 2));
+        assert_eq!(account.workers[0].spent.useful_us, 120);
+        assert_eq!(account.workers[0].done, 6);
+        assert_eq!(account.spent.connected_us, 200);
+        assert_eq!(account.failed, 4);
+        let reasons = account.reasons();
+        assert_eq!(reasons.len(), 1);
+        assert!(reasons[0].starts_with("20 % barrier: "), "{reasons:?}");
+    }
+}

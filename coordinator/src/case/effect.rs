@@ -1,0 +1,283 @@
+//! Effects of a case file: numbers with their units and intervals, and where they come from.
+//!
+//! What effects there are is the model's business and not known here: shape, units and numbers are
+//! checked, names are not. A worker refuses what its model does not have, naming the same field.
+use super::{
+    document::{Document, Step, nearest},
+    error::CaseError,
+};
+use protocol::{case::EffectSetting, unit::EFFECT_UNITS};
+use serde::Deserialize;
+use std::{collections::BTreeMap, fmt::Write};
+
+/// One `[[effects]]` table.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseEffect {
+    /// Fixed identifier, as `pivot_friction`.
+    pub id: String,
+    /// Its numbers by name; what is not named stays as the model has it.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, CaseParameter>,
+    /// Where it comes from; absent where somebody wrote it by hand.
+    pub provenance: Option<Provenance>,
+}
+
+/// One number of an effect.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseParameter {
+    /// Value, in `unit`.
+    pub value: f64,
+    /// Unit of all numbers here; it must be the one that the effect declares.
+    pub unit: String,
+    /// Interval that holds the value with 95 % confidence, if it was estimated.
+    pub ci95: Option<[f64; 2]>,
+}
+
+/// Where an effect comes from: the diagnosis that named it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// Content hash of the records that it was found in.
+    pub dataset: Option<String>,
+    /// Name of the run that found it.
+    pub run: Option<String>,
+    /// What that run concluded, as `named`.
+    pub verdict: Option<String>,
+    /// Identifiers that the records cannot tell from it, itself among them.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Gain of log evidence over the model without it \[1\].
+    pub ln_evidence_gain: Option<f64>,
+    /// Round of the diagnosis, from 1.
+    pub round: Option<u32>,
+}
+
+impl CaseEffect {
+    /// As it travels.
+    pub fn setting(&self) -> EffectSetting {
+        let parameters = self.parameters.iter();
+        EffectSetting {
+            id: self.id.clone(),
+            parameters: parameters
+                .map(|(name, p)| (name.clone(), p.value))
+                .collect(),
+        }
+    }
+
+    /// Units of its parameters, in the order of [`Self::setting`].
+    pub fn units(&self) -> Vec<String> {
+        self.parameters.values().map(|p| p.unit.clone()).collect()
+    }
+}
+
+/// Checks shape, units and numbers.
+///
+/// # Errors
+/// The first identifier, unit or number that cannot be right.
+pub(super) fn check(document: &Document, effects: &[CaseEffect]) -> Result<(), CaseError> {
+    for (index, effect) in effects.iter().enumerate() {
+        let way = |key| [Step::Key("effects"), Step::Index(index), Step::Key(key)];
+        let quoted = format!("\"{}\"", effect.id);
+        if !is_name(&effect.id) {
+            return Err(document.field(
+                &way("id"),
+                quoted,
+                "an identifier of small letters, digits, `_` and `.`",
+                "write the identifier of an effect, as `pivot_friction`",
+            ));
+        }
+        if effects[..index].iter().any(|other| other.id == effect.id) {
+            return Err(document.field(
+                &way("id"),
+                quoted,
+                "an effect that no other table has",
+                "duplicate effect: put all its parameters into one table",
+            ));
+        }
+        for (name, parameter) in &effect.parameters {
+            check_parameter(document, index, name, parameter)?;
+        }
+    }
+    Ok(())
+}
+
+fn is_name(text: &str) -> bool {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '.');
+    !text.is_empty() && text.chars().all(plain)
+}
+
+fn check_parameter(
+    document: &Document,
+    index: usize,
+    name: &str,
+    parameter: &CaseParameter,
+) -> Result<(), CaseError> {
+    let way = |key| {
+        [
+            Step::Key("effects"),
+            Step::Index(index),
+            Step::Key("parameters"),
+            Step::Key(name),
+            Step::Key(key),
+        ]
+    };
+    let unit = parameter.unit.as_str();
+    if !EFFECT_UNITS.contains(&unit) {
+        let near = nearest(unit, EFFECT_UNITS.iter().copied());
+        return Err(document.field(
+            &way("unit"),
+            format!("\"{unit}\""),
+            format!("one of {}", EFFECT_UNITS.join(", ")),
+            &near.map_or(
+                "state the value in the unit of the effect".to_owned(),
+                |near| format!("did you mean `{near}`?"),
+            ),
+        ));
+    }
+    if !parameter.value.is_finite() {
+        return Err(document.field(
+            &way("value"),
+            parameter.value,
+            format!("a finite number of {unit}"),
+            "correct the value; a worker knows its bounds",
+        ));
+    }
+    let Some([low, high]) = parameter.ci95 else {
+        return Ok(());
+    };
+    if low.is_finite() && high.is_finite() && (low..=high).contains(&parameter.value) {
+        return Ok(());
+    }
+    Err(document.field(
+        &way("ci95"),
+        format!("[{low}, {high}]"),
+        format!("two finite numbers around the value, {}", parameter.value),
+        "write the lower bound first, or leave ci95 out",
+    ))
+}
+
+/// `[[effects]]` tables as they are written in `case.toml`: reading them gives the same effects.
+pub fn write_effects(effects: &[CaseEffect]) -> String {
+    let mut text = String::new();
+    for effect in effects {
+        let parameters = effect.parameters.iter().map(|(name, p)| {
+            let interval = p
+                .ci95
+                .map(|[low, high]| format!(", ci95 = [{low:?}, {high:?}]"))
+                .unwrap_or_default();
+            format!(
+                "{} = {{ value = {:?}, unit = {}{interval} }}",
+                key(name),
+                p.value,
+                quoted(&p.unit)
+            )
+        });
+        let parameters: Vec<String> = parameters.collect();
+        let inline = match parameters.as_slice() {
+            [] => "{}".to_owned(),
+            all => format!("{{ {} }}", all.join(", ")),
+        };
+        // writing into a string cannot fail
+        drop(write!(
+            text,
+            "\n[[effects]]\nid = {}\nparameters = {inline}\n",
+            quoted(&effect.id)
+        ));
+        if let Some(provenance) = &effect.provenance {
+            drop(writeln!(text, "provenance = {}", provenance.inline()));
+        }
+    }
+    text
+}
+
+impl Provenance {
+    fn inline(&self) -> String {
+        let text = |key: &str, value: &Option<String>| {
+            let value = value.as_ref()?;
+            Some(format!("{key} = {}", quoted(value)))
+        };
+        let set: Vec<String> = self.set.iter().map(|id| quoted(id)).collect();
+        let parts = [
+            text("dataset", &self.dataset),
+            text("run", &self.run),
+            text("verdict", &self.verdict),
+            (!set.is_empty()).then(|| format!("set = [{}]", set.join(", "))),
+            self.ln_evidence_gain
+                .map(|gain| format!("ln_evidence_gain = {gain:?}")),
+            self.round.map(|round| format!("round = {round}")),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        format!("{{ {} }}", parts.join(", "))
+    }
+}
+
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// A bare key where TOML allows it.
+fn key(name: &str) -> String {
+    let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    if !name.is_empty() && name.chars().all(bare) {
+        name.to_owned()
+    } else {
+        quoted(name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Deserialize)]
+    struct File {
+        effects: Vec<CaseEffect>,
+    }
+
+    #[test]
+    fn what_is_written_reads_back_to_the_bit() {
+        let number = |value: f64, ci95| CaseParameter {
+            value,
+            unit: "N.m".to_owned(),
+            ci95,
+        };
+        let effects = vec![
+            CaseEffect {
+                id: "pivot_friction".to_owned(),
+                parameters: BTreeMap::from([
+                    ("moment".to_owned(), number(1234.5678901234567, None)),
+                    (
+                        "viscous".to_owned(),
+                        number(-1.5e-17, Some([-2e300, 0.1 + 0.2])),
+                    ),
+                ]),
+                provenance: Some(Provenance {
+                    dataset: Some("sha256:0f".to_owned()),
+                    run: Some("a \"quoted\" run\\".to_owned()),
+                    verdict: Some("ambiguous".to_owned()),
+                    set: vec![
+                        "pivot_friction".to_owned(),
+                        "stuffing_box_friction".to_owned(),
+                    ],
+                    ln_evidence_gain: Some(214.0),
+                    round: Some(2),
+                }),
+            },
+            CaseEffect {
+                id: "gauge_gain".to_owned(),
+                provenance: Some(Provenance::default()),
+                ..CaseEffect::default()
+            },
+            CaseEffect {
+                id: "probe.saddle.v".to_owned(),
+                ..CaseEffect::default()
+            },
+        ];
+        let text = write_effects(&effects);
+        let back: File = toml::from_str(&text).unwrap_or_else(|e| unreachable!("{e}\n{text}"));
+        assert_eq!(back.effects, effects, "{text}");
+        assert!(write_effects(&[]).is_empty());
+    }
+}

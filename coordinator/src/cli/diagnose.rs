@@ -1,0 +1,383 @@
+//! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
+//! that is, and how far the gap closes.
+use super::{
+    Door, EXIT_CODES, OutputChoice, bus, cores, diagnosis_json, interrupt, output,
+    problem::Usage,
+    progress::StageDisplay,
+    run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, command_line},
+};
+use crate::{
+    case::{Loaded, Overrides, load_with_notes, read_genes},
+    report::diagnosis as report,
+    study::{self, Diagnosed, StudyError},
+};
+use anyhow::Context as _;
+use clap::Args;
+use discrepancy::{diagnose::Inputs, settings::Settings};
+use protocol::{announce::EffectDescriptor, case::Case, job::Refinement};
+use search::space::Space;
+use serde::{Deserialize, Serialize};
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+/// Find what the simulation is missing: where, which effect, how large, and the proof.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead diagnose cases/cyjs10-5-37hb
+  horsehead diagnose runs/cyjs10-5-37hb-quick-seed1
+  horsehead diagnose cases/cyjs10-5-37hb --measured tests/of/march --output json
+
+A case is recalibrated from scratch; a finished run of `calibrate` gives its parameters as the start.
+What is found is written into effects.toml of the run folder, in the form that case.toml takes; --add
+appends it to the case itself, and from then on it is ordinary physics.
+Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Case folder, or the folder of a finished calibration.
+    #[arg(value_name = "CASE|RUN")]
+    target: PathBuf,
+    /// Folder whose load cards and gauge records replace those of the case: a new test of the
+    /// same machine.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    measured: Option<PathBuf>,
+    /// Gene file to start the recalibration from, such as a run's `calibrated.toml`.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
+    genes: Option<PathBuf>,
+    /// Effect that is not to be considered; may be given several times.
+    #[arg(long, value_name = "EFFECT")]
+    without: Vec<String>,
+    /// Effects that are added at most.
+    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
+    rounds: u8,
+    /// Append what is found to the case's case.toml.
+    #[arg(long)]
+    add: bool,
+    /// Fixes every random choice: the same seed gives the same bits.
+    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
+    seed: u64,
+    /// Run folder [default: runs/CASE-diagnose-seedN].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    door: Door,
+    /// Worker processes to start on this machine; 0 for none [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = super::worker_count())]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Everything that decides a diagnosis beside case and seed.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Decides {
+    /// Thresholds.
+    thresholds: Settings,
+    /// Where the recalibration starts (declared units), if that is known.
+    start: Option<Vec<f64>>,
+}
+
+impl run_folder::Decides for Decides {}
+
+/// What is diagnosed, and where it came from.
+struct Target {
+    /// Folder of the case.
+    folder: PathBuf,
+    /// Folder of the records, where they replace the case's.
+    measured: Option<PathBuf>,
+    loaded: Loaded,
+    start: Option<Vec<f64>>,
+}
+
+/// Diagnoses from the record to the report.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let started = Instant::now();
+    let target = target(arguments)?;
+    let case = &target.loaded.case;
+    let notes: Vec<String> = target
+        .loaded
+        .notes
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    for note in &notes {
+        output::tell(&format!("note: {note}"));
+    }
+    let manifest = Manifest {
+        kind: DIAGNOSE.to_owned(),
+        format: run_folder::format(),
+        program: bus::PROGRAM.to_owned(),
+        command: command_line(),
+        preset: String::new(),
+        seed: arguments.seed,
+        settings: Decides {
+            thresholds: Settings {
+                rounds: usize::from(arguments.rounds),
+                without: arguments.without.clone(),
+                ..Settings::default()
+            },
+            start: target.start.clone(),
+        },
+        case_folder: std::path::absolute(&target.folder)?,
+        measured: target
+            .measured
+            .as_ref()
+            .unwrap_or(&target.folder)
+            .display()
+            .to_string(),
+        synthetic: target.loaded.synthetic,
+        notes,
+        wall_s: 0.0,
+    };
+    let path = arguments
+        .run
+        .clone()
+        .unwrap_or_else(|| default_path(case, &target, arguments.seed));
+    let begun = RunFolder::begin(&path, &manifest, case)?;
+    let (diagnosed, library) =
+        experiment(arguments, &manifest, &begun, &target).inspect_err(|error| {
+            let study = error.downcast_ref::<StudyError>();
+            if matches!(
+                study,
+                Some(StudyError::Interrupted | StudyError::Evaluator(_))
+            ) {
+                output::tell(&format!(
+                    "results so far are kept in {}; to go on:\n  {}",
+                    path.display(),
+                    manifest.command
+                ));
+            }
+        })?;
+    let wall_s = begun.wall_s + started.elapsed().as_secs_f64();
+    begun.folder.spent(&manifest, case, wall_s)?;
+    show(
+        arguments,
+        &target,
+        &manifest,
+        &begun.folder,
+        (&diagnosed, &library, wall_s),
+    )
+}
+
+/// The case, and where the recalibration starts.
+fn target(arguments: &Arguments) -> anyhow::Result<Target> {
+    let kind = RunFolder::kind(&arguments.target);
+    let (folder, measured, genes) = match kind.as_deref() {
+        Some(CALIBRATE) => {
+            let (folder, manifest, _) =
+                RunFolder::open::<search::strategy::Settings>(&arguments.target, CALIBRATE)?;
+            let genes = folder.file("calibrated.toml");
+            if !genes.exists() {
+                return Err(Usage {
+                    message: format!("{} is not finished", arguments.target.display()),
+                    help: format!(
+                        "finish it first:\n  {}",
+                        manifest.resume_command(&arguments.target)
+                    ),
+                }
+                .into());
+            }
+            let own = PathBuf::from(&manifest.measured);
+            let replaced = std::path::absolute(&own)? != manifest.case_folder;
+            let measured = arguments
+                .measured
+                .clone()
+                .or_else(|| replaced.then_some(own));
+            (manifest.case_folder, measured, Some(genes))
+        }
+        Some(other) => {
+            return Err(Usage {
+                message: format!(
+                    "{} holds a run of `horsehead {other}`",
+                    arguments.target.display()
+                ),
+                help: "name a case folder, or the folder of a calibration".to_owned(),
+            }
+            .into());
+        }
+        None => (arguments.target.clone(), arguments.measured.clone(), None),
+    };
+    let overrides = Overrides {
+        measured: measured.clone(),
+    };
+    let loaded = load_with_notes(&folder, &overrides)?;
+    let genes = arguments.genes.clone().or(genes);
+    let start = genes
+        .map(|file| read_genes(&file, &loaded.case))
+        .transpose()?;
+    Ok(Target {
+        folder,
+        measured,
+        loaded,
+        start,
+    })
+}
+
+/// `runs/CASE-diagnose[-RECORDS]-seedN`.
+fn default_path(case: &Case, target: &Target, seed: u64) -> PathBuf {
+    let records = target.measured.as_deref().and_then(Path::file_name);
+    let name = records.map_or_else(
+        || DIAGNOSE.to_owned(),
+        |records| format!("{DIAGNOSE}-{}", records.to_string_lossy()),
+    );
+    RunFolder::default_path(&case.name, &name, seed)
+}
+
+/// Opens the bus, learns the library and diagnoses.
+fn experiment(
+    arguments: &Arguments,
+    manifest: &Manifest<Decides>,
+    begun: &Begun,
+    target: &Target,
+) -> anyhow::Result<(Diagnosed, Vec<EffectDescriptor>)> {
+    let case = &target.loaded.case;
+    bus::block_on(async {
+        let mut stop = interrupt::listen();
+        let options = bus::Options {
+            run_dir: begun.folder.path().to_owned(),
+            door: arguments.door.clone(),
+            local_workers: arguments.workers.unwrap_or_else(cores),
+            kind: DIAGNOSE.to_owned(),
+            settings: manifest.settings_json()?,
+        };
+        let mut bus = bus::Bus::open(options, case).await?;
+        begun.folder.spent(manifest, case, begun.wall_s)?;
+        let path = begun.folder.path().display();
+        output::tell(&match bus.recorded() {
+            0 => format!("beginning {path}"),
+            recorded => format!("going on with {path}: its journal holds {recorded} results"),
+        });
+        let mut display = StageDisplay::new();
+        let found = diagnose(&mut bus, manifest, target, &mut display, &mut stop).await;
+        display.clear();
+        let closed = bus.close().await;
+        let found = found?;
+        closed?;
+        Ok(found)
+    })
+}
+
+async fn diagnose(
+    bus: &mut bus::Bus,
+    manifest: &Manifest<Decides>,
+    target: &Target,
+    display: &mut StageDisplay,
+    stop: &mut study::Stop,
+) -> anyhow::Result<(Diagnosed, Vec<EffectDescriptor>)> {
+    let library = study::library(bus, stop).await?;
+    let thresholds = &manifest.settings.thresholds;
+    for id in &thresholds.without {
+        if library.iter().all(|effect| effect.id != *id) {
+            let names = library.iter().filter(|e| !e.generic).map(|e| e.id.as_str());
+            let known: Vec<&str> = names.collect();
+            return Err(Usage {
+                message: format!("the workers know no effect `{id}`"),
+                help: format!("they know: {}", known.join(", ")),
+            }
+            .into());
+        }
+    }
+    let inputs = inputs(target, manifest, library)?;
+    let diagnosed = study::diagnose_on(bus, &inputs, display, stop).await?;
+    Ok((diagnosed, inputs.library))
+}
+
+/// What the pipeline takes: the calibrated condition's record first.
+fn inputs(
+    target: &Target,
+    manifest: &Manifest<Decides>,
+    library: Vec<EffectDescriptor>,
+) -> anyhow::Result<Inputs> {
+    let case = &target.loaded.case;
+    let space = Space::new(&case.genes)?;
+    let calibrated = case.objective.condition;
+    let mut records = target.loaded.cycles.clone();
+    records.sort_by_key(|record| record.condition != calibrated);
+    records.retain(|record| record.condition == calibrated || !record.cycles.is_empty());
+    // effects that the case has already are ordinary physics, not suspects
+    let library = library
+        .into_iter()
+        .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
+        .collect();
+    let available = case.modal_head.frequencies_hz.len();
+    Ok(Inputs {
+        start: manifest
+            .settings
+            .start
+            .as_ref()
+            .map(|genes| space.decades(genes)),
+        space,
+        records,
+        library,
+        finer: Refinement {
+            cylinder_length_m: Some(
+                case.ropes.cylinder_length_m * manifest.settings.thresholds.refinement,
+            ),
+            lead_in_deg: Some(case.run.lead_in_deg + 180.0),
+            modes: Some((case.run.modes + 2).min(available)),
+            longest_step_s: Some(0.5 * case.run.longest_step_s),
+            tolerance: None,
+        },
+        seed: manifest.seed,
+        settings: manifest.settings.thresholds.clone(),
+    })
+}
+
+/// Writes what was found and prints it.
+fn show(
+    arguments: &Arguments,
+    target: &Target,
+    manifest: &Manifest<Decides>,
+    folder: &RunFolder,
+    (diagnosed, library, wall_s): (&Diagnosed, &[EffectDescriptor], f64),
+) -> anyhow::Result<()> {
+    let case = &target.loaded.case;
+    let subject = report::Subject {
+        case,
+        records: &target.loaded.cycles,
+        library,
+        diagnosed,
+        provenance: crate::report::Provenance {
+            program: manifest.program.clone(),
+            command: manifest.command.clone(),
+            run: folder.path().display().to_string(),
+            case_hash: bus::case_hash(case)?,
+            measured_name: manifest.measured.clone(),
+            synthetic: manifest.synthetic,
+            preset: None,
+            seed: Some(manifest.seed),
+            digest: String::new(),
+        },
+        notes: &manifest.notes,
+        wall_s,
+    };
+    let effects = report::effects_toml(&subject);
+    if let Some(text) = &effects {
+        folder.write("effects.toml", text)?;
+        if arguments.add {
+            append(&target.folder.join("case.toml"), text)?;
+        }
+    }
+    for file in report::write(folder.path(), &subject)?.iter().take(1) {
+        output::tell(&format!("open {}", file.display()));
+    }
+    let object = diagnosis_json::object(&subject);
+    folder.write_json("result.json", &object)?;
+    output::print(arguments.output.output, || report::text(&subject), &object)
+}
+
+/// Appends effects to a case file.
+fn append(file: &Path, text: &str) -> anyhow::Result<()> {
+    let mut whole =
+        std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
+    if !whole.ends_with('\n') {
+        whole.push('\n');
+    }
+    whole.push('\n');
+    whole.push_str(text);
+    std::fs::write(file, whole).with_context(|| format!("cannot write {}", file.display()))?;
+    output::tell(&format!("added to {}", file.display()));
+    Ok(())
+}

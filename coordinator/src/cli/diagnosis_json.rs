@@ -1,0 +1,335 @@
+//! The object that `horsehead diagnose --output json` prints: a contract, more may be added.
+use crate::report::diagnosis::Subject;
+use discrepancy::diagnose::{Diagnosis, Estimate};
+use discrepancy::stage::show::Row;
+use discrepancy::verdict::Verdict;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Of `horsehead diagnose`.
+#[derive(Debug, Serialize)]
+pub(super) struct DiagnoseOutput {
+    run: String,
+    case: String,
+    verdict: Verdict,
+    /// Why, where the verdict needs a reason.
+    reason: Option<String>,
+    /// Added effects, then the other members of their ambiguity sets; the best first.
+    effects: Vec<EffectOutput>,
+    /// Form and joint of a force that beats every name.
+    generic: Option<String>,
+    rounds: Vec<RoundOutput>,
+    #[serde(rename = "where")]
+    whereabouts: Option<WhereOutput>,
+    detection_limits: Vec<LimitOutput>,
+    /// Effects that this record cannot tell apart at their usual sizes.
+    inseparable: Vec<Vec<String>>,
+    gap: GapOutput,
+    rival: Option<RivalOutput>,
+    assumed_noise: bool,
+    numerical_error: Option<NumericalOutput>,
+    genes: BTreeMap<String, f64>,
+    stages: Vec<StageOutput>,
+    wall_s: f64,
+}
+
+/// An effect with its size.
+#[derive(Debug, Serialize)]
+struct EffectOutput {
+    id: String,
+    title: String,
+    added: bool,
+    parameters: BTreeMap<String, ParameterOutput>,
+    p_value: f64,
+    ln_evidence: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ParameterOutput {
+    value: f64,
+    unit: String,
+    ci95: [f64; 2],
+}
+
+#[derive(Debug, Serialize)]
+struct RoundOutput {
+    p_value: f64,
+    misfit: f64,
+    added: Option<String>,
+    set: Vec<String>,
+    reason: Option<String>,
+    suspects: Vec<SuspectOutput>,
+}
+
+/// One suspect: its test, and its refit where it was refitted.
+#[derive(Debug, Serialize)]
+struct SuspectOutput {
+    id: String,
+    p_value: f64,
+    statistic: f64,
+    absorbed: Option<f64>,
+    ln_evidence: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct WhereOutput {
+    windows: Vec<WindowOutput>,
+    orders: Vec<PeakOutput>,
+    joints: Vec<JointOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct WindowOutput {
+    channel: String,
+    from_deg: f64,
+    to_deg: f64,
+    strength: f64,
+    p_value: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct PeakOutput {
+    channel: String,
+    order: usize,
+    ratio: f64,
+    p_value: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct JointOutput {
+    joint: String,
+    ln_bayes: f64,
+    /// Whether it is told apart from the best.
+    equivalent: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct LimitOutput {
+    id: String,
+    parameter: String,
+    unit: String,
+    /// Null where recalibration absorbs the effect wholly.
+    size: f64,
+}
+
+/// The gap of the answer.
+#[derive(Debug, Default, Serialize)]
+struct GapOutput {
+    calibration: Option<ClosedOutput>,
+    held_out: Option<ClosedOutput>,
+    other_condition: Option<ClosedOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct ClosedOutput {
+    before: f64,
+    after: f64,
+    closed: f64,
+    ci95: Option<[f64; 2]>,
+}
+
+#[derive(Debug, Serialize)]
+struct RivalOutput {
+    id: String,
+    gap: GapOutput,
+}
+
+/// How far a finer model moves the channels (in their units).
+#[derive(Debug, Serialize)]
+struct NumericalOutput {
+    rms: Vec<f64>,
+    rms_after_recalibration: Vec<f64>,
+    standard_error: Vec<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct StageOutput {
+    stage: &'static str,
+    simulations: u64,
+    failed: u64,
+    wall_s: f64,
+}
+
+/// The object of a diagnosis.
+pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    let calibrated = subject.case.objective.condition;
+    let genes = diagnosis
+        .after
+        .as_ref()
+        .map(|fit| fit.model.genes(fit.x()))
+        .unwrap_or_default();
+    DiagnoseOutput {
+        run: subject.provenance.run.clone(),
+        case: subject.case.name.clone(),
+        verdict: diagnosis.verdict,
+        reason: diagnosis.reason.clone(),
+        effects: diagnosis
+            .effects
+            .iter()
+            .map(|e| effect(diagnosis, e))
+            .collect(),
+        generic: diagnosis.generic.clone(),
+        rounds: rounds(diagnosis),
+        whereabouts: whereabouts(subject),
+        detection_limits: diagnosis
+            .limits
+            .iter()
+            .map(|limit| LimitOutput {
+                id: limit.id.clone(),
+                parameter: limit.parameter.clone(),
+                unit: limit.unit.clone(),
+                size: limit.size,
+            })
+            .collect(),
+        inseparable: diagnosis
+            .classes
+            .iter()
+            .filter(|class| class.len() > 1)
+            .cloned()
+            .collect(),
+        gap: gap(&diagnosis.rows, calibrated),
+        rival: diagnosis.rival.as_ref().map(|(id, rows)| RivalOutput {
+            id: id.clone(),
+            gap: gap(rows, calibrated),
+        }),
+        assumed_noise: diagnosis.assumed_noise,
+        numerical_error: diagnosis.preflight.as_ref().map(|p| NumericalOutput {
+            rms: p.rms.clone(),
+            rms_after_recalibration: p.rms_left.clone(),
+            standard_error: p.standard_error.clone(),
+        }),
+        genes: subject
+            .case
+            .genes
+            .iter()
+            .zip(genes)
+            .map(|(gene, value)| (gene.name.as_str().to_owned(), value))
+            .collect(),
+        stages: subject
+            .diagnosed
+            .accounts
+            .iter()
+            .map(|(stage, account)| StageOutput {
+                stage: stage.name(),
+                simulations: account.experiments,
+                failed: account.failed,
+                wall_s: account.wall.as_secs_f64(),
+            })
+            .collect(),
+        wall_s: subject.wall_s,
+    }
+}
+
+fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
+    let parameter = |(name, unit, value, ci95): &(String, String, f64, [f64; 2])| {
+        let output = ParameterOutput {
+            value: *value,
+            unit: unit.clone(),
+            ci95: *ci95,
+        };
+        (name.clone(), output)
+    };
+    EffectOutput {
+        id: found.id.clone(),
+        title: found.title.clone(),
+        added: diagnosis
+            .rounds
+            .iter()
+            .any(|round| round.added.as_ref() == Some(&found.id)),
+        parameters: found.parameters.iter().map(parameter).collect(),
+        p_value: found.p_value,
+        ln_evidence: found.ln_evidence,
+    }
+}
+
+fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
+    let round = |round: &discrepancy::diagnose::Round| RoundOutput {
+        p_value: round.p_value,
+        misfit: round.phi,
+        added: round.added.clone(),
+        set: round.set.clone(),
+        reason: round.reason.clone(),
+        suspects: round
+            .suspects
+            .iter()
+            .map(|suspect| SuspectOutput {
+                id: suspect.effect.id.clone(),
+                p_value: suspect.p_value(),
+                statistic: suspect.statistic(),
+                absorbed: suspect.score.as_ref().map(|score| score.absorbed),
+                ln_evidence: round
+                    .refits
+                    .iter()
+                    .find(|refit| refit.id == suspect.effect.id)
+                    .map(|refit| {
+                        (refit.log_evidence - round.null_evidence) / (round.phi * round.phi)
+                    }),
+            })
+            .collect(),
+    };
+    diagnosis.rounds.iter().map(round).collect()
+}
+
+fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
+    let seen = subject.diagnosed.diagnosis.whereabouts.as_ref()?;
+    let record = subject
+        .records
+        .iter()
+        .find(|r| r.condition == subject.case.objective.condition)?;
+    let channel = |c: usize| record.channels.get(c).map(|s| s.name()).unwrap_or_default();
+    Some(WhereOutput {
+        windows: seen
+            .angle
+            .windows
+            .iter()
+            .map(|window| WindowOutput {
+                channel: channel(window.channel),
+                from_deg: window.from_deg,
+                to_deg: window.to_deg,
+                strength: window.strength,
+                p_value: window.p_value,
+            })
+            .collect(),
+        orders: seen
+            .order
+            .peaks
+            .iter()
+            .map(|peak| PeakOutput {
+                channel: channel(peak.channel),
+                order: peak.order,
+                ratio: peak.ratio,
+                p_value: peak.p_value,
+            })
+            .collect(),
+        joints: seen
+            .joints
+            .iter()
+            .enumerate()
+            .map(|(k, joint)| JointOutput {
+                joint: joint.joint.clone(),
+                ln_bayes: joint.log_bayes,
+                equivalent: k < seen.equivalent,
+            })
+            .collect(),
+    })
+}
+
+fn gap(rows: &[Row], calibrated: usize) -> GapOutput {
+    let one = |fitted: bool, own: bool| {
+        let row = rows
+            .iter()
+            .find(|row| row.fitted == fitted && (row.condition == calibrated) == own)?;
+        Some(ClosedOutput {
+            before: row.closed.before,
+            after: row.closed.after,
+            closed: row.closed.closed,
+            ci95: row.closed.interval,
+        })
+    };
+    GapOutput {
+        calibration: one(true, true),
+        held_out: one(false, true),
+        other_condition: one(false, false),
+    }
+}

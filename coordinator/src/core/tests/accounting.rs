@@ -1,0 +1,97 @@
+//! Where slot time goes: held against the simulated workers' own clocks.
+use super::{
+    simulated::{Cluster, Fault, Generations, Setting},
+    *,
+};
+use protocol::event::{Event, WorkerAccount};
+
+const LIMIT: Duration = Duration::from_hours(2);
+
+/// Kinds must make up all the time that slots were connected, and computing what the simulated
+/// workers really computed.
+fn balanced(cluster: &Cluster) -> Spent {
+    let spent = cluster.core.snapshot(cluster.now).spent;
+    let share = spent.sum_us() as f64 / spent.connected_us as f64;
+    assert!((share - 1.0).abs() < 1e-3, "{share} of {spent:?}");
+    spent
+}
+
+#[test]
+fn the_kinds_add_up_and_useful_time_is_what_workers_computed() {
+    for slots in [1, 3] {
+        let setting = Setting {
+            slots,
+            ..Setting::even(7)
+        };
+        let mut cluster = Cluster::new(setting);
+        cluster.run(&mut Generations::new(80, 20), LIMIT);
+        let spent = balanced(&cluster);
+        let useful = spent.useful_us as f64 / 1e6 / cluster.computed.as_secs_f64();
+        assert!((0.99..1.01).contains(&useful), "{useful} {spent:?}");
+        assert_eq!((spent.lost_us, spent.failed_us), (0, 0));
+        assert!(spent.barrier_us > 5 * spent.starved_us, "{spent:?}");
+    }
+}
+
+/// A slow network is not the barrier's fault, and it is not useful.
+#[test]
+fn time_on_the_way_counts_as_starved() {
+    let mut policy_of_one = Cluster::new(Setting {
+        delay: Duration::from_millis(400),
+        ..Setting::even(4)
+    });
+    policy_of_one.core.options.policy.per_slot = 1;
+    policy_of_one.run(&mut Generations::new(100, 3), LIMIT);
+    let spent = balanced(&policy_of_one);
+    let computed = policy_of_one.computed.as_secs_f64();
+    assert!((spent.useful_us as f64 / 1e6 / computed - 1.0).abs() < 0.01);
+    assert!(spent.starved_us > spent.useful_us / 10, "{spent:?}");
+}
+
+#[test]
+fn killed_and_frozen_workers_show_as_lost_time() {
+    let mut cluster = Cluster::new(Setting::even(8));
+    for n in 0..10 {
+        cluster.fault(Duration::from_secs(10 + 7 * n), n % 8, Fault::Kill);
+    }
+    cluster.fault(Duration::from_secs(3), 5, Fault::Freeze);
+    cluster.run(&mut Generations::new(80, 10), LIMIT);
+    let spent = balanced(&cluster);
+    let lost = spent.lost_us as f64 / 1e6;
+    // ten kills cost at most two seconds each, the freeze the four until it is noticed
+    assert!((1.0..26.0).contains(&lost), "{lost}");
+    assert_eq!(cluster.results.len(), 800);
+}
+
+#[test]
+fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one() {
+    let mut cluster = Cluster::new(Setting::even(3));
+    cluster.fault(Duration::from_secs(20), 1, Fault::Kill);
+    cluster.run(&mut Generations::new(30, 20), LIMIT);
+    let live = cluster.core.snapshot(cluster.now).spent;
+    let closing = cluster.core.handle(Input::Close, cluster.now);
+    let last = closing.into_iter().filter_map(|command| match command {
+        Command::Record(event) => Some(event),
+        _ => None,
+    });
+    let mut workers: BTreeMap<WorkerId, WorkerAccount> = BTreeMap::new();
+    let mut minutes = 0;
+    for event in mem::take(&mut cluster.accounts).into_iter().chain(last) {
+        if let Event::Accounted(account) = event {
+            minutes += 1;
+            for row in account.workers {
+                workers.insert(row.worker, row);
+            }
+        }
+    }
+    assert!(
+        minutes >= 4,
+        "each minute, at the loss and at the end: {minutes}"
+    );
+    assert_eq!(workers.len(), 4, "three and the successor of one");
+    let mut folded = Spent::default();
+    for row in workers.values() {
+        folded.add(&row.spent);
+    }
+    assert_eq!(folded, live);
+}

@@ -1,0 +1,92 @@
+//! Attempts that fail: tried again, given up, recorded or not.
+use super::*;
+
+#[test]
+fn a_job_that_crashes_twice_is_given_up_and_recorded() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, first) = scene.given()[0];
+    scene.fail(1, first, crash());
+    assert_eq!(scene.delivered, []);
+    let (_, second) = scene.given()[0];
+    scene.fail(1, second, crash());
+    assert_eq!(scene.delivered, [(0, Outcome::Failed(crash()))]);
+    assert_eq!(scene.storing, [JobId(0)]);
+    assert_eq!(scene.given(), []);
+}
+
+#[test]
+fn a_refusal_goes_to_the_others_and_ends_when_all_have_refused() {
+    let refusal = || Failure::Refused {
+        reason: "no dynamics".to_owned(),
+    };
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.join(2, 1);
+    scene.submit(0..1);
+    let (first, attempt) = scene.given()[0];
+    scene.fail(first, attempt, refusal());
+    let (second, attempt) = scene.given()[0];
+    assert_ne!(first, second);
+    scene.fail(second, attempt, refusal());
+    assert_eq!(scene.delivered, [(0, Outcome::Failed(refusal()))]);
+    assert_eq!(
+        scene.storing,
+        [],
+        "another build may do better: no result of the run"
+    );
+}
+
+#[test]
+fn if_everything_fails_the_run_stops_with_one_message() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..20);
+    let bad = Failure::Misconfigured {
+        field: "beam".to_owned(),
+        problem: "no mass".to_owned(),
+    };
+    for _ in 0..10 {
+        for (to, attempt) in scene.given() {
+            scene.fail(to, attempt, bad.clone());
+        }
+    }
+    let stops: Vec<&Command> = scene
+        .other
+        .iter()
+        .filter(|command| matches!(command, Command::Stop(_)))
+        .collect();
+    assert_eq!(
+        stops,
+        [&Command::Stop(Stop::EverythingFails { jobs: 8, last: bad })]
+    );
+}
+
+#[test]
+fn an_overdue_job_gets_a_second_longer_try() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let first = scene.orders[0].1.deadline_ms;
+    let (_, attempt) = scene.given()[0];
+    let overdue = || Failure::Deadline { limit_ms: 120_000 };
+    scene.fail(1, attempt, overdue());
+    assert_eq!(scene.orders[0].1.deadline_ms, 2 * first);
+    let (_, attempt) = scene.given()[0];
+    scene.fail(1, attempt, overdue());
+    assert_eq!(scene.delivered, [(0, Outcome::Failed(overdue()))]);
+}
+
+/// The worker ends what is overdue; should it not, the core does.
+#[test]
+fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, attempt) = scene.given()[0];
+    scene.wait(129, &[1]);
+    assert_eq!(scene.cancelled, []);
+    scene.wait(4, &[1]);
+    assert_eq!(scene.cancelled, [(WorkerId(1), attempt)]);
+}

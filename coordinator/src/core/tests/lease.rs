@@ -1,0 +1,133 @@
+//! Who gets which job, and when a worker may forget it.
+use super::*;
+
+#[test]
+fn jobs_go_to_idle_workers_first_and_each_holds_two_per_slot_at_most() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.join(2, 2);
+    scene.submit(0..10);
+    let given = scene.given();
+    let jobs: Vec<u64> = given.iter().map(|(_, attempt)| attempt.job.0).collect();
+    assert_eq!(jobs, [0, 1, 2, 3, 4, 5]);
+    let first: BTreeSet<u64> = given[..3].iter().map(|(to, _)| *to).collect();
+    assert_eq!(
+        first.len(),
+        2,
+        "both are busy before anyone gets a second job per slot"
+    );
+    assert_eq!(given.iter().filter(|(to, _)| *to == 1).count(), 2);
+}
+
+#[test]
+fn a_result_is_acknowledged_only_once_it_is_stored() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, attempt) = scene.given()[0];
+    scene.finish(1, attempt);
+    assert_eq!(scene.delivered.len(), 1);
+    assert_eq!(scene.acknowledged, []);
+    // repeated by an impatient worker: neither delivered nor acknowledged before it is safe
+    scene.finish(1, attempt);
+    assert_eq!((scene.delivered.len(), scene.acknowledged.len()), (1, 0));
+    scene.stored();
+    assert_eq!(scene.acknowledged, [(WorkerId(1), attempt)]);
+    scene.finish(1, attempt);
+    assert_eq!((scene.delivered.len(), scene.acknowledged.len()), (1, 2));
+}
+
+#[test]
+fn an_order_that_got_lost_is_sent_again_as_the_same_attempt() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let given = scene.given();
+    for _ in 0..3 {
+        scene.now += Duration::from_millis(900);
+        scene.beat(1, &[]);
+    }
+    assert_eq!(scene.given(), given);
+    scene.now += Duration::from_millis(900);
+    scene.beat(1, &[given[0].1]);
+    assert_eq!(scene.given(), []);
+}
+
+#[test]
+fn an_answer_to_another_question_is_not_taken() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, attempt) = scene.given()[0];
+    let work = ContentHash::of(b"another job");
+    let outcome = Outcome::Nothing(Vec::new());
+    let done = Done {
+        attempt,
+        work,
+        wall_us: 1,
+        outcome,
+    };
+    scene.hear(1, FromWorker::Done(Box::new(done)));
+    assert_eq!(scene.storing, [], "no result of the run");
+    assert_eq!(
+        scene.acknowledged,
+        [(WorkerId(1), attempt)],
+        "and never sent again"
+    );
+    let [(0, Outcome::Failed(Failure::Refused { reason }))] = &scene.delivered[..] else {
+        panic!("{:?}", scene.delivered);
+    };
+    assert!(reason.contains("the same build"), "{reason}");
+    // an answer of a former run, that nobody waits for, is forgotten without a word
+    scene.submit(1..2);
+    let (_, attempt) = scene.given()[0];
+    let late = Attempt {
+        attempt: AttemptId(77),
+        ..attempt
+    };
+    scene.hear(
+        1,
+        FromWorker::Done(Box::new(Done {
+            attempt: late,
+            work,
+            wall_us: 1,
+            outcome: Outcome::Nothing(Vec::new()),
+        })),
+    );
+    assert_eq!(scene.acknowledged.last(), Some(&(WorkerId(1), late)));
+    assert_eq!(scene.delivered.len(), 1);
+}
+
+/// The journal cannot be written: nothing is given out, what comes in is kept.
+#[test]
+fn while_the_journal_cannot_be_written_nothing_is_given_out() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, attempt) = scene.given()[0];
+    scene.tell(Input::Writable(false));
+    scene.submit(1..4);
+    scene.finish(1, attempt);
+    scene.wait(10, &[1]);
+    assert_eq!(scene.given(), []);
+    assert_eq!(scene.acknowledged, []);
+    assert!(scene.core.snapshot(scene.now).paused);
+    scene.tell(Input::Writable(true));
+    scene.stored();
+    assert_eq!(scene.given().len(), 2);
+    assert_eq!(scene.acknowledged, [(WorkerId(1), attempt)]);
+}
+
+#[test]
+fn people_are_told_once_that_nobody_is_there() {
+    let mut scene = Scene::new();
+    scene.submit(0..3);
+    scene.wait(60, &[]);
+    assert_eq!(
+        scene.notices(),
+        [&Notice::NoWorker {
+            jobs: 3,
+            refused: 0
+        }]
+    );
+}

@@ -1,0 +1,194 @@
+//! Workers that freeze, die, leave or outlive the coordinator.
+use super::*;
+
+#[test]
+fn a_silent_worker_is_lost_after_four_seconds_and_its_late_result_still_counts() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    let (_, first) = scene.given()[0];
+    scene.join(2, 1);
+    scene.wait(4, &[2]);
+    assert_eq!(scene.given(), []);
+    scene.wait(1, &[2]);
+    let again = scene.given();
+    assert_eq!(again.len(), 1);
+    assert_eq!((again[0].0, again[0].1.job), (2, JobId(0)));
+    assert_ne!(again[0].1, first, "another attempt");
+    // the first one wakes up and is first: its result counts, the other attempt is cancelled
+    scene.finish(1, first);
+    assert_eq!(scene.delivered.len(), 1);
+    assert_eq!(scene.cancelled, [(WorkerId(2), again[0].1)]);
+    scene.finish(2, again[0].1);
+    assert_eq!(scene.delivered.len(), 1);
+    scene.stored();
+    assert_eq!(scene.acknowledged.len(), 2, "both may forget it");
+}
+
+#[test]
+fn a_coordinator_that_stood_still_blames_nobody() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    scene.now += Duration::from_mins(5);
+    scene.tell(Input::Tick);
+    assert_eq!(scene.core.snapshot(scene.now).lost, 0);
+    assert!(
+        scene
+            .notices()
+            .iter()
+            .any(|notice| matches!(notice, Notice::Stalled { .. }))
+    );
+    scene.wait(5, &[]);
+    assert_eq!(
+        scene.core.snapshot(scene.now).lost,
+        1,
+        "silence afterwards still counts"
+    );
+}
+
+/// A job over which workers die runs alone, so that no other job can be blamed or harmed.
+#[test]
+fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
+    let mut scene = Scene::new();
+    scene.submit(0..1);
+    for worker in 1..=2 {
+        scene.join(worker, 2);
+        assert_eq!(scene.given().len(), 1);
+        scene.tell(Input::Gone {
+            worker: WorkerId(worker),
+        });
+    }
+    assert!(scene.notices().contains(&&Notice::Quarantined {
+        job: JobId(0),
+        workers: 2
+    }));
+    scene.submit(1..9);
+    scene.join(3, 2);
+    let given = scene.given();
+    assert_eq!(given.len(), 1, "nothing else beside it: {given:?}");
+    assert_eq!(given[0].1.job, JobId(0));
+    scene.join(4, 2);
+    assert_eq!(scene.given().len(), 4, "others go on elsewhere");
+    scene.tell(Input::Gone {
+        worker: WorkerId(3),
+    });
+    assert_eq!(scene.given(), [], "it waits for a worker of its own");
+    scene.join(5, 1);
+    assert_eq!(scene.given()[0].1.job, JobId(0));
+    scene.tell(Input::Gone {
+        worker: WorkerId(5),
+    });
+    assert_eq!(
+        scene.delivered,
+        [(0, Outcome::Failed(Failure::Lost { workers: 4 }))]
+    );
+}
+
+#[test]
+fn what_waited_on_a_lost_worker_is_not_blamed() {
+    let mut scene = Scene::new();
+    scene.submit(0..2);
+    for worker in 1..=4 {
+        scene.join(worker, 1);
+        assert_eq!(
+            scene.given().len(),
+            2 - usize::from(worker > 2),
+            "worker {worker}"
+        );
+        scene.tell(Input::Gone {
+            worker: WorkerId(worker),
+        });
+    }
+    // the job in front was lost four times, the one behind it never
+    assert_eq!(
+        scene.delivered,
+        [(0, Outcome::Failed(Failure::Lost { workers: 4 }))]
+    );
+    assert!(scene.core.jobs[&JobId(1)].failures.losses <= 1);
+}
+
+/// A worker that leaves in good order is not counted as lost, even if its connection ends next.
+#[test]
+fn leaving_blames_no_job() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..1);
+    scene.given();
+    let reason = "it was asked to end".to_owned();
+    scene.hear(1, FromWorker::Leaving { reason });
+    let answer = Command::Send {
+        to: WorkerId(1),
+        message: ToWorker::Ended,
+    };
+    assert!(scene.other.contains(&answer), "it waits for an answer");
+    scene.tell(Input::Gone {
+        worker: WorkerId(1),
+    });
+    assert_eq!(scene.core.snapshot(scene.now).lost, 0);
+    assert_eq!(scene.core.jobs[&JobId(0)].failures.losses, 0);
+    scene.join(2, 1);
+    assert_eq!(scene.given().len(), 1);
+}
+
+/// A worker that outlived the coordinator keeps what it computes, and delivers what it finished
+/// before the jobs were even submitted again.
+#[test]
+fn work_that_outlived_the_coordinator_is_not_done_again() {
+    let mut scene = Scene::with([JobId(0)].into_iter().collect(), 2);
+    let old = |job| Attempt {
+        job: JobId(job),
+        attempt: AttemptId(1 << 16),
+    };
+    scene.announce(1, 2, "m");
+    scene.beat(1, &[old(2), old(3)]);
+    scene.finish(1, old(1));
+    scene.finish(1, old(0));
+    assert_eq!(scene.acknowledged, [(WorkerId(1), old(0))], "known already");
+    scene.submit(1..5);
+    assert_eq!(scene.delivered.len(), 1, "job 1, finished meanwhile");
+    let given: Vec<u64> = scene
+        .given()
+        .iter()
+        .map(|(_, attempt)| attempt.job.0)
+        .collect();
+    assert_eq!(given, [4], "2 and 3 are being computed");
+    scene.finish(1, old(2));
+    scene.finish(1, old(3));
+    assert_eq!(scene.delivered.len(), 3);
+}
+
+/// After a restart, what outliving workers may hold is given to nobody before they are back or have
+/// been waited for.
+#[test]
+fn nobody_gets_what_those_who_outlived_the_coordinator_may_hold() {
+    let old = |job| Attempt {
+        job: JobId(job),
+        attempt: AttemptId(1 << 16),
+    };
+    let restarted = || {
+        let mut scene = Scene::with(JobSet::default(), 2);
+        scene.core.options.expected = [WorkerId(1), WorkerId(2)].into();
+        scene.submit(0..4);
+        scene.join(9, 4);
+        assert_eq!(scene.given(), [], "a newcomer waits");
+        scene
+    };
+    // one is back with a job, the other with a result
+    let mut scene = restarted();
+    scene.announce(1, 1, "m");
+    scene.beat(1, &[old(0)]);
+    scene.announce(2, 1, "m");
+    scene.beat(2, &[]);
+    scene.finish(2, old(1));
+    assert_eq!(scene.given(), []);
+    scene.wait(1, &[1, 2, 9]);
+    let given: Vec<u64> = scene.given().iter().map(|(_, it)| it.job.0).collect();
+    assert_eq!(given, [2, 3], "what nobody has");
+    // nobody comes back: the run goes on all the same
+    let mut scene = restarted();
+    scene.wait(2, &[9]);
+    assert_eq!(scene.given(), []);
+    scene.wait(2, &[9]);
+    assert_eq!(scene.given().len(), 4);
+}

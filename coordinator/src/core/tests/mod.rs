@@ -1,0 +1,246 @@
+//! Scenarios: whole clusters without a socket, a file or a clock.
+use super::*;
+use protocol::{
+    announce::Announcement,
+    id::AttemptId,
+    job::{Failure, Outcome},
+    message::{Beat, FromWorker, Order},
+};
+
+mod accounting;
+mod admission;
+mod failure;
+mod lease;
+mod loss;
+mod simulated;
+mod tail;
+mod window;
+
+const CASE: ContentHash = ContentHash([7; 32]);
+const PROOF: ContentHash = ContentHash([8; 32]);
+
+/// A core with the time and everything it asked for.
+struct Scene {
+    core: Core,
+    now: Duration,
+    orders: Vec<(WorkerId, Order)>,
+    acknowledged: Vec<(WorkerId, Attempt)>,
+    cancelled: Vec<(WorkerId, Attempt)>,
+    delivered: Vec<(u64, Outcome)>,
+    storing: Vec<JobId>,
+    other: Vec<Command>,
+    /// What workers say that a job took.
+    wall_us: u64,
+}
+
+impl Scene {
+    fn new() -> Self {
+        Self::with(JobSet::default(), 1)
+    }
+
+    fn with(finished: JobSet, epoch: u32) -> Self {
+        let core = Core::new(CoreOptions {
+            run: RunId(1),
+            epoch,
+            case: CASE,
+            case_bytes: 10,
+            model_digest: None,
+            proof: None,
+            finished,
+            expected: BTreeSet::new(),
+            policy: Policy::default(),
+        });
+        Self {
+            core,
+            now: Duration::from_secs(100),
+            orders: Vec::new(),
+            acknowledged: Vec::new(),
+            cancelled: Vec::new(),
+            delivered: Vec::new(),
+            storing: Vec::new(),
+            other: Vec::new(),
+            wall_us: 1000,
+        }
+    }
+
+    fn tell(&mut self, input: Input) {
+        for command in self.core.handle(input, self.now) {
+            match command {
+                Command::Send {
+                    to,
+                    message: ToWorker::Run(order),
+                } => self.orders.push((to, *order)),
+                Command::Send {
+                    to,
+                    message: ToWorker::Cancel(attempt),
+                } => {
+                    self.cancelled.push((to, attempt));
+                }
+                Command::Send {
+                    to,
+                    message: ToWorker::Stored(attempts),
+                } => {
+                    self.acknowledged
+                        .extend(attempts.into_iter().map(|attempt| (to, attempt)));
+                }
+                Command::Deliver { id, outcome } => self.delivered.push((id.0, outcome)),
+                Command::Store(finished) => self.storing.push(finished.job()),
+                other @ (Command::Send { .. }
+                | Command::Record(_)
+                | Command::Notice(_)
+                | Command::Stop(_)) => self.other.push(other),
+            }
+        }
+        self.check();
+    }
+
+    /// What must hold after every step.
+    fn check(&self) {
+        for (id, pending) in &self.core.jobs {
+            let queued = self.core.queue.contains(id);
+            assert_eq!(
+                queued,
+                pending.holders.is_empty(),
+                "job {id} is queued or held"
+            );
+            assert!(
+                !self.core.has_finished(*id),
+                "job {id} is pending or finished"
+            );
+            for holder in &pending.holders {
+                assert!(self.core.members[holder].holds(*id), "{holder} holds {id}");
+            }
+        }
+        for member in self.core.members.values() {
+            let most = self.core.options.policy.per_slot * member.slots();
+            assert!(member.leases.len() <= most, "more than {most} outstanding");
+        }
+    }
+
+    fn hear(&mut self, from: u64, message: FromWorker) {
+        self.tell(Input::Heard {
+            from: WorkerId(from),
+            message,
+        });
+    }
+
+    fn announce(&mut self, id: u64, slots: u32, digest: &str) {
+        let announcement = Announcement {
+            slots,
+            ..announcement(digest)
+        };
+        self.hear(id, FromWorker::Announce(Box::new(announcement)));
+    }
+
+    fn join(&mut self, id: u64, slots: u32) {
+        self.announce(id, slots, "m");
+        self.beat(id, &[]);
+    }
+
+    fn beat(&mut self, id: u64, running: &[Attempt]) {
+        let running = running.to_vec();
+        self.hear(
+            id,
+            FromWorker::Beat(Beat {
+                case: Some(CASE),
+                proof: Some(PROOF),
+                running,
+                ..Beat::default()
+            }),
+        );
+    }
+
+    fn submit(&mut self, jobs: std::ops::Range<u64>) {
+        for id in jobs {
+            self.tell(Input::Submit {
+                id: JobId(id),
+                job: job(id),
+            });
+        }
+    }
+
+    fn finish(&mut self, from: u64, attempt: Attempt) {
+        self.answer(from, attempt, Outcome::Nothing(vec![1]));
+    }
+
+    fn fail(&mut self, from: u64, attempt: Attempt, failure: Failure) {
+        self.answer(from, attempt, Outcome::Failed(failure));
+    }
+
+    fn answer(&mut self, from: u64, attempt: Attempt, outcome: Outcome) {
+        let work = work_hash(&job(attempt.job.0));
+        let done = Done {
+            attempt,
+            work,
+            wall_us: self.wall_us,
+            outcome,
+        };
+        self.hear(from, FromWorker::Done(Box::new(done)));
+    }
+
+    fn stored(&mut self) {
+        let jobs = mem::take(&mut self.storing);
+        self.tell(Input::Stored { jobs });
+    }
+
+    /// Orders since the last call, as (worker, attempt).
+    fn given(&mut self) -> Vec<(u64, Attempt)> {
+        let orders = self.orders.drain(..);
+        orders.map(|(to, order)| (to.0, order.attempt)).collect()
+    }
+
+    fn wait(&mut self, seconds: u64, speaking: &[u64]) {
+        for _ in 0..seconds * 4 {
+            self.now += Duration::from_millis(250);
+            for id in speaking {
+                let leases = self.core.members.get(&WorkerId(*id)).map(|member| {
+                    member
+                        .leases
+                        .iter()
+                        .map(|lease| lease.attempt)
+                        .collect::<Vec<_>>()
+                });
+                self.beat(*id, &leases.unwrap_or_default());
+            }
+            self.tell(Input::Tick);
+        }
+    }
+
+    fn notices(&self) -> Vec<&Notice> {
+        let mut notices = Vec::new();
+        for command in &self.other {
+            if let Command::Notice(notice) = command {
+                notices.push(notice);
+            }
+        }
+        notices
+    }
+}
+
+fn job(n: u64) -> Job {
+    Job::Nothing {
+        payload: n.to_le_bytes().to_vec(),
+        reply_bytes: 1,
+        delay_ms: 0,
+    }
+}
+
+fn crash() -> Failure {
+    Failure::Crashed {
+        how: "signal 11".to_owned(),
+    }
+}
+
+fn announcement(digest: &str) -> Announcement {
+    Announcement {
+        protocol: wire::VERSION,
+        build: concat!(env!("CARGO_PKG_VERSION"), " test").to_owned(),
+        model_digest: digest.to_owned(),
+        host: "host".to_owned(),
+        pid: 3,
+        slots: 1,
+        cores: 8,
+        job_kinds: Vec::new(),
+        effects: Vec::new(),
+    }
+}

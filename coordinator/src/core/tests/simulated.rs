@@ -1,0 +1,499 @@
+//! A whole cluster on a simulated clock: the real core; workers, link and time are simulated.
+//!
+//! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes
+//! a fraction of a second and is the same each time.
+use super::*;
+use protocol::event::Event;
+use search::{
+    random::{Phase, Streams},
+    strategy::{Strategy, Told},
+};
+use std::collections::VecDeque;
+
+/// Where jobs come from.
+pub(super) trait Source {
+    fn ask(&mut self) -> Vec<(u64, Job)>;
+    fn tell(&mut self, id: u64, outcome: &Outcome);
+    fn is_done(&self) -> bool;
+}
+
+/// Generations of equal size: nothing is asked before all of the last one is there.
+pub(super) struct Generations {
+    size: u64,
+    left: u64,
+    next: u64,
+    open: u64,
+}
+
+impl Generations {
+    pub(super) const fn new(size: u64, count: u64) -> Self {
+        Self {
+            size,
+            left: count,
+            next: 0,
+            open: 0,
+        }
+    }
+}
+
+impl Source for Generations {
+    fn ask(&mut self) -> Vec<(u64, Job)> {
+        if self.open > 0 || self.left == 0 {
+            return Vec::new();
+        }
+        self.left -= 1;
+        self.open = self.size;
+        let from = self.next;
+        self.next += self.size;
+        (from..self.next).map(|id| (id, job(id))).collect()
+    }
+
+    fn tell(&mut self, _id: u64, _outcome: &Outcome) {
+        self.open -= 1;
+    }
+
+    fn is_done(&self) -> bool {
+        self.left == 0 && self.open == 0
+    }
+}
+
+/// A search, with a function for the physics.
+pub(super) struct Search<'a> {
+    pub(super) strategy: Box<dyn Strategy>,
+    pub(super) tell: &'a dyn Fn(&[f64]) -> Told,
+    open: BTreeMap<u64, Vec<f64>>,
+    log: blake3::Hasher,
+}
+
+impl<'a> Search<'a> {
+    pub(super) fn new(strategy: Box<dyn Strategy>, tell: &'a dyn Fn(&[f64]) -> Told) -> Self {
+        Self {
+            strategy,
+            tell,
+            open: BTreeMap::new(),
+            log: blake3::Hasher::new(),
+        }
+    }
+
+    /// The name of everything that was evaluated, in index order.
+    pub(super) fn digest(mut self) -> String {
+        for entry in self.strategy.archive().entries() {
+            self.log.update(&entry.id.to_le_bytes());
+            for gene in &entry.genes {
+                self.log.update(&gene.to_bits().to_le_bytes());
+            }
+            self.log.update(&entry.told.fitness.to_bits().to_le_bytes());
+        }
+        self.log.finalize().to_hex().to_string()
+    }
+}
+
+impl Source for Search<'_> {
+    fn ask(&mut self) -> Vec<(u64, Job)> {
+        let proposals = self.strategy.ask();
+        let jobs = proposals.into_iter().map(|proposal| {
+            self.open.insert(proposal.id, proposal.genes);
+            (proposal.id, job(proposal.id))
+        });
+        jobs.collect()
+    }
+
+    fn tell(&mut self, id: u64, _outcome: &Outcome) {
+        let genes = self.open.remove(&id).expect("asked for");
+        self.strategy.tell(id, (self.tell)(&genes));
+    }
+
+    fn is_done(&self) -> bool {
+        self.strategy.finished().is_some()
+    }
+}
+
+/// What happens to workers.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Fault {
+    /// It dies with all it holds, the transport says so, and another one comes in its place.
+    Kill,
+    /// It stands still; its connection stays.
+    Freeze,
+    /// It goes on.
+    Thaw,
+}
+
+enum What {
+    Up(WorkerId, FromWorker),
+    Down(WorkerId, ToWorker),
+    End(WorkerId, Attempt),
+    Beat(WorkerId),
+    Tick,
+    Stored(Vec<JobId>),
+    Fault(u64, Fault),
+}
+
+/// An attempt in a slot.
+struct Running {
+    attempt: Attempt,
+    work: ContentHash,
+    begun: Duration,
+}
+
+struct Worker {
+    /// Place that it fills; its successor fills it too.
+    place: u64,
+    slots: usize,
+    slowness: f64,
+    running: Vec<Running>,
+    waiting: VecDeque<Order>,
+    outbox: BTreeMap<Attempt, Done>,
+    settled: BTreeSet<Attempt>,
+    frozen: bool,
+    held_back: Vec<What>,
+}
+
+/// What a cluster is like.
+#[derive(Clone, Copy)]
+pub(super) struct Setting {
+    pub(super) workers: u64,
+    pub(super) slots: usize,
+    pub(super) seed: u64,
+    /// Spread of computing times, lognormal about one second: standard deviation over mean \[1\].
+    pub(super) spread: f64,
+    /// One in so many workers is half as fast; 0 for none.
+    pub(super) slow_one_in: u64,
+    /// Longest delay of a message.
+    pub(super) delay: Duration,
+}
+
+impl Setting {
+    pub(super) const fn even(workers: u64) -> Self {
+        Self {
+            workers,
+            slots: 1,
+            seed: 1,
+            spread: 0.3,
+            slow_one_in: 0,
+            delay: Duration::from_millis(2),
+        }
+    }
+}
+
+pub(super) struct Cluster {
+    pub(super) core: Core,
+    pub(super) now: Duration,
+    setting: Setting,
+    events: BTreeMap<(Duration, u64), What>,
+    sequence: u64,
+    workers: BTreeMap<WorkerId, Worker>,
+    pub(super) results: BTreeMap<u64, Outcome>,
+    /// Delivered and not yet told.
+    fresh: Vec<(JobId, Outcome)>,
+    pub(super) accounts: Vec<Event>,
+    pub(super) notices: Vec<Notice>,
+    /// Slot time that was really spent computing, whatever for.
+    pub(super) computed: Duration,
+    pub(super) begun: u64,
+    /// Times at which cancelled attempts were ended, after the result that made them useless.
+    pub(super) cancels: Vec<Duration>,
+}
+
+impl Cluster {
+    pub(super) fn new(setting: Setting) -> Self {
+        let core = Core::new(CoreOptions {
+            run: RunId(1),
+            epoch: 1,
+            case: CASE,
+            case_bytes: 1,
+            model_digest: None,
+            proof: None,
+            finished: JobSet::default(),
+            expected: BTreeSet::new(),
+            policy: Policy::default(),
+        });
+        let mut cluster = Self {
+            core,
+            now: Duration::ZERO,
+            setting,
+            events: BTreeMap::new(),
+            sequence: 0,
+            workers: BTreeMap::new(),
+            results: BTreeMap::new(),
+            fresh: Vec::new(),
+            accounts: Vec::new(),
+            notices: Vec::new(),
+            computed: Duration::ZERO,
+            begun: 0,
+            cancels: Vec::new(),
+        };
+        for place in 0..setting.workers {
+            cluster.start(place);
+        }
+        cluster.at(Duration::ZERO, What::Tick);
+        cluster
+    }
+
+    /// Something happens to the worker of a place.
+    pub(super) fn fault(&mut self, at: Duration, place: u64, fault: Fault) {
+        self.at(at, What::Fault(place, fault));
+    }
+
+    fn unit(&self, generation: u32, index: u64) -> f64 {
+        let index = usize::try_from(index).expect("small");
+        let streams = Streams::new(self.setting.seed, 5);
+        streams.at(generation, Phase::Initial, index).unit()
+    }
+
+    fn at(&mut self, delay: Duration, what: What) {
+        self.sequence += 1;
+        self.events.insert((self.now + delay, self.sequence), what);
+    }
+
+    /// On its way for a time of its own.
+    fn send(&mut self, what: What) {
+        let delay = self.setting.delay.mul_f64(self.unit(1, self.sequence));
+        self.at(delay, what);
+    }
+
+    fn start(&mut self, place: u64) {
+        let slow = self.setting.slow_one_in;
+        let id = WorkerId(place + 1000 * self.sequence + 1);
+        let worker = Worker {
+            place,
+            slots: self.setting.slots,
+            slowness: if slow > 0 && place % slow == 0 {
+                2.0
+            } else {
+                1.0
+            },
+            running: Vec::new(),
+            waiting: VecDeque::new(),
+            outbox: BTreeMap::new(),
+            settled: BTreeSet::new(),
+            frozen: false,
+            held_back: Vec::new(),
+        };
+        self.workers.insert(id, worker);
+        let mut announcement = announcement("m");
+        announcement.slots = u32::try_from(self.setting.slots).expect("few");
+        self.send(What::Up(id, FromWorker::Announce(Box::new(announcement))));
+        self.at(Duration::from_millis(5), What::Beat(id));
+    }
+
+    /// How long a job takes: a property of the job alone.
+    fn time_of(&self, job: JobId) -> Duration {
+        let index = usize::try_from(job.0).expect("small");
+        let mut stream = Streams::new(self.setting.seed, 6).at(0, Phase::Mutation, index);
+        let sigma = (1.0 + self.setting.spread * self.setting.spread)
+            .ln()
+            .sqrt();
+        Duration::from_secs_f64((sigma * stream.normal() - 0.5 * sigma * sigma).exp())
+    }
+
+    /// Runs until the source is done, `limit` at most.
+    pub(super) fn run(&mut self, source: &mut dyn Source, limit: Duration) {
+        self.submit(source);
+        while !source.is_done() {
+            let ((time, _), what) = self.events.pop_first().expect("there is always a tick");
+            assert!(
+                time < limit,
+                "{} results: {:?}",
+                self.results.len(),
+                self.core.snapshot(time)
+            );
+            self.now = time;
+            self.happen(what);
+            if !self.fresh.is_empty() {
+                for (job, outcome) in mem::take(&mut self.fresh) {
+                    source.tell(job.0, &outcome);
+                    let twice = self.results.insert(job.0, outcome);
+                    assert_eq!(twice, None, "job {job} was delivered twice");
+                }
+                self.submit(source);
+            }
+        }
+    }
+
+    fn submit(&mut self, source: &mut dyn Source) {
+        for (id, job) in source.ask() {
+            self.tell_core(Input::Submit { id: JobId(id), job });
+        }
+    }
+
+    fn happen(&mut self, what: What) {
+        match what {
+            What::Up(from, message) => self.tell_core(Input::Heard { from, message }),
+            What::Stored(jobs) => self.tell_core(Input::Stored { jobs }),
+            What::Tick => {
+                self.tell_core(Input::Tick);
+                self.at(Duration::from_millis(250), What::Tick);
+            }
+            What::Fault(place, fault) => self.happen_to(place, fault),
+            What::Down(id, _) | What::End(id, _) | What::Beat(id) => {
+                match self.workers.get_mut(&id) {
+                    Some(worker) if worker.frozen => worker.held_back.push(what),
+                    Some(_) => self.work(id, what),
+                    None => {}
+                }
+            }
+        }
+    }
+
+    fn happen_to(&mut self, place: u64, fault: Fault) {
+        let found = self
+            .workers
+            .iter()
+            .find(|(_, worker)| worker.place == place);
+        let id = *found.expect("a place is filled").0;
+        let worker = self.workers.get_mut(&id).expect("just found");
+        match fault {
+            Fault::Freeze => worker.frozen = true,
+            Fault::Thaw => {
+                worker.frozen = false;
+                for what in mem::take(&mut worker.held_back) {
+                    self.at(Duration::ZERO, what);
+                }
+            }
+            Fault::Kill => {
+                let dead = self.workers.remove(&id).expect("just found");
+                for running in &dead.running {
+                    self.computed += self.now.saturating_sub(running.begun);
+                }
+                self.tell_core(Input::Gone { worker: id });
+                self.start(place);
+            }
+        }
+    }
+
+    fn work(&mut self, id: WorkerId, what: What) {
+        let now = self.now;
+        let Some(worker) = self.workers.get_mut(&id) else {
+            return;
+        };
+        match what {
+            What::Down(_, ToWorker::Run(order)) => {
+                let attempt = order.attempt;
+                let known = worker.settled.contains(&attempt)
+                    || worker
+                        .running
+                        .iter()
+                        .any(|running| running.attempt == attempt)
+                    || worker.waiting.iter().any(|order| order.attempt == attempt)
+                    || worker.outbox.contains_key(&attempt);
+                if !known {
+                    worker.waiting.push_back(*order);
+                }
+            }
+            What::Down(_, ToWorker::Cancel(attempt)) => {
+                worker.settled.insert(attempt);
+                worker.outbox.remove(&attempt);
+                worker.waiting.retain(|order| order.attempt != attempt);
+                let at = worker
+                    .running
+                    .iter()
+                    .position(|running| running.attempt == attempt);
+                if let Some(at) = at {
+                    let running = worker.running.remove(at);
+                    self.computed += now.saturating_sub(running.begun);
+                    self.cancels.push(now);
+                }
+            }
+            What::Down(_, ToWorker::Stored(attempts)) => {
+                for attempt in attempts {
+                    worker.outbox.remove(&attempt);
+                    worker.settled.insert(attempt);
+                }
+            }
+            What::End(_, attempt) => {
+                let at = worker
+                    .running
+                    .iter()
+                    .position(|running| running.attempt == attempt);
+                if let Some(at) = at {
+                    let running = worker.running.remove(at);
+                    let wall = now.saturating_sub(running.begun);
+                    self.computed += wall;
+                    let done = Done {
+                        attempt,
+                        work: running.work,
+                        wall_us: u64::try_from(wall.as_micros()).expect("short"),
+                        outcome: Outcome::Nothing(vec![1]),
+                    };
+                    worker.outbox.insert(attempt, done.clone());
+                    self.send(What::Up(id, FromWorker::Done(Box::new(done))));
+                }
+            }
+            What::Beat(_) => {
+                let beat = Beat {
+                    number: 0,
+                    case: Some(CASE),
+                    proof: Some(PROOF),
+                    running: worker
+                        .running
+                        .iter()
+                        .map(|running| running.attempt)
+                        .collect(),
+                    waiting: worker.waiting.iter().map(|order| order.attempt).collect(),
+                    finished: worker.outbox.keys().copied().collect(),
+                };
+                let again: Vec<Done> = worker.outbox.values().cloned().collect();
+                self.send(What::Up(id, FromWorker::Beat(beat)));
+                for done in again {
+                    self.send(What::Up(id, FromWorker::Done(Box::new(done))));
+                }
+                self.at(Duration::from_secs(1), What::Beat(id));
+            }
+            What::Down(_, ToWorker::Identify) => {
+                let mut announcement = announcement("m");
+                announcement.slots = u32::try_from(worker.slots).expect("few");
+                self.send(What::Up(id, FromWorker::Announce(Box::new(announcement))));
+            }
+            What::Down(..) | What::Up(..) | What::Tick | What::Stored(_) | What::Fault(..) => {}
+        }
+        self.fill(id);
+    }
+
+    fn fill(&mut self, id: WorkerId) {
+        let now = self.now;
+        while let Some(worker) = self.workers.get_mut(&id) {
+            if worker.running.len() >= worker.slots {
+                return;
+            }
+            let Some(order) = worker.waiting.pop_front() else {
+                return;
+            };
+            let attempt = order.attempt;
+            worker.running.push(Running {
+                attempt,
+                work: work_hash(&order.job),
+                begun: now,
+            });
+            let slowness = worker.slowness;
+            self.begun += 1;
+            let time = self.time_of(attempt.job).mul_f64(slowness);
+            self.at(time, What::End(id, attempt));
+        }
+    }
+
+    fn tell_core(&mut self, input: Input) {
+        let mut storing = Vec::new();
+        for command in self.core.handle(input, self.now) {
+            match command {
+                Command::Send { to, message } => self.send(What::Down(to, message)),
+                Command::Store(finished) => storing.push(finished.job()),
+                Command::Deliver { id, outcome } => self.fresh.push((id, outcome)),
+                Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
+                Command::Record(_) => {}
+                Command::Notice(notice) => self.notices.push(notice),
+                Command::Stop(stop) => panic!("{stop}"),
+            }
+        }
+        if !storing.is_empty() {
+            self.at(Duration::from_micros(300), What::Stored(storing));
+        }
+    }
+
+    /// Time that accepted results took, over all slot time.
+    pub(super) fn capacity_used(&self) -> f64 {
+        let slots = self.setting.workers * self.setting.slots as u64;
+        let all = self.now.as_secs_f64() * slots as f64;
+        self.core.snapshot(self.now).spent.useful_us as f64 / 1e6 / all
+    }
+}

@@ -1,0 +1,119 @@
+//! The search without generations on simulated clusters: the same bits whatever happens, and how
+//! much of the cluster it uses.
+use super::{
+    simulated::{Cluster, Fault, Generations, Search, Setting},
+    *,
+};
+use search::{
+    strategy::{
+        Settings,
+        memetic::{MemeticSettings, window::WindowSettings},
+    },
+    test_function::CLIFF,
+};
+
+const LIMIT: Duration = Duration::from_hours(20);
+
+fn settings(window: usize, generations: u32) -> Settings {
+    Settings::Window(WindowSettings {
+        window,
+        memetic: MemeticSettings {
+            population: 30,
+            generations,
+            crossover_trials: 5,
+            mutation_trials: 5,
+            ..MemeticSettings::paper()
+        },
+    })
+}
+
+/// Runs a search on a cluster; its evaluation log's digest, and the cluster.
+fn run(settings: &Settings, mut cluster: Cluster) -> (String, Cluster) {
+    let space = CLIFF.space();
+    let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
+    let mut source = Search::new(settings.build(&space, 11).unwrap(), &tell);
+    cluster.run(&mut source, LIMIT);
+    (source.digest(), cluster)
+}
+
+#[test]
+fn one_three_seven_and_forty_workers_with_delays_and_kills_make_the_same_log() {
+    let settings = settings(24, 12);
+    let space = CLIFF.space();
+    let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
+    // the reference is told in id order, without any cluster
+    let mut alone = Search::new(settings.build(&space, 11).unwrap(), &tell);
+    while alone.strategy.finished().is_none() {
+        for proposal in alone.strategy.ask() {
+            alone.strategy.tell(proposal.id, tell(&proposal.genes));
+        }
+    }
+    let expected = alone.digest();
+    for (seed, workers) in (1..).zip([1, 3, 7, 40]) {
+        let setting = Setting {
+            seed,
+            slow_one_in: 10,
+            delay: Duration::from_millis(700),
+            ..Setting::even(workers)
+        };
+        let mut cluster = Cluster::new(setting);
+        for n in 0..10 {
+            cluster.fault(
+                Duration::from_millis(1500 + 1700 * n),
+                (n * 3) % workers,
+                Fault::Kill,
+            );
+        }
+        let (digest, cluster) = run(&settings, cluster);
+        assert_eq!(digest, expected, "{workers} workers");
+        let snapshot = cluster.core.snapshot(cluster.now);
+        assert!(snapshot.lost == 10 && snapshot.repeated > 0, "{snapshot:?}");
+    }
+    let (other, _) = run(&self::settings(25, 12), Cluster::new(Setting::even(3)));
+    assert_ne!(other, expected, "the window is part of what decides");
+}
+
+/// Share of capacity that is spent on results, in a cluster of mixed speed: computing times spread
+/// by 30 %, one worker in ten half as fast.
+fn mixed(workers: u64) -> Cluster {
+    Cluster::new(Setting {
+        slow_one_in: 10,
+        ..Setting::even(workers)
+    })
+}
+
+fn windowed(workers: u64, per_worker: usize, evaluations: u32) -> f64 {
+    let window = per_worker * usize::try_from(workers).unwrap();
+    let settings = settings(window, evaluations / 40);
+    run(&settings, mixed(workers)).1.capacity_used()
+}
+
+fn generational(workers: u64, evaluations: u64) -> f64 {
+    let mut cluster = mixed(workers);
+    cluster.run(&mut Generations::new(80, evaluations / 80), LIMIT);
+    cluster.capacity_used()
+}
+
+#[test]
+fn a_window_uses_what_a_barrier_leaves_idle() {
+    let (barrier, window) = (generational(40, 1600), windowed(40, 3, 4000));
+    assert!(barrier < 0.7, "{barrier}");
+    assert!(window > 0.9, "{window}");
+    let (barrier, window) = (generational(16, 1600), windowed(16, 3, 2000));
+    assert!(barrier < 0.9, "{barrier}");
+    assert!(window > 0.94, "{window}");
+}
+
+/// Makes the table of shares of capacity in the README again.
+#[test]
+#[ignore = "a study, not a test"]
+fn share_of_capacity_used() {
+    for workers in [8, 16, 40, 80] {
+        println!(
+            "| {workers} | {:.2} | {:.2} | {:.2} |",
+            generational(workers, 4000),
+            windowed(workers, 2, 16_000),
+            windowed(workers, 3, 16_000),
+        );
+    }
+}

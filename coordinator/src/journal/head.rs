@@ -1,0 +1,48 @@
+//! The copy of a journal's first record, in a file of its own.
+//!
+//! A damaged block may cover every record of a short journal; the copy then still says what the
+//! run is and what it is called. It is a record like any other, in a journal of one record.
+use super::{HEAD, JournalError, read::fold, write::record};
+use protocol::{
+    event::{Event, RunHeader},
+    id::RunId,
+};
+use std::{
+    fs::{self, File},
+    io::{self, Write},
+    path::Path,
+};
+
+/// The copy of a run folder; none if there is none that can be read.
+pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalError> {
+    let path = folder.join(HEAD);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mut found = None;
+    fold(&path, |_, event| {
+        if let Event::Begun { run, header } = event {
+            found = Some((run, header));
+        }
+    })?;
+    Ok(found)
+}
+
+/// Puts a copy into a run folder, whole or not at all.
+pub(super) fn write(folder: &Path, run: RunId, header: &RunHeader) -> Result<(), JournalError> {
+    let header = header.clone();
+    let bytes = record(&Event::Begun { run, header })?;
+    let path = folder.join(HEAD);
+    let beside = folder.join("journal.head.new");
+    let written = (|| -> io::Result<()> {
+        let mut file = File::create(&beside)?;
+        file.write_all(&bytes)?;
+        file.sync_all()?;
+        fs::rename(&beside, &path)
+    })();
+    written.map_err(|source| JournalError::Io {
+        doing: "write",
+        path,
+        source,
+    })
+}

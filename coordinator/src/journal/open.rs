@@ -1,0 +1,353 @@
+//! Opening a journal, or going on with it; its results by job.
+use super::{
+    FILE, JournalError, LOCK, RECORD_HEADER, differences, head,
+    read::{Entry, ReadReport, fold},
+    write::{Appended, Writer, record},
+};
+use protocol::{
+    event::{Event, Finished, RunHeader},
+    id::{ContentHash, JobId, RunId, WorkerId},
+    wire,
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    fs::{File, OpenOptions, TryLockError},
+    io::{self, Seek, SeekFrom, Write},
+    os::unix::fs::FileExt,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+        mpsc,
+    },
+    thread,
+};
+
+/// More unreadable bytes than this (bytes) are not just a first record cut short, but a journal of
+/// something else: it is left alone.
+const UNFINISHED: u64 = 4096;
+
+/// Least length of the record of an opening (bytes): no more of them can hide in some damage.
+const OPENED: u64 = 20;
+
+/// Epochs are never advanced by more than this for what may hide in damage.
+const MOST_HIDDEN: u64 = 1000;
+
+/// A worker that did not come back in so many processes of the run is not waited for.
+const REMEMBERED: u32 = 8;
+
+/// What an opened journal says of its run.
+#[derive(Clone, Debug)]
+pub struct Begun {
+    /// The run's name.
+    pub run: RunId,
+    /// Which coordinator process this is, from 1; more than the number of processes if records of
+    /// openings may have been lost.
+    pub epoch: u32,
+    /// Numerics of the run's first worker.
+    pub model_digest: Option<String>,
+    /// What the case's reference individual came to on the run's first worker.
+    pub proof: Option<ContentHash>,
+    /// Workers that were there when the last process ended without closing the run: they may hold
+    /// jobs and results of it.
+    pub present: BTreeSet<WorkerId>,
+    /// What reading it was like.
+    pub report: ReadReport,
+}
+
+/// A journal open for writing; one per run at a time.
+#[derive(Debug)]
+pub struct Journal {
+    path: PathBuf,
+    /// For reading results back.
+    file: File,
+    index: Index,
+    to_writer: Option<mpsc::Sender<Event>>,
+    writer: Option<thread::JoinHandle<()>>,
+    closing: Arc<AtomicBool>,
+    /// Held until the process ends.
+    _lock: File,
+}
+
+impl Journal {
+    /// Opens the journal of a run folder, or begins it; `said` is called from the writing thread.
+    ///
+    /// # Errors
+    /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Headless`] or
+    /// [`JournalError::Io`].
+    pub fn open(
+        folder: &Path,
+        header: &RunHeader,
+        fresh: RunId,
+        at_unix_ms: u64,
+        said: impl FnMut(Appended) + Send + 'static,
+    ) -> Result<(Self, Begun), JournalError> {
+        let failed = |doing, path: &Path| {
+            let path = path.to_owned();
+            move |source| JournalError::Io {
+                doing,
+                path,
+                source,
+            }
+        };
+        std::fs::create_dir_all(folder).map_err(failed("create", folder))?;
+        let lock = lock(folder)?;
+        let path = folder.join(FILE);
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path)
+            .map_err(failed("open", &path))?;
+        let mut past = Past::default();
+        let report = fold(&path, |entry, event| past.apply(entry, event))?;
+        let copy = head::read(folder)?;
+        let run = identify(folder, header, &past, copy.as_ref(), &report)?.unwrap_or(fresh);
+        // a torn tail is of no use to anyone
+        file.set_len(report.end).map_err(failed("shorten", &path))?;
+        file.seek(SeekFrom::End(0)).map_err(failed("open", &path))?;
+        let epoch = past.next_epoch(&report);
+        let header = header.clone();
+        if copy.is_none_or(|copy| copy != (run, header.clone())) {
+            head::write(folder, run, &header)?;
+        }
+        // repeated at each opening: the first one may be lost
+        for event in [
+            Event::Begun { run, header },
+            Event::Opened { epoch, at_unix_ms },
+        ] {
+            file.write_all(&record(&event)?)
+                .map_err(failed("write", &path))?;
+        }
+        file.sync_data().map_err(failed("write", &path))?;
+        // the folder's own entries of the files must be safe too
+        let synced = File::open(folder).and_then(|folder| folder.sync_all());
+        synced.map_err(failed("write", folder))?;
+        let reader = File::open(&path).map_err(failed("open", &path))?;
+        let closing = Arc::new(AtomicBool::new(false));
+        let (to_writer, events) = mpsc::channel();
+        let end = file.stream_position().map_err(failed("open", &path))?;
+        let mut writing = Writer::new(file, end, said, Arc::clone(&closing));
+        let writer = thread::Builder::new()
+            .name("journal".to_owned())
+            .spawn(move || writing.run(&events))
+            .map_err(failed("start the thread of", &path))?;
+        let begun = Begun {
+            run,
+            epoch,
+            model_digest: past.model_digest,
+            proof: past.proof,
+            present: past.present.into_keys().collect(),
+            report,
+        };
+        let journal = Self {
+            path,
+            file: reader,
+            index: Index::new(past.results),
+            to_writer: Some(to_writer),
+            writer: Some(writer),
+            closing,
+            _lock: lock,
+        };
+        Ok((journal, begun))
+    }
+
+    /// Jobs whose results the journal held when it was opened, in order.
+    pub fn finished(&self) -> impl Iterator<Item = JobId> + '_ {
+        self.index.0.iter().map(|(job, _)| *job)
+    }
+
+    /// A result from before this process; `None` if there is none.
+    ///
+    /// # Errors
+    /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read again.
+    pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
+        let Some(at) = self.index.find(job) else {
+            return Ok(None);
+        };
+        let failed = |source| JournalError::Io {
+            doing: "read",
+            path: self.path.clone(),
+            source,
+        };
+        let mut length = [0; 4];
+        // after the mark, before the checksum
+        self.file
+            .read_exact_at(&mut length, at - RECORD_HEADER as u64 + 4)
+            .map_err(failed)?;
+        let mut body = vec![0; (u32::from_le_bytes(length) as usize).min(wire::BODY_LIMIT)];
+        self.file.read_exact_at(&mut body, at).map_err(failed)?;
+        match wire::decode(&body)? {
+            Event::Finished(finished) => Ok(Some(*finished)),
+            Event::Begun { .. }
+            | Event::Opened { .. }
+            | Event::Joined { .. }
+            | Event::Left { .. }
+            | Event::Closed
+            | Event::Proved { .. }
+            | Event::Accounted(_) => Ok(None),
+        }
+    }
+
+    /// Hands an event to the writing thread.
+    ///
+    /// # Errors
+    /// [`JournalError::Closed`] if that thread has ended.
+    pub fn append(&self, event: Event) -> Result<(), JournalError> {
+        let sent = self
+            .to_writer
+            .as_ref()
+            .is_some_and(|to| to.send(event).is_ok());
+        if sent {
+            Ok(())
+        } else {
+            Err(JournalError::Closed)
+        }
+    }
+
+    /// Waits until everything is on the disk; gives up if the disk takes nothing now.
+    pub fn close(&mut self) {
+        self.closing.store(true, Ordering::Relaxed);
+        self.to_writer = None;
+        if let Some(writer) = self.writer.take() {
+            writer.thread().unpark();
+            if writer.join().is_err() {
+                tracing::error!("the journal's thread panicked");
+            }
+        }
+    }
+
+    /// Number of results it held when it was opened.
+    pub const fn len(&self) -> usize {
+        self.index.0.len()
+    }
+
+    /// Whether it holds no result.
+    pub const fn is_empty(&self) -> bool {
+        self.index.0.is_empty()
+    }
+}
+
+impl Drop for Journal {
+    fn drop(&mut self) {
+        self.close();
+    }
+}
+
+/// Where the body of each job's result lies: 16 bytes a result, since there may be millions.
+#[derive(Debug)]
+struct Index(Vec<(JobId, u64)>);
+
+impl Index {
+    /// Of results in the order of the file; should a job be there twice, the first counts.
+    fn new(mut results: Vec<(JobId, u64)>) -> Self {
+        results.sort_unstable();
+        results.dedup_by_key(|(job, _)| *job);
+        results.shrink_to_fit();
+        Self(results)
+    }
+
+    fn find(&self, job: JobId) -> Option<u64> {
+        let at = self.0.binary_search_by_key(&job, |(job, _)| *job).ok()?;
+        self.0.get(at).map(|(_, at)| *at)
+    }
+}
+
+/// What the past of a run says, folded.
+#[derive(Default)]
+struct Past {
+    begun: Option<(RunId, RunHeader)>,
+    epoch: u32,
+    model_digest: Option<String>,
+    proof: Option<ContentHash>,
+    /// Workers that joined and were not seen to leave, with the epoch in which they joined.
+    present: BTreeMap<WorkerId, u32>,
+    results: Vec<(JobId, u64)>,
+}
+
+impl Past {
+    fn apply(&mut self, entry: Entry, event: Event) {
+        match event {
+            Event::Begun { run, header } => self.begun = self.begun.take().or(Some((run, header))),
+            Event::Opened { epoch, .. } => {
+                self.epoch = self.epoch.max(epoch);
+                self.present
+                    .retain(|_, joined| *joined + REMEMBERED >= epoch);
+            }
+            Event::Joined {
+                worker,
+                model_digest,
+                ..
+            } => {
+                self.model_digest.get_or_insert(model_digest);
+                self.present.insert(worker, self.epoch);
+            }
+            Event::Left { worker, .. } => drop(self.present.remove(&worker)),
+            // all were told to forget the run
+            Event::Closed => self.present.clear(),
+            Event::Proved { proof } => {
+                self.proof.get_or_insert(proof);
+            }
+            Event::Finished(finished) => self.results.push((finished.job(), entry.at)),
+            Event::Accounted(_) => {}
+        }
+    }
+
+    /// An epoch that no process of the run has had: attempts are named after it, and workers of a
+    /// forgotten process may still hold some.
+    fn next_epoch(&self, report: &ReadReport) -> u32 {
+        let damaged = damaged_bytes(report).div_ceil(OPENED).min(MOST_HIDDEN);
+        self.epoch + 1 + u32::try_from(damaged).unwrap_or(0)
+    }
+}
+
+fn damaged_bytes(report: &ReadReport) -> u64 {
+    report.damage.iter().map(|damage| damage.bytes).sum()
+}
+
+/// The run of a journal; none if it is yet to be begun.
+fn identify(
+    folder: &Path,
+    header: &RunHeader,
+    past: &Past,
+    copy: Option<&(RunId, RunHeader)>,
+    report: &ReadReport,
+) -> Result<Option<RunId>, JournalError> {
+    let nothing = report.records == 0 && damaged_bytes(report) <= UNFINISHED;
+    // a copy beside nothing binds nobody
+    let copy = copy.filter(|(_, was)| !nothing || was == header);
+    match past.begun.as_ref().or(copy) {
+        Some((run, was)) if was == header => Ok(Some(*run)),
+        Some((_, was)) => Err(JournalError::Differs {
+            folder: folder.to_owned(),
+            what: differences(was, header),
+        }),
+        None if nothing => Ok(None),
+        None => Err(JournalError::Headless {
+            path: folder.join(FILE),
+        }),
+    }
+}
+
+fn lock(folder: &Path) -> Result<File, JournalError> {
+    let path = folder.join(LOCK);
+    let failed = |source: io::Error| JournalError::Io {
+        doing: "lock",
+        path: path.clone(),
+        source,
+    };
+    let lock = OpenOptions::new()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(&path);
+    let lock = lock.map_err(failed)?;
+    match lock.try_lock() {
+        Ok(()) => Ok(lock),
+        Err(TryLockError::WouldBlock) => Err(JournalError::Locked {
+            folder: folder.to_owned(),
+        }),
+        Err(TryLockError::Error(source)) => Err(failed(source)),
+    }
+}

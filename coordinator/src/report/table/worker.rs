@@ -1,0 +1,76 @@
+//! Who computed, and how the slots spent their time.
+use super::{Row, Table};
+use crate::report::{
+    data::WorkerUse,
+    number::{NONE, count, duration, percent},
+};
+use protocol::event::Spent;
+
+/// What each worker did.
+pub fn workers(workers: &[WorkerUse]) -> Table {
+    let rows = workers.iter().map(|worker| {
+        Row::new(
+            worker.name.clone(),
+            [
+                worker.host.clone(),
+                worker.slots.to_string(),
+                count(worker.done),
+                count(worker.failed),
+                duration(worker.busy_s),
+                worker.busy_share().map_or_else(|| NONE.to_owned(), percent),
+            ],
+        )
+    });
+    Table {
+        title: "Workers".to_owned(),
+        head: [
+            "worker",
+            "host",
+            "slots",
+            "jobs done",
+            "failed",
+            "computing",
+            "busy",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "Busy: time spent on accepted results over slots times the time attached.".to_owned(),
+        ],
+    }
+}
+
+/// How slots spent their time, kind by kind.
+pub fn slot_time(spent: &Spent) -> Table {
+    let what = |kind: &str| match kind {
+        "useful" => "computing results that were used",
+        "barrier" => "waiting for results of others",
+        "starved" => "waiting for the case, an order or the journal",
+        "speculative" => "copies that came second",
+        "failed" => "attempts that crashed or ran out of time",
+        _ => "attempts whose worker was lost",
+    };
+    let rows = spent.kinds().map(|(kind, us)| {
+        let share = us as f64 / spent.connected_us.max(1) as f64;
+        Row::new(
+            kind,
+            [
+                duration(us as f64 / 1e6),
+                percent(share),
+                what(kind).to_owned(),
+            ],
+        )
+    });
+    Table {
+        title: "Slot time".to_owned(),
+        head: ["use", "time", "share", "what it was"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: rows.into(),
+        notes: vec![format!(
+            "Slots were connected for {} in all.",
+            duration(spent.connected_us as f64 / 1e6)
+        )],
+    }
+}

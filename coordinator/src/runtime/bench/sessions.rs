@@ -1,0 +1,152 @@
+//! Workers that are only sessions: many of them on one thread, over the memory link.
+//!
+//! They speak the protocol as real ones do (announcement, proof, heartbeat, results) and answer a
+//! job that does nothing at once. They repeat nothing, because the link they use loses nothing.
+use crate::core::work_hash;
+use link::{
+    Blob, WorkerEnd,
+    memory::{Faults, Hub, MemoryCoordinator, MemoryWorker},
+};
+use protocol::{
+    announce::Announcement,
+    id::{ContentHash, RunId, WorkerId},
+    job::{Failure, Job, Outcome},
+    key::Lane,
+    message::{Beat, Done, FromWorker, Order, ToWorker},
+    wire::{self, Kind},
+};
+use std::{thread, time::Duration};
+use tokio::{task::JoinSet, time::MissedTickBehavior};
+
+/// Name of their thread.
+pub(super) const THREAD: &str = "bench-sessions";
+
+/// How often a worker speaks.
+const BEAT: Duration = Duration::from_secs(1);
+
+/// Running sessions; they end with the link.
+pub(super) struct Sessions(Option<thread::JoinHandle<()>>);
+
+impl Sessions {
+    /// Starts so many sessions; the coordinator's end of their link.
+    pub(super) fn start(count: usize, blob: Blob) -> (MemoryCoordinator, Self) {
+        let (end, hub) = Hub::new(Faults::NONE, blob);
+        let work = move || {
+            let runtime = tokio::runtime::Builder::new_current_thread()
+                .enable_time()
+                .build();
+            let Ok(runtime) = runtime else {
+                tracing::error!("the sessions have no runtime");
+                return;
+            };
+            runtime.block_on(async move {
+                let mut sessions = JoinSet::new();
+                for id in 1..=count as u64 {
+                    sessions.spawn(serve(hub.worker(WorkerId(id)), WorkerId(id)));
+                }
+                drop(hub);
+                while sessions.join_next().await.is_some() {}
+            });
+        };
+        let thread = thread::Builder::new().name(THREAD.to_owned()).spawn(work);
+        if let Err(error) = &thread {
+            tracing::error!("the sessions cannot be started: {error}");
+        }
+        (end, Self(thread.ok()))
+    }
+}
+
+impl Drop for Sessions {
+    fn drop(&mut self) {
+        if let Some(thread) = self.0.take()
+            && thread.join().is_err()
+        {
+            tracing::error!("the thread of the sessions panicked");
+        }
+    }
+}
+
+async fn serve(mut link: MemoryWorker, id: WorkerId) {
+    let mut run = RunId::default();
+    let mut case = None;
+    let mut number = 0;
+    let mut beats = tokio::time::interval(BEAT);
+    beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    loop {
+        let message = tokio::select! {
+            frame = link.receive() => {
+                let Some(frame) = frame else { return };
+                let Ok((of, message)) = wire::unseal::<ToWorker>(Kind::ToWorker, &frame) else {
+                    continue;
+                };
+                match message {
+                    ToWorker::Admitted { case: hash, .. } => {
+                        (run, case) = (of, Some(hash));
+                        beat(&mut number, case)
+                    }
+                    ToWorker::Run(order) => FromWorker::Done(Box::new(answer(*order))),
+                    ToWorker::Identify => announce(id),
+                    ToWorker::Ended | ToWorker::Refused { .. } => return,
+                    ToWorker::Cancel(_) | ToWorker::Stored(_) => continue,
+                }
+            }
+            _ = beats.tick() => match case {
+                Some(_) => beat(&mut number, case),
+                None => announce(id),
+            },
+        };
+        let lane = match message {
+            FromWorker::Done(_) => Lane::Data,
+            FromWorker::Announce(_) | FromWorker::Beat(_) | FromWorker::Leaving { .. } => {
+                Lane::Control
+            }
+        };
+        match wire::seal(Kind::FromWorker, run, &message) {
+            Ok(frame) => link.send(run, lane, frame),
+            Err(error) => tracing::error!(%error, "a message cannot be sent"),
+        }
+    }
+}
+
+fn announce(id: WorkerId) -> FromWorker {
+    FromWorker::Announce(Box::new(Announcement {
+        protocol: wire::VERSION,
+        build: format!("{} session", env!("CARGO_PKG_VERSION")),
+        model_digest: "none".to_owned(),
+        host: id.to_string(),
+        pid: std::process::id(),
+        slots: 1,
+        cores: 1,
+        job_kinds: vec!["nothing".to_owned()],
+        effects: Vec::new(),
+    }))
+}
+
+fn beat(number: &mut u64, case: Option<ContentHash>) -> FromWorker {
+    *number += 1;
+    // nothing runs when a beat is sent, as far as anybody can see
+    FromWorker::Beat(Beat {
+        number: *number,
+        case,
+        proof: Some(ContentHash::of(b"sessions compute nothing")),
+        ..Beat::default()
+    })
+}
+
+fn answer(Order { attempt, job, .. }: Order) -> Done {
+    let work = work_hash(&job);
+    let outcome = match job {
+        Job::Nothing { reply_bytes, .. } => Outcome::Nothing(vec![0; reply_bytes as usize]),
+        Job::Score(_) | Job::Simulate(_) | Job::Observe(_) | Job::ReduceHead(_) | Job::Describe => {
+            Outcome::Failed(Failure::Refused {
+                reason: "a session without slots computes nothing".to_owned(),
+            })
+        }
+    };
+    Done {
+        attempt,
+        work,
+        wall_us: 0,
+        outcome,
+    }
+}

@@ -1,0 +1,105 @@
+//! Who was turned away and why: each reason once a minute, however many knock.
+use std::{
+    collections::BTreeMap,
+    net::SocketAddr,
+    sync::{Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+
+/// How often the same reason is told.
+const PAUSE: Duration = Duration::from_mins(1);
+/// Longest name that is repeated in a message.
+const SHOWN: usize = 64;
+
+/// What was told, when, and how often it happened since.
+#[derive(Debug, Default)]
+pub(super) struct Refusals {
+    told: Mutex<BTreeMap<&'static str, (Instant, u64)>>,
+}
+
+impl Refusals {
+    /// A handshake failed; `words` are the transport's.
+    pub(super) fn tell(&self, from: SocketAddr, words: &str) {
+        if let Some(reason) = reason(words) {
+            self.say(from, reason, "");
+        } else {
+            tracing::debug!(%from, words, "a connection broke off");
+        }
+    }
+
+    /// A certificate was good, but its name is not on the list.
+    pub(super) fn unlisted(&self, from: SocketAddr, owner: &str) {
+        let shown: String = owner
+            .chars()
+            .take(SHOWN)
+            .flat_map(char::escape_debug)
+            .collect();
+        let reason = "the list of workers does not hold the name of its certificate";
+        self.say(from, reason, &format!(" (\"{shown}\")"));
+    }
+
+    fn say(&self, from: SocketAddr, reason: &'static str, detail: &str) {
+        if let Some(more) = self.is_news(reason, Instant::now()) {
+            let more = match more {
+                0 => String::new(),
+                more => format!("; {more} more since this was last said"),
+            };
+            tracing::warn!("a connection from {from} was refused: {reason}{detail}{more}");
+        }
+    }
+
+    /// Whether a reason is to be told now, and how often it was not.
+    fn is_news(&self, reason: &'static str, now: Instant) -> Option<u64> {
+        let mut told = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        match told.get_mut(reason) {
+            Some((at, unsaid)) if now.saturating_duration_since(*at) < PAUSE => {
+                *unsaid += 1;
+                None
+            }
+            earlier => {
+                let unsaid = earlier.map_or(0, |(_, unsaid)| *unsaid);
+                told.insert(reason, (now, 0));
+                Some(unsaid)
+            }
+        }
+    }
+}
+
+/// The transport's reason in our words; none for connections that merely broke off.
+fn reason(words: &str) -> Option<&'static str> {
+    let has = |part: &str| words.contains(part);
+    if has("UnknownIssuer") || has("BadSignature") {
+        Some("its certificate was signed by another authority than this coordinator's")
+    } else if has("NotValidYet") || has("not valid yet") {
+        Some("its certificate is not valid yet: compare the clocks of both machines")
+    } else if has("expired") || has("Expired") {
+        Some("its certificate is out of date")
+    } else if has("no certificates") {
+        Some("it showed no certificate")
+    } else if has("invalid peer certificate") {
+        Some("its certificate is not one for a worker")
+    } else if has("application protocol") {
+        Some("it is no worker of this build")
+    } else if has("unknown ca") || has("unknown CA") || has("UnknownCA") {
+        Some("it does not trust this coordinator's authority")
+    } else {
+        None
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_reason_is_told_once_a_minute_and_counted_meanwhile() {
+        let (refusals, now) = (Refusals::default(), Instant::now());
+        let unknown = reason("the cryptographic handshake failed: UnknownIssuer").unwrap();
+        let none = reason("peer sent no certificates").unwrap();
+        assert_eq!(refusals.is_news(unknown, now), Some(0));
+        assert_eq!(refusals.is_news(unknown, now + PAUSE / 2), None);
+        assert_eq!(refusals.is_news(none, now), Some(0));
+        assert_eq!(refusals.is_news(unknown, now + PAUSE * 2), Some(1));
+        assert_eq!(reason("timed out"), None);
+    }
+}

@@ -1,0 +1,212 @@
+//! One handshake with a coordinator, before the bus is opened, to learn why that would fail.
+//!
+//! The bus itself reports every refusal as a time-out after ten seconds. This shows the same
+//! certificates to the same address and reads the answer: a host that is not known, a port that
+//! is closed, a certificate that one of the two ends does not accept.
+use crate::{
+    LinkError,
+    gate::{KNOCK, UNLISTED, WELCOME},
+    keys::{Keys, provider},
+    locator::Locator,
+};
+use quinn::{ClientConfig, ConnectionError, Endpoint, VarInt, crypto::rustls::QuicClientConfig};
+use std::{
+    io::ErrorKind,
+    net::{Ipv4Addr, Ipv6Addr, SocketAddr, ToSocketAddrs, UdpSocket},
+    sync::Arc,
+    time::Duration,
+};
+use tokio::{net::TcpStream, time::timeout};
+
+/// How long an answer may take: then the bus tries by itself, for longer.
+const PATIENCE: Duration = Duration::from_secs(3);
+/// How long a machine may take to say that a port is closed.
+const ECHO: Duration = Duration::from_millis(200);
+/// What the alerts of TLS begin at among QUIC's error codes.
+const ALERTS: u64 = 0x100;
+/// The alert of a listener that does not know the protocol.
+const NO_SUCH_PROTOCOL: u64 = 120;
+
+/// Whether anybody listens for plain connections there.
+pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
+    let address = resolve(to).await?;
+    let silent = |how: String| LinkError::Silent {
+        locator: to.to_string(),
+        how,
+    };
+    match timeout(PATIENCE, TcpStream::connect(address)).await {
+        Ok(Ok(_)) => Ok(()),
+        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => Err(silent(
+            "TCP port closed: no coordinator listens there".to_owned(),
+        )),
+        Ok(Err(error)) => Err(silent(error.to_string())),
+        Err(_) => Err(silent(
+            "no such machine, or a firewall drops TCP on that port".to_owned(),
+        )),
+    }
+}
+
+/// Shakes hands, and says what is wrong if that fails.
+pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
+    let address = resolve(to).await?;
+    let transport = |reason: String| LinkError::Transport {
+        doing: format!("connect to {to}"),
+        reason,
+    };
+    let chain = keys.chain()?;
+    let mut config = rustls::ClientConfig::builder_with_provider(provider())
+        .with_protocol_versions(&[&rustls::version::TLS13])
+        .and_then(|builder| {
+            builder
+                .with_root_certificates(chain.roots)
+                .with_client_auth_cert(chain.certificates, chain.key)
+        })
+        .map_err(|error| transport(error.to_string()))?;
+    config.alpn_protocols = vec![KNOCK.to_vec()];
+    let config =
+        QuicClientConfig::try_from(config).map_err(|error| transport(error.to_string()))?;
+    let any: SocketAddr = match address {
+        SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
+        SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
+    };
+    let mut endpoint = Endpoint::client(any).map_err(|error| transport(error.to_string()))?;
+    endpoint.set_default_client_config(ClientConfig::new(Arc::new(config)));
+    let connecting = endpoint
+        .connect(address, &to.host)
+        .map_err(|error| transport(error.to_string()))?;
+    // with TLS 1.3 a client is connected before its certificate is looked at: the answer comes after
+    let shaken = async { Ok(connecting.await?.closed().await) };
+    let silent = |how: &str| LinkError::Silent {
+        locator: to.to_string(),
+        how: how.to_owned(),
+    };
+    let ended = tokio::select! {
+        ended = timeout(PATIENCE, shaken) => ended.unwrap_or(Err(ConnectionError::TimedOut)),
+        how = closed(address) => return Err(silent(&how)),
+    };
+    let ended = ended.unwrap_or_else(|error| error);
+    if ended == ConnectionError::TimedOut {
+        return Err(silent(
+            "no coordinator there, or a firewall drops UDP on that port",
+        ));
+    }
+    explain(&ended, to, keys)
+}
+
+async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
+    let host = to.bare_host().to_owned();
+    let port = to.port;
+    let unknown = |reason: String| LinkError::UnknownHost {
+        locator: to.to_string(),
+        reason,
+    };
+    let found = tokio::task::spawn_blocking(move || (host.as_str(), port).to_socket_addrs())
+        .await
+        .map_err(|error| unknown(error.to_string()))?;
+    found
+        .map_err(|error| unknown(error.to_string()))?
+        .next()
+        .ok_or_else(|| unknown("it has no address".to_owned()))
+}
+
+/// Completes only if the other machine says that nobody can be reached there.
+async fn closed(address: SocketAddr) -> String {
+    let asked = tokio::task::spawn_blocking(move || {
+        let any: SocketAddr = match address {
+            SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
+            SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
+        };
+        let socket = UdpSocket::bind(any)?;
+        socket.connect(address)?;
+        socket.set_read_timeout(Some(ECHO))?;
+        // no datagram of QUIC is so short: whoever listens drops it
+        socket.send(&[0])?;
+        socket.recv(&mut [0])
+    });
+    match asked
+        .await
+        .map(|received| received.map_err(|error| (error.kind(), error)))
+    {
+        Ok(Err((ErrorKind::ConnectionRefused, _))) => {
+            "UDP port closed: no coordinator listens there".to_owned()
+        }
+        Ok(Err((ErrorKind::NetworkUnreachable | ErrorKind::HostUnreachable, error))) => {
+            error.to_string()
+        }
+        Ok(_) | Err(_) => std::future::pending().await,
+    }
+}
+
+/// What the end of the handshake means, in the words of whoever has to mend it.
+fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> Result<(), LinkError> {
+    let locator = to.to_string();
+    let refused = |reason: &str| LinkError::Refused {
+        locator: to.to_string(),
+        owner: keys.owner().to_owned(),
+        reason: reason.to_owned(),
+    };
+    if let ConnectionError::TransportError(found) = error {
+        let reason = distrust(&found.reason, to, keys);
+        return Err(LinkError::Distrusted { locator, reason });
+    }
+    if let ConnectionError::ConnectionClosed(frame) = error {
+        let code = u64::from(frame.error_code);
+        if code.checked_sub(ALERTS) == Some(NO_SUCH_PROTOCOL) {
+            // a router of the bus without a gate: it will say for itself what it thinks of us
+            return Ok(());
+        }
+        if let Some(reason) = alert(code) {
+            return Err(refused(reason));
+        }
+    }
+    if let ConnectionError::ApplicationClosed(answer) = error {
+        if answer.error_code == VarInt::from_u32(WELCOME) {
+            return Ok(());
+        }
+        if answer.error_code == VarInt::from_u32(UNLISTED) {
+            return Err(refused(
+                "its list of workers does not hold that name: `horsehead keys add` puts it \
+                 there, and a new start of the coordinator reads it",
+            ));
+        }
+    }
+    Err(LinkError::Transport {
+        doing: format!("connect to {locator}"),
+        reason: error.to_string(),
+    })
+}
+
+/// Why this end does not take the coordinator's certificate.
+fn distrust(words: &str, to: &Locator, keys: &Keys) -> String {
+    let has = |part: &str| words.contains(part);
+    if has("UnknownIssuer") || has("BadSignature") {
+        let ca = keys.ca();
+        return format!(
+            "its certificate was signed by another authority than {}",
+            ca.display()
+        );
+    }
+    if has("not valid for name") || has("NotValidForName") {
+        return format!(
+            "its certificate is not for \"{}\": dial a name or address that was given to \
+             `horsehead keys new --host` ({words})",
+            to.host
+        );
+    }
+    if has("xpired") {
+        return "its certificate is out of date (or this machine's clock is wrong)".to_owned();
+    }
+    words.to_owned()
+}
+
+/// Why the coordinator does not take this end's certificate: the alert it sent.
+const fn alert(code: u64) -> Option<&'static str> {
+    match code.checked_sub(ALERTS) {
+        Some(48) => Some("it was signed by another authority than the coordinator's"),
+        Some(45) => Some("it is out of date there: compare the clocks of both machines"),
+        Some(44) => Some("it was revoked"),
+        Some(116) => Some("it arrived without one"),
+        Some(42 | 43 | 46 | 49) => Some("it is no certificate for a worker"),
+        Some(_) | None => None,
+    }
+}

@@ -1,0 +1,160 @@
+use super::{
+    authority::{Authority, Validity},
+    *,
+};
+use std::{
+    os::unix::fs::PermissionsExt,
+    time::{Duration, SystemTime},
+};
+
+fn made() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let authority = Authority::create(folder.path()).unwrap();
+    let hosts = ["head.example".to_owned(), "127.0.0.1".to_owned()];
+    authority
+        .issue_coordinator(&hosts, Validity::days(10))
+        .unwrap();
+    authority
+        .issue_worker("worker-01", Validity::days(10))
+        .unwrap();
+    folder
+}
+
+#[test]
+fn what_was_made_can_be_used_and_only_its_owner_reads_the_keys() {
+    let folder = made();
+    let at = folder.path();
+    // an authority is opened again to let another worker join
+    Authority::open(at)
+        .unwrap()
+        .issue_worker("late", Validity::days(10))
+        .unwrap();
+    let coordinator = Keys::read(at, Role::Coordinator).unwrap();
+    let names: Vec<&str> = coordinator.workers().iter().map(String::as_str).collect();
+    assert_eq!(names, ["late", "worker-01"]);
+    for name in ["worker-01", "late"] {
+        let worker = Keys::read(&at.join(name), Role::Worker).unwrap();
+        assert_eq!(worker.owner(), name);
+        for secret in [worker.key(), coordinator.key(), at.join(CA_KEY)] {
+            let mode = fs::metadata(&secret).unwrap().permissions().mode();
+            assert_eq!(mode & 0o777, 0o600, "{}", secret.display());
+        }
+    }
+}
+
+fn refusal(folder: &Path, role: Role) -> String {
+    Keys::read(folder, role).unwrap_err().to_string()
+}
+
+#[test]
+fn every_wrong_file_is_named_with_what_is_wrong() {
+    let folder = made();
+    let worker = folder.path().join("worker-01");
+    let says = |found: &str, expected: &[&str]| {
+        for words in expected {
+            assert!(found.contains(words), "{found}");
+        }
+    };
+    says(
+        &refusal(&worker.join("x"), Role::Worker),
+        &["there is no folder", "worker-01/x", "keys new"],
+    );
+    says(
+        &refusal(folder.path(), Role::Worker),
+        &[
+            "worker.pem is missing",
+            "coordinator's folder",
+            "/worker-01",
+        ],
+    );
+    says(
+        &refusal(&worker, Role::Coordinator),
+        &["coordinator.pem is missing", "is a worker's folder"],
+    );
+    let other = made();
+    fs::copy(other.path().join(CA), worker.join(CA)).unwrap();
+    says(
+        &refusal(&worker, Role::Worker),
+        &["worker.pem was not signed by the authority of", "ca.pem"],
+    );
+    fs::copy(
+        other.path().join("worker-01/worker.key"),
+        worker.join("worker.key"),
+    )
+    .unwrap();
+    says(
+        &refusal(&worker, Role::Worker),
+        &["the key beside", "worker.pem is not the one"],
+    );
+    fs::write(worker.join("worker.key"), "nothing").unwrap();
+    says(
+        &refusal(&worker, Role::Worker),
+        &["worker.key holds no private key in PEM"],
+    );
+    fs::remove_file(worker.join("worker.key")).unwrap();
+    fs::create_dir(worker.join("worker.key")).unwrap();
+    says(
+        &refusal(&worker, Role::Worker),
+        &["worker.key cannot be read: Is a directory"],
+    );
+    fs::write(folder.path().join(WORKERS), "worker-01\nanyone\n").unwrap();
+    says(
+        &refusal(folder.path(), Role::Coordinator),
+        &["workers", "\"anyone\" cannot name a worker"],
+    );
+}
+
+#[test]
+fn dates_and_purposes_are_checked_before_anyone_is_dialled() {
+    let folder = made();
+    let authority = Authority::open(folder.path()).unwrap();
+    let now = SystemTime::now();
+    let day = Duration::from_hours(24);
+    let past = Validity {
+        from: now - 3 * day,
+        until: now - day,
+    };
+    let future = Validity {
+        from: now + day,
+        until: now + 3 * day,
+    };
+    for (name, valid, words) in [
+        ("old", past, "is out of date since"),
+        ("early", future, "is valid only from"),
+    ] {
+        let worker = authority.issue_worker(name, valid).unwrap();
+        let refused = refusal(&worker, Role::Worker);
+        assert!(
+            refused.contains(words) && refused.contains("worker.pem"),
+            "{refused}"
+        );
+    }
+    // a worker's pair in the coordinator's place: made for dialling, and for no host
+    let at = folder.path();
+    fs::copy(at.join("worker-01/worker.pem"), at.join(COORDINATOR[0])).unwrap();
+    fs::copy(at.join("worker-01/worker.key"), at.join(COORDINATOR[1])).unwrap();
+    let refused = refusal(at, Role::Coordinator);
+    assert!(
+        refused.contains("coordinator.pem cannot be used here"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn nothing_is_overwritten() {
+    let folder = made();
+    let again = Authority::create(folder.path()).unwrap_err().to_string();
+    assert!(
+        again.contains("is not empty; nothing was written"),
+        "{again}"
+    );
+    let authority = Authority::open(folder.path()).unwrap();
+    let twice = authority.issue_worker("worker-01", Validity::days(1));
+    assert!(twice.unwrap_err().to_string().contains("exists already"));
+    let bad = authority.issue_worker("../up", Validity::days(1));
+    assert!(
+        bad.unwrap_err()
+            .to_string()
+            .contains("cannot name a worker")
+    );
+}

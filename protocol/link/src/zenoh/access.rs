@@ -1,0 +1,65 @@
+//! Access control: what the workers of each certificate may do; everything else is refused.
+//!
+//! The transport knows a peer by the common name of its certificate. Rules are fixed when a
+//! coordinator starts. A refused action gives the peer no error, which is why names that are not
+//! on the list are turned away at the gate.
+use protocol::{key::Grant, name::ANYONE};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+
+/// The section of the configuration; with `plain`, workers without certificates are taken from
+/// TCP listeners, which are on loopback.
+pub(super) fn control(owners: &BTreeSet<String>, plain: bool) -> Value {
+    let mut rules = vec![
+        rule("fetch-in", "ingress", &["query"], &[Grant::fetch()]),
+        rule(
+            "fetch-out",
+            "egress",
+            &["reply", "declare_queryable"],
+            &[Grant::fetch()],
+        ),
+    ];
+    let (mut subjects, mut policies) = (Vec::new(), Vec::new());
+    let mut grant = |owner: &str, mut subject: Value| {
+        let id = |what: &str| format!("{owner}-{what}");
+        let Grant {
+            hear,
+            speak,
+            appear,
+        } = Grant::of(owner);
+        let hear = [hear];
+        rules.extend([
+            rule(&id("listen"), "ingress", &["declare_subscriber"], &hear),
+            rule(&id("hear"), "egress", &["put"], &hear),
+            rule(&id("speak"), "ingress", &["put"], &speak),
+            rule(&id("appear"), "ingress", &["liveliness_token"], &[appear]),
+        ]);
+        subject["id"] = json!(id("subject"));
+        subjects.push(subject);
+        policies.push(json!({
+            "rules": [
+                id("listen"), id("hear"), id("speak"), id("appear"), "fetch-in", "fetch-out",
+            ],
+            "subjects": [id("subject")],
+        }));
+    };
+    for owner in owners {
+        grant(
+            owner,
+            json!({ "cert_common_names": [owner], "link_protocols": ["quic"] }),
+        );
+    }
+    if plain {
+        grant(ANYONE, json!({ "link_protocols": ["tcp"] }));
+    }
+    json!({
+        "enabled": true, "default_permission": "deny",
+        "rules": rules, "subjects": subjects, "policies": policies,
+    })
+}
+
+fn rule(id: &str, flow: &str, messages: &[&str], keys: &[String]) -> Value {
+    json!({
+        "id": id, "permission": "allow", "flows": [flow], "messages": messages, "key_exprs": keys,
+    })
+}

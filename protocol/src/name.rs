@@ -1,0 +1,140 @@
+//! What a worker is called on the bus: whose certificate it shows, and which process of it.
+//!
+//! Access control knows certificates, so the first part of a name is the certificate's; the
+//! second is drawn by each process, so that one certificate may serve any number of them and a
+//! restarted worker is another one. A [`WorkerId`] is the hash of both: nobody can take the id
+//! of a worker whose certificate is not its own. This module knows no certificate format.
+use crate::id::WorkerId;
+use std::fmt;
+
+/// Owner of workers without a certificate: those on loopback.
+pub const ANYONE: &str = "anyone";
+/// Longest name of an owner (bytes).
+pub const OWNER_BYTES: usize = 64;
+
+/// A worker's name on the bus.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct WorkerName {
+    owner: String,
+    process: u64,
+}
+
+/// Why something is no name of an owner.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "\"{name}\" cannot name a worker: 1 to {OWNER_BYTES} of a-z, 0-9, '-', '_' and '.', beginning \
+     with a letter or digit, and not \"{ANYONE}\""
+)]
+pub struct NameError {
+    /// As given.
+    pub name: String,
+}
+
+impl WorkerName {
+    /// A process of the owner of a certificate.
+    ///
+    /// # Errors
+    /// [`NameError`] unless [`check_owner`] accepts the owner.
+    pub fn of(owner: &str, process: u64) -> Result<Self, NameError> {
+        check_owner(owner)?;
+        Ok(Self {
+            owner: owner.to_owned(),
+            process,
+        })
+    }
+
+    /// A process without a certificate.
+    pub fn anyone(process: u64) -> Self {
+        Self {
+            owner: ANYONE.to_owned(),
+            process,
+        }
+    }
+
+    /// Reads the last two parts of a key.
+    pub(crate) fn parse(owner: &str, process: &str) -> Option<Self> {
+        (process.len() == 16).then_some(())?;
+        let process = u64::from_str_radix(process, 16).ok()?;
+        if owner == ANYONE {
+            return Some(Self::anyone(process));
+        }
+        Self::of(owner, process).ok()
+    }
+
+    /// Whose certificate it shows; [`ANYONE`] without one.
+    pub fn owner(&self) -> &str {
+        &self.owner
+    }
+
+    /// The number that stands for it everywhere but on the bus.
+    pub fn id(&self) -> WorkerId {
+        let mut first = [0; 8];
+        blake3::Hasher::new()
+            .update(self.to_string().as_bytes())
+            .finalize_xof()
+            .fill(&mut first);
+        WorkerId(u64::from_le_bytes(first))
+    }
+}
+
+impl fmt::Display for WorkerName {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{}/{:016x}", self.owner, self.process)
+    }
+}
+
+/// Whether a certificate's name can be a part of a key.
+///
+/// # Errors
+/// [`NameError`] if it is empty, too long, holds other characters than the permitted, or is
+/// [`ANYONE`].
+pub fn check_owner(name: &str) -> Result<(), NameError> {
+    let permitted = |byte: u8| {
+        byte.is_ascii_lowercase() || byte.is_ascii_digit() || matches!(byte, b'-' | b'_' | b'.')
+    };
+    let first = name
+        .bytes()
+        .next()
+        .is_some_and(|b| b.is_ascii_alphanumeric());
+    if first && name.len() <= OWNER_BYTES && name.bytes().all(permitted) && name != ANYONE {
+        Ok(())
+    } else {
+        Err(NameError {
+            name: name.chars().take(OWNER_BYTES).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn owners_fit_into_keys_and_none_is_anyone() {
+        for good in ["worker-01", "a", "node7.rack_2", &"x".repeat(OWNER_BYTES)] {
+            assert_eq!(check_owner(good), Ok(()), "{good}");
+        }
+        for bad in [
+            "",
+            "anyone",
+            "*",
+            "a/b",
+            "a$*",
+            "Worker",
+            "-a",
+            "über",
+            &"x".repeat(65),
+        ] {
+            assert!(check_owner(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn ids_belong_to_owner_and_process() {
+        let one = WorkerName::of("worker-01", 7).unwrap();
+        assert_ne!(one.id(), WorkerName::of("worker-01", 8).unwrap().id());
+        assert_ne!(one.id(), WorkerName::of("worker-02", 7).unwrap().id());
+        assert_ne!(one.id(), WorkerName::anyone(7).id());
+        assert_eq!(one.id(), WorkerName::of("worker-01", 7).unwrap().id());
+    }
+}

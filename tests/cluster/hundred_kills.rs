@@ -1,0 +1,145 @@
+//! A coordinator that is killed a hundred times, at random instants, and the same command again.
+//!
+//! `HORSEHEAD_TEST_KILLS` sets how many kills there are (default 100).
+use coordinator::journal;
+use protocol::{event::Event, id::draw};
+use rustix::process::Signal;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    env, fs,
+    io::{BufRead, BufReader},
+    path::Path,
+    process::Command,
+    sync::mpsc,
+    thread,
+    time::{Duration, Instant},
+};
+use tests::process::{Process, children, is_alive, wait_until};
+
+const LIMIT: Duration = Duration::from_mins(2);
+
+fn coordinator(run_dir: &Path, seed: u64, trace: &Path) -> Process {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
+    command
+        .arg(run_dir)
+        .args(["none", &format!("search:{seed}"), "1", "2"])
+        .env("HORSEHEAD_TEST_TRACE", trace);
+    Process::start(command)
+}
+
+/// Encoded results by job; no job may be there twice.
+fn recorded(run_dir: &Path) -> BTreeMap<u64, String> {
+    let mut results = BTreeMap::new();
+    let read = journal::fold(&run_dir.join(journal::FILE), |_, event| {
+        if let Event::Finished(finished) = event {
+            let job = finished.job().0;
+            let said = format!("{:?} {:?}", finished.work, finished.outcome);
+            assert_eq!(results.insert(job, said), None, "job {job} is there twice");
+        }
+    });
+    match read {
+        // killed before it had written anything
+        Err(_) => BTreeMap::new(),
+        Ok(_) => results,
+    }
+}
+
+/// Jobs that slots have begun so far, in order.
+fn begun(trace: &Path) -> Vec<u64> {
+    let text = fs::read_to_string(trace).unwrap_or_default();
+    text.lines().map(|line| line.parse().unwrap()).collect()
+}
+
+/// Kills one process at a random instant: some soon after its start, some in the middle of work.
+/// `false` if it came to its end before.
+fn kill_once(process: &mut Process, random: u64) -> bool {
+    let (lines, heard) = mpsc::channel();
+    let output = process.output();
+    let reader = thread::spawn(move || {
+        for line in BufReader::new(output).lines().map_while(Result::ok) {
+            if lines.send(line).is_err() {
+                return;
+            }
+        }
+    });
+    if random % 3 == 0 {
+        thread::sleep(Duration::from_micros(random / 3 % 400_000));
+    } else {
+        // new results, not those of the journal
+        let mut fresh = random / 3 % 12;
+        while fresh > 0 {
+            match heard.recv_timeout(LIMIT) {
+                Ok(line) if line.starts_with("done") => break,
+                Ok(line) => fresh -= u64::from(line.ends_with(" false")),
+                Err(_) => break,
+            }
+        }
+        thread::sleep(Duration::from_micros(random / 64 % 4000));
+    }
+    let workers = children(process.pid());
+    let mut all: Vec<_> = workers.iter().flat_map(|it| children(*it)).collect();
+    all.extend(workers);
+    process.signal(Signal::KILL);
+    let ended_before = process.wait(LIMIT).is_some();
+    wait_until("its workers are gone", Duration::from_secs(5), || {
+        !all.iter().any(|pid| is_alive(*pid))
+    });
+    drop(heard);
+    reader.join().unwrap();
+    !ended_before
+}
+
+#[test]
+fn killed_a_hundred_times_it_loses_and_repeats_nothing_that_was_recorded() {
+    let wanted: usize = env::var("HORSEHEAD_TEST_KILLS")
+        .ok()
+        .map_or(100, |kills| kills.parse().unwrap());
+    let started = Instant::now();
+    let (mut kills, mut runs) = (0, 0);
+    while kills < wanted {
+        runs += 1;
+        let folder = tempfile::tempdir().unwrap();
+        let trace = folder.path().join("trace");
+        let run_dir = folder.path().join("run");
+        let mut done_before: BTreeSet<u64> = BTreeSet::new();
+        let mut seen = 0;
+        let mut known = BTreeMap::new();
+        while kills < wanted {
+            let mut process = coordinator(&run_dir, runs, &trace);
+            let random = draw("kill", kills as u128 + 1000 * u128::from(runs));
+            let killed = kill_once(&mut process, random);
+            let now = recorded(&run_dir);
+            for (job, said) in &known {
+                assert_eq!(now.get(job), Some(said), "kill {kills}: job {job}");
+            }
+            let all = begun(&trace);
+            for job in &all[seen..] {
+                assert!(
+                    !done_before.contains(job),
+                    "kill {kills}: job {job} was done again"
+                );
+            }
+            seen = all.len();
+            done_before = now.keys().copied().collect();
+            known = now;
+            if !killed {
+                break;
+            }
+            kills += 1;
+        }
+        // uninterrupted to the end, and from beginning to end elsewhere
+        let whole = folder.path().join("whole");
+        for place in [&run_dir, &whole] {
+            let mut process = coordinator(place, runs, &trace);
+            let mut lines = BufReader::new(process.output()).lines();
+            while lines.next().is_some_and(|line| line.is_ok()) {}
+            assert_eq!(process.wait(LIMIT), Some(0));
+        }
+        let log = |place: &Path| fs::read_to_string(place.join("log")).unwrap();
+        assert!(log(&run_dir).lines().count() > 600);
+        assert_eq!(log(&run_dir), log(&whole));
+        let (one, other) = (recorded(&run_dir), recorded(&whole));
+        assert_eq!(one, other, "the same results in both journals");
+    }
+    eprintln!("{kills} kills in {runs} runs took {:?}", started.elapsed());
+}

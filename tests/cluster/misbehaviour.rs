@@ -1,0 +1,189 @@
+//! Jobs that crash, allocate without bound, never return, leave processes behind or kill their
+//! worker: each is ended and named, and the others are done.
+use super::collect;
+use coordinator::runtime::{Completed, Dispatch, Summary};
+use protocol::{
+    id::JobId,
+    job::{Failure, Outcome},
+};
+use std::{
+    collections::BTreeMap,
+    fs,
+    time::{Duration, Instant},
+};
+use tests::{
+    job, options,
+    process::{Process, children, free_locator, wait_until},
+};
+use tokio::sync::mpsc::unbounded_channel;
+use worker::pool::{Pool, SlotOptions, Task};
+
+const LIMIT: Duration = Duration::from_mins(1);
+
+/// Outcomes of jobs 0 to `jobs` on workers of which some jobs misbehave.
+async fn outcomes(
+    jobs: u64,
+    behaviour: &str,
+    workers: usize,
+) -> (BTreeMap<JobId, Outcome>, Summary) {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    let environment = [("HORSEHEAD_TEST_MISBEHAVE", behaviour)];
+    let arguments = ["--slots", "2", "--slot-memory", "1024"];
+    let workers: Vec<Process> = (0..workers)
+        .map(|_| Process::worker_with(&locator, &arguments, &environment))
+        .collect();
+    for n in 0..jobs {
+        dispatch.submit(JobId(n), job(n, 5)).unwrap();
+    }
+    let results = collect(&mut dispatch, usize::try_from(jobs).unwrap(), LIMIT)
+        .await
+        .unwrap();
+    let summary = dispatch.close().await.unwrap();
+    drop(workers);
+    (results, summary)
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn jobs_that_crash_or_allocate_without_bound_fail_alone_and_say_why() {
+    let (results, summary) = outcomes(40, "7:abort,8:allocate", 1).await;
+    let failed: BTreeMap<u64, String> = results
+        .iter()
+        .filter_map(|(id, outcome)| match outcome {
+            Outcome::Failed(failure @ Failure::Crashed { .. }) => Some((id.0, failure.to_string())),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(failed.keys().copied().collect::<Vec<_>>(), [7, 8]);
+    for words in failed.values() {
+        assert!(
+            words.contains("signal 6") && words.contains("1024 MiB"),
+            "{words}"
+        );
+    }
+    assert_eq!((summary.last.failed, summary.last.lost), (2, 0));
+    assert_eq!(summary.last.repeated, 2, "each was tried twice");
+}
+
+/// The job takes its worker with it: after two of them it runs alone, after four it is given up;
+/// no other job fails.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
+    let (results, summary) = outcomes(30, "3:kill-worker", 6).await;
+    assert_eq!(
+        results[&JobId(3)],
+        Outcome::Failed(Failure::Lost { workers: 4 })
+    );
+    let others = results
+        .values()
+        .filter(|it| matches!(it, Outcome::Nothing(_)));
+    assert_eq!(others.count(), 29);
+    assert_eq!((summary.last.failed, summary.last.lost), (1, 4));
+}
+
+/// Ended at its deadline with everything it started, even what left its process group.
+#[test]
+fn a_job_that_never_returns_leaves_no_descendant() {
+    let (to, mut freed) = unbounded_channel();
+    // the environment of this process is not ours to change: the slot gets it from a shell
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("worker");
+    let worker = tests::process::worker_program();
+    let script = format!(
+        "#!/bin/sh\nHORSEHEAD_TEST_MISBEHAVE=1:orphan,2:hang exec {} \"$@\"\n",
+        worker.display()
+    );
+    fs::write(&program, script).unwrap();
+    let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    fs::set_permissions(&program, mode).unwrap();
+    let options = SlotOptions {
+        program,
+        memory_mib: 0,
+    };
+    let pool = Pool::start(1, &options, &to).unwrap();
+    for n in 1..=2 {
+        let deadline = Duration::from_millis(1500);
+        let begun = Instant::now();
+        pool.run(
+            0,
+            Task {
+                attempt: protocol::message::Attempt {
+                    job: JobId(n),
+                    attempt: protocol::id::AttemptId(1),
+                },
+                deadline,
+                job: Box::new(job(n, 0)),
+                case: None,
+            },
+        );
+        if n == 1 {
+            wait_until("the orphan is there", LIMIT, || sleepers() == 1);
+        }
+        let outcome = freed.blocking_recv().unwrap().outcome;
+        let ended = begun.elapsed();
+        assert_eq!(
+            outcome,
+            Some(Outcome::Failed(Failure::Deadline { limit_ms: 1500 }))
+        );
+        assert!(ended < deadline + Duration::from_secs(1), "{ended:?}");
+        wait_until("no descendant is left", Duration::from_secs(1), || {
+            sleepers() == 0
+        });
+    }
+    drop(pool);
+    assert!(
+        children(rustix::process::getpid())
+            .iter()
+            .all(|child| tests::process::is_alive(*child)),
+        "no zombie is left"
+    );
+}
+
+/// Processes that the misbehaving job leaves behind.
+fn sleepers() -> usize {
+    let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let ours = format!("HORSEHEAD_SLOT_PROCESS={}.", std::process::id());
+    processes
+        .filter(|process| {
+            let read = |name| fs::read(process.path().join(name)).unwrap_or_default();
+            let environment = String::from_utf8_lossy(&read("environ")).into_owned();
+            read("cmdline").starts_with(b"sleep\0") && environment.contains(&ours)
+        })
+        .count()
+}
+
+/// If nothing works at all, one clear message comes instead of a thousand.
+#[tokio::test(flavor = "multi_thread")]
+async fn if_every_job_crashes_the_run_stops_with_one_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    let behaviour: Vec<String> = (0..40).map(|n| format!("{n}:abort")).collect();
+    let behaviour = behaviour.join(",");
+    let environment = [("HORSEHEAD_TEST_MISBEHAVE", behaviour.as_str())];
+    let _worker = Process::worker_with(&locator, &["--slots", "4"], &environment);
+    for n in 0..40 {
+        dispatch.submit(JobId(n), job(n, 0)).unwrap();
+    }
+    let stopped = tokio::time::timeout(LIMIT, async {
+        loop {
+            match dispatch.next().await {
+                Ok(Completed { outcome, .. }) => {
+                    assert!(matches!(outcome, Outcome::Failed(_)), "{outcome:?}");
+                }
+                Err(error) => return error.to_string(),
+            }
+        }
+    });
+    let message = stopped.await.unwrap();
+    assert!(
+        message.starts_with("all of the first 8 jobs failed and none succeeded"),
+        "{message}"
+    );
+    dispatch.close().await.unwrap();
+}

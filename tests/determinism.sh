@@ -1,0 +1,27 @@
+#!/bin/sh
+# The reference run's digest in several builds: optimisation levels of the dynamics and instruction
+# sets. Every build must reproduce the one in worker/simulation/tests/numerics/determinism.rs.
+# Builds go to target/determinism and take some minutes the first time. Run from anywhere:
+#   tests/determinism.sh
+set -eu
+cd "$(dirname "$0")/.."
+export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-target}/determinism"
+check() {
+    level=$1 flags=$2
+    echo "optimisation $level, ${flags:-instruction set of the default target}"
+    RUSTFLAGS="$flags" cargo test --quiet -p simulation \
+        --config "profile.dev.package.simulation.opt-level=$level" \
+        --test numerics determinism::
+}
+check 3 ""
+check 0 ""
+case "$(uname -m)" in
+x86_64)
+    check 3 "-C target-cpu=x86-64-v2"
+    # a processor without AVX2 cannot run this one
+    if grep -q avx2 /proc/cpuinfo; then
+        check 3 "-C target-cpu=x86-64-v3"
+    fi
+    ;;
+esac
+echo "all builds agree"

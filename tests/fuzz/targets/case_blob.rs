@@ -1,0 +1,7 @@
+//! The encoded case, which a worker fetches by its hash and then believes.
+#![no_main]
+use fuzz::is_canonical;
+use libfuzzer_sys::fuzz_target;
+use protocol::case::Case;
+
+fuzz_target!(|bytes: &[u8]| is_canonical::<Case>(bytes));

@@ -1,0 +1,106 @@
+//! A search without physics, for runs that are killed: its fitness is the length of what workers
+//! send back, so that it really depends on them, and its log has a digest.
+use protocol::job::{Job, Outcome};
+use search::{
+    space::Space,
+    strategy::{
+        Settings, Strategy, Told,
+        memetic::{MemeticSettings, window::WindowSettings},
+    },
+    test_function::SPHERE,
+};
+
+/// A search whose every individual is one short job.
+pub struct SearchRun {
+    /// The search.
+    pub strategy: Box<dyn Strategy>,
+    delay_ms: u32,
+}
+
+impl SearchRun {
+    /// A search without generations, some 700 individuals; jobs take so long.
+    ///
+    /// # Panics
+    /// Never: the settings lie within their range.
+    pub fn new(seed: u64, delay_ms: u32) -> Self {
+        let settings = Settings::Window(WindowSettings {
+            window: 16,
+            memetic: MemeticSettings {
+                population: 20,
+                generations: 26,
+                crossover_trials: 3,
+                mutation_trials: 3,
+                ..MemeticSettings::paper()
+            },
+        });
+        let space: Space = SPHERE.space();
+        Self {
+            strategy: settings.build(&space, seed).expect("valid settings"),
+            delay_ms,
+        }
+    }
+
+    /// Jobs that can be done now, by id.
+    pub fn ask(&mut self) -> Vec<(u64, Job)> {
+        let proposals = self.strategy.ask();
+        let jobs = proposals.into_iter().map(|proposal| {
+            // a number for the trace, then every bit of the individual
+            let mut payload = proposal.id.to_le_bytes().to_vec();
+            for gene in &proposal.genes {
+                payload.extend_from_slice(&gene.to_le_bytes());
+            }
+            let fitness = SPHERE.tell(&SPHERE.space(), &proposal.genes).fitness;
+            let job = Job::Nothing {
+                payload,
+                reply_bytes: reply_bytes(fitness),
+                delay_ms: self.delay_ms,
+            };
+            (proposal.id, job)
+        });
+        jobs.collect()
+    }
+
+    /// Takes a result.
+    pub fn tell(&mut self, id: u64, outcome: &Outcome) {
+        let told = match outcome {
+            Outcome::Nothing(reply) => Told {
+                fitness: reply.len() as f64,
+                complete: true,
+            },
+            Outcome::Scored(_)
+            | Outcome::Simulated(_)
+            | Outcome::Observed(_)
+            | Outcome::Described(_)
+            | Outcome::HeadReduced(_)
+            | Outcome::Failed(_) => Told {
+                fitness: f64::INFINITY,
+                complete: false,
+            },
+        };
+        self.strategy.tell(id, told);
+    }
+
+    /// Every bit of every individual and result, in id order, as text.
+    pub fn log(&self) -> String {
+        let mut log = String::new();
+        for entry in self.strategy.archive().entries() {
+            log.push_str(&format!("{}", entry.id));
+            for gene in &entry.genes {
+                log.push_str(&format!(" {:016x}", gene.to_bits()));
+            }
+            log.push_str(&format!(" {:016x}\n", entry.told.fitness.to_bits()));
+        }
+        log
+    }
+}
+
+/// Bytes that stand for a fitness: up to two thousand.
+fn reply_bytes(fitness: f64) -> u32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and 2000"
+    )]
+    let bytes = (fitness * 20.0).clamp(0.0, 2000.0) as u32;
+    bytes
+}

@@ -1,0 +1,51 @@
+//! Peers that mean no good: rubbish, lies and silence, against a coordinator at work.
+//!
+//! What they cost is counted and shown (run with `--nocapture`); what is asserted is that nothing is
+//! lost, nothing false is believed, and whoever lies is told in what.
+#![expect(
+    clippy::unwrap_used,
+    reason = "helpers of a test suite: to panic is to fail the test"
+)]
+mod idle;
+mod words;
+
+use coordinator::runtime::Dispatch;
+use protocol::{id::JobId, job::Outcome};
+use std::{
+    collections::BTreeMap,
+    time::{Duration, Instant},
+};
+
+const LIMIT: Duration = Duration::from_mins(1);
+
+/// One at a time, so that the numbers mean something.
+static MEASURING: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
+/// Does jobs until a time is over, and returns how many a second.
+async fn rate(
+    dispatch: &mut Dispatch,
+    results: &mut BTreeMap<JobId, Outcome>,
+    time: Duration,
+) -> f64 {
+    // enough that everybody has something to do, and no more
+    const AHEAD: u64 = 64;
+    let begun = Instant::now();
+    let mut submitted = results.len() as u64;
+    let before = submitted;
+    loop {
+        while begun.elapsed() < time && submitted < results.len() as u64 + AHEAD {
+            dispatch
+                .submit(JobId(submitted), tests::job(submitted, 2))
+                .unwrap();
+            submitted += 1;
+        }
+        if results.len() as u64 == submitted {
+            break;
+        }
+        let completed = tokio::time::timeout(LIMIT, dispatch.next()).await;
+        let completed = completed.unwrap().unwrap();
+        let twice = results.insert(completed.id, completed.outcome);
+        assert_eq!(twice, None, "job {} was delivered twice", completed.id);
+    }
+    (submitted - before) as f64 / begun.elapsed().as_secs_f64()
+}

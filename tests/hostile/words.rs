@@ -1,0 +1,321 @@
+//! Peers that speak: rubbish, old versions, wrong models, and results that are not theirs to give.
+use super::{LIMIT, MEASURING, rate};
+use coordinator::runtime::{Dispatch, Snapshot};
+use protocol::{
+    announce::Announcement,
+    id::{AttemptId, ContentHash, JobId, RunId},
+    job::Outcome,
+    key::{self, Lane},
+    message::{Attempt, Beat, Done, FromWorker, ToWorker},
+    name::WorkerName,
+    wire::{self, Kind},
+};
+use std::{
+    collections::BTreeMap,
+    sync::{
+        Arc, Mutex,
+        atomic::{AtomicBool, AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+use tests::{
+    expect_results,
+    keys::raw_session,
+    options,
+    process::{Process, free_locator, wait_until},
+};
+use zenoh::{Session, Wait};
+
+/// A peer with the bus's own software and no manners.
+struct Peer {
+    session: Session,
+    name: WorkerName,
+    heard: Arc<Mutex<Vec<(RunId, ToWorker)>>>,
+}
+
+impl Peer {
+    async fn join(locator: &str, process: u64) -> Self {
+        let nowhere = std::path::Path::new("");
+        let session = raw_session(locator, nowhere, false, 5000).await.unwrap();
+        let name = WorkerName::anyone(process);
+        let heard: Arc<Mutex<Vec<(RunId, ToWorker)>>> = Arc::default();
+        let to = Arc::clone(&heard);
+        session
+            .declare_subscriber(key::all_to_worker(&name))
+            .callback(move |sample| {
+                if let Ok(message) = wire::unseal(Kind::ToWorker, &sample.payload().to_bytes()) {
+                    to.lock().unwrap().push(message);
+                }
+            })
+            .background()
+            .await
+            .unwrap();
+        Self {
+            session,
+            name,
+            heard,
+        }
+    }
+
+    fn throw(&self, run: RunId, lane: Lane, bytes: Vec<u8>) {
+        let key = key::from_worker(run, &self.name, lane);
+        self.session.put(key, bytes).wait().unwrap();
+    }
+
+    fn say(&self, run: RunId, lane: Lane, message: &FromWorker) {
+        let frame = wire::seal(Kind::FromWorker, run, message).unwrap();
+        self.throw(run, lane, frame);
+    }
+
+    /// Announces until there is an answer that fits.
+    fn announce_until(
+        &self,
+        announcement: &Announcement,
+        fits: impl Fn(&ToWorker) -> bool,
+    ) -> RunId {
+        let message = FromWorker::Announce(Box::new(announcement.clone()));
+        let mut run = RunId(0);
+        wait_until("an answer that fits", LIMIT, || {
+            self.say(RunId(0), Lane::Control, &message);
+            std::thread::sleep(Duration::from_millis(20));
+            let heard = self.heard.lock().unwrap();
+            let found = heard.iter().find(|(_, message)| fits(message));
+            if let Some((of, _)) = found {
+                run = *of;
+            }
+            found.is_some()
+        });
+        run
+    }
+}
+
+fn announcement(model_digest: &str) -> Announcement {
+    Announcement {
+        protocol: wire::VERSION,
+        build: "0".to_owned(),
+        model_digest: model_digest.to_owned(),
+        host: "elsewhere".to_owned(),
+        pid: 1,
+        slots: 1,
+        cores: 1,
+        job_kinds: Vec::new(),
+        effects: Vec::new(),
+    }
+}
+
+/// A coordinator with one honest worker that has joined.
+async fn stage(folder: &std::path::Path) -> (Dispatch, Process, String) {
+    let locator = free_locator();
+    let dispatch = Dispatch::open(options(folder, Some(&locator), 0))
+        .await
+        .unwrap();
+    let honest = Process::worker(&locator, &["--slots", "2"]);
+    wait_until("the honest worker joins", LIMIT, || {
+        dispatch.snapshot().workers.len() == 1
+    });
+    (dispatch, honest, locator)
+}
+
+fn refusal_of(field: &'static str) -> impl Fn(&ToWorker) -> bool {
+    move |message| matches!(message, ToWorker::Refused { reason } if reason.starts_with(field))
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let (dispatch, _honest, locator) = stage(folder.path()).await;
+    let peer = Peer::join(&locator, 1).await;
+    let begun = std::time::Instant::now();
+    peer.announce_until(
+        &announcement("another model"),
+        refusal_of("model_digest is another model"),
+    );
+    let old = Announcement {
+        protocol: 9,
+        ..announcement("x")
+    };
+    peer.announce_until(&old, refusal_of("protocol is 9"));
+    for slots in [0, u32::MAX] {
+        let absurd = Announcement {
+            slots,
+            ..announcement("x")
+        };
+        peer.announce_until(&absurd, refusal_of("slots is"));
+    }
+    eprintln!("four refusals within {:?}", begun.elapsed());
+    // a frame of another version is answered in ours, so that the other end can say why
+    peer.heard.lock().unwrap().clear();
+    let mut other = wire::seal(
+        Kind::FromWorker,
+        RunId(0),
+        &FromWorker::Beat(Beat::default()),
+    )
+    .unwrap();
+    other[2] = wire::VERSION + 1;
+    wait_until("an answer to another version", LIMIT, || {
+        peer.throw(RunId(0), Lane::Control, other.clone());
+        std::thread::sleep(Duration::from_millis(20));
+        let heard = peer.heard.lock().unwrap();
+        heard
+            .iter()
+            .any(|(_, message)| *message == ToWorker::Identify)
+    });
+    assert_eq!(
+        dispatch.snapshot().workers.len(),
+        1,
+        "nobody of them joined"
+    );
+    peer.session.close().await.unwrap();
+    dispatch.close().await.unwrap();
+}
+
+/// Rubbish of every kind, as fast as it goes; how much was thrown.
+fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u64 {
+    let good = FromWorker::Announce(Box::new(announcement(digest)));
+    let good = wire::seal(Kind::FromWorker, run, &good).unwrap();
+    let mut thrown = 0_u64;
+    while !stop.load(Ordering::Relaxed) {
+        let at = usize::try_from(thrown).unwrap_or(0);
+        let mut frame = good.clone();
+        match thrown % 8 {
+            // half a frame
+            0 => frame.truncate(at % good.len()),
+            // a length that nobody can mean
+            1 => frame[12..16].copy_from_slice(&u32::MAX.to_le_bytes()),
+            // a kind that there is not
+            2 => frame[3] = 200,
+            3 => frame[at % good.len()] ^= 0x40,
+            // promises a vector of more than there is memory for
+            4 => {
+                let absurd = FromWorker::Beat(Beat::default());
+                let mut body = wire::encode(&absurd).unwrap();
+                let end = body.len();
+                body[end - 8..].fill(0xff);
+                frame = wire::seal(Kind::FromWorker, run, &()).unwrap();
+                frame.extend_from_slice(&body);
+                frame[12..16].copy_from_slice(&u32::try_from(body.len()).unwrap().to_le_bytes());
+            }
+            5 => frame = vec![0xff; at % 70_000],
+            6 => frame.extend_from_slice(&good),
+            // sound, but of another run
+            _ => {
+                let beat = FromWorker::Beat(Beat::default());
+                frame = wire::seal(Kind::FromWorker, RunId(thrown), &beat).unwrap();
+            }
+        }
+        let lane = if thrown.is_multiple_of(2) {
+            Lane::Data
+        } else {
+            Lane::Control
+        };
+        peer.throw(run, lane, frame);
+        thrown += 1;
+        // 2,000 a second: a flood, not a race for the processor that it shares with its victims
+        std::thread::sleep(Duration::from_micros(500));
+    }
+    thrown
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn rubbish_costs_little_and_no_result() {
+    let _alone = MEASURING.lock().await;
+    let folder = tempfile::tempdir().unwrap();
+    let (mut dispatch, _honest, locator) = stage(folder.path()).await;
+    let peer = Arc::new(Peer::join(&locator, 1).await);
+    let mut results = BTreeMap::new();
+    let time = Duration::from_secs(4);
+    let before = rate(&mut dispatch, &mut results, time).await;
+    let (stop, thrown) = (
+        Arc::new(AtomicBool::new(false)),
+        Arc::new(AtomicU64::new(0)),
+    );
+    let thrower = {
+        let (peer, stop, thrown) = (Arc::clone(&peer), Arc::clone(&stop), Arc::clone(&thrown));
+        std::thread::spawn(move || {
+            thrown.store(
+                throw_rubbish(&peer, RunId(0), "x", &stop),
+                Ordering::Relaxed,
+            );
+        })
+    };
+    let meanwhile = rate(&mut dispatch, &mut results, time).await;
+    stop.store(true, Ordering::Relaxed);
+    thrower.join().unwrap();
+    let after = rate(&mut dispatch, &mut results, time).await;
+    let thrown = thrown.load(Ordering::Relaxed);
+    eprintln!(
+        "jobs a second: {before:.0} before, {meanwhile:.0} under {thrown} frames of rubbish, \
+         {after:.0} after"
+    );
+    let jobs = results.len() as u64;
+    expect_results(&results, jobs);
+    let last: Snapshot = dispatch.close().await.unwrap().last;
+    assert_eq!((last.lost, last.failed, last.done as u64), (0, 0, jobs));
+    assert!(thrown > 1000, "{thrown}");
+}
+
+/// A peer that is admitted, does no work, and hands in results of jobs that others have.
+#[tokio::test(flavor = "multi_thread")]
+async fn forged_and_repeated_results_are_not_believed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut dispatch, _honest, locator) = stage(folder.path()).await;
+    let peer = Peer::join(&locator, 1).await;
+    // the name of the model is no secret: it stands in every refusal
+    peer.announce_until(&announcement("?"), refusal_of("model_digest"));
+    let digest = {
+        let heard = peer.heard.lock().unwrap();
+        let reason = heard.iter().find_map(|(_, message)| {
+            if let ToWorker::Refused { reason } = message {
+                Some(reason.clone())
+            } else {
+                None
+            }
+        });
+        let reason = reason.unwrap();
+        let (_, rest) = reason.split_once("this run's is ").unwrap();
+        rest.split(':').next().unwrap().to_owned()
+    };
+    let admitted = |message: &ToWorker| matches!(message, ToWorker::Admitted { .. });
+    let run = peer.announce_until(&announcement(&digest), admitted);
+    for n in 0..200 {
+        dispatch.submit(JobId(n), tests::job(n, 5)).unwrap();
+    }
+    let other_case = ContentHash::of(b"another case");
+    for round in 0..20_u64 {
+        for n in 0..200 {
+            let done = Done {
+                attempt: Attempt {
+                    job: JobId(n),
+                    attempt: AttemptId(1 << 16),
+                },
+                // which job it is about cannot be known without having been given it
+                work: ContentHash::of(&round.to_le_bytes()),
+                wall_us: 1,
+                outcome: Outcome::Nothing(b"forged".to_vec()),
+            };
+            peer.say(run, Lane::Data, &FromWorker::Done(Box::new(done)));
+        }
+        let beat = Beat {
+            number: round,
+            case: Some(other_case),
+            ..Beat::default()
+        };
+        peer.say(run, Lane::Control, &FromWorker::Beat(beat));
+    }
+    let mut results = BTreeMap::new();
+    while results.len() < 200 {
+        let completed = tokio::time::timeout(LIMIT, dispatch.next()).await;
+        let completed = completed.unwrap().unwrap();
+        assert_eq!(results.insert(completed.id, completed.outcome), None);
+    }
+    expect_results(&results, 200);
+    let heard = peer.heard.lock().unwrap().clone();
+    assert!(
+        !heard
+            .iter()
+            .any(|(_, message)| matches!(message, ToWorker::Run(_))),
+        "a worker with another case was given a job"
+    );
+    peer.session.close().await.unwrap();
+    dispatch.close().await.unwrap();
+}

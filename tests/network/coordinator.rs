@@ -1,0 +1,78 @@
+//! A coordinator for the network suite: does jobs for workers with certificates, and writes down
+//! what changes, and when.
+//!
+//! `test-network-coordinator RUN_DIR LOCATOR KEYS JOBS DELAY_MS`; each line is
+//! `MS workers N done N lost N repeated N duplicates N`, the last one begins with `end`. Exits with
+//! an error if a result is not the one that the job has anywhere else.
+use coordinator::runtime::{Dispatch, DispatchOptions, Snapshot};
+use protocol::id::JobId;
+use std::{
+    collections::BTreeMap,
+    env,
+    error::Error,
+    io::{self, Write},
+    path::{Path, PathBuf},
+    time::{Duration, Instant},
+};
+
+/// How often the state is looked at.
+const LOOK: Duration = Duration::from_millis(50);
+
+#[tokio::main]
+async fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let [run_dir, locator, keys, jobs, delay_ms] = arguments.as_slice() else {
+        return Err("expected RUN_DIR LOCATOR KEYS JOBS DELAY_MS".into());
+    };
+    let (jobs, delay_ms): (u64, u32) = (jobs.parse()?, delay_ms.parse()?);
+    let begun = Instant::now();
+    let mut dispatch = Dispatch::open(DispatchOptions {
+        tls: Some(PathBuf::from(keys)),
+        ..tests::options(Path::new(run_dir), Some(locator), 0)
+    })
+    .await?;
+    for n in 0..jobs {
+        dispatch.submit(JobId(n), tests::job(n, delay_ms))?;
+    }
+    let (mut results, mut last) = (BTreeMap::new(), String::new());
+    let mut looks = tokio::time::interval(LOOK);
+    while (results.len() as u64) < jobs {
+        tokio::select! {
+            completed = dispatch.next() => {
+                let completed = completed?;
+                if results.insert(completed.id, completed.outcome).is_some() {
+                    return Err(format!("job {} was delivered twice", completed.id).into());
+                }
+            }
+            _ = looks.tick() => {
+                let line = describe(&dispatch.snapshot());
+                if line != last {
+                    say(&format!("{} {line}", begun.elapsed().as_millis()))?;
+                    last = line;
+                }
+            }
+        }
+    }
+    tests::expect_results(&results, jobs);
+    let took = begun.elapsed().as_millis();
+    let summary = dispatch.close().await?;
+    say(&format!("end {took} {}", describe(&summary.last)))?;
+    Ok(())
+}
+
+fn describe(state: &Snapshot) -> String {
+    format!(
+        "workers {} done {} lost {} repeated {} duplicates {}",
+        state.workers.len(),
+        state.done,
+        state.lost,
+        state.repeated,
+        state.duplicates
+    )
+}
+
+fn say(line: &str) -> io::Result<()> {
+    let mut out = io::stdout();
+    writeln!(out, "{line}")?;
+    out.flush()
+}

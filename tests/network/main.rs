@@ -1,0 +1,251 @@
+//! Real networks between namespaces of this machine: bad ones, cut ones, and a busy machine.
+//!
+//! Needs Linux, root and iproute2; says so and passes where they are missing.
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "helpers of a test suite: to panic is to fail the test"
+)]
+use rustix::process::Signal;
+use std::{
+    io::{BufRead, BufReader, Lines},
+    path::{Path, PathBuf},
+    process::{ChildStdout, Command},
+    sync::{Mutex, PoisonError},
+    thread,
+    time::{Duration, Instant},
+};
+use tests::{
+    keys::make,
+    namespace::{HEAD, Namespaces},
+    process::{Process, worker_program},
+};
+
+const LIMIT: Duration = Duration::from_mins(1);
+/// Where the coordinator listens, and where the bad stretch before it does.
+const PORT: u16 = 7447;
+const BAD_PORT: u16 = 7448;
+
+/// One at a time: two of them look at the clock.
+static ONE: Mutex<()> = Mutex::new(());
+
+/// A coordinator on the head, with its key material.
+struct Stage {
+    // the processes end before what they stand on
+    coordinator: Process,
+    lines: Lines<BufReader<ChildStdout>>,
+    namespaces: Namespaces,
+    folder: tempfile::TempDir,
+}
+
+/// One line of the coordinator.
+#[derive(Clone, Copy, Debug)]
+struct State {
+    ms: u64,
+    workers: u64,
+    done: u64,
+    lost: u64,
+    repeated: u64,
+    duplicates: u64,
+    is_end: bool,
+}
+
+impl State {
+    fn read(line: &str) -> Self {
+        let is_end = line.starts_with("end ");
+        let words: Vec<&str> = line.trim_start_matches("end ").split(' ').collect();
+        let number = |at: usize| words[at].parse().unwrap();
+        Self {
+            ms: number(0),
+            workers: number(2),
+            done: number(4),
+            lost: number(6),
+            repeated: number(8),
+            duplicates: number(10),
+            is_end,
+        }
+    }
+}
+
+impl Stage {
+    /// Sets up, unless this machine has no namespaces.
+    fn set(jobs: u64, delay_ms: u64) -> Option<Self> {
+        worker_program();
+        let namespaces = Namespaces::make()?;
+        let folder = tempfile::tempdir().unwrap();
+        let keys = folder.path().join("keys");
+        make(&keys, &[HEAD]);
+        let program = Path::new(env!("CARGO_BIN_EXE_test-network-coordinator"));
+        let mut command = namespaces.on_head(program);
+        command.arg(folder.path().join("run"));
+        command.arg(format!("quic/{HEAD}:{PORT}")).arg(&keys);
+        command.args([jobs.to_string(), delay_ms.to_string()]);
+        let mut coordinator = Process::start(command);
+        let lines = BufReader::new(coordinator.output()).lines();
+        Some(Self {
+            coordinator,
+            lines,
+            namespaces,
+            folder,
+        })
+    }
+
+    fn keys(&self, name: &str) -> PathBuf {
+        self.folder.path().join("keys").join(name)
+    }
+
+    /// Starts a worker on the node.
+    fn worker(&self, name: &str, port: u16, slots: u32) -> Process {
+        let mut command = self.namespaces.on_node(&worker_program());
+        command.args(["--connect", &format!("quic/{HEAD}:{port}")]);
+        command.args(["--slots", &slots.to_string(), "--tls"]);
+        command.arg(self.keys(name));
+        Process::logged(command, &self.folder.path().join(format!("{name}.log")))
+    }
+
+    /// Waits for a state of the run; the clock of the test runs on.
+    fn until(&mut self, what: &str, is: impl Fn(&State) -> bool) -> State {
+        let begun = Instant::now();
+        loop {
+            let line = self
+                .lines
+                .next()
+                .unwrap_or_else(|| panic!("ended before: {what}"));
+            let state = State::read(&line.unwrap());
+            if is(&state) {
+                return state;
+            }
+            assert!(
+                begun.elapsed() < LIMIT && !state.is_end,
+                "{what}: {state:?}"
+            );
+        }
+    }
+
+    /// Waits for the last word.
+    fn end(mut self) -> State {
+        let begun = Instant::now();
+        loop {
+            let line = self
+                .lines
+                .next()
+                .unwrap_or_else(|| panic!("ended without a word"));
+            let state = State::read(&line.unwrap());
+            if state.is_end {
+                assert_eq!(self.coordinator.wait(LIMIT), Some(0));
+                return state;
+            }
+            assert!(begun.elapsed() < LIMIT, "no end: {state:?}");
+        }
+    }
+}
+
+fn alone() -> std::sync::MutexGuard<'static, ()> {
+    ONE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A fifth of all datagrams lost, a fifth doubled, all in disorder, both ways: the same results.
+#[test]
+fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
+    let _alone = alone();
+    let Some(mut stage) = Stage::set(600, 5) else {
+        return;
+    };
+    let mut command = stage
+        .namespaces
+        .on_head(Path::new(env!("CARGO_BIN_EXE_test-relay")));
+    command.args([format!("{HEAD}:{BAD_PORT}"), format!("{HEAD}:{PORT}")]);
+    command.args(["4", "0.2", "0.2", "10"]);
+    let mut relay = Process::start(command);
+    let mut told = BufReader::new(relay.output()).lines();
+    let workers = ["worker-01", "worker-02"].map(|name| stage.worker(name, BAD_PORT, 2));
+    let both = stage.until("both join", |state| state.workers == 2);
+    // the coordinator has compared every result with the one that its job must have
+    let end = stage.end();
+    drop((workers, relay));
+    let told = std::iter::from_fn(|| told.next()?.ok()).last();
+    eprintln!("both joined at {} ms, {end:?}; datagrams {told:?}", both.ms);
+    assert_eq!(end.done, 600);
+    let told = told.unwrap();
+    let counts: Vec<u64> = told
+        .split(' ')
+        .filter_map(|word| word.parse().ok())
+        .collect();
+    assert!(
+        counts.iter().all(|count| *count > 20),
+        "the network was good: {told}"
+    );
+}
+
+/// The cable of one worker is pulled while it computes, and put back after ten seconds.
+#[test]
+fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
+    let _alone = alone();
+    // two workers of two slots, a quarter of a second each: 8 jobs a second, for 25 s
+    let Some(mut stage) = Stage::set(200, 250) else {
+        return;
+    };
+    let cut_off = stage.worker("worker-01", PORT, 2);
+    // the other one is on the head, where no cable is pulled
+    let mut command = stage.namespaces.on_head(&worker_program());
+    command.args([
+        "--connect",
+        &format!("quic/{HEAD}:{PORT}"),
+        "--slots",
+        "2",
+        "--tls",
+    ]);
+    command.arg(stage.keys("worker-02"));
+    let stays = Process::logged(command, &stage.folder.path().join("stays.log"));
+    stage.until("both work", |state| state.workers == 2 && state.done > 12);
+
+    stage.namespaces.plug(false);
+    let cut = Instant::now();
+    let lost = stage.until("its jobs are offered again", |state| state.repeated > 0);
+    let replaced = cut.elapsed();
+    assert_eq!((lost.workers, lost.lost), (1, 1));
+    assert!(
+        replaced < Duration::from_secs(6),
+        "offered again after {replaced:?}"
+    );
+    thread::sleep(Duration::from_secs(10).saturating_sub(cut.elapsed()));
+
+    stage.namespaces.plug(true);
+    let back = Instant::now();
+    stage.until("it is back", |state| state.workers == 2);
+    let returned = back.elapsed();
+    assert!(returned < Duration::from_secs(5), "back after {returned:?}");
+    let end = stage.end();
+    eprintln!("offered again after {replaced:?}, back after {returned:?}, {end:?}");
+    assert_eq!((end.done, end.lost), (200, 1));
+    // two in its slots and two that waited: nothing else was given out twice
+    assert!(end.repeated <= 4, "{end:?}");
+    assert!(end.duplicates <= 4, "{end:?}");
+    drop((cut_off, stays));
+}
+
+/// Four busy programs for every core: slow, but nobody is taken for lost.
+#[test]
+fn nobody_is_taken_for_lost_on_a_busy_machine() {
+    let _alone = alone();
+    let Some(mut stage) = Stage::set(600, 20) else {
+        return;
+    };
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let busy: Vec<Process> = (0..4 * cores)
+        .map(|_| {
+            let mut command = Command::new("sh");
+            command.args(["-c", "while :; do :; done"]);
+            Process::start(command)
+        })
+        .collect();
+    let workers = ["worker-01", "worker-02"].map(|name| stage.worker(name, PORT, 1));
+    stage.until("both work", |state| state.workers == 2);
+    let end = stage.end();
+    eprintln!("{end:?}");
+    assert_eq!((end.done, end.lost), (600, 0));
+    for mut process in busy.into_iter().chain(workers) {
+        process.signal(Signal::KILL);
+        process.wait(LIMIT);
+    }
+}

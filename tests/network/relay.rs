@@ -1,0 +1,133 @@
+//! A bad stretch of network: passes datagrams on, but loses, doubles, delays and reorders them.
+//!
+//! `test-relay LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS`: shares from 0 to 1, both ways. (The
+//! kernel's own netem does the same, but is not in every kernel.) Each datagram waits a time of its
+//! own, so they overtake each other. Now and then a line says how many were lost and doubled.
+use std::{
+    collections::BTreeMap,
+    env,
+    error::Error,
+    io::{self, Write},
+    net::SocketAddr,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::Duration,
+};
+use tokio::net::UdpSocket;
+
+/// Datagrams between two lines.
+const TOLD: u64 = 100;
+/// Longest datagram there can be.
+const LONGEST: usize = 65_535;
+
+/// How the stretch misbehaves.
+#[derive(Clone, Debug)]
+struct Weather {
+    state: Arc<AtomicU64>,
+    loss: f64,
+    duplication: f64,
+    delay: Duration,
+    lost: Arc<AtomicU64>,
+    doubled: Arc<AtomicU64>,
+}
+
+impl Weather {
+    /// A uniform number in [0, 1): `SplitMix64`.
+    fn draw(&self) -> f64 {
+        let step = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut z = self
+            .state
+            .fetch_add(step, Ordering::Relaxed)
+            .wrapping_add(step);
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// When the copies of a datagram go on; none if it is lost.
+    fn fate(&self) -> Vec<Duration> {
+        if self.draw() < self.loss {
+            self.lost.fetch_add(1, Ordering::Relaxed);
+            return Vec::new();
+        }
+        let doubled = u64::from(self.draw() < self.duplication);
+        self.doubled.fetch_add(doubled, Ordering::Relaxed);
+        (0..=doubled)
+            .map(|_| self.delay.mul_f64(self.draw()))
+            .collect()
+    }
+}
+
+/// Passes one datagram on as often and as late as the weather says.
+fn pass(weather: &Weather, socket: &Arc<UdpSocket>, to: SocketAddr, datagram: &[u8]) {
+    for delay in weather.fate() {
+        let (socket, datagram) = (Arc::clone(socket), datagram.to_vec());
+        drop(tokio::spawn(async move {
+            tokio::time::sleep(delay).await;
+            // what cannot be sent is lost, as on any network
+            drop(socket.send_to(&datagram, to).await);
+        }));
+    }
+}
+
+/// Brings back what the target answers to one client, until that cannot be heard any more.
+async fn answer(
+    weather: Weather,
+    inner: Arc<UdpSocket>,
+    outer: Arc<UdpSocket>,
+    client: SocketAddr,
+) {
+    let mut buffer = vec![0; LONGEST];
+    while let Ok((length, _)) = inner.recv_from(&mut buffer).await {
+        pass(&weather, &outer, client, &buffer[..length]);
+    }
+}
+
+#[tokio::main]
+async fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let [listen, target, seed, loss, duplication, delay_ms] = arguments.as_slice() else {
+        return Err("expected LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS".into());
+    };
+    let weather = Weather {
+        state: Arc::new(AtomicU64::new(seed.parse()?)),
+        loss: loss.parse()?,
+        duplication: duplication.parse()?,
+        delay: Duration::from_millis(delay_ms.parse()?),
+        lost: Arc::default(),
+        doubled: Arc::default(),
+    };
+    let target: SocketAddr = target.parse()?;
+    let outer = Arc::new(UdpSocket::bind(listen).await?);
+    let mut clients: BTreeMap<SocketAddr, Arc<UdpSocket>> = BTreeMap::new();
+    let mut buffer = vec![0; LONGEST];
+    let mut out = io::stdout();
+    for count in 1_u64.. {
+        if count.is_multiple_of(TOLD) {
+            let counts = [&weather.lost, &weather.doubled].map(|at| at.load(Ordering::Relaxed));
+            writeln!(out, "lost {} doubled {}", counts[0], counts[1])?;
+        }
+        let Ok((length, client)) = outer.recv_from(&mut buffer).await else {
+            // a client that is gone is reported here, and is nobody's business
+            continue;
+        };
+        let inner = if let Some(inner) = clients.get(&client) {
+            Arc::clone(inner)
+        } else {
+            let inner = Arc::new(UdpSocket::bind((outer.local_addr()?.ip(), 0)).await?);
+            let (weather, back) = (weather.clone(), Arc::clone(&outer));
+            drop(tokio::spawn(answer(
+                weather,
+                Arc::clone(&inner),
+                back,
+                client,
+            )));
+            clients.insert(client, Arc::clone(&inner));
+            inner
+        };
+        pass(&weather, &inner, target, &buffer[..length]);
+    }
+    Ok(())
+}

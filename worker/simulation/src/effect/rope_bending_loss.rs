@@ -1,0 +1,64 @@
+//! The back rope loses power where it winds on and off the back head: capstan loss.
+//!
+//! The tension that pulls the head is `T (1 -+ e)` as the rope winds on or off, so that the same
+//! moment needs `dT = -e T sign(psi')`: a couple `M = e T h sign(psi')` on the head, with `psi` the
+//! angle of the tangent point on it. It changes sign where the winding turns round, which is not at
+//! the dead centres. Tension, arm and speed of winding are those of the ideal mechanism.
+use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
+use super::{Along, Cycle, Effect, Hooks, LineForce};
+use crate::drive::DriveState;
+use crate::math::elementary::tanh;
+use crate::model::Machine;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+pub(super) const DESCRIPTOR: Descriptor = Descriptor {
+    id: Cow::Borrowed("rope_bending_loss"),
+    title: Cow::Borrowed("Bending loss of the back rope on its head"),
+    joint: "back_rope",
+    place: Place::Dynamics,
+    generic: false,
+    parameters: Cow::Borrowed(&[Parameter::size("loss", Unit::One, 0.015, [0.0, 0.1])]),
+    build: Build::Named(|v| Box::new(Loss { loss: v[0] })),
+};
+
+#[derive(Clone, Copy, Debug)]
+struct Loss {
+    loss: f64,
+}
+
+/// Speed of winding [rad/s] at which three quarters of the loss are there; it reaches 0.5 rad/s.
+const CREEP: f64 = 1e-2;
+
+impl Effect for Loss {
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+        hooks.forces.push(Arc::new(Couple {
+            loss: self.loss,
+            beam: machine.layout.beam(),
+            cycle: cycle.clone(),
+        }));
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Couple {
+    loss: f64,
+    beam: usize,
+    cycle: Cycle,
+}
+
+impl LineForce for Couple {
+    fn coordinate(&self) -> usize {
+        self.beam
+    }
+
+    fn along(&self, drive: &DriveState, _: f64, _: f64) -> Along {
+        let turning = self.cycle.crank().sense * drive.pin_rate;
+        let winding = self.cycle.tangent(drive.turn).first * turning;
+        let pull = self.cycle.tension(drive.turn) * self.cycle.arm(drive.turn);
+        Along {
+            other: self.loss * pull * tanh(winding / CREEP),
+            ..Along::default()
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! A pump valve leaks: the load slips away while it should stay.
+//!
+//! Where the travelling valve leaks, the upper line falls by a ramp from 40 to 190 deg of turn, and is
+//! back at 210 deg; where the standing valve leaks, the lower line rises from 210 to 350 deg and is
+//! back at 370 deg. Only what the card does not know already counts, if it was not measured on the
+//! same strokes.
+use super::Effect;
+use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
+use crate::model::description::Description;
+use std::borrow::Cow;
+
+pub(super) const DESCRIPTOR: Descriptor = Descriptor {
+    id: Cow::Borrowed("valve_leakage"),
+    title: Cow::Borrowed("Leakage of the travelling or the standing valve"),
+    joint: "suspension",
+    place: Place::Load,
+    generic: false,
+    parameters: Cow::Borrowed(&[
+        Parameter::size("travelling", Unit::Newton, 2000.0, [0.0, 2e4]),
+        Parameter::size("standing", Unit::Newton, 2000.0, [0.0, 2e4]),
+    ]),
+    build: Build::Named(|v| {
+        Box::new(Leakage {
+            travelling: v[0],
+            standing: v[1],
+        })
+    }),
+};
+
+#[derive(Clone, Copy, Debug)]
+struct Leakage {
+    travelling: f64,
+    standing: f64,
+}
+
+impl Effect for Leakage {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        let step = 360.0 / d.card.len() as f64;
+        for (i, load) in d.card.iter_mut().enumerate() {
+            let turn = step * i as f64;
+            *load -= self.travelling * ramp(turn, [40.0, 190.0, 210.0]);
+            let later = if turn < 100.0 { turn + 360.0 } else { turn };
+            *load += self.standing * ramp(later, [210.0, 350.0, 370.0]);
+        }
+    }
+}
+
+/// From 0 at the first angle to 1 at the second and back to 0 at the third.
+fn ramp(turn: f64, [from, top, until]: [f64; 3]) -> f64 {
+    if turn < top {
+        ((turn - from) / (top - from)).max(0.0)
+    } else {
+        ((until - turn) / (until - top)).max(0.0)
+    }
+}

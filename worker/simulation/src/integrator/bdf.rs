@@ -1,0 +1,329 @@
+//! Backward differentiation formulas of variable step and order, the class of GSTIFF and DASSL.
+//!
+//! The corrector has a fixed leading coefficient: its polynomial passes through the new state and
+//! through the predictor's values at equal distances `h` back, so that a step of order `k` is the
+//! stage `q = base_q + c v` with `c = h / (1 + 1/2 + ... + 1/k)`. Brenan, Campbell and Petzold (1996),
+//! chapter 5. Work is integrated by the same formula.
+//!
+//! Orders above 2 are no longer A-stable: modes inside the instability wedge along the imaginary
+//! axis grow until the error test cuts the step down to where they are resolved. The head's modes
+//! (0.5 % damping) and the ropes' axial modes lie in it, so that higher orders cost more steps, not
+//! fewer; measured counts stand in the README. The default cap is therefore 2.
+use super::State;
+use super::newton::{Newton, NotConverged, Stage};
+use super::step_control::StepControl;
+use super::stepper::{Step, Stepper};
+use crate::model::Powers;
+use crate::system::{Equations, System};
+
+/// Highest order that is stable at all steps for a real decaying mode and in use (6 hardly is).
+const HIGHEST: usize = 5;
+/// Points that a predictor of the highest order passes through.
+const KEPT: usize = HIGHEST + 1;
+
+/// An accepted state.
+#[derive(Clone, Debug)]
+struct Point {
+    t: f64,
+    q: Vec<f64>,
+    v: Vec<f64>,
+    /// Work done since the start \[J\].
+    work: [f64; 3],
+}
+
+/// Local error of a formula, and its order.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    order: usize,
+    error: f64,
+}
+
+/// The method with its past.
+#[derive(Clone, Debug)]
+pub struct Bdf {
+    highest: usize,
+    order: usize,
+    newton: Newton,
+    /// Accepted states, the latest first; `points` of them are in use.
+    past: Vec<Point>,
+    points: usize,
+    /// Steps made at the present order, and failures since the last accepted one.
+    at_order: usize,
+    failures: u32,
+    /// Work since the start at the end of the step at hand.
+    work: [f64; 3],
+    /// Neighbouring orders that the last step could have been made with.
+    others: [Option<Candidate>; 2],
+    base_q: Vec<f64>,
+    base_v: Vec<f64>,
+    /// Predicted coordinates, then what was wrong with them.
+    error: Vec<f64>,
+}
+
+const fn components(powers: &Powers) -> [f64; 3] {
+    [powers.input, powers.output, powers.dissipated]
+}
+
+impl Bdf {
+    /// For a highest order (clamped to 1..5), `n` coordinates and the local error that steps may
+    /// make.
+    pub fn new(highest: usize, n: usize, tolerance: f64) -> Self {
+        let point = Point {
+            t: 0.0,
+            q: vec![0.0; n],
+            v: vec![0.0; n],
+            work: [0.0; 3],
+        };
+        Self {
+            highest: highest.clamp(1, HIGHEST),
+            order: 1,
+            newton: Newton::new(n, tolerance),
+            past: vec![point; KEPT],
+            points: 0,
+            at_order: 0,
+            failures: 0,
+            work: [0.0; 3],
+            others: [None; 2],
+            base_q: vec![0.0; n],
+            base_v: vec![0.0; n],
+            error: vec![0.0; n],
+        }
+    }
+
+    /// For a motion that is known already: steps of `order` (clamped to 1..5) that go on from `past`,
+    /// the latest state first, at least `order` + 1 of them.
+    pub fn continuing(order: usize, past: &[State], tolerance: f64) -> Self {
+        let n = past.first().map_or(0, |state| state.q.len());
+        let mut method = Self::new(order, n, tolerance);
+        for (point, state) in method.past.iter_mut().zip(past) {
+            point.t = state.t;
+            point.q.copy_from_slice(&state.q);
+            point.v.copy_from_slice(&state.v);
+            method.points += 1;
+        }
+        method.order = method.highest.min(method.points.max(2) - 1);
+        method
+    }
+
+    /// The order of the next step.
+    pub const fn order(&self) -> usize {
+        self.order
+    }
+
+    /// The first step's past: the start, and where the motion would have come from along its tangent.
+    fn begin(&mut self, from: &State, h: f64) {
+        let [now, before, ..] = self.past.as_mut_slice() else {
+            return;
+        };
+        now.t = from.t;
+        now.q.copy_from_slice(&from.q);
+        now.v.copy_from_slice(&from.v);
+        before.t = from.t - h;
+        for k in 0..from.q.len() {
+            before.q[k] = from.q[k] - h * from.v[k];
+            before.v[k] = from.v[k] - h * from.a[k];
+        }
+    }
+
+    /// Weights of the past in the predictor's value and rate at time `t`.
+    fn predictor(&self, t: f64) -> [[f64; KEPT]; 2] {
+        let mut weights = [[0.0; KEPT]; 2];
+        let points = &self.past[..=self.order];
+        for (i, own) in points.iter().enumerate() {
+            let (mut value, mut rate) = (1.0, 0.0);
+            for (j, other) in points.iter().enumerate() {
+                if i != j {
+                    value *= (t - other.t) / (own.t - other.t);
+                    rate += 1.0 / (t - other.t);
+                }
+            }
+            weights[0][i] = value;
+            weights[1][i] = value * rate;
+        }
+        weights
+    }
+
+    /// Fills the stage's bases and the predicted coordinates, and the predicted rates into `v`;
+    /// returns the bases of the work.
+    fn predict(&mut self, t: f64, c: f64, v: &mut [f64]) -> [f64; 3] {
+        let [value, rate] = self.predictor(t);
+        let used = self.order + 1;
+        let (value, rate) = (&value[..used], &rate[..used]);
+        let past = &self.past;
+        for k in 0..self.error.len() {
+            let [mut q, mut dq, mut u, mut du] = [0.0; 4];
+            for (point, (&value, &rate)) in past.iter().zip(value.iter().zip(rate)) {
+                q += value * point.q[k];
+                dq += rate * point.q[k];
+                u += value * point.v[k];
+                du += rate * point.v[k];
+            }
+            self.error[k] = q;
+            self.base_q[k] = q - c * dq;
+            self.base_v[k] = u - c * du;
+            v[k] = dq;
+        }
+        std::array::from_fn(|k| {
+            let weighted = past.iter().zip(value.iter().zip(rate));
+            weighted
+                .map(|(point, (value, rate))| (value - c * rate) * point.work[k])
+                .sum()
+        })
+    }
+
+    /// Constant of the local error over what was wrong with the prediction, for a step to `t`.
+    fn constant(&self, t: f64, h: f64) -> f64 {
+        let last = h / (t - self.past[self.order].t);
+        let mut own = 0.0;
+        let mut fixed = 0.0;
+        for (i, point) in self.past[..self.order].iter().enumerate() {
+            own += h / (t - point.t);
+            fixed += 1.0 / (i + 1) as f64;
+        }
+        last.max((last + own - fixed).abs())
+    }
+
+    /// Local error of the formula of `order` at the new state, from divided differences.
+    fn error_at<E: Equations>(&mut self, order: usize, equations: &E, to: &State) -> Candidate {
+        let h = to.t - self.past[0].t;
+        let earlier = &self.past[..=order];
+        let mut scale = 1.0;
+        for i in 1..=order {
+            scale *= i as f64;
+        }
+        for _ in 0..=order {
+            scale *= h;
+        }
+        // order! h^(order + 1) times the divided difference: h^(order + 1) q^(order + 1) / (order + 1)
+        let first: f64 = earlier.iter().map(|other| to.t - other.t).product();
+        for (difference, q) in self.error.iter_mut().zip(&to.q) {
+            *difference = scale / first * q;
+        }
+        for (i, own) in earlier.iter().enumerate() {
+            let mut product = own.t - to.t;
+            for (j, other) in earlier.iter().enumerate() {
+                if i != j {
+                    product *= own.t - other.t;
+                }
+            }
+            let weight = scale / product;
+            for (difference, q) in self.error.iter_mut().zip(&own.q) {
+                *difference += weight * q;
+            }
+        }
+        Candidate {
+            order,
+            error: equations.error_norm(&self.error),
+        }
+    }
+}
+
+impl<E: Equations> Stepper<E> for Bdf {
+    fn step(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        h: f64,
+        to: &mut State,
+    ) -> Result<Step, NotConverged> {
+        if self.points == 0 {
+            self.begin(from, h);
+        }
+        let t = from.t + h;
+        let sum: f64 = (1..=self.order).map(|i| 1.0 / i as f64).sum();
+        let c = h / sum;
+        let base_work = self.predict(t, c, &mut to.v);
+        let stage = Stage {
+            t,
+            c,
+            d: c,
+            base_q: &self.base_q,
+            base_v: &self.base_v,
+        };
+        self.newton
+            .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
+        to.t = t;
+        let powers = components(&system.equations.powers(t, &to.q, &to.v, &to.a));
+        let constant = self.constant(t, h);
+        for (error, q) in self.error.iter_mut().zip(&to.q) {
+            *error = constant * (q - *error);
+        }
+        let [input, output, dissipated] = std::array::from_fn(|k| {
+            self.work[k] = base_work[k] + c * powers[k];
+            self.work[k] - self.past[0].work[k]
+        });
+        Ok(Step {
+            error: system.equations.error_norm(&self.error),
+            work: Powers {
+                input,
+                output,
+                dissipated,
+            },
+        })
+    }
+
+    fn accept(&mut self, equations: &E, to: &State) {
+        self.failures = 0;
+        self.at_order += 1;
+        // the fictitious point of the first step is worth no more than its tangent
+        let known = self.points.max(1);
+        let order = self.order;
+        let ripe = self.at_order > order;
+        self.others = [
+            (ripe && order > 1).then(|| self.error_at(order - 1, equations, to)),
+            (ripe && order < self.highest && known > order + 1)
+                .then(|| self.error_at(order + 1, equations, to)),
+        ];
+        self.past.rotate_right(1);
+        let newest = &mut self.past[0];
+        newest.t = to.t;
+        newest.q.copy_from_slice(&to.q);
+        newest.v.copy_from_slice(&to.v);
+        newest.work = self.work;
+        self.points = (known + 1).min(KEPT);
+    }
+
+    fn reject(&mut self) {
+        self.failures += 1;
+        self.at_order = 0;
+        if self.failures > 1 {
+            self.order = if self.failures > 2 {
+                1
+            } else {
+                self.order.max(2) - 1
+            };
+        }
+    }
+
+    fn error_order(&self) -> f64 {
+        self.order as f64 + 1.0
+    }
+
+    fn next(&mut self, control: &StepControl, step: f64, error: f64) -> f64 {
+        let factor = |order: usize, error: f64| {
+            let control = StepControl {
+                order: order as f64 + 1.0,
+                ..*control
+            };
+            control.factor(error)
+        };
+        let mut best = (self.order, error, factor(self.order, error));
+        for other in self.others.into_iter().flatten() {
+            // another order must be worth the change
+            let gain = factor(other.order, other.error);
+            if gain > 1.15 * best.2 || (other.order < best.0 && gain > 1.02 * best.2) {
+                best = (other.order, other.error, gain);
+            }
+        }
+        if best.0 == self.order {
+            return control.next(step, error);
+        }
+        self.order = best.0;
+        self.at_order = 0;
+        let control = StepControl {
+            order: best.0 as f64 + 1.0,
+            ..*control
+        };
+        control.next(step, best.1)
+    }
+}

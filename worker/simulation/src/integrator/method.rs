@@ -1,0 +1,86 @@
+//! The methods that a run can be integrated with: one line each.
+use super::bdf::Bdf;
+use super::esdirk::Esdirk;
+use super::generalized_alpha::GeneralizedAlpha;
+use super::rosenbrock::Rosenbrock;
+use super::stepper::Stepper;
+use super::tableau::{ESDIRK4, TR_BDF2, Tableau};
+use crate::system::{Equations, System};
+
+/// A method of integration, by choice.
+#[derive(Clone, Copy, Debug)]
+pub enum Method {
+    /// Singly diagonally implicit Runge-Kutta method with an explicit first stage.
+    RungeKutta(&'static Tableau),
+    /// RODAS: a Rosenbrock method of order 4, linear solutions instead of Newton's method.
+    Rosenbrock,
+    /// Generalised-alpha of Chung and Hulbert, order 2.
+    GeneralizedAlpha {
+        /// Spectral radius at infinite frequency, 0 (annihilates) to 1 (keeps).
+        spectral_radius: f64,
+    },
+    /// Backward differentiation formulas of variable step and order.
+    Bdf {
+        /// Highest order, 1 to 5.
+        highest: usize,
+    },
+}
+
+/// Spectral radius that damps what is not resolved within a few steps and leaves the rest alone.
+pub const SPECTRAL_RADIUS: f64 = 0.5;
+
+/// Every method as it is used by default.
+pub static CATALOGUE: [Method; 5] = [
+    Method::RungeKutta(&TR_BDF2),
+    Method::RungeKutta(&ESDIRK4),
+    Method::Rosenbrock,
+    Method::GeneralizedAlpha {
+        spectral_radius: SPECTRAL_RADIUS,
+    },
+    Method::Bdf { highest: 2 },
+];
+
+impl Method {
+    /// Name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::RungeKutta(tableau) => tableau.name,
+            Self::Rosenbrock => "rodas4",
+            Self::GeneralizedAlpha { .. } => "generalized-alpha",
+            Self::Bdf { highest: 1 } => "bdf, order 1",
+            Self::Bdf { highest: 2 } => "bdf, order <= 2",
+            Self::Bdf { highest: 3 } => "bdf, order <= 3",
+            Self::Bdf { highest: 4 } => "bdf, order <= 4",
+            Self::Bdf { .. } => "bdf, order <= 5",
+        }
+    }
+
+    /// Order of the result, the highest one of a method that varies it.
+    pub const fn order(self) -> usize {
+        match self {
+            Self::RungeKutta(tableau) => tableau.order as usize,
+            Self::Rosenbrock => 4,
+            Self::GeneralizedAlpha { .. } => 2,
+            Self::Bdf { highest } => highest,
+        }
+    }
+
+    /// The method with its buffers for a system, and with the local error that its steps may make.
+    pub fn stepper<E: Equations>(self, system: &System<E>, tolerance: f64) -> Box<dyn Stepper<E>> {
+        let n = system.len();
+        match self {
+            Self::RungeKutta(tableau) => Box::new(Esdirk::new(tableau, n, tolerance)),
+            Self::Rosenbrock => Box::new(Rosenbrock::new(system.equations.matrix())),
+            Self::GeneralizedAlpha { spectral_radius } => {
+                Box::new(GeneralizedAlpha::new(spectral_radius, n, tolerance))
+            }
+            Self::Bdf { highest } => Box::new(Bdf::new(highest, n, tolerance)),
+        }
+    }
+}
+
+impl From<&'static Tableau> for Method {
+    fn from(tableau: &'static Tableau) -> Self {
+        Self::RungeKutta(tableau)
+    }
+}

@@ -1,0 +1,249 @@
+//! RODAS: a Rosenbrock method of order 4 (3) with six stages, stiffly accurate and L-stable. Hairer
+//! and Wanner (1996), section VI.4.
+//!
+//! The equations are taken as `q' = v`, `v' = a`, `0 = Q(q, v, t) - M(q) a`, for whose kind the method
+//! was made; accelerations are unknowns like the others. Eliminating rates and accelerations of a
+//! stage leaves one solution with `S = g^2 M - g D - K`, `g = 1 / (gamma h)`, the matrix of all other
+//! methods, and one product with `K`. The order needs the exact tangent: this is the one method that
+//! adds what Newton's method can do without ([`Equations::add_spin_tangent`]).
+use super::State;
+use super::dense::interpolate;
+use super::newton::NotConverged;
+use super::stepper::{Step, Stepper, add_work};
+use crate::linear::Bordered;
+use crate::model::Powers;
+use crate::system::{Equations, System};
+
+const STAGES: usize = 6;
+const GAMMA: f64 = 0.25;
+/// Nodes.
+const NODES: [f64; STAGES] = [0.0, 0.386, 0.21, 0.63, 1.0, 1.0];
+/// Factors of the derivative by time.
+const BY_TIME: [f64; STAGES] = [0.25, -0.1043, 0.1035, -0.036_200_000_000_000_23, 0.0, 0.0];
+/// Weights of earlier stages in a stage's argument; the sixth continues the fifth, and the result
+/// the sixth.
+const ARGUMENT: [&[f64]; STAGES] = [
+    &[],
+    &[1.544],
+    &[0.946_678_528_081_582_6, 0.255_701_169_898_328_4],
+    &[
+        3.314_825_187_068_521,
+        2.896_124_015_972_201,
+        0.998_641_913_997_781_7,
+    ],
+    &[
+        1.221_224_509_226_641,
+        6.019_134_481_288_629,
+        12.537_083_329_320_87,
+        -0.687_886_036_105_895,
+    ],
+    &[
+        1.221_224_509_226_641,
+        6.019_134_481_288_629,
+        12.537_083_329_320_87,
+        -0.687_886_036_105_895,
+        1.0,
+    ],
+];
+/// Weights over `h` of earlier stages in a stage's right side.
+const RIGHT: [&[f64]; STAGES] = [
+    &[],
+    &[-5.6688],
+    &[-2.430_093_356_833_875, -0.206_359_915_709_191_5],
+    &[
+        -0.107_352_905_815_137_5,
+        -9.594_562_251_023_355,
+        -20.470_286_148_096_16,
+    ],
+    &[
+        7.496_443_313_967_647,
+        -10.246_804_314_643_52,
+        -33.999_903_528_199_05,
+        11.708_908_932_061_6,
+    ],
+    &[
+        8.083_246_795_921_522,
+        -7.981_132_988_064_893,
+        -31.521_594_328_743_71,
+        16.319_305_431_231_36,
+        -6.058_818_238_834_054,
+    ],
+];
+
+/// Share of the step over which the derivative by time is differenced: its error is this share of a
+/// term of the step's own order.
+const TIME_SHARE: f64 = 1e-5;
+
+/// Increments of coordinates, rates and accelerations of one stage.
+#[derive(Clone, Debug)]
+struct Increment {
+    q: Vec<f64>,
+    v: Vec<f64>,
+    a: Vec<f64>,
+}
+
+/// The method with its buffers.
+#[derive(Clone, Debug)]
+pub struct Rosenbrock {
+    /// `-K`.
+    stiffness: Bordered,
+    increments: Vec<Increment>,
+    powers: [Powers; 2],
+    /// Derivative of the forces by time.
+    by_time: Vec<f64>,
+    /// Rates of the stage's argument with the right side's share.
+    rates: Vec<f64>,
+    /// Accelerations likewise.
+    inertial: Vec<f64>,
+    right: Vec<f64>,
+    product: Vec<f64>,
+    middle: State,
+}
+
+impl Rosenbrock {
+    /// `matrix` is an empty one of the system's shape.
+    pub fn new(matrix: Bordered) -> Self {
+        let n = matrix.len();
+        let zeros = || vec![0.0; n];
+        let increment = || Increment {
+            q: zeros(),
+            v: zeros(),
+            a: zeros(),
+        };
+        Self {
+            stiffness: matrix,
+            increments: (0..STAGES).map(|_| increment()).collect(),
+            powers: [Powers::default(); 2],
+            by_time: zeros(),
+            rates: zeros(),
+            inertial: zeros(),
+            right: zeros(),
+            product: zeros(),
+            middle: State::at_rest(0.0, zeros()),
+        }
+    }
+
+    /// Fills derivative by time and `-K`, factorises `S`.
+    fn linearize<E: Equations>(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        h: f64,
+    ) -> Result<(), NotConverged> {
+        let State { t, q, v, .. } = from;
+        let later = TIME_SHARE * h;
+        system.forces(t + later, q, v, &mut self.by_time);
+        system.forces(*t, q, v, &mut self.right);
+        for (by_time, now) in self.by_time.iter_mut().zip(&self.right) {
+            *by_time = (*by_time - now) / later;
+        }
+        let g = 1.0 / (GAMMA * h);
+        system.exact_tangent(from, (0.0, 0.0), &mut self.stiffness);
+        system
+            .factorize_exact(from, (g * g, g))
+            .map_err(|_| NotConverged)
+    }
+
+    /// Fills the argument of stage `i` into `to`.
+    fn argument(&self, i: usize, from: &State, to: &mut State) {
+        to.q.copy_from_slice(&from.q);
+        to.v.copy_from_slice(&from.v);
+        to.a.copy_from_slice(&from.a);
+        for (&weight, increment) in ARGUMENT[i].iter().zip(&self.increments) {
+            add(&mut to.q, weight, &increment.q);
+            add(&mut to.v, weight, &increment.v);
+            add(&mut to.a, weight, &increment.a);
+        }
+    }
+
+    /// Solves for the increments of stage `i`, whose argument is in `to`.
+    fn solve<E: Equations>(
+        &mut self,
+        i: usize,
+        system: &mut System<E>,
+        (from, to): (&State, &State),
+        h: f64,
+    ) {
+        let g = 1.0 / (GAMMA * h);
+        self.rates.copy_from_slice(&to.v);
+        self.inertial.copy_from_slice(&to.a);
+        for (&weight, increment) in RIGHT[i].iter().zip(&self.increments) {
+            add(&mut self.rates, weight / h, &increment.q);
+            add(&mut self.inertial, weight / h, &increment.v);
+        }
+        // S w = g (R + h_i R_t + M z) + K p with p, z the sums above; the unknowns are q and v
+        let t = from.t + NODES[i] * h;
+        system.residual(t, &to.q, &to.v, &to.a, &mut self.right);
+        add(&mut self.right, BY_TIME[i] * h, &self.by_time);
+        for inertial in &mut self.inertial {
+            *inertial = -*inertial;
+        }
+        system
+            .equations
+            .subtract_inertia(&from.q, &self.inertial, &mut self.right);
+        self.stiffness.multiply(&self.rates, &mut self.product);
+        for (right, product) in self.right.iter_mut().zip(&self.product) {
+            *right = g * *right - product;
+        }
+        system.solve(&mut self.right);
+        system.statistics.newton_iterations += 1;
+        let increment = &mut self.increments[i];
+        for k in 0..self.right.len() {
+            let v = self.right[k];
+            increment.q[k] = (v + self.rates[k]) / g;
+            increment.v[k] = v;
+            increment.a[k] = g * v + self.inertial[k];
+        }
+    }
+}
+
+/// `to += weight x`.
+fn add(to: &mut [f64], weight: f64, x: &[f64]) {
+    for (to, x) in to.iter_mut().zip(x) {
+        *to += weight * x;
+    }
+}
+
+impl<E: Equations> Stepper<E> for Rosenbrock {
+    fn step(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        h: f64,
+        to: &mut State,
+    ) -> Result<Step, NotConverged> {
+        self.linearize(system, from, h)?;
+        for i in 0..STAGES {
+            self.argument(i, from, to);
+            self.solve(i, system, (from, to), h);
+        }
+        let last = &self.increments[STAGES - 1];
+        add(&mut to.q, 1.0, &last.q);
+        add(&mut to.v, 1.0, &last.v);
+        add(&mut to.a, 1.0, &last.a);
+        to.t = from.t + h;
+        // work by Simpson's rule on the dense output
+        interpolate(from, to, from.t + 0.5 * h, &mut self.middle);
+        let State { t, q, v, a } = &self.middle;
+        system.forces(*t, q, v, &mut self.right);
+        let middle = system.equations.powers(*t, q, v, a);
+        system.forces(to.t, &to.q, &to.v, &mut self.right);
+        self.powers[1] = system.equations.powers(to.t, &to.q, &to.v, &to.a);
+        let mut work = Powers::default();
+        add_work(&mut work, h / 6.0, &self.powers[0]);
+        add_work(&mut work, 4.0 * h / 6.0, &middle);
+        add_work(&mut work, h / 6.0, &self.powers[1]);
+        Ok(Step {
+            error: system.equations.error_norm(&self.increments[STAGES - 1].q),
+            work,
+        })
+    }
+
+    fn accept(&mut self, _: &E, _: &State) {
+        self.powers[0] = self.powers[1];
+    }
+
+    fn error_order(&self) -> f64 {
+        4.0
+    }
+}

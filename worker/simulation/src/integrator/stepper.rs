@@ -1,0 +1,55 @@
+//! What all methods of integration have in common: a step of a given size, and what it may be told.
+use super::{State, newton::NotConverged, step_control::StepControl};
+use crate::model::Powers;
+use crate::system::{Equations, System};
+use std::fmt::Debug;
+
+/// Result of one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Local error in units of the error norm.
+    pub error: f64,
+    /// Work done during the step: input, output, dissipated \[J\].
+    pub work: Powers,
+}
+
+/// A method of integration with its buffers and whatever it remembers of earlier steps.
+///
+/// It knows neither what is recorded nor which size a step should have, unless it says so in
+/// [`Stepper::next`].
+pub trait Stepper<E: Equations>: Debug {
+    /// One step of size `h` from `from`, where the last accepted step ended, into `to`.
+    ///
+    /// The loads that the equations keep belong to `to` afterwards.
+    ///
+    /// # Errors
+    /// [`NotConverged`] when the step could not be made; `to` is then meaningless.
+    fn step(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        h: f64,
+        to: &mut State,
+    ) -> Result<Step, NotConverged>;
+
+    /// The last step was accepted; it ends in `to`.
+    fn accept(&mut self, equations: &E, to: &State);
+
+    /// The last step failed or erred too much: another one from the same state will follow.
+    fn reject(&mut self) {}
+
+    /// Order of the last step's error estimate in its size.
+    fn error_order(&self) -> f64;
+
+    /// Size of the step after the accepted one \[s\].
+    fn next(&mut self, control: &StepControl, step: f64, error: f64) -> f64 {
+        control.next(step, error)
+    }
+}
+
+/// Adds `weight` times `powers` to `work`.
+pub(super) const fn add_work(work: &mut Powers, weight: f64, powers: &Powers) {
+    work.input += weight * powers.input;
+    work.output += weight * powers.output;
+    work.dissipated += weight * powers.dissipated;
+}

@@ -1,0 +1,88 @@
+//! Forced nonlinear equations of motion with a known solution, for orders of convergence.
+use simulation::integrator::State;
+use simulation::linear::{BLOCK, Bordered};
+use simulation::model::Powers;
+use simulation::system::Equations;
+
+/// `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with
+/// `m(q) = 1 + cos(q_0) / 8`, solved by `q = x(t)`, `x_i = sin(w_i t + i)`.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Forced;
+
+const STIFFNESS: f64 = 40.0;
+const CUBIC: f64 = 15.0;
+const DAMPING: f64 = 3.0;
+
+fn inertia(q: &[f64]) -> f64 {
+    1.0 + 0.125 * q[0].cos()
+}
+
+impl Forced {
+    /// The solution at a time.
+    pub(crate) fn exact(t: f64) -> State {
+        let mut state = State::at_rest(t, vec![0.0; BLOCK]);
+        for i in 0..BLOCK {
+            let w = 1.0 + 0.7 * i as f64;
+            let (s, c) = (w * t + i as f64).sin_cos();
+            (state.q[i], state.v[i], state.a[i]) = (s, w * c, -w * w * s);
+        }
+        state
+    }
+}
+
+impl Equations for Forced {
+    fn matrix(&self) -> Bordered {
+        Bordered::space(&[1], 0)
+    }
+
+    fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
+        let x = Self::exact(t);
+        let m = inertia(&x.q);
+        for i in 0..BLOCK {
+            force[i] = m * x.a[i]
+                + STIFFNESS * (x.q[i] - q[i])
+                + CUBIC * (x.q[i].powi(3) - q[i].powi(3))
+                + DAMPING * (x.v[i] - v[i]);
+        }
+    }
+
+    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+        let m = inertia(q);
+        for (out, a) in out.iter_mut().zip(a) {
+            *out -= m * a;
+        }
+    }
+
+    fn tangent(
+        &mut self,
+        _: f64,
+        (q, _): (&[f64], &[f64]),
+        (mu, gamma): (f64, f64),
+        matrix: &mut Bordered,
+    ) {
+        matrix.clear();
+        let m = inertia(q);
+        for i in 0..BLOCK {
+            let value = mu * m + gamma * DAMPING + STIFFNESS + 3.0 * CUBIC * q[i] * q[i];
+            matrix.add_diagonal(0, i, i, value);
+        }
+    }
+
+    fn add_spin_tangent(&self, (q, _, a): (&[f64], &[f64], &[f64]), _: f64, matrix: &mut Bordered) {
+        for i in 0..BLOCK {
+            matrix.add_diagonal(0, i, 0, -0.125 * q[0].sin() * a[i]);
+        }
+    }
+
+    fn newton_norm(&self, change: &[f64]) -> f64 {
+        change.iter().map(|x| x.abs() / 1e-5).fold(0.0, f64::max)
+    }
+
+    fn error_norm(&self, error: &[f64]) -> f64 {
+        error.iter().map(|x| x.abs()).fold(0.0, f64::max)
+    }
+
+    fn powers(&mut self, _: f64, _: &[f64], _: &[f64], _: &[f64]) -> Powers {
+        Powers::default()
+    }
+}

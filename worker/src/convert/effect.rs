@@ -1,0 +1,191 @@
+//! Effects: their descriptions as they travel, and settings as the dynamics take them.
+use super::misconfigured;
+use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
+use protocol::case::EffectSetting;
+use protocol::job::Failure;
+use simulation::effect::{self, Asked, Refused, Selection, catalogue};
+
+/// Every effect of the catalogue, as a worker announces it.
+pub fn descriptors() -> Vec<EffectDescriptor> {
+    let described = catalogue().iter().map(|d| EffectDescriptor {
+        id: d.id.to_string(),
+        title: d.title.to_string(),
+        joint: d.joint.to_owned(),
+        place: match d.place {
+            effect::Place::Dynamics => announce::Place::Dynamics,
+            effect::Place::Drive => announce::Place::Drive,
+            effect::Place::Load => announce::Place::Load,
+            effect::Place::Gauge => announce::Place::Gauge,
+        },
+        generic: d.generic,
+        parameters: d.parameters.iter().map(parameter).collect(),
+    });
+    described.collect()
+}
+
+fn parameter(p: &effect::Parameter) -> ParameterDescriptor {
+    ParameterDescriptor {
+        name: p.name.to_owned(),
+        unit: p.unit.symbol().to_owned(),
+        role: match p.role {
+            effect::Role::Size => announce::Role::Size,
+            effect::Role::Shape => announce::Role::Shape,
+        },
+        sign: if p.is_one_sided() {
+            announce::Sign::Positive
+        } else {
+            announce::Sign::Either
+        },
+        lower: p.lower,
+        upper: p.upper,
+        absent: p.absent,
+        typical: p.typical,
+        scale: p.scale,
+    }
+}
+
+/// Settings checked against the catalogue.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the effect or its parameter by its place in the list, and the
+/// nearest known name.
+pub fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
+    let asked: Vec<Asked<'_>> = settings
+        .iter()
+        .map(|setting| Asked {
+            id: &setting.id,
+            parameters: setting
+                .parameters
+                .iter()
+                .map(|(name, value)| (name.as_str(), *value))
+                .collect(),
+        })
+        .collect();
+    Selection::new(&asked).map_err(|refused| {
+        let place = format!("effects[{}]", refused.effect());
+        let field = match refused.parameter() {
+            Some(name) => format!("{place}.parameters.{name}"),
+            None => format!("{place}.id"),
+        };
+        misconfigured(&field, problem(&refused))
+    })
+}
+
+/// The units that a case states are those of the catalogue. What the catalogue does not have is left
+/// to [`selection`].
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the first that differs.
+pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<(), Failure> {
+    for (k, (setting, units)) in settings.iter().zip(units).enumerate() {
+        let Some(descriptor) = catalogue().iter().find(|d| d.id == setting.id) else {
+            continue;
+        };
+        for ((name, _), unit) in setting.parameters.iter().zip(units) {
+            let parameter = descriptor.parameters.iter().find(|p| p.name == name);
+            if let Some(own) = parameter.map(|p| p.unit.symbol()).filter(|own| own != unit) {
+                return Err(misconfigured(
+                    &format!("effects[{k}].parameters.{name}.unit"),
+                    format!("is \"{unit}\"; `{}` takes it in {own}", setting.id),
+                ));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// What is wrong, with what was probably meant.
+fn problem(refused: &Refused) -> String {
+    match refused {
+        Refused::UnknownEffect { id, .. } => {
+            let known = catalogue().iter().map(|d| &*d.id);
+            format!("{refused}; {}", meant(id, known))
+        }
+        Refused::UnknownParameter { id, name, .. } => {
+            let of = catalogue().iter().find(|d| d.id == *id);
+            let known = of.into_iter().flat_map(|d| d.parameters.iter());
+            format!("{refused}; {}", meant(name, known.map(|p| p.name)))
+        }
+        Refused::Twice { .. } | Refused::OutOfBounds { .. } => refused.to_string(),
+    }
+}
+
+/// The nearest known name if one is near, otherwise all of them that have no `.` in them.
+fn meant<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> String {
+    let alike = known
+        .clone()
+        .map(|other| (strsim::normalized_damerau_levenshtein(name, other), other))
+        .filter(|(alike, _)| *alike >= 0.5)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    match alike {
+        Some((_, near)) => format!("did you mean `{near}`?"),
+        None => {
+            let plain: Vec<&str> = known.filter(|name| !name.contains('.')).collect();
+            format!("known are {}", plain.join(", "))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refused(id: &str, name: &str, value: f64) -> (String, String) {
+        let good = EffectSetting::new("load_offset", &[("force", 500.0)]);
+        let settings = [good, EffectSetting::new(id, &[(name, value)])];
+        match selection(&settings).unwrap_err() {
+            Failure::Misconfigured { field, problem } => (field, problem),
+            other => unreachable!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_is_refused_names_field_and_remedy() {
+        let (field, problem) = refused("pivot_frction", "moment", 1.0);
+        assert_eq!(field, "effects[1].id");
+        assert!(
+            problem.ends_with("did you mean `pivot_friction`?"),
+            "{problem}"
+        );
+        let (field, problem) = refused("pivot_friction", "momment", 1.0);
+        assert_eq!(field, "effects[1].parameters.momment");
+        assert!(problem.ends_with("did you mean `moment`?"), "{problem}");
+        let (field, problem) = refused("pivot_friction", "zzz", 1.0);
+        assert_eq!(field, "effects[1].parameters.zzz");
+        assert!(problem.contains("known are moment, viscous"), "{problem}");
+        let (field, problem) = refused("head_profile_wear", "centre", 20.0);
+        assert_eq!(field, "effects[1].parameters.centre");
+        assert_eq!(problem, "is 20; it must lie between 130 and 215 deg");
+        let (_, problem) = refused("load_offset", "force", 1.0);
+        assert_eq!(problem, "`load_offset` is given twice");
+    }
+
+    #[test]
+    fn a_unit_of_another_quantity_is_refused() {
+        let settings = [EffectSetting::new("pivot_friction", &[("moment", 1.0)])];
+        let units = |unit: &str| [vec![unit.to_owned()]];
+        assert_eq!(check_units(&settings, &units("N.m")), Ok(()));
+        let Err(Failure::Misconfigured { field, problem }) = check_units(&settings, &units("N"))
+        else {
+            unreachable!("accepted")
+        };
+        assert_eq!(field, "effects[0].parameters.moment.unit");
+        assert_eq!(problem, "is \"N\"; `pivot_friction` takes it in N.m");
+        for p in catalogue().iter().flat_map(|d| d.parameters.iter()) {
+            assert!(protocol::unit::EFFECT_UNITS.contains(&p.unit.symbol()));
+        }
+    }
+
+    #[test]
+    fn every_effect_is_announced_as_it_is() {
+        let announced = descriptors();
+        assert_eq!(announced.len(), catalogue().len());
+        let one = announced.iter().find(|d| d.id == "gauge_drift").unwrap();
+        assert_eq!(one.place, announce::Place::Gauge);
+        assert_eq!(one.parameters[2].unit, "MPa/rev");
+        assert_eq!(one.parameters[2].sign, announce::Sign::Either);
+        let friction = announced.iter().find(|d| d.id == "pivot_friction").unwrap();
+        assert_eq!(friction.parameters[0].sign, announce::Sign::Positive);
+        assert_eq!(friction.parameters[2].role, announce::Role::Shape);
+    }
+}

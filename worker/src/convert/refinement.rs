@@ -1,0 +1,77 @@
+//! The same machine, discretised otherwise.
+use super::misconfigured;
+use protocol::case::Case;
+use protocol::job::{Failure, Refinement};
+
+/// A case with another discretisation.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] when cylinders do not fill the ropes.
+pub fn refined(case: &Case, refinement: &Refinement) -> Result<Case, Failure> {
+    let mut case = case.clone();
+    if let Some(length) = refinement.cylinder_length_m {
+        for count in [
+            &mut case.ropes.back_cylinders,
+            &mut case.ropes.front_cylinders,
+        ] {
+            let rope = *count as f64 * case.ropes.cylinder_length_m;
+            let fitting = (rope / length).round();
+            let fits = (3.0..=MOST_CYLINDERS).contains(&fitting)
+                && (fitting * length - rope).abs() < 1e-6 * rope;
+            if !fits {
+                return Err(misconfigured(
+                    "refinement.cylinder_length_m",
+                    format!("is {length}; it must divide a rope of {rope} m into 3 to 5000 parts"),
+                ));
+            }
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a whole number between the limits above"
+            )]
+            let fitting = fitting as usize;
+            *count = fitting;
+        }
+        case.ropes.cylinder_length_m = length;
+    }
+    if let Some(modes) = refinement.modes {
+        if modes > case.modal_head.frequencies_hz.len() {
+            return Err(misconfigured(
+                "refinement.modes",
+                format!(
+                    "is {modes}; the head has {}",
+                    case.modal_head.frequencies_hz.len()
+                ),
+            ));
+        }
+        case.run.modes = modes;
+    }
+    let positive = |field: &str, value: f64| {
+        if value > 0.0 && value.is_finite() {
+            return Ok(value);
+        }
+        Err(misconfigured(
+            field,
+            format!("is {value}; it must be a positive number"),
+        ))
+    };
+    if let Some(step) = refinement.longest_step_s {
+        case.run.longest_step_s = positive("refinement.longest_step_s", step)?;
+    }
+    if let Some(lead_in) = refinement.lead_in_deg {
+        if !(0.0..=3600.0).contains(&lead_in) {
+            return Err(misconfigured(
+                "refinement.lead_in_deg",
+                format!("is {lead_in}; it must lie between 0 and 3600"),
+            ));
+        }
+        case.run.lead_in_deg = lead_in;
+    }
+    if let Some(tolerance) = refinement.tolerance {
+        case.run.tolerance = positive("refinement.tolerance", tolerance)?;
+    }
+    Ok(case)
+}
+
+/// Most cylinders that a rope may have.
+const MOST_CYLINDERS: f64 = 5000.0;

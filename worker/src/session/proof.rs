@@ -1,0 +1,104 @@
+//! Proof that this worker computes what the others compute: the case's reference individual.
+//!
+//! It is an ordinary job in an ordinary slot: the recommended parameters under the condition of
+//! the objective. The name of its outcome's bits is what the coordinator compares. A case that
+//! cannot be built gives a proof too: that of what is wrong with it, which must be the same
+//! everywhere.
+use crate::pool::{CaseBytes, Task};
+use protocol::{
+    case::Case,
+    id::{AttemptId, ContentHash, JobId},
+    job::{Failure, Job, Outcome, ScoreSpec},
+    message::Attempt,
+    wire,
+};
+use std::time::Duration;
+
+/// What the reference individual is called; no coordinator gives this name to a job.
+pub(super) const ATTEMPT: Attempt = Attempt {
+    job: JobId(u64::MAX),
+    attempt: AttemptId(u32::MAX),
+};
+
+/// From start to forced end.
+const DEADLINE: Duration = Duration::from_mins(10);
+
+/// How far the proof has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Proof {
+    /// It is still to be computed.
+    Missing,
+    /// A slot computes it.
+    Running,
+    /// The name of its bits.
+    Known(ContentHash),
+}
+
+impl Proof {
+    /// What came out; why this worker cannot work if nothing did.
+    pub(super) fn of(outcome: Option<Outcome>) -> Result<Self, String> {
+        match outcome {
+            None => Ok(Self::Missing),
+            Some(Outcome::Failed(
+                failure @ (Failure::Crashed { .. }
+                | Failure::Deadline { .. }
+                | Failure::Lost { .. }
+                | Failure::Refused { .. }),
+            )) => Err(format!(
+                "the reference individual of the case cannot be computed here: {failure}"
+            )),
+            Some(outcome) => match wire::encode(&outcome) {
+                Ok(bytes) => Ok(Self::Known(ContentHash::of(&bytes))),
+                Err(error) => Err(format!("the reference individual has no name: {error}")),
+            },
+        }
+    }
+
+    /// The name of its bits, if it is known.
+    pub(super) const fn known(&self) -> Option<ContentHash> {
+        match self {
+            Self::Known(proof) => Some(*proof),
+            Self::Missing | Self::Running => None,
+        }
+    }
+}
+
+/// The reference individual of a case, as a task; why there is none if there is none.
+pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
+    let decoded: Case = wire::decode(&case.bytes)
+        .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
+    let job = Job::Score(ScoreSpec {
+        effects: Vec::new(),
+        condition: decoded.objective.condition,
+        genes: decoded.recommended(),
+        with_residual: true,
+    });
+    Ok(Task {
+        attempt: ATTEMPT,
+        deadline: DEADLINE,
+        job: Box::new(job),
+        case: Some(case.clone()),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_proof_names_every_bit_and_only_a_case_may_be_at_fault() {
+        let of = |outcome| Proof::of(Some(outcome)).map(|proof| proof.known());
+        let one = of(Outcome::Nothing(vec![1])).unwrap();
+        assert!(one.is_some());
+        assert_ne!(one, of(Outcome::Nothing(vec![2])).unwrap());
+        let case_at_fault = Failure::Misconfigured {
+            field: "beam".to_owned(),
+            problem: "no mass".to_owned(),
+        };
+        assert!(of(Outcome::Failed(case_at_fault)).unwrap().is_some());
+        let how = "ended by signal 6".to_owned();
+        let refused = of(Outcome::Failed(Failure::Crashed { how })).unwrap_err();
+        assert!(refused.contains("cannot be computed here"), "{refused}");
+        assert_eq!(Proof::of(None), Ok(Proof::Missing), "cancelled: again");
+    }
+}

@@ -1,0 +1,74 @@
+//! Jobs that misbehave, for tests of how the cluster bears it: on the worker's side alone.
+//!
+//! `HORSEHEAD_TEST_MISBEHAVE=17:hang,18:abort` makes the jobs that do nothing and whose payload
+//! begins with the number 17 or 18 (64 bits, little endian) behave that way, in slots of the worker
+//! that has the variable. `HORSEHEAD_TEST_TRACE=FILE` makes slots add a line to a file for each
+//! such job they begin. No message can bring either about.
+use protocol::job::Job;
+use rustix::process::{Signal, getppid, kill_process};
+use std::{env, fs::OpenOptions, io::Write, process::Command, thread};
+
+/// Behaviour by job.
+const MISBEHAVE: &str = "HORSEHEAD_TEST_MISBEHAVE";
+/// Where slots note what they begin.
+const TRACE: &str = "HORSEHEAD_TEST_TRACE";
+
+/// To be called before a job is done.
+pub(crate) fn before(job: &Job) {
+    let Job::Nothing { payload, .. } = job else {
+        return;
+    };
+    let Some(number) = payload
+        .first_chunk()
+        .map(|bytes| u64::from_le_bytes(*bytes))
+    else {
+        return;
+    };
+    if let Some(path) = env::var_os(TRACE) {
+        let file = OpenOptions::new().append(true).create(true).open(path);
+        let noted = file.and_then(|mut file| file.write_all(format!("{number}\n").as_bytes()));
+        if let Err(error) = noted {
+            tracing::error!(%error, "the trace cannot be written");
+        }
+    }
+    let list = env::var(MISBEHAVE).unwrap_or_default();
+    let behaviour = list
+        .split(',')
+        .filter_map(|entry| entry.split_once(':'))
+        .find(|(job, _)| job.parse() == Ok(number));
+    if let Some((_, behaviour)) = behaviour {
+        misbehave(behaviour);
+    }
+}
+
+fn misbehave(behaviour: &str) {
+    match behaviour {
+        "abort" => std::process::abort(),
+        "hang" => loop {
+            thread::park();
+        },
+        "allocate" => {
+            let mut held = Vec::new();
+            loop {
+                held.push(vec![1_u8; 16 << 20]);
+                std::hint::black_box(&held);
+            }
+        }
+        // a process that leaves the slot's group and session, then an endless job
+        "orphan" => {
+            let started = Command::new("setsid").args(["sleep", "1000"]).spawn();
+            if let Err(error) = started {
+                tracing::error!(%error, "no orphan can be started");
+            }
+            misbehave("hang");
+        }
+        "kill-worker" => {
+            if let Some(worker) = getppid() {
+                // the slot follows its worker
+                drop(kill_process(worker, Signal::KILL).map_err(std::io::Error::from));
+            }
+            misbehave("hang");
+        }
+        other => tracing::error!("{MISBEHAVE} has no behaviour {other}"),
+    }
+}
