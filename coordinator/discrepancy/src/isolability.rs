@@ -2,24 +2,96 @@
 //! how far two effects lie apart once recalibration has taken its share.
 //!
 //! `D_jk^2 = lambda_min(G~_j^T (I - P_G~k) G~_j)` with projected signatures per physical size: two
-//! effects of size eta are told apart where `eta^2 D^2 > 11`. An effect is seen from
-//! `4.5 / sqrt(lambda_min(G~^T G~))` on. (Eriksson, Frisk, Krysander: distinguishability;
+//! effects of size eta are told apart where `eta^2 D^2 > 11`. (Eriksson, Frisk, Krysander: distinguishability;
 //! Doehler, Mevel, Zhang: min-max test.)
 use crate::tangent::Tangent;
 use nalgebra::DMatrix;
+use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
 /// An effect of size 1 is told apart from another where `D^2` exceeds this.
 pub const APART: f64 = 11.0;
 
-/// The size from which an effect is seen, in units of its signature's size; infinite if
-/// recalibration absorbs it.
-pub fn detection_limit(signature: &DMatrix<f64>, tangent: &Tangent) -> f64 {
+/// What an effect has to overcome to be believed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hurdle {
+    /// Tail probability that its own score test must fall below.
+    pub p_value: f64,
+    /// Log evidence that it must gain, over the squared misfit (nats).
+    pub gain: f64,
+    /// The misfit; variances are inflated by its square.
+    pub phi: f64,
+}
+
+/// Normal quantile of the power at which a limit is stated: 90 %.
+const POWER: f64 = 1.281_551_565_544_6;
+
+/// The size from which one size of an effect is believed in nine records of ten, in units of its
+/// signature's size; infinite if recalibration absorbs it.
+///
+/// `signature` holds all sizes of the effect, of which `column` is the one that is there;
+/// `deviations` are their priors, `positive` says that they have a sign. With `m` sizes and
+/// a noncentrality `d^2` the statistic has mean `m + d^2` and variance `2 m + 4 d^2`; what it must
+/// exceed is the larger of the test's quantile and what the evidence charges for the sizes,
+/// `2 gain + ln |I + L^-1 G~^T G~|`.
+pub fn detection_limit(
+    signature: &DMatrix<f64>,
+    column: usize,
+    (deviations, positive): (&[f64], bool),
+    tangent: &Tangent,
+    hurdle: &Hurdle,
+) -> f64 {
     let information = signature.tr_mul(&tangent.project_columns(signature));
-    let least = information.symmetric_eigenvalues().min();
-    if least > 0.0 {
-        4.5 / least.sqrt()
+    let own = information[(column, column)];
+    if !(own > 1e-9 * signature.column(column).norm_squared()) {
+        return f64::INFINITY;
+    }
+    let m = signature.ncols();
+    let one_sided = positive && m == 1;
+    let p_value = if one_sided {
+        2.0 * hurdle.p_value
     } else {
-        f64::INFINITY
+        hurdle.p_value
+    };
+    let quantile = ChiSquared::new(m as f64)
+        .map_or(f64::INFINITY, |law| law.inverse_cdf(1.0 - p_value.min(0.5)));
+    let scale = hurdle.phi * hurdle.phi;
+    let priors = DMatrix::from_fn(m, m, |i, j| {
+        let one = if i == j { 1.0 } else { 0.0 };
+        one + deviations[i] * information[(i, j)] * deviations[j]
+    });
+    // the determinant of the symmetric form, and a half-normal prior is twice as dense
+    let charge = libm::log(priors.determinant().max(1.0))
+        - if one_sided {
+            2.0 * std::f64::consts::LN_2
+        } else {
+            0.0
+        };
+    let needed = quantile.max(2.0 * hurdle.gain + charge / scale);
+    let m = m as f64;
+    // m + d^2 - q sqrt(2 m + 4 d^2) = needed, solved for s = sqrt(2 m + 4 d^2)
+    let s = 2.0 * POWER
+        + (4.0 * POWER * POWER + 4.0 * needed - 2.0 * m)
+            .max(0.0)
+            .sqrt();
+    let noncentrality = (0.25 * (s * s - 2.0 * m)).max(0.0);
+    (scale * noncentrality / own).sqrt()
+}
+
+/// How alike two effects are once recalibration has taken its share: the squared cosine of the
+/// smallest angle between a direction of the first and the span of the second; 0 where either is
+/// absorbed.
+pub fn likeness(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 {
+    let visible = |g: &DMatrix<f64>| {
+        let projected = tangent.project_columns(g);
+        (projected.norm_squared() > 1e-9 * g.norm_squared()).then(|| orthonormal(&projected))
+    };
+    match (visible(a), visible(b)) {
+        (Some(a), Some(b)) => {
+            let overlap = a.tr_mul(&b);
+            let eigen = overlap.tr_mul(&overlap).symmetric_eigenvalues();
+            eigen.max().clamp(0.0, 1.0)
+        }
+        _ => 0.0,
     }
 }
 
@@ -100,7 +172,6 @@ mod tests {
     fn limits_and_distances_follow_the_geometry() {
         let tangent = nothing(3);
         let (a, b) = (column(&[30.0, 0.0, 0.0]), column(&[30.0, 4.0, 0.0]));
-        assert!((detection_limit(&a, &tangent) - 0.15).abs() < 1e-12);
         let c = column(&[0.0, 0.0, 5.0]);
         let d = distances(&[a, b, c], &tangent);
         // a's part across b: 30 sin(angle), angle = atan(4/30)
@@ -118,5 +189,42 @@ mod tests {
             &tangent,
         );
         assert_eq!(classes(&near), vec![vec![0, 1], vec![2]]);
+    }
+
+    /// One size whose estimate has deviation 1: found in nine of ten records where
+    /// `P(|N(d, 1)| > sqrt(needed)) = 0.9`.
+    #[test]
+    fn a_limit_has_the_power_that_it_states() {
+        let tangent = nothing(1);
+        let one = column(&[1.0]);
+        let hurdle = |p_value, gain| Hurdle {
+            p_value,
+            gain,
+            phi: 1.0,
+        };
+        // the test decides: chi2_1 above 10.828 at p = 0.001, so d = 3.291 + 1.282
+        let by_test = detection_limit(&one, 0, (&[1e-3], false), &tangent, &hurdle(1e-3, 0.0));
+        assert!((by_test / (3.291 + 1.282) - 1.0).abs() < 0.03, "{by_test}");
+        // the evidence decides: 2 * 3 + ln(1 + 100^2) = 15.21
+        let by_evidence = detection_limit(&one, 0, (&[100.0], false), &tangent, &hurdle(1e-3, 3.0));
+        assert!(
+            (by_evidence / (15.21_f64.sqrt() + 1.282) - 1.0).abs() < 0.03,
+            "{by_evidence}"
+        );
+        // ten times the signature is seen at a tenth of the size; twice the misfit at twice it
+        let strong = detection_limit(
+            &column(&[10.0]),
+            0,
+            (&[10.0], false),
+            &tangent,
+            &hurdle(1e-3, 3.0),
+        );
+        assert!((10.0 * strong / by_evidence - 1.0).abs() < 1e-9);
+        let doubtful = Hurdle {
+            phi: 2.0,
+            ..hurdle(1e-3, 0.0)
+        };
+        let wide = detection_limit(&one, 0, (&[1e-3], false), &tangent, &doubtful);
+        assert!((wide / by_test - 2.0).abs() < 1e-9);
     }
 }

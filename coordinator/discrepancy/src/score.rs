@@ -102,6 +102,12 @@ pub fn family_wise(p_value: f64, tests: usize) -> f64 {
     -libm::expm1(tests as f64 * libm::log1p(-p_value.clamp(0.0, 1.0 - 1e-16)))
 }
 
+/// The p-value of one among that many independent tests whose family has level `alpha`: the inverse
+/// of [`family_wise`].
+pub fn single(alpha: f64, tests: usize) -> f64 {
+    -libm::expm1(libm::log1p(-alpha) / tests.max(1) as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -185,5 +191,6 @@ mod tests {
         assert!((chi_squared_tail(11.070_497_693_516_351, 5) - 0.05).abs() < 1e-9);
         assert!((family_wise(0.001, 25) - (1.0 - 0.999_f64.powi(25))).abs() < 1e-12);
         assert!(family_wise(1e-300, 25) > 0.0);
+        assert!((family_wise(single(0.01, 25), 25) - 0.01).abs() < 1e-12);
     }
 }

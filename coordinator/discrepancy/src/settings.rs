@@ -19,6 +19,10 @@ pub struct Settings {
     pub rounds: usize,
     /// Factor by which a form of force without a cause must beat the best name.
     pub generic_factor: f64,
+    /// Units of `chi^2`, times the squared misfit, by which it must beat it besides.
+    pub generic_gain: f64,
+    /// Squared cosine of projected signatures from which a form of force is a name's own.
+    pub alike: f64,
     /// Noise sets that the angle map is held against.
     pub draws: usize,
     /// Cylinder length of the numerical check and, where it matters, of the last refits, as a share
@@ -38,6 +42,8 @@ impl Default for Settings {
             practical: 0.05,
             rounds: 3,
             generic_factor: 1.15,
+            generic_gain: 10.0,
+            alike: 0.9,
             draws: 400,
             refinement: 0.5,
             without: Vec::new(),

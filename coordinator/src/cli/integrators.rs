@@ -42,10 +42,15 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
     condition: Option<String>,
     /// Methods, as written in case files; all by default.
-    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_delimiter = ',',
+        env = "HORSEHEAD_METHODS"
+    )]
     methods: Vec<String>,
     /// How many levels of accuracy, from the coarse end; 0 for all.
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, env = "HORSEHEAD_LEVELS")]
     levels: usize,
     /// Folder for `integrators.svg` and `integrators.csv`; none are written without.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
@@ -139,7 +144,7 @@ fn line(point: &WorkPoint) -> String {
 /// What `--output json` prints.
 #[derive(Debug, Serialize)]
 struct Object {
-    /// How far two converged runs are apart, as an error [1].
+    /// How far two converged runs are apart, as an error (1).
     resolution: f64,
     points: Vec<PointObject>,
     fixed_step: Option<FixedObject>,
@@ -156,7 +161,7 @@ struct PointObject {
     jacobians: u64,
     factorizations: u64,
     wall_s: f64,
-    /// Root mean square difference over the range of the worst gauge [1].
+    /// Root mean square difference over the range of the worst gauge (1).
     error: Option<f64>,
     energy_error: f64,
 }

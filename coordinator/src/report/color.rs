@@ -1,6 +1,6 @@
-//! The two colour scales of the report: rope tension and contact pressure.
+//! The colour scales of the report: rope tension, contact pressure, and signed deviation.
 //!
-//! Both are even in lightness and readable by colour-blind readers, and dark enough everywhere to
+//! All are even in lightness and readable by colour-blind readers, and dark enough everywhere to
 //! stand on white paper where they mean something.
 use plotters::prelude::RGBColor;
 
@@ -21,6 +21,21 @@ const PRESSURE: [(u8, u8, u8); 5] = [
     (0x22, 0x5f, 0x96),
     (0x08, 0x24, 0x4e),
 ];
+
+/// Deviation, below to above: blue over paper to vermillion.
+const SIGNED: [(u8, u8, u8); 5] = [
+    (0x0b, 0x4a, 0x7d),
+    (0x7f, 0xb0, 0xd2),
+    (0xf6, 0xf6, 0xf4),
+    (0xea, 0xa1, 0x78),
+    (0xb3, 0x3c, 0x08),
+];
+
+/// Colour of a deviation, as a share of the scale (-1 to 1, held inside).
+pub(super) fn signed(share: f64) -> RGBColor {
+    let share = if share.is_finite() { share } else { 0.0 };
+    blend(&SIGNED, 0.5 + 0.5 * share)
+}
 
 /// Colour of a tension, as a share of the scale (0 to 1, held inside).
 pub(super) fn tension(share: f64) -> RGBColor {
@@ -71,7 +86,7 @@ fn blend(stops: &[(u8, u8, u8); 5], share: f64) -> RGBColor {
 
 #[cfg(test)]
 mod tests {
-    use super::{css, pressure, tension};
+    use super::{css, pressure, signed, tension};
 
     #[test]
     fn scales_end_at_their_stops_and_hold_outside() {
@@ -79,5 +94,7 @@ mod tests {
         assert_eq!(css(tension(7.0)), "#f4923a");
         assert_eq!(css(tension(f64::NAN)), "#1c2a7c");
         assert_eq!(css(pressure(0.5)), "#639cc4");
+        assert_eq!(css(signed(0.0)), css(signed(f64::NAN)));
+        assert_eq!(css(signed(-3.0)), "#0b4a7d");
     }
 }

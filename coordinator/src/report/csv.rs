@@ -9,7 +9,7 @@ use protocol::job::{Simulation, Verdict};
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.
-fn field(value: Option<f64>) -> String {
+pub(super) fn field(value: Option<f64>) -> String {
     value
         .filter(|value| value.is_finite())
         .map_or_else(String::new, |value| value.to_string())

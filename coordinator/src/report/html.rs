@@ -29,12 +29,31 @@ pub fn simulation(run: &SingleRun) -> Result<String, ReportError> {
 }
 
 fn page(title: &str, run: &str, subject: Subject<'_>) -> Result<String, ReportError> {
-    let mut sections = Vec::new();
+    let mut parts = Vec::new();
     for section in SECTIONS {
         if let Some(body) = (section.render)(subject)? {
-            sections.push((section, body));
+            parts.push(Part {
+                id: section.id,
+                title: section.title,
+                body,
+            });
         }
     }
+    Ok(assemble(title, run, &parts))
+}
+
+/// One rendered section.
+pub(super) struct Part {
+    /// Anchor in the page.
+    pub id: &'static str,
+    /// Heading.
+    pub title: &'static str,
+    /// What stands below it.
+    pub body: Markup,
+}
+
+/// Sections as one page.
+pub(super) fn assemble(title: &str, run: &str, parts: &[Part]) -> String {
     let page: Markup = html! {
         (DOCTYPE)
         html lang="en" {
@@ -49,21 +68,21 @@ fn page(title: &str, run: &str, subject: Subject<'_>) -> Result<String, ReportEr
                     p.kind { "Horsehead" @if !run.is_empty() { " · " (run) } }
                     h1 { (title) }
                     nav {
-                        @for (section, _) in &sections {
-                            a href=(format!("#{}", section.id)) { (section.title) }
+                        @for part in parts {
+                            a href=(format!("#{}", part.id)) { (part.title) }
                         }
                     }
                 }
                 main {
-                    @for (section, body) in &sections {
-                        section id=(section.id) {
-                            h2 { (section.title) }
-                            (body)
+                    @for part in parts {
+                        section id=(part.id) {
+                            h2 { (part.title) }
+                            (part.body)
                         }
                     }
                 }
             }
         }
     };
-    Ok(page.into_string())
+    page.into_string()
 }

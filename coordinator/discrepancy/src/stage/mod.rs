@@ -1,5 +1,8 @@
 //! The stages of a diagnosis, in order: each plans experiments, absorbs what they show and hands on.
 pub mod basin;
+pub mod challenge;
+pub(crate) mod establish;
+pub mod pair;
 pub mod preflight;
 pub mod recalibrate;
 pub mod refit;

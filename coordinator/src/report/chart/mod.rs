@@ -2,11 +2,15 @@
 //!
 //! Measured is black on a grey band, simulated is vermillion: the pair stays apart for colour-blind
 //! readers and on a grey printer. Text is text. Knows the report's data; knows nothing of HTML.
+mod angle_map;
 mod canvas;
 mod card;
+mod closing;
 mod contact;
 mod convergence;
 mod gene;
+mod joint;
+mod order_map;
 mod overlay;
 mod panel;
 mod revolution;
@@ -15,10 +19,14 @@ mod strip;
 mod work;
 mod worker;
 
+pub use angle_map::angle_map;
 pub use card::card;
+pub use closing::{Closing, closing};
 pub use contact::contact;
 pub use convergence::convergence;
 pub use gene::genes;
+pub use joint::joints;
+pub use order_map::order_map;
 pub use overlay::overlay;
 pub(super) use revolution::player;
 pub use revolution::{gauges, motion, tension, torque};

@@ -55,6 +55,7 @@ pub fn gauges(
                 height: 96.0,
                 curves,
                 band,
+                scale: None,
             }
         })
         .collect();

@@ -29,6 +29,8 @@ pub(super) struct Strip {
     pub curves: Vec<Curve>,
     /// Rows of (crank angle, low, high) behind the curves.
     pub band: Vec<(f64, f64, f64)>,
+    /// Its scale, where it is not the curves' own.
+    pub scale: Option<Scale>,
 }
 
 /// A curve over the crank angle, its values times a factor.
@@ -56,6 +58,7 @@ pub(super) fn strip(title: &'static str, height: f64, curves: Vec<Curve>) -> Str
         height,
         curves,
         band: Vec::new(),
+        scale: None,
     }
 }
 
@@ -96,10 +99,12 @@ pub(super) fn stack(
                 width,
                 height: strip.height,
                 x: Scale::crank(),
-                y: Scale::linear(
-                    curves.map(|&(_, y)| y).chain(band),
-                    (strip.height / 26.0).max(2.0),
-                ),
+                y: strip.scale.unwrap_or_else(|| {
+                    Scale::linear(
+                        curves.map(|&(_, y)| y).chain(band),
+                        (strip.height / 26.0).max(2.0),
+                    )
+                }),
             };
             panel.guides(canvas)?;
             panel.band(canvas, &strip.band, BAND)?;

@@ -1,10 +1,23 @@
 //! What people see of a diagnosis: the argument from where to which effect, and the proof.
+//!
+//! One page that reads from top to bottom: the verdict, where the curves part, what was suspected,
+//! what is added, what that shows, how sure it is, how it was made. Sections are in a catalogue; none
+//! knows its neighbours. Everything is the diagnosis' own number: nothing is computed again here but
+//! the paper's two error measures.
+mod csv;
 mod effects;
+mod judgement;
+mod section;
+mod shown;
+mod table;
 mod text;
+mod words;
 
 pub use effects::effects_toml;
 pub use text::text;
 
+use super::chart::Figure;
+use super::html::{self, Part};
 use super::{Provenance, ReportError};
 use crate::study::Diagnosed;
 use discrepancy::record::Record;
@@ -31,10 +44,48 @@ pub struct Subject<'a> {
     pub wall_s: f64,
 }
 
-/// Writes the report into a folder; returns the paths, what to open first.
+/// The report as one HTML page.
+///
+/// # Errors
+/// [`ReportError::Chart`] when a figure cannot be drawn.
+pub fn page(subject: &Subject<'_>) -> Result<String, ReportError> {
+    let figures = section::figures(subject)?;
+    Ok(assembled(subject, &figures))
+}
+
+fn assembled(subject: &Subject<'_>, figures: &section::Figures) -> String {
+    let rendered = section::SECTIONS.iter().filter_map(|section| {
+        Some(Part {
+            id: section.id,
+            title: section.title,
+            body: (section.render)(subject, figures)?,
+        })
+    });
+    let parts: Vec<Part> = rendered.collect();
+    let title = format!("Diagnosis of {}", subject.case.name);
+    html::assemble(&title, &subject.provenance.run, &parts)
+}
+
+/// Writes the report into a folder, which is made if it does not exist: `report.html`, `tables.txt`,
+/// `curves.csv`, `suspects.csv` and `figures/*.svg`. Returns the paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a figure cannot be drawn or a file cannot be written.
 pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
-    Ok(vec![super::write(folder, "tables.txt", &text(subject))?])
+    let figures = section::figures(subject)?;
+    let mut written = vec![super::write(
+        folder,
+        "report.html",
+        &assembled(subject, &figures),
+    )?];
+    written.push(super::write(folder, "tables.txt", &text(subject))?);
+    written.push(super::stream(folder, "curves.csv", |file| {
+        csv::curves(file, subject)
+    })?);
+    written.push(super::stream(folder, "suspects.csv", |file| {
+        csv::suspects(file, subject)
+    })?);
+    let all: Vec<Figure> = figures.all().cloned().collect();
+    written.extend(super::write_figures(folder, &all)?);
+    Ok(written)
 }

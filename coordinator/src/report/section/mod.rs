@@ -9,7 +9,7 @@ mod gap;
 mod gene;
 mod machine;
 mod notes;
-mod provenance;
+pub(super) mod provenance;
 mod summary;
 mod table;
 mod worker;
@@ -57,7 +57,7 @@ pub(super) const SECTIONS: &[Section] = &[
 ];
 
 /// A figure with its caption.
-fn figure(figure: &Figure) -> Markup {
+pub(super) fn figure(figure: &Figure) -> Markup {
     html! {
         figure id=(format!("figure-{}", figure.name)) {
             (PreEscaped(&figure.svg))

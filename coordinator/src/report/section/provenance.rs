@@ -53,13 +53,7 @@ fn facts(
     };
     html! {
         dl.facts {
-            dt { "program" } dd { (provenance.program) }
-            dt { "command" } dd { code { (provenance.command) } }
-            dt { "run" } dd { (provenance.run) }
-            dt { "case" } dd { (case.name) " " code { (provenance.case_hash) } }
-            dt { "measured records" } dd { (provenance.measured_name) }
-            @if let Some(preset) = &provenance.preset { dt { "preset" } dd { (preset) } }
-            @if let Some(seed) = provenance.seed { dt { "seed" } dd { (seed) } }
+            (origin(provenance, case))
             @if let Some((calibration, optimum)) = calibration {
                 dt { "objective" } dd { (gauges.join(" + ")) "; offset " (offset) }
                 dt { "optimum" } dd { (optimum) }
@@ -69,6 +63,19 @@ fn facts(
                 dt { "digest of the result" } dd { code { (provenance.digest) } }
             }
         }
+    }
+}
+
+/// Where any result comes from, as entries of a list of facts.
+pub(in crate::report) fn origin(provenance: &Provenance, case: &Case) -> Markup {
+    html! {
+        dt { "program" } dd { (provenance.program) }
+        dt { "command" } dd { code { (provenance.command) } }
+        dt { "run" } dd { (provenance.run) }
+        dt { "case" } dd { (case.name) " " code { (provenance.case_hash) } }
+        dt { "measured records" } dd { (provenance.measured_name) }
+        @if let Some(preset) = &provenance.preset { dt { "preset" } dd { (preset) } }
+        @if let Some(seed) = provenance.seed { dt { "seed" } dd { (seed) } }
     }
 }
 

@@ -41,6 +41,19 @@ pub enum Row {
     Values(Label, Vec<String>),
 }
 
+impl Table {
+    /// Whether a column holds words, not numbers: those start at the left, and may be long.
+    fn is_prose(&self, column: usize) -> bool {
+        const LONGEST_NUMBER: usize = 32;
+        let cells = self.rows.iter().filter_map(|row| match row {
+            Row::Group(_) => None,
+            Row::Values(_, cells) => cells.get(column),
+        });
+        let mut lengths = cells.map(|cell| cell.chars().count());
+        lengths.any(|length| length > LONGEST_NUMBER)
+    }
+}
+
 /// What a row is about.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Label {
@@ -107,7 +120,7 @@ pub fn text(table: &Table, styled: bool) -> String {
         grid.force_no_tty();
     }
     grid.set_header(table.head.iter().enumerate().map(|(column, head)| {
-        let alignment = if column == 0 {
+        let alignment = if column == 0 || table.is_prose(column - 1) {
             CellAlignment::Left
         } else {
             CellAlignment::Right
@@ -124,9 +137,13 @@ pub fn text(table: &Table, styled: bool) -> String {
                     Label::Text(text) => format!("  {text}"),
                     Label::Gene(gene) => format!("  {:<5} {}", gene.as_str(), meaning(*gene)),
                 };
-                let cells = cells
-                    .iter()
-                    .map(|cell| Cell::new(cell).set_alignment(CellAlignment::Right));
+                let cells = cells.iter().enumerate().map(|(column, cell)| {
+                    Cell::new(cell).set_alignment(if table.is_prose(column) {
+                        CellAlignment::Left
+                    } else {
+                        CellAlignment::Right
+                    })
+                });
                 grid.add_row(std::iter::once(Cell::new(label)).chain(cells));
             }
         }
@@ -146,7 +163,14 @@ pub(super) fn markup(table: &Table) -> Markup {
         figure.table {
             figcaption { (table.title) }
             table {
-                thead { tr { @for head in &table.head { th scope="col" { (head) } } } }
+                thead {
+                    tr {
+                        @for (column, head) in table.head.iter().enumerate() {
+                            @let prose = column > 0 && table.is_prose(column - 1);
+                            th.prose[prose] scope="col" { (head) }
+                        }
+                    }
+                }
                 tbody {
                     @for row in &table.rows {
                         @match row {
@@ -158,7 +182,9 @@ pub(super) fn markup(table: &Table) -> Markup {
                             Row::Values(label, cells) => {
                                 tr {
                                     th scope="row" { (label_markup(label)) }
-                                    @for cell in cells { td { (cell) } }
+                                    @for (column, cell) in cells.iter().enumerate() {
+                                        td.prose[table.is_prose(column)] { (cell) }
+                                    }
                                 }
                             }
                         }

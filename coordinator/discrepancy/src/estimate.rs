@@ -1,0 +1,159 @@
+//! Numbers of the answer: sizes with intervals, detection limits, and what cannot be told apart.
+use crate::bench::Fit;
+use crate::evidence::misfit;
+use crate::isolability::{self, Hurdle};
+use crate::model::{SIZE_DEVIATION, sizes};
+use crate::rounds::Round;
+use crate::score::{family_wise, single};
+use crate::settings::Settings;
+use crate::stage::establish::Base;
+use crate::stage::refit::Refitted;
+use crate::tangent::Tangent;
+use nalgebra::DMatrix;
+use protocol::announce::Sign;
+
+/// An effect of the answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Identifier.
+    pub id: String,
+    /// In words.
+    pub title: String,
+    /// Name, unit, value and 95 % interval of each parameter.
+    pub parameters: Vec<(String, String, f64, [f64; 2])>,
+    /// Family-wise p-value of its score test.
+    pub p_value: f64,
+    /// Log evidence against the model without it, over the squared misfit (nats).
+    pub ln_evidence: f64,
+}
+
+/// From which size on an effect would have been seen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// Identifier.
+    pub id: String,
+    /// Parameter.
+    pub parameter: String,
+    /// Its unit.
+    pub unit: String,
+    /// The size; infinite where recalibration absorbs the effect.
+    pub size: f64,
+}
+
+/// Detection limits and classes of effects, before any verdict.
+pub(crate) fn outlook(
+    round: &Round,
+    fit: &Fit,
+    base: &Base,
+    settings: &Settings,
+) -> (Vec<Limit>, Vec<Vec<String>>) {
+    let tangent = Tangent::new(fit.search.best(), fit.variables());
+    let phi = misfit(fit.chi_squared(), base.bench.metric.len());
+    let mut limits = Vec::new();
+    let mut known: Vec<(String, DMatrix<f64>)> = Vec::new();
+    for suspect in &round.suspects {
+        if suspect.signature.ncols() == 0 {
+            continue;
+        }
+        known.push((suspect.effect.id.clone(), suspect.signature.clone()));
+        let tests = suspect.tries * round.suspects.len();
+        let hurdle = Hurdle {
+            p_value: single(settings.alpha, tests),
+            gain: settings.gain,
+            phi,
+        };
+        let sizes = sizes(&suspect.effect);
+        let deviations = vec![SIZE_DEVIATION; sizes.len()];
+        for (column, k) in sizes.into_iter().enumerate() {
+            let parameter = &suspect.effect.parameters[k];
+            let prior = (deviations.as_slice(), parameter.sign == Sign::Positive);
+            let limit =
+                isolability::detection_limit(&suspect.signature, column, prior, &tangent, &hurdle);
+            limits.push(Limit {
+                id: suspect.effect.id.clone(),
+                parameter: parameter.name.clone(),
+                unit: parameter.unit.clone(),
+                size: limit * parameter.scale,
+            });
+        }
+    }
+    let signatures: Vec<DMatrix<f64>> = known.iter().map(|(_, g)| g.clone()).collect();
+    let distances = isolability::distances(&signatures, &tangent);
+    let classes = isolability::classes(&distances);
+    let name = |members: Vec<usize>| members.into_iter().map(|i| known[i].0.clone()).collect();
+    (limits, classes.into_iter().map(name).collect())
+}
+
+/// The added effects with their sizes, then the other members of their sets.
+pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
+    let mut found: Vec<Estimate> = Vec::new();
+    for added_first in [true, false] {
+        for round in rounds {
+            let members = round
+                .set
+                .iter()
+                .filter(|id| (round.added.as_ref() == Some(id)) == added_first);
+            for id in members {
+                let refitted = round.refits.iter().find(|r| r.id == *id);
+                if let Some(refitted) = refitted.filter(|_| found.iter().all(|e| e.id != *id)) {
+                    found.push(estimate(round, refitted, after));
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Sizes of an added effect are those of the final model, beside everything else that was added; of
+/// a rival, those of its own refit.
+fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
+    let in_answer = after.model.added.iter().any(|e| e.id == refitted.id);
+    let fit = if in_answer { after } else { &refitted.fit };
+    let model = &fit.model;
+    let position = model.added.iter().position(|e| e.id == refitted.id);
+    let position = position.unwrap_or_default();
+    let effect = &model.added[position];
+    let first = model.first_of(position);
+    let deviations = deviations(fit, round.phi);
+    let parameters = effect.parameters.iter().enumerate().map(|(k, p)| {
+        let x = fit.x()[first + k];
+        let half = 1.96 * deviations[first + k] * p.scale;
+        let value = (p.absent + x * p.scale).clamp(p.lower, p.upper);
+        let interval = [(value - half).max(p.lower), (value + half).min(p.upper)];
+        (p.name.clone(), p.unit.clone(), value, interval)
+    });
+    Estimate {
+        id: refitted.id.clone(),
+        title: effect.title.clone(),
+        parameters: parameters.collect(),
+        p_value: round
+            .suspects
+            .iter()
+            .find(|s| s.effect.id == refitted.id)
+            .map_or(1.0, |s| family_wise(s.p_value(), round.suspects.len())),
+        ln_evidence: (refitted.log_evidence - round.null_evidence) / (round.phi * round.phi),
+    }
+}
+
+/// Standard deviations of a fit's unknowns, inflated by the misfit.
+fn deviations(fit: &Fit, phi: f64) -> Vec<f64> {
+    let at = fit.search.best();
+    let mut curvature = at.jacobian.tr_mul(&at.jacobian);
+    for (k, v) in fit.variables().iter().enumerate() {
+        if let Some(prior) = v.prior {
+            curvature[(k, k)] += 1.0 / (prior.deviation * prior.deviation);
+        }
+    }
+    let n = curvature.nrows();
+    curvature.cholesky().map_or_else(
+        || vec![f64::INFINITY; n],
+        |factor| {
+            factor
+                .inverse()
+                .diagonal()
+                .iter()
+                .map(|v| phi * v.sqrt())
+                .collect()
+        },
+    )
+}

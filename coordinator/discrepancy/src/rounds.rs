@@ -1,0 +1,257 @@
+//! Rounds of suspicion: test everything, refit the likeliest, let forces without a cause challenge them,
+//! believe the best or stop; at the end, take back what is not needed any more.
+use crate::bench::Fit;
+use crate::diagnose::{Diagnosis, Inputs};
+use crate::estimate::outlook;
+use crate::evidence::{ambiguity_set, log_evidence, misfit};
+use crate::laboratory::{Laboratory, Stage};
+use crate::score::family_wise;
+use crate::settings::Settings;
+use crate::stage::challenge::{Challenger, Named, challenge};
+use crate::stage::establish::Base;
+use crate::stage::refit::Refitted;
+use crate::stage::suspect::Suspect;
+use crate::stage::{pair, refit, suspect};
+use protocol::announce::EffectDescriptor;
+use search::least_squares;
+
+/// One round of suspicion.
+#[derive(Clone, Debug)]
+pub struct Round {
+    /// Every named effect with its test, in the library's order.
+    pub suspects: Vec<Suspect>,
+    /// Forces without a cause, likewise.
+    pub generics: Vec<Suspect>,
+    /// Refits, the best first.
+    pub refits: Vec<Refitted>,
+    /// Log evidence without a further effect.
+    pub null_evidence: f64,
+    /// Misfit of the best model; variances are inflated by its square.
+    pub phi: f64,
+    /// Family-wise p-value of the named effects.
+    pub p_value: f64,
+    /// Identifiers that the record does not tell apart, the best first; empty if nothing was found.
+    pub set: Vec<String>,
+    /// Which effect was added, if any.
+    pub added: Option<String>,
+    /// Why none was.
+    pub reason: Option<String>,
+}
+
+/// Rounds of suspicion until nothing is gained; the model of the answer.
+pub(crate) async fn rounds<L: Laboratory>(
+    lab: &mut L,
+    inputs: &Inputs,
+    base: &Base,
+    diagnosis: &mut Diagnosis,
+) -> Result<Fit, L::Error> {
+    let settings = &inputs.settings;
+    let considered = |effect: &&EffectDescriptor| !settings.without.contains(&effect.id);
+    let (generic, named): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) = inputs
+        .library
+        .iter()
+        .filter(considered)
+        .cloned()
+        .partition(|effect| effect.generic);
+    let mut current = base.fit.clone();
+    for number in 0..settings.rounds {
+        let open: Vec<EffectDescriptor> = named
+            .iter()
+            .filter(|effect| current.model.added.iter().all(|a| a.id != effect.id))
+            .cloned()
+            .collect();
+        let mut round = examine(lab, base, &current, (&open, &generic), settings).await?;
+        if number == 0 {
+            (diagnosis.limits, diagnosis.classes) = outlook(&round, &current, base, settings);
+        }
+        let next = match contested(lab, base, &current, &round, settings).await? {
+            Some(challenger) => {
+                unlisted(&mut round, &challenger, (&base.fit, &current), diagnosis);
+                None
+            }
+            None => decide(&mut round, &current, settings, base),
+        };
+        diagnosis.rounds.push(round);
+        match next {
+            Some(fit) => current = fit,
+            None => break,
+        }
+    }
+    prune(lab, base, current, (settings, diagnosis)).await
+}
+
+/// A force that beats the best name, and the best two names together.
+async fn contested<L: Laboratory>(
+    lab: &mut L,
+    base: &Base,
+    current: &Fit,
+    round: &Round,
+    settings: &Settings,
+) -> Result<Option<Challenger>, L::Error> {
+    let best = round.refits.first();
+    let left = best.map_or(f64::INFINITY, |r| r.fit.chi_squared());
+    let named = Named {
+        suspects: &round.suspects,
+        removed: (current.chi_squared() - left).max(0.0),
+        left: left.min(current.chi_squared()),
+        log_evidence: best
+            .map_or(f64::NEG_INFINITY, |r| r.log_evidence)
+            .max(round.null_evidence),
+    };
+    let generics = &round.generics;
+    let found = challenge(lab, &base.bench, current, generics, &named, settings).await?;
+    let Some(challenger) = found else {
+        return Ok(None);
+    };
+    // two effects at once may look like a third thing to each of them
+    let pair = pair::best(lab, &base.bench, current, &round.suspects).await?;
+    let phi = misfit(challenger.fit.chi_squared(), base.bench.metric.len());
+    let margin = settings.gain * phi * phi;
+    let explained = pair.is_some_and(|pair| pair.log_evidence > challenger.log_evidence - margin);
+    Ok((!explained).then_some(challenger))
+}
+
+/// Takes back, one by one, effects that are no longer needed beside the others: those without which
+/// the evidence falls by less than it must rise for an effect to be added.
+async fn prune<L: Laboratory>(
+    lab: &mut L,
+    base: &Base,
+    mut current: Fit,
+    (settings, diagnosis): (&Settings, &mut Diagnosis),
+) -> Result<Fit, L::Error> {
+    while current.model.added.len() > 1 {
+        let starts = (0..current.model.added.len())
+            .map(|position| {
+                let first = current.model.first_of(position);
+                let own = first..first + current.model.added[position].parameters.len();
+                let mut x = current.x().to_vec();
+                x.drain(own);
+                (current.model.without(position), x)
+            })
+            .collect();
+        let how = least_squares::Settings {
+            iterations: 6,
+            ..least_squares::Settings::default()
+        };
+        let fits = base.bench.fit(lab, Stage::Refit, starts, how).await?;
+        let evidence = |fit: &Fit| log_evidence(fit.search.best(), fit.variables());
+        let best = fits
+            .into_iter()
+            .enumerate()
+            .filter_map(|(position, fit)| Some((position, fit?)))
+            .max_by(|(_, a), (_, b)| evidence(a).total_cmp(&evidence(b)));
+        let phi = misfit(current.chi_squared(), base.bench.metric.len());
+        let Some((position, fit)) = best else { break };
+        if evidence(&current) - evidence(&fit) >= settings.gain * phi * phi {
+            break;
+        }
+        let id = &current.model.added[position].id;
+        for round in &mut diagnosis.rounds {
+            if round.added.as_ref() == Some(id) {
+                round.added = None;
+                round.set.clear();
+                round.reason = Some(format!("{id} is not needed beside what was added later"));
+            }
+        }
+        current = fit;
+    }
+    Ok(current)
+}
+
+/// A force without a cause beats every name of this round. Beside names that explain more than it
+/// does it is a remark: what is left there may be the laws of those names, a little otherwise.
+fn unlisted(
+    round: &mut Round,
+    challenger: &Challenger,
+    (before, current): (&Fit, &Fit),
+    diagnosis: &mut Diagnosis,
+) {
+    let named = before.chi_squared() - current.chi_squared();
+    let said = format!(
+        "a force {} explains more of what is left than any name",
+        challenger.id
+    );
+    if challenger.removed > named {
+        diagnosis.generic = Some(challenger.id.clone());
+    } else {
+        diagnosis.notes.push(said.clone());
+    }
+    round.reason = Some(said);
+}
+
+/// Tests everything that is not in the model yet, and refits the suspects.
+async fn examine<L: Laboratory>(
+    lab: &mut L,
+    base: &Base,
+    current: &Fit,
+    (named, generic): (&[EffectDescriptor], &[EffectDescriptor]),
+    settings: &Settings,
+) -> Result<Round, L::Error> {
+    let suspects = suspect::examine(lab, &base.bench, current, named, 1.0).await?;
+    let generics = suspect::examine(lab, &base.bench, current, generic, 1.0).await?;
+    let mut order: Vec<&Suspect> = suspects.iter().filter(|s| s.statistic() > 0.0).collect();
+    order.sort_by(|a, b| {
+        a.p_value()
+            .total_cmp(&b.p_value())
+            .then(b.statistic().total_cmp(&a.statistic()))
+    });
+    order.truncate(settings.suspects);
+    let mut refits = refit::refit(lab, &base.bench, current, &order).await?;
+    refits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    let best = refits
+        .first()
+        .map_or(current.chi_squared(), |r| r.fit.chi_squared());
+    let phi = misfit(best.min(current.chi_squared()), base.bench.metric.len());
+    let least = suspects
+        .iter()
+        .filter_map(|s| Some((s.score.as_ref()?, s.tries)))
+        .map(|(score, tries)| {
+            let tail = crate::score::chi_squared_tail(score.statistic / (phi * phi), score.freedom);
+            family_wise(tail.min(score.p_value.max(tail)), tries)
+        })
+        .fold(1.0, f64::min);
+    Ok(Round {
+        p_value: family_wise(least, suspects.len()),
+        null_evidence: log_evidence(current.search.best(), current.variables()),
+        suspects,
+        generics,
+        refits,
+        phi,
+        set: Vec::new(),
+        added: None,
+        reason: None,
+    })
+}
+
+/// Whether the best refit is believed; then it is the next model.
+fn decide(round: &mut Round, current: &Fit, settings: &Settings, base: &Base) -> Option<Fit> {
+    let best = round.refits.first()?;
+    let scale = round.phi * round.phi;
+    let gain = (best.log_evidence - round.null_evidence) / scale;
+    if round.p_value > settings.alpha || gain < settings.gain {
+        round.reason = Some(format!(
+            "{} is the likeliest, but p = {:.2} over the family and {gain:.1} nats are not enough",
+            best.id, round.p_value
+        ));
+        return None;
+    }
+    let evidences: Vec<f64> = round.refits.iter().map(|r| r.log_evidence).collect();
+    round.set = ambiguity_set(&evidences, round.phi)
+        .into_iter()
+        .map(|i| round.refits[i].id.clone())
+        .collect();
+    // of the gap that there was before anything was added
+    let removed = (current.chi_squared() - best.fit.chi_squared())
+        / (base.fit.chi_squared() - base.bench.metric.len() as f64).max(1.0);
+    if removed < settings.practical {
+        round.reason = Some(format!(
+            "{} is there, but a trace: it removes {:.1} % of what is left above the noise",
+            best.id,
+            100.0 * removed
+        ));
+        round.set.clear();
+        return None;
+    }
+    round.added = Some(best.id.clone());
+    Some(best.fit.clone())
+}

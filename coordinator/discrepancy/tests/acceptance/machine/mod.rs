@@ -1,0 +1,623 @@
+//! The tool's side of the stand-in machine: a periodic solution by harmonics.
+//!
+//! Three masses hang below a driven suspension: rod, beam, head, in the order in which the load
+//! reaches the rope. `y` are their lags behind the drive: `M y'' + C y' + K y = f`, order by order
+//! of the crank; what is not linear is a force or an imposed stretch, evaluated on a first, linear
+//! solution. Units: kN, m, t (2 pi t is a turn of the first condition).
+pub(crate) mod library;
+
+use crate::case::{ORDERS, RECOMMENDED, SAMPLES, SPEED, card, grid};
+use discrepancy::laboratory::{Laboratory, Stage};
+use nalgebra::{Complex, Matrix3, Vector3};
+use protocol::announce::EffectDescriptor;
+use protocol::job::{Counters, Observation, ObserveSpec, PhysicsFailure, Reached, Verdict};
+use std::convert::Infallible;
+use std::f64::consts::TAU;
+
+type C = Complex<f64>;
+
+/// Orders that are solved, beyond those that are compared.
+const HIGHEST: usize = ORDERS + 8;
+const MASSES: [f64; 3] = [2.0, 4.0, 5.9];
+/// Stress per rope tension (MPa/kN), its change along the head, and its bending part, by gauge.
+const SENSITIVITY: [f64; 4] = [0.5, 0.35, 0.45, 0.3];
+const ALONG: [f64; 4] = [0.8, -0.5, 0.3, 1.2];
+const BENDING: [f64; 4] = [0.05, 0.03, -0.04, 0.02];
+const CONTACT: [f64; 4] = [0.02, -0.05, 0.03, 0.06];
+const WEAR: [f64; 4] = [1.0, 0.6, -0.4, 0.2];
+
+/// Sines and cosines of the grid.
+struct Turn(Vec<C>);
+
+impl Turn {
+    fn new() -> Self {
+        let unit = |i: usize| C::from_polar(1.0, TAU * i as f64 / SAMPLES as f64);
+        Self((0..SAMPLES).map(unit).collect())
+    }
+
+    /// Orders 0 to the highest.
+    fn transform(&self, curve: &[f64]) -> Vec<C> {
+        let coefficient = |h: usize| {
+            let mut sum = C::new(0.0, 0.0);
+            let mut at = 0;
+            for y in curve {
+                sum += self.0[at].conj() * *y;
+                at += h;
+                if at >= SAMPLES {
+                    at -= SAMPLES;
+                }
+            }
+            sum / SAMPLES as f64
+        };
+        (0..=HIGHEST).map(coefficient).collect()
+    }
+
+    /// A curve at any angles (rad).
+    fn at(spectrum: &[C], angles: &[f64]) -> Vec<f64> {
+        let value = |angle: &f64| {
+            let unit = C::from_polar(1.0, *angle);
+            let mut turned = unit;
+            let mut sum = 0.5 * spectrum[0].re;
+            for f in &spectrum[1..] {
+                sum += (f * turned).re;
+                turned *= unit;
+            }
+            2.0 * sum
+        };
+        angles.iter().map(value).collect()
+    }
+
+    fn curve(&self, spectrum: &[C]) -> Vec<f64> {
+        (0..SAMPLES)
+            .map(|i| {
+                let mut sum = 0.5 * spectrum[0].re;
+                let mut at = i;
+                for f in &spectrum[1..] {
+                    let u = self.0[at];
+                    sum += f.re * u.re - f.im * u.im;
+                    at += i;
+                    if at >= SAMPLES {
+                        at -= SAMPLES;
+                    }
+                }
+                2.0 * sum
+            })
+            .collect()
+    }
+}
+
+/// The machine and what it announces.
+pub(crate) struct Machine {
+    turn: Turn,
+    cards: [Vec<C>; 2],
+    library: Vec<EffectDescriptor>,
+}
+
+/// Amounts of effects, by identifier and parameter.
+struct Amounts<'a> {
+    library: &'a [EffectDescriptor],
+    spec: &'a ObserveSpec,
+}
+
+impl Amounts<'_> {
+    fn get(&self, id: &str, k: usize) -> f64 {
+        let Some(known) = self.library.iter().find(|e| e.id == id) else {
+            return 0.0;
+        };
+        let name = &known.parameters[k].name;
+        let given = self.spec.effects.iter().find(|e| e.id == id);
+        given
+            .and_then(|e| e.parameters.iter().find(|(n, _)| n == name))
+            .map_or(known.parameters[k].absent, |(_, value)| *value)
+    }
+
+    fn on(&self, id: &str) -> bool {
+        self.spec.effects.iter().any(|e| e.id == id)
+    }
+}
+
+/// The drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).
+struct Drive {
+    height: Vec<f64>,
+    speed: Vec<f64>,
+    acceleration: Vec<f64>,
+    slope: Vec<f64>,
+}
+
+fn drive(amounts: &Amounts<'_>, ratio: f64) -> Drive {
+    let offset = amounts.get("crank_angle_offset", 0).to_radians();
+    let (a, b) = (
+        amounts.get("crank_speed_ripple", 0),
+        amounts.get("crank_speed_ripple", 1),
+    );
+    let mut drive = Drive {
+        height: Vec::with_capacity(SAMPLES),
+        speed: Vec::with_capacity(SAMPLES),
+        acceleration: Vec::with_capacity(SAMPLES),
+        slope: Vec::with_capacity(SAMPLES),
+    };
+    for angle in grid() {
+        let p = angle + offset;
+        // stroke of 3 m by a crank whose rod is four times as long
+        let slope = 1.5 * (p.sin() + 0.125 * (2.0 * p).sin());
+        let bend = 1.5 * (p.cos() + 0.25 * (2.0 * p).cos());
+        let rate = ratio * (1.0 + a * angle.cos() + b * angle.sin());
+        let change = ratio * (b * angle.cos() - a * angle.sin());
+        drive
+            .height
+            .push(1.5 * (1.0 - p.cos() + 0.0625 * (1.0 - (2.0 * p).cos())));
+        drive.speed.push(slope * rate);
+        drive
+            .acceleration
+            .push(bend * rate * rate + slope * rate * change);
+        drive.slope.push(slope);
+    }
+    drive
+}
+
+/// Effects that follow the motion: evaluated on a solution without them.
+const BY_MOTION: [&str; 5] = [
+    "pivot_friction",
+    "stuffing_box_friction",
+    "rod_drag",
+    "pin_clearance",
+    "rope_toe",
+];
+
+/// Crank angle against time where the crank's speed ripples: the machine swings in time.
+struct Warp(Option<[Vec<f64>; 2]>);
+
+impl Warp {
+    fn new(turn: &Turn, amounts: &Amounts<'_>) -> Self {
+        let (a, b) = (
+            amounts.get("crank_speed_ripple", 0),
+            amounts.get("crank_speed_ripple", 1),
+        );
+        if a == 0.0 && b == 0.0 {
+            return Self(None);
+        }
+        let late = |angle: f64| a * angle.sin() - b * angle.cos();
+        let to: Vec<f64> = grid().map(|angle| angle - late(angle)).collect();
+        let from = grid()
+            .map(|time| (0..4).fold(time, |angle, _| time + late(angle)))
+            .collect();
+        debug_assert_eq!(to.len(), turn.0.len());
+        Self(Some([from, to]))
+    }
+
+    /// The spectrum over time of a curve over the angle.
+    fn enter(&self, turn: &Turn, curve: &[f64]) -> Vec<C> {
+        let spectrum = turn.transform(curve);
+        match &self.0 {
+            None => spectrum,
+            Some([from, _]) => turn.transform(&Turn::at(&spectrum, from)),
+        }
+    }
+
+    /// Spectra over the angle of a solution over time.
+    fn leave(&self, turn: &Turn, lags: &mut Lags, tensions: &mut (Vec<C>, Vec<C>)) {
+        let Some([_, to]) = &self.0 else { return };
+        let back = |spectrum: &[C]| turn.transform(&Turn::at(spectrum, to));
+        tensions.0 = back(&tensions.0);
+        tensions.1 = back(&tensions.1);
+        let rod = back(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());
+        for (y, rod) in lags.0.iter_mut().zip(rod) {
+            y[0] = rod;
+        }
+    }
+}
+
+/// The lags of one solution, order by order.
+struct Lags(Vec<Vector3<C>>);
+
+impl Machine {
+    /// With its whole library.
+    pub(crate) fn new() -> Self {
+        let turn = Turn::new();
+        let spectrum =
+            |condition| turn.transform(&grid().map(|a| card(condition, a)).collect::<Vec<f64>>());
+        let cards = [spectrum(0), spectrum(1)];
+        let library = library::named()
+            .into_iter()
+            .chain(library::generic())
+            .collect();
+        Self {
+            turn,
+            cards,
+            library,
+        }
+    }
+
+    /// What it announces.
+    pub(crate) fn library(&self) -> &[EffectDescriptor] {
+        &self.library
+    }
+
+    fn load(&self, amounts: &Amounts<'_>, condition: usize) -> Vec<f64> {
+        let shift = amounts.get("card_time_shift", 0).to_radians();
+        let lag = amounts.get("load_cell_lag", 0) * SPEED[condition];
+        let scale = 1.0 + amounts.get("load_cell_gain", 0);
+        let spectrum: Vec<C> = self.cards[condition]
+            .iter()
+            .enumerate()
+            .map(|(h, f)| {
+                let half = C::new(1.0, 0.5 * h as f64 * lag);
+                f * C::from_polar(scale, h as f64 * shift) * half * half
+            })
+            .collect();
+        let offset = amounts.get("load_offset", 0);
+        self.turn
+            .curve(&spectrum)
+            .iter()
+            .map(|w| w + offset)
+            .collect()
+    }
+
+    /// One turn.
+    pub(crate) fn observe(&self, spec: &ObserveSpec) -> Observation {
+        let amounts = Amounts {
+            library: &self.library,
+            spec,
+        };
+        let ratio = SPEED[spec.condition];
+        let g = Genes::new(spec);
+        if !(g.back > 50.0 && g.front > 5.0) {
+            return failed();
+        }
+        let drive = drive(&amounts, ratio);
+        let load = self.load(&amounts, spec.condition);
+        let forces = self.forces(&amounts, &drive, &load, ratio);
+        let warp = Warp::new(&self.turn, &amounts);
+        let linear = forces.map(|f| warp.enter(&self.turn, &f));
+        let extra_mass = amounts.get("beam_inertia", 0);
+        let mut lags = solve(&g, ratio, &linear, extra_mass);
+        let mut tensions = (lags.rope(&g, ratio), lags.pin(&g, ratio));
+        if BY_MOTION.iter().any(|id| amounts.on(id)) {
+            for _ in 0..2 {
+                let [on_rod, on_beam] = self.losses(&amounts, &drive, &load, &lags, ratio);
+                let [pin, rope] = self.stretch(&amounts, &g, ratio, &tensions);
+                let mut spectra = linear.clone();
+                for h in 0..=HIGHEST {
+                    spectra[0][h] += on_rod[h];
+                    spectra[1][h] += on_beam[h] + pin[h];
+                    spectra[2][h] += rope[h] - pin[h];
+                }
+                lags = solve(&g, ratio, &spectra, extra_mass);
+                tensions = (lags.rope(&g, ratio), lags.pin(&g, ratio));
+                for h in 0..=HIGHEST {
+                    tensions.0[h] -= rope[h];
+                    tensions.1[h] -= pin[h];
+                }
+            }
+        }
+        warp.leave(&self.turn, &mut lags, &mut tensions);
+        self.channels(&amounts, &g, &drive, (&lags, &tensions), ratio)
+    }
+
+    /// Forces on rod, beam, head, downwards.
+    fn forces(
+        &self,
+        amounts: &Amounts<'_>,
+        drive: &Drive,
+        load: &[f64],
+        ratio: f64,
+    ) -> [Vec<f64>; 3] {
+        let mass = [
+            MASSES[0],
+            MASSES[1] + amounts.get("beam_inertia", 0),
+            MASSES[2],
+        ];
+        let mut forces: [Vec<f64>; 3] =
+            mass.map(|m| drive.acceleration.iter().map(|a| m * a).collect());
+        for (f, load) in forces[0].iter_mut().zip(load) {
+            *f += load;
+        }
+        for (joint, force) in ["rod", "beam", "head"].iter().zip(&mut forces) {
+            for (f, p) in force
+                .iter_mut()
+                .zip(self.probe(amounts.spec, joint, drive, ratio))
+            {
+                *f += p;
+            }
+        }
+        forces
+    }
+
+    /// Friction and drag on rod and beam, by how these move in a solution.
+    fn losses(
+        &self,
+        amounts: &Amounts<'_>,
+        drive: &Drive,
+        load: &[f64],
+        lags: &Lags,
+        ratio: f64,
+    ) -> [Vec<C>; 2] {
+        let (pivot, seal, drag) = (
+            amounts.get("pivot_friction", 0),
+            amounts.get("stuffing_box_friction", 0),
+            amounts.get("rod_drag", 0),
+        );
+        let rate = |mass: usize| {
+            let rate = |(h, y): (usize, &Vector3<C>)| y[mass] * C::new(0.0, h as f64 * ratio);
+            self.turn
+                .curve(&lags.0.iter().enumerate().map(rate).collect::<Vec<C>>())
+        };
+        let sign = |v: f64| (v / 0.06).tanh();
+        let (rod, beam) = (rate(0), rate(1));
+        let on_rod: Vec<f64> = (0..SAMPLES)
+            .map(|i| drive.speed[i] - rod[i])
+            .map(|v| seal * sign(v) + drag * v * v.abs())
+            .collect();
+        let on_beam: Vec<f64> = (0..SAMPLES)
+            .map(|i| pivot * (load[i] + 20.0) * sign(drive.speed[i] - beam[i]))
+            .collect();
+        [self.turn.transform(&on_rod), self.turn.transform(&on_beam)]
+    }
+
+    /// The forces without a cause at one joint.
+    fn probe(&self, spec: &ObserveSpec, joint: &str, drive: &Drive, ratio: f64) -> Vec<f64> {
+        let mut sum = vec![0.0; SAMPLES];
+        let prefix = format!("probe.{joint}.");
+        for effect in &spec.effects {
+            let Some(form) = effect.id.strip_prefix(&prefix) else {
+                continue;
+            };
+            let amplitude = effect.parameters.first().map_or(0.0, |(_, value)| *value);
+            for (i, (angle, sum)) in grid().zip(&mut sum).enumerate() {
+                let v = drive.speed[i] / (1.5 * ratio);
+                let d = drive.height[i] / 1.5 - 1.0;
+                let harmonic = |rest: &str| angle * rest.parse::<f64>().unwrap_or(0.0);
+                *sum += amplitude
+                    * match (form, form.get(..3)) {
+                        ("const", _) => 1.0,
+                        ("sgn_v", _) => (v / 0.05).tanh(),
+                        ("v", _) => v,
+                        ("v2", _) => v * v.abs(),
+                        ("d2", _) => d * d,
+                        ("d3", _) => d * d * d,
+                        (_, Some("cos")) => harmonic(&form[3..]).cos(),
+                        (_, Some("sin")) => harmonic(&form[3..]).sin(),
+                        _ => 0.0,
+                    };
+            }
+        }
+        sum
+    }
+
+    /// Stretches that clearance and toe impose, as forces across pin and back rope.
+    fn stretch(
+        &self,
+        amounts: &Amounts<'_>,
+        g: &Genes,
+        ratio: f64,
+        tensions: &(Vec<C>, Vec<C>),
+    ) -> [Vec<C>; 2] {
+        let (rope, pin) = (self.turn.curve(&tensions.0), self.turn.curve(&tensions.1));
+        let (gap, at) = (
+            amounts.get("pin_clearance", 0),
+            amounts.get("pin_clearance", 1),
+        );
+        let toe = amounts.get("rope_toe", 0);
+        let play: Vec<f64> = pin
+            .iter()
+            .map(|q| 0.5 * gap * (1.0 + ((q - at) / 3.0).tanh()))
+            .collect();
+        let soft: Vec<f64> = rope.iter().map(|t| -toe * (-t / 25.0).exp()).collect();
+        let force = |stretch: &[f64], stiffness: f64, loss: f64| -> Vec<C> {
+            let spectrum = self.turn.transform(stretch).into_iter().enumerate();
+            spectrum
+                .map(|(h, f)| C::new(stiffness, h as f64 * ratio * loss) * f)
+                .collect()
+        };
+        [
+            force(&play, g.contact, g.contact_loss),
+            force(&soft, g.back, g.back_loss),
+        ]
+    }
+
+    fn channels(
+        &self,
+        amounts: &Amounts<'_>,
+        g: &Genes,
+        drive: &Drive,
+        (lags, tensions): (&Lags, &(Vec<C>, Vec<C>)),
+        ratio: f64,
+    ) -> Observation {
+        let (rope, pin) = (self.turn.curve(&tensions.0), self.turn.curve(&tensions.1));
+        let rod = self
+            .turn
+            .curve(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());
+        let (depth, place, width) = (
+            amounts.get("head_profile_wear", 0),
+            amounts.get("head_profile_wear", 1),
+            amounts.get("head_profile_wear", 2),
+        );
+        let lag = amounts.get("amplifier_lag", 0) * ratio;
+        let gauge = |c: usize| -> Vec<f64> {
+            let gain = 1.0 + amounts.get("gauge_gain", c);
+            let drift = amounts.get("gauge_drift", c);
+            let raw: Vec<f64> = (0..SAMPLES)
+                .map(|i| {
+                    let along = drive.height[i] / 3.0;
+                    let bend = g.bending * BENDING[c] * (7.0 * along + c as f64).sin();
+                    let off = (along - place) / width;
+                    let worn = depth * WEAR[c] * (-off * off).exp();
+                    let late = 0.004 * g.bending_loss * drive.speed[i];
+                    let tension = rope[i] * (1.0 + ALONG[c] * along + bend - worn + late);
+                    SENSITIVITY[c] * tension + CONTACT[c] * pin[i]
+                })
+                .collect();
+            let read = if lag > 0.0 {
+                let late = self.turn.transform(&raw).into_iter().enumerate();
+                let slow: Vec<C> = late.map(|(h, f)| f / C::new(1.0, h as f64 * lag)).collect();
+                self.turn.curve(&slow)
+            } else {
+                raw
+            };
+            read.iter()
+                .enumerate()
+                .map(|(i, y)| gain * y + drift * (i as f64 / SAMPLES as f64 - 0.5))
+                .collect()
+        };
+        let phase = amounts.get("counterweight_phase", 0).to_radians();
+        let extra = self.probe(amounts.spec, "crank", drive, ratio);
+        let torque = grid().enumerate().map(|(i, angle)| {
+            rope[i] * drive.slope[i] - 90.0 * (angle + phase).sin()
+                + 1e-4 * g.torsion * drive.speed[i]
+                + extra[i]
+        });
+        Observation {
+            verdict: Verdict::Complete,
+            counters: Counters::default(),
+            gauge_mpa: [gauge(0), gauge(1), gauge(2), gauge(3)],
+            crank_torque_n_m: torque.collect(),
+            suspension_m: drive.height.iter().zip(&rod).map(|(s, y)| s - y).collect(),
+        }
+    }
+}
+
+/// The genes as the equations need them.
+struct Genes {
+    back: f64,
+    back_loss: f64,
+    front: f64,
+    front_loss: f64,
+    contact: f64,
+    contact_loss: f64,
+    bending: f64,
+    bending_loss: f64,
+    torsion: f64,
+}
+
+impl Genes {
+    fn new(spec: &ObserveSpec) -> Self {
+        let g = &spec.genes;
+        // longer elements are a little too stiff
+        let length = spec.refinement.cylinder_length_m.unwrap_or(0.05);
+        let rough = 1.0 + 0.4 * length * length;
+        Self {
+            back: g[0] * rough,
+            front: g[1] * rough,
+            torsion: g[2] / RECOMMENDED[2],
+            bending: (g[3] / RECOMMENDED[3]).powf(0.3),
+            back_loss: g[4],
+            front_loss: g[5],
+            bending_loss: (g[7] / RECOMMENDED[7]).powf(0.3),
+            contact: g[8],
+            contact_loss: g[9],
+        }
+    }
+}
+
+impl Lags {
+    /// Tension of the back rope.
+    fn rope(&self, g: &Genes, ratio: f64) -> Vec<C> {
+        let part =
+            |(h, y): (usize, &Vector3<C>)| C::new(g.back, h as f64 * ratio * g.back_loss) * y[2];
+        self.0.iter().enumerate().map(part).collect()
+    }
+
+    /// Force between beam and head.
+    fn pin(&self, g: &Genes, ratio: f64) -> Vec<C> {
+        let part = |(h, y): (usize, &Vector3<C>)| {
+            C::new(g.contact, h as f64 * ratio * g.contact_loss) * (y[1] - y[2])
+        };
+        self.0.iter().enumerate().map(part).collect()
+    }
+}
+
+/// `(K + i w C - w^2 M) y = f` at every order.
+fn solve(g: &Genes, ratio: f64, spectra: &[Vec<C>; 3], beam: f64) -> Lags {
+    let at = |h: usize| {
+        let w = h as f64 * ratio;
+        let (f, c, b) = (
+            C::new(g.front, w * g.front_loss),
+            C::new(g.contact, w * g.contact_loss),
+            C::new(g.back, w * g.back_loss),
+        );
+        let w2 = w * w;
+        let zero = C::new(0.0, 0.0);
+        let matrix = Matrix3::new(
+            f - w2 * MASSES[0],
+            -f,
+            zero,
+            -f,
+            f + c - w2 * (MASSES[1] + beam),
+            -c,
+            zero,
+            -c,
+            c + b - w2 * MASSES[2],
+        );
+        let force = Vector3::new(spectra[0][h], spectra[1][h], spectra[2][h]);
+        matrix
+            .lu()
+            .solve(&force)
+            .unwrap_or_else(|| Vector3::from_element(zero))
+    };
+    Lags((0..=HIGHEST).map(at).collect())
+}
+
+fn failed() -> Observation {
+    Observation {
+        verdict: Verdict::Failed {
+            kind: PhysicsFailure::OverstretchedRope,
+            reached: Reached::LoadFraction(0.1),
+        },
+        counters: Counters::default(),
+        gauge_mpa: [Vec::new(), Vec::new(), Vec::new(), Vec::new()],
+        suspension_m: Vec::new(),
+        crank_torque_n_m: Vec::new(),
+    }
+}
+
+/// A laboratory that simulates at once; some of its runs may be lost.
+pub(crate) struct AtOnce<'a> {
+    machine: &'a Machine,
+    /// One run in so many is lost; none if 0.
+    lost_every: u64,
+    /// Runs so far, and those lost.
+    pub(crate) runs: u64,
+    pub(crate) lost: u64,
+}
+
+impl<'a> AtOnce<'a> {
+    pub(crate) const fn new(machine: &'a Machine) -> Self {
+        Self {
+            machine,
+            lost_every: 0,
+            runs: 0,
+            lost: 0,
+        }
+    }
+
+    /// Loses one run in `every`, spread as a counter's hash spreads them.
+    pub(crate) const fn losing(machine: &'a Machine, every: u64) -> Self {
+        Self {
+            machine,
+            lost_every: every,
+            runs: 0,
+            lost: 0,
+        }
+    }
+}
+
+impl Laboratory for AtOnce<'_> {
+    type Error = Infallible;
+
+    async fn observe(
+        &mut self,
+        _: Stage,
+        batch: Vec<ObserveSpec>,
+    ) -> Result<Vec<Option<Observation>>, Infallible> {
+        let one = |spec: &ObserveSpec| {
+            self.runs += 1;
+            let hash = self.runs.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
+            if self.lost_every > 0 && hash.is_multiple_of(self.lost_every) {
+                self.lost += 1;
+                return None;
+            }
+            Some(self.machine.observe(spec))
+        };
+        Ok(batch.iter().map(one).collect())
+    }
+}

@@ -1,0 +1,136 @@
+//! One diagnosis of one truth, and what is asked of its answer.
+use crate::case::{ORDERS, space};
+use crate::machine::{AtOnce, Machine};
+use crate::truth::{ALL, Truth, record};
+use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
+use discrepancy::record::Source;
+use discrepancy::settings::Settings;
+use protocol::announce::EffectDescriptor;
+use protocol::job::Refinement;
+use std::pin::pin;
+use std::sync::LazyLock;
+use std::task::{Context, Poll, Waker};
+
+/// The tool's machine.
+pub(crate) static MACHINE: LazyLock<Machine> = LazyLock::new(Machine::new);
+
+/// How a trial differs from the usual one.
+#[derive(Clone, Debug)]
+pub(crate) struct Setup {
+    /// Channels of the record.
+    pub(crate) channels: Vec<Source>,
+    /// Cycles of the record.
+    pub(crate) cycles: usize,
+    /// Thresholds.
+    pub(crate) settings: Settings,
+    /// The library.
+    pub(crate) library: Vec<EffectDescriptor>,
+    /// One run in so many is lost; none if 0.
+    pub(crate) lost_every: u64,
+}
+
+impl Default for Setup {
+    fn default() -> Self {
+        Self {
+            channels: ALL.to_vec(),
+            cycles: 8,
+            settings: Settings {
+                orders: ORDERS,
+                draws: 100,
+                ..Settings::default()
+            },
+            library: MACHINE.library().to_vec(),
+            lost_every: 0,
+        }
+    }
+}
+
+/// Diagnoses; the number of lost runs is second.
+pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
+    let records = vec![
+        record(truth, 0, &setup.channels, setup.cycles),
+        record(truth, 1, &setup.channels, 4),
+    ];
+    let inputs = Inputs {
+        space: space(),
+        records,
+        library: setup.library.clone(),
+        // a calibration has been there: it ends beside the truth, not on it
+        start: Some(
+            truth
+                .genes
+                .iter()
+                .enumerate()
+                .map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 })
+                .collect(),
+        ),
+        finer: Refinement {
+            cylinder_length_m: Some(0.025),
+            ..Refinement::default()
+        },
+        seed: 1,
+        settings: setup.settings.clone(),
+    };
+    let mut lab = AtOnce::losing(&MACHINE, setup.lost_every);
+    let answer = {
+        let mut future = pin!(diagnose(&mut lab, &inputs));
+        match future
+            .as_mut()
+            .poll(&mut Context::from_waker(Waker::noop()))
+        {
+            Poll::Ready(Ok(diagnosis)) => diagnosis,
+            Poll::Ready(Err(never)) => match never {},
+            Poll::Pending => unreachable!("a laboratory that answers at once never waits"),
+        }
+    };
+    (answer, lab.lost)
+}
+
+/// Diagnoses with the usual setup.
+pub(crate) fn diagnose_usual(truth: &Truth) -> Diagnosis {
+    diagnosed(truth, &Setup::default()).0
+}
+
+/// In one line, for failures and surveys.
+pub(crate) fn line(diagnosis: &Diagnosis) -> String {
+    let base = diagnosis.before.as_ref().map_or(f64::NAN, |fit| {
+        fit.chi_squared() / fit.search.best().residual.len() as f64
+    });
+    let rounds: Vec<String> = diagnosis
+        .rounds
+        .iter()
+        .map(|r| {
+            let best: Vec<String> = r
+                .refits
+                .iter()
+                .take(3)
+                .map(|f| {
+                    format!(
+                        "{} {:.0}",
+                        f.id,
+                        (f.log_evidence - r.null_evidence) / (r.phi * r.phi)
+                    )
+                })
+                .collect();
+            format!(
+                "[p {:.1e} phi {:.2} set {:?} best {}]",
+                r.p_value,
+                r.phi,
+                r.set,
+                best.join(", ")
+            )
+        })
+        .collect();
+    format!(
+        "{:?} chi2/n {base:.2} effects {:?} generic {:?} {:?} {}",
+        diagnosis.verdict,
+        diagnosis
+            .effects
+            .iter()
+            .map(|e| e.id.as_str())
+            .collect::<Vec<_>>(),
+        diagnosis.generic,
+        diagnosis.reason,
+        rounds.join(" ")
+    )
+}

@@ -1,0 +1,153 @@
+//! What became of every suspect, and why: one sentence each.
+use super::words::{nats, p_value};
+use discrepancy::diagnose::Round;
+use discrepancy::score::{chi_squared_tail, family_wise};
+use discrepancy::stage::refit::Refitted;
+use discrepancy::stage::suspect::Suspect;
+use protocol::announce::Sign;
+
+/// Beyond this share a recalibration hides an effect for practical purposes.
+const HIDDEN: f64 = 0.999;
+/// Nats within which two refits are not told apart.
+const APART: f64 = 3.0;
+
+/// What became of a suspect.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Judgement {
+    /// Tail probability of its test with the round's misfit in the variances, the best of several
+    /// shapes counted as such; none without a test.
+    pub p_value: Option<f64>,
+    /// Nats after the refit, against the model without it and over the squared misfit.
+    pub gain: Option<f64>,
+    /// Whether it is in the model or in its ambiguity set.
+    pub kept: bool,
+    /// In words.
+    pub why: String,
+}
+
+/// A round's suspects with what became of them: those of the answer first, then by evidence, then by
+/// the test.
+pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
+    let mut all: Vec<(&Suspect, Judgement)> = round
+        .suspects
+        .iter()
+        .map(|suspect| (suspect, judge(round, suspect)))
+        .collect();
+    all.sort_by(|(_, a), (_, b)| {
+        let key = |j: &Judgement| {
+            (
+                j.gain.unwrap_or(f64::NEG_INFINITY),
+                -j.p_value.unwrap_or(2.0),
+            )
+        };
+        let ((gain_a, p_a), (gain_b, p_b)) = (key(a), key(b));
+        let by_kept = b.kept.cmp(&a.kept);
+        by_kept
+            .then(gain_b.total_cmp(&gain_a))
+            .then(p_b.total_cmp(&p_a))
+    });
+    all
+}
+
+/// Tail probability of a test, with the round's misfit in the variances.
+pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
+    let score = suspect.score.as_ref()?;
+    if suspect.statistic() > 0.0 {
+        let scaled = score.statistic / (round.phi * round.phi);
+        Some(family_wise(
+            chi_squared_tail(scaled, score.freedom),
+            suspect.tries,
+        ))
+    } else {
+        Some(1.0)
+    }
+}
+
+/// The refit of a suspect, where there is one.
+fn refit<'a>(round: &'a Round, suspect: &Suspect) -> Option<&'a Refitted> {
+    let mut refits = round.refits.iter();
+    refits.find(|refit| refit.id == suspect.effect.id)
+}
+
+/// What became of one suspect.
+pub(super) fn judge(round: &Round, suspect: &Suspect) -> Judgement {
+    let scale = round.phi * round.phi;
+    let refit = refit(round, suspect);
+    Judgement {
+        p_value: tempered(round, suspect),
+        gain: refit.map(|refit| (refit.log_evidence - round.null_evidence) / scale),
+        kept: round.set.contains(&suspect.effect.id),
+        why: match refit {
+            Some(refit) => after_refit(round, refit, scale),
+            None => before_refit(round, suspect),
+        },
+    }
+}
+
+/// Why a refitted suspect was kept or dropped.
+fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
+    let gain = (own.log_evidence - round.null_evidence) / scale;
+    let best = round.refits.first();
+    let behind = best.map_or(0.0, |best| (best.log_evidence - own.log_evidence) / scale);
+    if round.added.as_ref() == Some(&own.id) {
+        return if round.set.len() > 1 {
+            "kept: the best of its ambiguity set, added".to_owned()
+        } else {
+            "kept: added to the model".to_owned()
+        };
+    }
+    let Some(best) = best.filter(|best| best.id != own.id) else {
+        return format!(
+            "dropped: the likeliest, and its {} nats are not enough",
+            nats(gain)
+        );
+    };
+    if !own.log_evidence.is_finite() {
+        return "dropped: its refit has no evidence (the fit does not determine it)".to_owned();
+    }
+    if round.set.contains(&own.id) {
+        return format!(
+            "kept in the ambiguity set: {} nats behind {}, less than {APART:.0}",
+            nats(behind),
+            best.id
+        );
+    }
+    if gain <= 0.0 {
+        return "dropped: with all genes free it explains nothing more".to_owned();
+    }
+    format!("dropped: beaten by {} nats by {}", nats(behind), best.id)
+}
+
+/// Why a suspect was not refitted.
+fn before_refit(round: &Round, suspect: &Suspect) -> String {
+    let Some(score) = &suspect.score else {
+        return "could not be simulated here: nothing is said about it".to_owned();
+    };
+    if score.freedom == 0 || score.absorbed > HIDDEN {
+        return "dropped: recalibration absorbs it, so this record cannot show it".to_owned();
+    }
+    if suspect.statistic() <= 0.0 {
+        let one_sided = suspect
+            .effect
+            .parameters
+            .iter()
+            .any(|p| p.sign == Sign::Positive);
+        return if one_sided {
+            "dropped: the record asks for the wrong sign".to_owned()
+        } else {
+            "dropped: it explains nothing".to_owned()
+        };
+    }
+    // the tests decide who is refitted: whoever was likelier than one that was, was due
+    let own = suspect.p_value();
+    let least = |other: &&Suspect| refit(round, other).is_some() && other.p_value() > own;
+    if round.suspects.iter().filter(least).count() > 0 {
+        return "dropped: its refit could not be simulated".to_owned();
+    }
+    let p = tempered(round, suspect).unwrap_or(1.0);
+    if p > 0.01 {
+        format!("dropped: not significant (p = {})", p_value(p))
+    } else {
+        "dropped: likelier suspects filled the places for refits".to_owned()
+    }
+}

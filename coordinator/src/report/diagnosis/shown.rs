@@ -1,0 +1,131 @@
+//! The curves of a diagnosis condition by condition: measured, before, after, best rejected rival.
+use super::Subject;
+use super::words;
+use crate::report::chart::Closing;
+use crate::report::words::condition_name;
+use discrepancy::record::{Curves, Record, Source};
+use protocol::case::Offset;
+
+/// Everything about one condition, on its record's grid.
+#[derive(Clone, Debug)]
+pub(super) struct Shown<'a> {
+    /// Name of the condition.
+    pub condition: String,
+    /// What was measured.
+    pub record: &'a Record,
+    /// Crank angle (deg).
+    pub turn_deg: Vec<f64>,
+    /// Mean over all cycles, by channel.
+    pub mean: Curves,
+    /// Standard deviation of one cycle, by channel; empty lists where there is one cycle only.
+    pub spread: Curves,
+    /// Curves of the recalibrated model.
+    pub before: &'a Curves,
+    /// Curves with what was added, if anything was.
+    pub after: Option<&'a Curves>,
+    /// The best rejected rival and the curves with it.
+    pub rival: Option<(&'a str, &'a Curves)>,
+    /// Whether a constant counts for nothing.
+    pub free_offset: bool,
+}
+
+impl Shown<'_> {
+    /// One channel of it.
+    pub(super) fn channel<'b>(&'b self, c: usize, name: &'b str) -> Option<Closing<'b>> {
+        Some(Closing {
+            condition: &self.condition,
+            channel: name,
+            unit: self.record.channels.get(c)?.unit(),
+            turn_deg: &self.turn_deg,
+            measured: self.mean.get(c)?,
+            spread: self.spread.get(c).map_or(&[], Vec::as_slice),
+            cycles: self.record.cycles.len(),
+            before: self.before.get(c)?,
+            after: self.after.and_then(|after| after.get(c)).map(Vec::as_slice),
+            rival: self
+                .rival
+                .and_then(|(id, rival)| Some((id, rival.get(c)?.as_slice()))),
+            free_offset: self.free_offset,
+        })
+    }
+
+    /// Indices of the channels, gauges first.
+    pub(super) fn order(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.record.channels.len()).collect();
+        order.sort_by_key(|&c| !matches!(self.record.channels[c], Source::Gauge(_)));
+        order
+    }
+}
+
+/// Every condition that was compared, the calibrated one first; before a comparison, the calibrated
+/// one alone.
+pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    let found = diagnosis.rounds.iter().any(|round| round.added.is_some());
+    let mut all: Vec<Shown<'a>> = Vec::new();
+    let mut seen = Vec::new();
+    for row in &diagnosis.rows {
+        if seen.contains(&row.condition) {
+            continue;
+        }
+        seen.push(row.condition);
+        let rival = diagnosis.rival.as_ref().and_then(|(id, rows)| {
+            let row = rows.iter().find(|other| other.condition == row.condition)?;
+            Some((id.as_str(), &row.after))
+        });
+        let after = found.then_some(&row.after);
+        all.extend(one(subject, row.condition, &row.before, (after, rival)));
+    }
+    if let (true, Some(fit)) = (all.is_empty(), &diagnosis.before) {
+        all.extend(one(
+            subject,
+            subject.case.objective.condition,
+            &fit.curves,
+            (None, None),
+        ));
+    }
+    all
+}
+
+type Others<'a> = (Option<&'a Curves>, Option<(&'a str, &'a Curves)>);
+
+fn one<'a>(
+    subject: &Subject<'a>,
+    condition: usize,
+    before: &'a Curves,
+    (after, rival): Others<'a>,
+) -> Option<Shown<'a>> {
+    let record = words::record(subject, condition)?;
+    let mean = record.mean();
+    let n = record.samples();
+    Some(Shown {
+        condition: condition_name(subject.case, condition),
+        turn_deg: (0..n).map(|i| 360.0 * i as f64 / n as f64).collect(),
+        spread: spread(record, &mean),
+        mean,
+        record,
+        before,
+        after,
+        rival,
+        free_offset: subject.case.objective.offset == Offset::Free,
+    })
+}
+
+/// Standard deviation of the cycles about their mean.
+fn spread(record: &Record, mean: &Curves) -> Curves {
+    let cycles = record.cycles.len();
+    if cycles < 2 {
+        return Vec::new();
+    }
+    let channel = |(c, mean): (usize, &Vec<f64>)| -> Vec<f64> {
+        let at = |(i, m): (usize, &f64)| {
+            let squares = record
+                .cycles
+                .iter()
+                .map(|cycle| (cycle[c][i] - m) * (cycle[c][i] - m));
+            (squares.sum::<f64>() / (cycles - 1) as f64).sqrt()
+        };
+        mean.iter().enumerate().map(at).collect()
+    };
+    mean.iter().enumerate().map(channel).collect()
+}

@@ -1,0 +1,99 @@
+//! Commands that no other suite runs, end to end: the program, a worker process, the shipped case.
+#![expect(
+    clippy::unwrap_used,
+    reason = "helpers of tests: a command that cannot be run or read has failed"
+)]
+use serde_json::Value;
+use std::{fs, path::Path, process::Command};
+
+/// Runs a command with `--output json`; its object.
+fn json(arguments: &[&str]) -> Value {
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
+        .args(arguments.iter().map(|word| match *word {
+            "CASE" => case.as_os_str(),
+            other => other.as_ref(),
+        }))
+        .args(["--output", "json"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    serde_json::from_slice(&output.stdout).unwrap()
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// The head from its mesh: frequencies of the table, exact stress beside that of the modes, and a
+/// picture with displacement of every mode and stress.
+#[test]
+fn head_reduces_the_shipped_mesh_and_draws_it() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().to_str().unwrap();
+    let object = json(&["head", "CASE", "--modes", "3", "--vtu", folder]);
+    let modes = object["modes"].as_array().unwrap();
+    assert_eq!(modes.len(), 3);
+    for mode in modes {
+        let (ours, table) = (
+            number(&mode["frequency_hz"]),
+            number(&mode["table_frequency_hz"]),
+        );
+        assert!((ours / table - 1.0).abs() < 0.01, "{ours} {table}");
+        assert!(number(&mode["mac"]) > 0.99);
+    }
+    assert!((number(&object["mass_kg"]) - 881.0).abs() < 0.1);
+    for gauge in ["1", "2", "3", "4"] {
+        let gauge = &object["gauges"][gauge];
+        let exact = number(&gauge["exact_half_range_mpa"]);
+        let table = number(&gauge["table_half_range_mpa"]);
+        assert!((exact / table - 1.0).abs() < 1e-3, "{exact} {table}");
+    }
+    let picture = fs::read_to_string(scratch.path().join("head.vtu")).unwrap();
+    let fields = picture.matches("<DataArray").count();
+    assert!(
+        picture.contains("<UnstructuredGrid>") && fields >= 3 + 3,
+        "{fields}"
+    );
+    assert!(picture.contains("stress"));
+}
+
+/// Methods side by side: every run complete, the more accurate method more accurate, the price of
+/// the fixed step far above any other, figure and table written.
+#[test]
+fn bench_integrators_measures_error_and_work() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().to_str().unwrap();
+    let object = json(&[
+        "bench",
+        "integrators",
+        "CASE",
+        "--methods",
+        "tr_bdf2,rodas4",
+        "--levels",
+        "2",
+        "--out",
+        folder,
+    ]);
+    assert!(number(&object["resolution"]) < 1e-3);
+    let points = object["points"].as_array().unwrap();
+    assert_eq!(points.len(), 4);
+    assert!(points.iter().all(|point| point["complete"] == true));
+    let [coarse, _, rodas, finer] = [0, 1, 2, 3].map(|k| number(&points[k]["error"]));
+    assert!(
+        rodas < coarse && finer < rodas && finer < 0.01,
+        "{points:?}"
+    );
+    let fixed = &object["fixed_step"];
+    let dearest = points
+        .iter()
+        .map(|p| number(&p["wall_s"]))
+        .fold(0.0, f64::max);
+    assert!(number(&fixed["steps_measured"]) > 1000.0);
+    assert!(number(&fixed["wall_s_extrapolated"]) > 10.0 * dearest);
+    let svg = fs::read_to_string(scratch.path().join("integrators.svg")).unwrap();
+    assert!(svg.contains("RODAS4") && svg.contains("wall time"));
+    let rows = fs::read_to_string(scratch.path().join("integrators.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 5);
+}
