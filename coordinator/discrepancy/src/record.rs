@@ -59,6 +59,8 @@ pub struct Stated {
     pub noise: Vec<Option<f64>>,
     /// Correlation of the noise from sample to sample, over the grid.
     pub noise_correlation: f64,
+    /// Variance of one cycle about the mean by channel, where more cycles than these tell it.
+    pub cycle_variance: Vec<f64>,
 }
 
 impl Record {
@@ -84,13 +86,48 @@ impl Record {
     pub fn split(&self) -> (Self, Self) {
         let n = self.cycles.len();
         let held = if n < 3 { 0 } else { (n / 4).max(1) };
-        (self.part(0..n - held), self.part(n - held..n))
+        let whole = Self {
+            stated: Stated {
+                cycle_variance: self.cycle_variance(),
+                ..self.stated.clone()
+            },
+            ..self.clone()
+        };
+        (whole.part(0..n - held), whole.part(n - held..n))
+    }
+
+    /// Variance of one cycle about the mean, by channel; zeros where nothing tells it.
+    pub fn cycle_variance(&self) -> Vec<f64> {
+        let n = self.cycles.len();
+        if !self.stated.cycle_variance.is_empty() {
+            return self.stated.cycle_variance.clone();
+        }
+        if n < 2 {
+            return vec![0.0; self.channels.len()];
+        }
+        let whole = self.mean();
+        let scatter = |cycle: &Curves, c: usize| {
+            let d: Vec<f64> = cycle[c].iter().zip(&whole[c]).map(|(y, m)| y - m).collect();
+            variance(&d)
+        };
+        let of = |c: usize| {
+            let sum: f64 = self.cycles.iter().map(|cycle| scatter(cycle, c)).sum();
+            sum / (n - 1) as f64
+        };
+        (0..self.channels.len()).map(of).collect()
     }
 
     /// Mean over the cycles.
     pub fn mean(&self) -> Curves {
         mean_of(&self.cycles.iter().collect::<Vec<_>>())
     }
+}
+
+/// Mean square about the mean.
+pub(crate) fn variance(values: &[f64]) -> f64 {
+    let n = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
 }
 
 /// Mean of equally shaped curves; empty of none.

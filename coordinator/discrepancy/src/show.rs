@@ -5,7 +5,7 @@
 //! `closed = 1 - g_after / g_before`; intervals by resampling the cycles, before and after on the
 //! same resample. A gap that closes does not prove a name: a wrong effect often closes most of it,
 //! which is why the best rejected rival is always shown beside.
-use crate::record::{Curves, Record, Source, mean_of};
+use crate::record::{Curves, Record, Source, mean_of, variance};
 use search::random::{Phase, Streams};
 
 /// The gap before and after.
@@ -96,31 +96,14 @@ fn mse(record: &Record, cycles: &[&Curves], simulated: &Curves) -> f64 {
 
 /// What the scatter between cycles explains of it.
 fn noise(record: &Record) -> f64 {
-    let n = record.cycles.len();
-    if n < 2 {
-        return 0.0;
-    }
     let whole = record.mean();
     let gauges = gauges(record);
-    let each = gauges.iter().map(|&c| {
-        let scatter: f64 = record
-            .cycles
-            .iter()
-            .map(|cycle| {
-                let d: Vec<f64> = cycle[c].iter().zip(&whole[c]).map(|(y, m)| y - m).collect();
-                variance(&d)
-            })
-            .sum();
-        scatter / ((n - 1) * n) as f64 / variance(&whole[c]).max(f64::MIN_POSITIVE)
-    });
+    let scatter = record.cycle_variance();
+    let cycles = record.cycles.len().max(1) as f64;
+    let each = gauges
+        .iter()
+        .map(|&c| scatter[c] / cycles / variance(&whole[c]).max(f64::MIN_POSITIVE));
     each.sum::<f64>() / gauges.len().max(1) as f64
-}
-
-/// Mean square about the mean.
-fn variance(values: &[f64]) -> f64 {
-    let n = values.len().max(1) as f64;
-    let mean = values.iter().sum::<f64>() / n;
-    values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
 }
 
 #[cfg(test)]
@@ -165,6 +148,11 @@ mod tests {
         assert!(low > 0.9 && high <= 1.0 && low <= shown.closed, "{shown:?}");
         let same = closed(&record, &vec![off.clone()], &vec![off]);
         assert!(same.closed.abs() < 1e-12);
+        // a single held-out cycle takes its noise from the others
+        let (_, held) = record.split();
+        let one = held.part(0..1);
+        assert!(gap(&one, &vec![wave(10.0, 0.0)]) < 3e-4);
+        assert!(mse(&one, &[&one.cycles[0]], &vec![wave(10.0, 0.0)]) > 1.5e-3);
         assert!(
             closed(
                 &record.part(0..1),

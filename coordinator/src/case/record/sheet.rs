@@ -91,6 +91,7 @@ impl Sheet {
                 .gauges
                 .noise_correlation_per_sample
                 .map_or(0.0, |rho| libm::pow(rho, 1.0 / grid)),
+            ..Stated::default()
         }
     }
 
