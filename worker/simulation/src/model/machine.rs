@@ -88,7 +88,7 @@ impl Machine {
         check(&description, modes)?;
         let bottom = Mechanism::of(&description).bottom_dead_centre()?;
         let lowest = lowest_suspension(&description, &bottom);
-        Self::assemble(description, modes, bottom, lowest)
+        Ok(Self::assemble(description, modes, bottom, lowest))
     }
 
     /// As [`Self::new`], with effects. Turn 0 stays where the machine without them has its bottom
@@ -115,7 +115,7 @@ impl Machine {
         let mechanism = Mechanism::of(&edited);
         let bottom = mechanism.position(marked.pin, marked.beam, marked.tangent)?;
         let cycle = Cycle::new(&edited, &mechanism, &bottom)?;
-        let mut machine = Self::assemble(edited, kept, bottom, lowest)?;
+        let mut machine = Self::assemble(edited, kept, bottom, lowest);
         let mut hooks = Hooks::default();
         for effect in &selection.effects {
             effect.install(&machine, &cycle, &mut hooks);
@@ -129,7 +129,7 @@ impl Machine {
         modes: usize,
         bottom: Position,
         lowest_suspension: f64,
-    ) -> Result<Self, InvalidDescription> {
+    ) -> Self {
         let d = &description;
         let layout = Layout {
             back: d.rope.back,
@@ -154,7 +154,7 @@ impl Machine {
         let influence = |curves: &[Vec<f64>]| {
             Splines::natural(d.head.influence_start, d.head.influence_step, curves)
         };
-        Ok(Self {
+        Self {
             layout,
             bottom,
             lowest_suspension,
@@ -171,7 +171,7 @@ impl Machine {
             radial,
             hooks: Hooks::default(),
             description,
-        })
+        }
     }
 
     /// The inextensible mechanism with another effective radius and length.
