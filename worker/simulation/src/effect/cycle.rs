@@ -39,7 +39,7 @@ impl Cycle {
         bottom: &Position,
     ) -> Result<Self, DoesNotClose> {
         let step = TAU / NODES as f64;
-        let mut curves = vec![Vec::with_capacity(NODES); 3];
+        let mut curves: [Vec<f64>; 3] = [const { Vec::new() }; 3];
         let mut at = *bottom;
         for k in 0..NODES {
             let pin = bottom.pin + d.crank.sense * step * k as f64;

@@ -91,7 +91,7 @@ impl Machine {
         check(&description, modes)?;
         let bottom = Mechanism::of(&description).bottom_dead_centre()?;
         let lowest = lowest_suspension(&description, &bottom);
-        Self::assemble(description, modes, bottom, lowest)
+        Ok(Self::assemble(description, modes, bottom, lowest))
     }
 
     /// As [`Self::new`], with effects. Turn 0 stays where the machine without them has its bottom
@@ -118,7 +118,7 @@ impl Machine {
         let mechanism = Mechanism::of(&edited);
         let bottom = mechanism.position(marked.pin, marked.beam, marked.tangent)?;
         let cycle = Cycle::new(&edited, &mechanism, &bottom)?;
-        let mut machine = Self::assemble(edited, kept, bottom, lowest)?;
+        let mut machine = Self::assemble(edited, kept, bottom, lowest);
         machine.effects = Some((selection.clone(), cycle));
         machine.install_effects();
         Ok(machine)
@@ -140,7 +140,7 @@ impl Machine {
         modes: usize,
         bottom: Position,
         lowest_suspension: f64,
-    ) -> Result<Self, InvalidDescription> {
+    ) -> Self {
         let d = &description;
         let layout = Layout {
             back: d.rope.back,
@@ -170,7 +170,7 @@ impl Machine {
         let influence = |curves: &[Vec<f64>]| {
             Splines::natural(d.head.influence_start, d.head.influence_step, curves)
         };
-        Ok(Self {
+        Self {
             layout,
             bottom,
             lowest_suspension,
@@ -188,7 +188,7 @@ impl Machine {
             hooks: Hooks::default(),
             effects: None,
             description,
-        })
+        }
     }
 
     /// The same machine with six coordinates per cylinder.
