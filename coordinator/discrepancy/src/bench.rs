@@ -5,7 +5,7 @@ use crate::model::Model;
 use crate::record::{Curves, Record};
 use nalgebra::DVector;
 use protocol::job::Refinement;
-use search::least_squares::{LeastSquares, Settings, Variable};
+use search::least_squares::{Ended, LeastSquares, Settings, Variable};
 
 /// A record under a metric.
 #[derive(Clone, Debug)]
@@ -85,7 +85,8 @@ impl Bench {
         &self.measured - self.metric.whiten(curves)
     }
 
-    /// Runs several fits side by side, so that their points fill one batch.
+    /// Runs several fits side by side, so that their points fill one batch. A start that cannot be
+    /// simulated is tried once more, a little beside.
     ///
     /// # Errors
     /// Of the laboratory.
@@ -104,7 +105,14 @@ impl Bench {
             })
             .collect();
         let mut at_best: Vec<Option<Curves>> = vec![None; fits.len()];
+        let mut nudged = vec![false; fits.len()];
         loop {
+            for ((_, search), nudged) in fits.iter_mut().zip(&mut nudged) {
+                if search.ended() == Some(Ended::StartFailed) && !*nudged {
+                    *nudged = true;
+                    *search = LeastSquares::new(beside(search.variables()), settings);
+                }
+            }
             let plans: Vec<Vec<Vec<f64>>> = fits.iter().map(|(_, search)| search.plan()).collect();
             let points: Vec<(&Model, &[f64])> = fits
                 .iter()
@@ -140,4 +148,20 @@ impl Bench {
             })
             .collect())
     }
+}
+
+/// The same unknowns, starting a tenth of a difference step beside, away from the nearer bound.
+fn beside(variables: &[Variable]) -> Vec<Variable> {
+    let moved = |v: &Variable| {
+        let inwards = if v.upper - v.start > v.start - v.lower {
+            1.0
+        } else {
+            -1.0
+        };
+        Variable {
+            start: v.start + 0.1 * inwards * v.step,
+            ..v.clone()
+        }
+    };
+    variables.iter().map(moved).collect()
 }

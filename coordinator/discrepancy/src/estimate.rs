@@ -2,7 +2,7 @@
 use crate::bench::Fit;
 use crate::evidence::misfit;
 use crate::isolability::{self, Hurdle};
-use crate::model::{SIZE_DEVIATION, sizes};
+use crate::model::sizes;
 use crate::rounds::Round;
 use crate::score::{family_wise, single};
 use crate::settings::Settings;
@@ -59,16 +59,15 @@ pub(crate) fn outlook(
         let tests = suspect.tries * round.suspects.len();
         let hurdle = Hurdle {
             p_value: single(settings.alpha, tests),
-            gain: settings.gain,
             phi,
         };
         let sizes = sizes(&suspect.effect);
-        let deviations = vec![SIZE_DEVIATION; sizes.len()];
-        for (column, k) in sizes.into_iter().enumerate() {
+        for (column, &k) in sizes.iter().enumerate() {
             let parameter = &suspect.effect.parameters[k];
-            let prior = (deviations.as_slice(), parameter.sign == Sign::Positive);
+            let one_sided = sizes.len() == 1 && parameter.sign == Sign::Positive;
+            let signature = &suspect.signature;
             let limit =
-                isolability::detection_limit(&suspect.signature, column, prior, &tangent, &hurdle);
+                isolability::detection_limit(signature, column, one_sided, &tangent, &hurdle);
             limits.push(Limit {
                 id: suspect.effect.id.clone(),
                 parameter: parameter.name.clone(),

@@ -15,7 +15,7 @@ const GENE_DEVIATION: f64 = 1.5;
 /// First difference step of a gene (decades).
 const GENE_STEP: f64 = 0.02;
 /// Prior standard deviation of a size, in units of its scale.
-pub const SIZE_DEVIATION: f64 = 2.0;
+const SIZE_DEVIATION: f64 = 2.0;
 
 /// A case with added effects.
 #[derive(Clone, Debug)]

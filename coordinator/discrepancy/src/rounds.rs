@@ -211,7 +211,8 @@ async fn examine<L: Laboratory>(
         })
         .fold(1.0, f64::min);
     Ok(Round {
-        p_value: family_wise(least, suspects.len()),
+        // no test at all rejects nothing
+        p_value: family_wise(least, suspects.len().max(1)),
         null_evidence: log_evidence(current.search.best(), current.variables()),
         suspects,
         generics,

@@ -1,8 +1,11 @@
 //! Crank angle x channel: windows of the revolution in which a residual cannot be noise.
 //!
 //! The residual's mean over windows of 5, 11 and 21 bins is held against the largest such mean, over
-//! all windows and channels, of noise drawn from the metric and projected like the residual: so any
-//! false window at all appears in a share of records that is set beforehand.
+//! all windows and channels, of records with nothing but noise: so any false window at all appears in
+//! a share of records that is set beforehand. Such records are the cycles themselves with signs
+//! flipped: where only noise is left, a cycle's residual is as likely as its negative, whatever its
+//! colour. Windows are measured in a scale that no flip changes. With too few cycles for that the
+//! noise is drawn from the metric, which knows its variances less well than it believes.
 use crate::metric::Metric;
 use crate::tangent::Tangent;
 use nalgebra::{Complex, DVector};
@@ -41,54 +44,37 @@ pub struct AngleMap {
 /// Statistics of windows, channel x width x first bin.
 type Windows = Vec<Vec<Vec<f64>>>;
 
-/// Maps a whitened residual; `draws` sets of noise decide what is significant at `alpha`.
+/// Maps a whitened residual; `deviations` are those of the cycles from their mean, whitened and
+/// projected likewise; at most `draws` sets of noise decide what is significant at `alpha`.
 pub fn map(
     residual: &DVector<f64>,
-    metric: &Metric,
-    tangent: &Tangent,
+    deviations: &[DVector<f64>],
+    (metric, tangent): (&Metric, &Tangent),
     draws: usize,
     alpha: f64,
 ) -> AngleMap {
-    let streams = Streams::new(0x616e_676c, 0);
-    let noise: Vec<Windows> = (0..draws)
-        .map(|draw| {
-            let mut stream = streams.at(0, Phase::Resample, draw);
-            let z = DVector::from_fn(metric.len(), |_, _| stream.normal());
-            windows(&tangent.project(&z), metric)
-        })
-        .collect();
     let seen = windows(residual, metric);
-    let scale = |c: usize, w: usize, b: usize| -> f64 {
-        let sum: f64 = noise.iter().map(|n| n[c][w][b] * n[c][w][b]).sum();
-        (sum / draws as f64).sqrt().max(f64::MIN_POSITIVE)
-    };
-    let places: Vec<(usize, usize, usize)> = (0..metric.channels())
-        .flat_map(|c| (0..WIDTHS.len()).flat_map(move |w| (0..BINS).map(move |b| (c, w, b))))
-        .collect();
-    let scales: Vec<f64> = places.iter().map(|&(c, w, b)| scale(c, w, b)).collect();
-    let largest = |all: &Windows| -> f64 {
-        let each = places.iter().zip(&scales);
-        each.map(|(&(c, w, b), s)| (all[c][w][b] / s).abs())
-            .fold(0.0, f64::max)
-    };
-    let mut maxima: Vec<f64> = noise.iter().map(largest).collect();
-    maxima.sort_by(f64::total_cmp);
-    let p_value = |strength: f64| -> f64 {
-        let below = maxima.partition_point(|m| *m < strength.abs());
-        (1 + draws - below) as f64 / (1 + draws) as f64
+    let null = if can_flip(deviations.len(), alpha) {
+        let cycles: Vec<Windows> = deviations
+            .iter()
+            .map(|deviation| windows(&(residual + deviation), metric))
+            .collect();
+        Null::flipped(&cycles, draws)
+    } else {
+        Null::drawn(metric, tangent, draws)
     };
     let bin_deg = 360.0 / BINS as f64;
+    let places = (0..metric.channels())
+        .flat_map(|c| (0..WIDTHS.len()).flat_map(move |w| (0..BINS).map(move |b| (c, w, b))));
     let mut found: Vec<Window> = places
-        .iter()
-        .zip(&scales)
-        .map(|(&(channel, w, b), s)| {
-            let strength = seen[channel][w][b] / s;
+        .map(|(channel, w, b)| {
+            let strength = seen[channel][w][b] / null.scales[channel][w];
             Window {
                 channel,
                 from_deg: b as f64 * bin_deg,
                 to_deg: (b + WIDTHS[w]) as f64 * bin_deg,
                 strength,
-                p_value: p_value(strength),
+                p_value: null.p_value(strength),
             }
         })
         .collect();
@@ -113,6 +99,130 @@ pub fn map(
         strength,
         windows: kept,
     }
+}
+
+/// Whether flips of so many cycles can tell one record in `1 / alpha`: the first cycle's sign is free.
+fn can_flip(cycles: usize, alpha: f64) -> bool {
+    cycles >= 2 && alpha * libm::exp2(cycles as f64 - 1.0) >= 1.0
+}
+
+/// What noise alone does to windows.
+struct Null {
+    /// Standard deviation by channel and width.
+    scales: Vec<Vec<f64>>,
+    /// The largest window of each set, in ascending order.
+    maxima: Vec<f64>,
+    /// Whether the record itself is one of the sets.
+    complete: bool,
+}
+
+impl Null {
+    /// From the cycles' windows, with signs flipped.
+    fn flipped(cycles: &[Windows], draws: usize) -> Self {
+        let n = cycles.len();
+        let square = |c: usize, w: usize| -> f64 {
+            let of = |cycle: &Windows| cycle[c][w].iter().map(|x| x * x).sum::<f64>();
+            cycles.iter().map(of).sum::<f64>() / BINS as f64
+        };
+        let scale = |c: usize, w: usize| (square(c, w).sqrt() / n as f64).max(f64::MIN_POSITIVE);
+        let scales: Vec<Vec<f64>> = (0..cycles[0].len())
+            .map(|c| (0..WIDTHS.len()).map(|w| scale(c, w)).collect())
+            .collect();
+        let all = u32::try_from(n - 1)
+            .ok()
+            .and_then(|n| 1_usize.checked_shl(n));
+        let complete = all.is_some_and(|all| all <= draws);
+        let streams = Streams::new(0x666c_6970, 0);
+        let sets = if complete {
+            all.unwrap_or(draws)
+        } else {
+            draws
+        };
+        let signs = |set: usize| -> Vec<f64> {
+            let mut stream = streams.at(0, Phase::Resample, set);
+            let sign = |k: usize| {
+                let minus = if complete {
+                    k > 0 && set >> (k - 1) & 1 == 1
+                } else {
+                    stream.chance(0.5)
+                };
+                if minus { -1.0 } else { 1.0 }
+            };
+            (0..n).map(sign).collect()
+        };
+        let maxima = (0..sets).map(|set| {
+            let signs = signs(set);
+            let mean = |c: usize, w: usize, b: usize| {
+                let parts = cycles
+                    .iter()
+                    .zip(&signs)
+                    .map(|(cycle, sign)| sign * cycle[c][w][b]);
+                parts.sum::<f64>() / n as f64
+            };
+            largest(&scales, mean)
+        });
+        Self::new(maxima.collect(), scales.clone(), complete)
+    }
+
+    /// From noise as the metric describes it.
+    fn drawn(metric: &Metric, tangent: &Tangent, draws: usize) -> Self {
+        let streams = Streams::new(0x616e_676c, 0);
+        let noise: Vec<Windows> = (0..draws)
+            .map(|draw| {
+                let mut stream = streams.at(0, Phase::Resample, draw);
+                let z = DVector::from_fn(metric.len(), |_, _| stream.normal());
+                windows(&tangent.project(&z), metric)
+            })
+            .collect();
+        let scale = |c: usize, w: usize| -> f64 {
+            let of = |set: &Windows| set[c][w].iter().map(|x| x * x).sum::<f64>();
+            let sum: f64 = noise.iter().map(of).sum();
+            (sum / (draws * BINS) as f64).sqrt().max(f64::MIN_POSITIVE)
+        };
+        let scales: Vec<Vec<f64>> = (0..metric.channels())
+            .map(|c| (0..WIDTHS.len()).map(|w| scale(c, w)).collect())
+            .collect();
+        let maxima = noise
+            .iter()
+            .map(|set| largest(&scales, |c, w, b| set[c][w][b]));
+        Self::new(maxima.collect(), scales.clone(), false)
+    }
+
+    fn new(mut maxima: Vec<f64>, scales: Vec<Vec<f64>>, complete: bool) -> Self {
+        maxima.sort_by(f64::total_cmp);
+        Self {
+            scales,
+            maxima,
+            complete,
+        }
+    }
+
+    /// Share of sets with a window as strong.
+    fn p_value(&self, strength: f64) -> f64 {
+        // the record's own set has exactly its strongest window, up to rounding
+        let below = self
+            .maxima
+            .partition_point(|m| *m < strength.abs() * (1.0 - 1e-9));
+        let (above, sets) = (self.maxima.len() - below, self.maxima.len());
+        if self.complete {
+            above as f64 / sets as f64
+        } else {
+            (1 + above) as f64 / (1 + sets) as f64
+        }
+    }
+}
+
+/// The largest window over all channels, widths and bins.
+fn largest(scales: &[Vec<f64>], value: impl Fn(usize, usize, usize) -> f64) -> f64 {
+    let mut most: f64 = 0.0;
+    for (c, scales) in scales.iter().enumerate() {
+        for (w, scale) in scales.iter().enumerate() {
+            for b in 0..BINS {
+                most = most.max((value(c, w, b) / scale).abs());
+            }
+        }
+    }
+    most
 }
 
 fn overlap(a: &Window, b: &Window) -> bool {

@@ -5,7 +5,7 @@ use crate::locate::{angle, joint, order};
 use crate::model::{Model, absent};
 use crate::settings::Settings;
 use crate::tangent::Tangent;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use protocol::announce::EffectDescriptor;
 use std::collections::BTreeMap;
 
@@ -42,11 +42,25 @@ pub async fn look<L: Laboratory>(
     let latents = latents(lab, bench, fit, library).await?;
     let joints = joint::rank(&latents, residual, &tangent);
     Ok(Where {
-        angle: angle::map(residual, &bench.metric, &tangent, settings.draws, 0.05),
+        angle: angle::map(
+            residual,
+            &deviations(bench, &tangent),
+            (&bench.metric, &tangent),
+            settings.draws,
+            0.05,
+        ),
         order: order::map(residual, &bench.metric, &tangent, freedom, 0.05),
         equivalent: joint::indistinguishable(&joints, phi),
         joints,
     })
+}
+
+/// What recalibration leaves of each cycle's deviation from the mean, whitened.
+pub fn deviations(bench: &Bench, tangent: &Tangent) -> Vec<DVector<f64>> {
+    let cycles = bench.record.cycles.iter();
+    cycles
+        .map(|cycle| tangent.project(&(bench.metric.whiten(cycle) - &bench.measured)))
+        .collect()
 }
 
 /// The order of a periodic probe, from its identifier `probe.JOINT.cosH`, `.sinH` or `.const`.
@@ -81,7 +95,7 @@ async fn latents<L: Laboratory>(
     let points: Vec<(&Model, &[f64])> = models.iter().map(|(m, x)| (m, x.as_slice())).collect();
     let curves = bench.curves(lab, Stage::Where, &points).await?;
     let base = bench.metric.whiten(&fit.curves);
-    let mut joints: BTreeMap<&str, (Vec<nalgebra::DVector<f64>>, Vec<usize>)> = BTreeMap::new();
+    let mut joints: BTreeMap<&str, (Vec<DVector<f64>>, Vec<usize>)> = BTreeMap::new();
     for ((effect, order), curves) in probes.iter().zip(curves) {
         let Some(curves) = curves else { continue };
         let entry = joints.entry(effect.joint.as_str()).or_default();

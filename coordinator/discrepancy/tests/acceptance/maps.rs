@@ -79,16 +79,15 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
         let noise = Noise::estimate(&noisy, &orders, &[]);
         let metric = Metric::new(orders.clone(), ALL.len(), &noise.covariances);
         let (residual, tangent) = linear_fit(&noisy, &metric, &at, &slopes, &variables);
-        angles += usize::from(
-            !angle::map(&residual, &metric, &tangent, 200, 0.05)
-                .windows
-                .is_empty(),
-        );
-        peaks += usize::from(
-            !order::map(&residual, &metric, &tangent, noise.freedom, 0.05)
-                .peaks
-                .is_empty(),
-        );
+        let measured = metric.whiten(&noisy.mean());
+        let cycles = noisy.cycles.iter();
+        let deviations: Vec<DVector<f64>> = cycles
+            .map(|cycle| tangent.project(&(metric.whiten(cycle) - &measured)))
+            .collect();
+        let angle = angle::map(&residual, &deviations, (&metric, &tangent), 200, 0.05);
+        angles += usize::from(!angle.windows.is_empty());
+        let order = order::map(&residual, &metric, &tangent, noise.freedom, 0.05);
+        peaks += usize::from(!order.peaks.is_empty());
     }
     let share = |count: usize| 100.0 * count as f64 / sets as f64;
     say(&format!(
