@@ -26,7 +26,8 @@ pub fn angle_map(map: &AngleMap, channels: &[String]) -> Result<Option<Figure>, 
     if map.strength.is_empty() || map.strength.len() != channels.len() {
         return Ok(None);
     }
-    let end = range(map.strength.iter().flatten().map(|s| s.abs())).map_or(LEAST, |(_, s)| s.max(LEAST));
+    let end =
+        range(map.strength.iter().flatten().map(|s| s.abs())).map_or(LEAST, |(_, s)| s.max(LEAST));
     let height = TOP + ROW * channels.len() as f64 + FOOT;
     let title = "Residual over its uncertainty, by crank angle and channel";
     let svg = render((WIDTH, height), title, |canvas| {

@@ -76,7 +76,13 @@ pub fn closing(of: &Closing<'_>) -> Result<Option<Figure>, ChartError> {
         curve("before", BLUE, of.turn_deg, &shifted(of.before), 1.0),
     ];
     if let Some(after) = of.after {
-        curves.push(curve("after", VERMILLION, of.turn_deg, &shifted(after), 1.0));
+        curves.push(curve(
+            "after",
+            VERMILLION,
+            of.turn_deg,
+            &shifted(after),
+            1.0,
+        ));
     }
     let rows = of.turn_deg.iter().zip(of.measured.iter().zip(of.spread));
     let mut strips = vec![Strip {
@@ -105,7 +111,12 @@ fn residuals(of: &Closing<'_>) -> Vec<Strip> {
     let values: Vec<Vec<f64>> = all.iter().map(|(.., s)| of.residual(s)).collect();
     let error = (of.cycles.max(1) as f64).sqrt();
     let errors = of.spread.iter().map(|s| s / error);
-    let band: Vec<(f64, f64, f64)> = of.turn_deg.iter().zip(errors).map(|(&x, e)| (x, -e, e)).collect();
+    let band: Vec<(f64, f64, f64)> = of
+        .turn_deg
+        .iter()
+        .zip(errors)
+        .map(|(&x, e)| (x, -e, e))
+        .collect();
     let scale = Scale::symmetric(values.iter().flatten().copied());
     all.iter()
         .zip(&values)
@@ -132,18 +143,25 @@ const fn axis(unit: &str) -> &'static str {
 
 fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }
 
 fn caption(of: &Closing<'_>, title: &str) -> String {
-    let mut said = vec![format!("without the effect {} {}", figure(of.rms(of.before)), of.unit)];
+    let mut said = vec![format!(
+        "without the effect {} {}",
+        figure(of.rms(of.before)),
+        of.unit
+    )];
     if let Some(after) = of.after {
         said.push(format!("with it {}", figure(of.rms(after))));
     }
     if let Some((name, rival)) = of.rival {
-        said.push(format!("with the best rejected rival, {name}, {}", figure(of.rms(rival))));
+        said.push(format!(
+            "with the best rejected rival, {name}, {}",
+            figure(of.rms(rival))
+        ));
     }
     let noise = range(of.spread.iter().copied()).map_or_else(
         || "One cycle: there is no band of scatter.".to_owned(),

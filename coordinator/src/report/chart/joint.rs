@@ -25,7 +25,11 @@ pub fn joints(ranked: &[JointEvidence], equivalent: usize) -> Result<Option<Figu
     let title = "Where a periodic force would explain the residual";
     let svg = render((WIDTH, height), title, |canvas| {
         let head = Lettering::new(10.5, GREY);
-        canvas.text((LEFT, 14.0), "log Bayes factor against no force [nats]", head)?;
+        canvas.text(
+            (LEFT, 14.0),
+            "log Bayes factor against no force [nats]",
+            head,
+        )?;
         for (index, one) in ranked.iter().enumerate() {
             let y = TOP + (index as f64 + 0.5) * ROW - 2.0;
             let inside = index < equivalent;
@@ -47,12 +51,19 @@ pub fn joints(ranked: &[JointEvidence], equivalent: usize) -> Result<Option<Figu
             },
         );
         let (top, bottom) = (TOP, TOP + ROW * equivalent.max(1) as f64 - 4.0);
-        canvas.line(&[(x - 5.0, top), (x, top), (x, bottom), (x - 5.0, bottom)], pen)?;
+        canvas.line(
+            &[(x - 5.0, top), (x, top), (x, bottom), (x - 5.0, bottom)],
+            pen,
+        )?;
         let said = match equivalent {
             0 | 1 => "told apart from the rest",
             _ => "not told apart",
         };
-        canvas.text((x + 8.0, 0.5 * (top + bottom)), said, Lettering::new(11.0, BLUE))
+        canvas.text(
+            (x + 8.0, 0.5 * (top + bottom)),
+            said,
+            Lettering::new(11.0, BLUE),
+        )
     })?;
     Ok(Some(Figure {
         name: "where_joint".to_owned(),

@@ -57,7 +57,11 @@ pub fn order_map(
                 )?;
             }
             let lettering = Lettering::new(11.0, INK).at(HPos::Right, VPos::Center);
-            canvas.text((LEFT - 10.0, 0.5 * (top + bottom)), &channels[row], lettering)?;
+            canvas.text(
+                (LEFT - 10.0, 0.5 * (top + bottom)),
+                &channels[row],
+                lettering,
+            )?;
         }
         for peak in &map.peaks {
             let at = panel.at((peak.order as f64, peak.channel as f64 + 0.5));
@@ -67,7 +71,10 @@ pub fn order_map(
         panel.lower_axis(
             canvas,
             true,
-            &format!("order of the crank (order 60 is {} Hz)", figure(60.0 * hertz)),
+            &format!(
+                "order of the crank (order 60 is {} Hz)",
+                figure(60.0 * hertz)
+            ),
         )
     })?;
     Ok(Some(Figure {

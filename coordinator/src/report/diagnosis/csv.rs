@@ -74,7 +74,10 @@ pub(super) fn suspects(to: impl Write, subject: &Subject<'_>) -> Result<(), csv:
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(SUSPECTS)?;
     for (number, round) in (1..).zip(&subject.diagnosed.diagnosis.rounds) {
-        let generics = round.generics.iter().map(|force| (force, judge(round, force)));
+        let generics = round
+            .generics
+            .iter()
+            .map(|force| (force, judge(round, force)));
         for (suspect, judgement) in ranked(round).into_iter().chain(generics) {
             let effect = &suspect.effect;
             // a force without a cause is never a name: what is said of names does not hold for it

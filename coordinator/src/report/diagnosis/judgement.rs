@@ -34,10 +34,17 @@ pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
         .map(|suspect| (suspect, judge(round, suspect)))
         .collect();
     all.sort_by(|(_, a), (_, b)| {
-        let key = |j: &Judgement| (j.gain.unwrap_or(f64::NEG_INFINITY), -j.p_value.unwrap_or(2.0));
+        let key = |j: &Judgement| {
+            (
+                j.gain.unwrap_or(f64::NEG_INFINITY),
+                -j.p_value.unwrap_or(2.0),
+            )
+        };
         let ((gain_a, p_a), (gain_b, p_b)) = (key(a), key(b));
         let by_kept = b.kept.cmp(&a.kept);
-        by_kept.then(gain_b.total_cmp(&gain_a)).then(p_b.total_cmp(&p_a))
+        by_kept
+            .then(gain_b.total_cmp(&gain_a))
+            .then(p_b.total_cmp(&p_a))
     });
     all
 }
@@ -47,7 +54,10 @@ pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
     let score = suspect.score.as_ref()?;
     if suspect.statistic() > 0.0 {
         let scaled = score.statistic / (round.phi * round.phi);
-        Some(family_wise(chi_squared_tail(scaled, score.freedom), suspect.tries))
+        Some(family_wise(
+            chi_squared_tail(scaled, score.freedom),
+            suspect.tries,
+        ))
     } else {
         Some(1.0)
     }
@@ -87,7 +97,11 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
         };
     }
     let Some(best) = best.filter(|best| best.id != own.id) else {
-        return format!("dropped: the likeliest, and its {} nats are not enough", nats(gain));
+        // the round's own reason stands below its table
+        return format!(
+            "dropped: the likeliest name, with {} nats, but not believed",
+            nats(gain)
+        );
     };
     if !own.log_evidence.is_finite() {
         return "dropped: its refit has no evidence (the fit does not determine it)".to_owned();
@@ -114,7 +128,11 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
         return "dropped: recalibration absorbs it, so this record cannot show it".to_owned();
     }
     if suspect.statistic() <= 0.0 {
-        let one_sided = suspect.effect.parameters.iter().any(|p| p.sign == Sign::Positive);
+        let one_sided = suspect
+            .effect
+            .parameters
+            .iter()
+            .any(|p| p.sign == Sign::Positive);
         return if one_sided {
             "dropped: the record asks for the wrong sign".to_owned()
         } else {

@@ -73,10 +73,18 @@ fn assembled(subject: &Subject<'_>, figures: &section::Figures) -> String {
 /// [`ReportError`] when a figure cannot be drawn or a file cannot be written.
 pub fn write(folder: &Path, subject: &Subject<'_>) -> Result<Vec<PathBuf>, ReportError> {
     let figures = section::figures(subject)?;
-    let mut written = vec![super::write(folder, "report.html", &assembled(subject, &figures))?];
+    let mut written = vec![super::write(
+        folder,
+        "report.html",
+        &assembled(subject, &figures),
+    )?];
     written.push(super::write(folder, "tables.txt", &text(subject))?);
-    written.push(super::stream(folder, "curves.csv", |file| csv::curves(file, subject))?);
-    written.push(super::stream(folder, "suspects.csv", |file| csv::suspects(file, subject))?);
+    written.push(super::stream(folder, "curves.csv", |file| {
+        csv::curves(file, subject)
+    })?);
+    written.push(super::stream(folder, "suspects.csv", |file| {
+        csv::suspects(file, subject)
+    })?);
     let all: Vec<Figure> = figures.all().cloned().collect();
     written.extend(super::write_figures(folder, &all)?);
     Ok(written)

@@ -42,7 +42,9 @@ impl Shown<'_> {
             cycles: self.record.cycles.len(),
             before: self.before.get(c)?,
             after: self.after.and_then(|after| after.get(c)).map(Vec::as_slice),
-            rival: self.rival.and_then(|(id, rival)| Some((id, rival.get(c)?.as_slice()))),
+            rival: self
+                .rival
+                .and_then(|(id, rival)| Some((id, rival.get(c)?.as_slice()))),
             free_offset: self.free_offset,
         })
     }
@@ -75,7 +77,12 @@ pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
         all.extend(one(subject, row.condition, &row.before, (after, rival)));
     }
     if let (true, Some(fit)) = (all.is_empty(), &diagnosis.before) {
-        all.extend(one(subject, subject.case.objective.condition, &fit.curves, (None, None)));
+        all.extend(one(
+            subject,
+            subject.case.objective.condition,
+            &fit.curves,
+            (None, None),
+        ));
     }
     all
 }
@@ -112,7 +119,10 @@ fn spread(record: &Record, mean: &Curves) -> Curves {
     }
     let channel = |(c, mean): (usize, &Vec<f64>)| -> Vec<f64> {
         let at = |(i, m): (usize, &f64)| {
-            let squares = record.cycles.iter().map(|cycle| (cycle[c][i] - m) * (cycle[c][i] - m));
+            let squares = record
+                .cycles
+                .iter()
+                .map(|cycle| (cycle[c][i] - m) * (cycle[c][i] - m));
             (squares.sum::<f64>() / (cycles - 1) as f64).sqrt()
         };
         mean.iter().enumerate().map(at).collect()

@@ -122,7 +122,10 @@ pub(super) fn sizes(subject: &Subject<'_>) -> Option<Table> {
                     interval(*ci95, unit),
                     of(known.map(|p| p.scale)),
                     known.map_or_else(|| NONE.to_owned(), |p| interval([p.lower, p.upper], unit)),
-                    known.and_then(|p| edge(*value, p.lower, p.upper)).unwrap_or("").to_owned(),
+                    known
+                        .and_then(|p| edge(*value, p.lower, p.upper))
+                        .unwrap_or("")
+                        .to_owned(),
                 ],
             ));
         }
@@ -169,7 +172,10 @@ pub(super) fn limits(subject: &Subject<'_>) -> Option<Table> {
                 [
                     seen,
                     scale.map_or_else(|| NONE.to_owned(), |s| quantity(s, &limit.unit)),
-                    scale.map_or_else(|| NONE.to_owned(), |s| crate::report::number::ratio(limit.size, s)),
+                    scale.map_or_else(
+                        || NONE.to_owned(),
+                        |s| crate::report::number::ratio(limit.size, s),
+                    ),
                 ],
             )
         })
@@ -182,8 +188,9 @@ pub(super) fn limits(subject: &Subject<'_>) -> Option<Table> {
         );
         made.notes = vec![
             "Before any verdict, at the recalibrated point, each effect alone, with the misfit of the \
-             model without any. A limit well below the usual size means: had it been there, it would \
-             have been seen."
+             model without any: the size that the tests and the evidence asked for would not have \
+             missed. A limit well below the usual size means: had it been there, it would have been \
+             seen."
                 .to_owned(),
         ];
         made
@@ -230,7 +237,11 @@ fn gap(subject: &Subject<'_>, of: &show::Row) -> Row {
         }
     };
     row(
-        format!("{}, {}", condition_name(subject.case, of.condition), words::role(subject, of)),
+        format!(
+            "{}, {}",
+            condition_name(subject.case, of.condition),
+            words::role(subject, of)
+        ),
         [
             small(of.closed.before),
             small(of.closed.after),
@@ -345,7 +356,10 @@ pub(super) fn numerics(subject: &Subject<'_>) -> Option<Table> {
 /// Genes before and after, with their bounds.
 pub(super) fn genes(subject: &Subject<'_>) -> Option<Table> {
     let diagnosis = &subject.diagnosed.diagnosis;
-    let before = diagnosis.before.as_ref().map(|fit| fit.model.genes(fit.x()))?;
+    let before = diagnosis
+        .before
+        .as_ref()
+        .map(|fit| fit.model.genes(fit.x()))?;
     let after = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x()));
     let rows = subject.case.genes.iter().enumerate().map(|(k, gene)| {
         let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));

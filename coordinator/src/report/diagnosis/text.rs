@@ -7,12 +7,19 @@ use discrepancy::verdict::Verdict;
 /// The whole answer: verdict, grounds, next steps, tables.
 pub fn text(subject: &Subject<'_>) -> String {
     let diagnosis = &subject.diagnosed.diagnosis;
-    let mut text = format!("{}\n{}\n", headline(diagnosis.verdict), words::verdict(subject));
+    let mut text = format!(
+        "{}\n{}\n",
+        headline(diagnosis.verdict),
+        words::verdict(subject)
+    );
     if let Some(reason) = &diagnosis.reason {
         item(&mut text, &format!("The reason: {reason}."));
     }
     for effect in &diagnosis.effects {
-        item(&mut text, &format!("{}: {}", effect.id, words::sizes(subject, effect)));
+        item(
+            &mut text,
+            &format!("{}: {}", effect.id, words::sizes(subject, effect)),
+        );
     }
     for sentence in words::confidence(subject) {
         item(&mut text, &sentence);

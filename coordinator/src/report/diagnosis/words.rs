@@ -69,9 +69,9 @@ pub(super) fn named(subject: &Subject<'_>, id: &str) -> String {
 /// A title within a sentence.
 fn lower(title: &str) -> String {
     let mut letters = title.chars();
-    letters
-        .next()
-        .map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect())
+    letters.next().map_or_else(String::new, |first| {
+        first.to_lowercase().chain(letters).collect()
+    })
 }
 
 /// Items as a sentence lists them.
@@ -120,9 +120,11 @@ pub(super) fn verdict(subject: &Subject<'_>) -> String {
         each.collect()
     };
     match diagnosis.verdict {
-        Verdict::NothingDetected => "Nothing detected: what the recalibrated simulation leaves of the \
+        Verdict::NothingDetected => {
+            "Nothing detected: what the recalibrated simulation leaves of the \
              record is noise, down to the detection limits below."
-            .to_owned(),
+                .to_owned()
+        }
         Verdict::Named => format!(
             "The simulation lacks {}.",
             listed(&names(added(diagnosis).collect()), "and")
@@ -133,14 +135,12 @@ pub(super) fn verdict(subject: &Subject<'_>) -> String {
         ),
         Verdict::Unlisted => format!(
             "The simulation lacks something that the library does not have; it acts like {}.",
-            diagnosis
-                .generic
-                .as_deref()
-                .map_or_else(|| "a force of unknown form".to_owned(), |id| generic(subject, id))
+            diagnosis.generic.as_deref().map_or_else(
+                || "a force of unknown form".to_owned(),
+                |id| generic(subject, id)
+            )
         ),
-        Verdict::Unresolved => {
-            "Unresolved: this record does not carry a name.".to_owned()
-        }
+        Verdict::Unresolved => "Unresolved: this record does not carry a name.".to_owned(),
     }
 }
 
@@ -198,16 +198,25 @@ fn equals(p: &str) -> String {
 
 /// The best refit outside the first added effect's set, and how many nats it lies behind.
 fn rejected(diagnosis: &Diagnosis) -> Option<(&str, f64)> {
-    let round = diagnosis.rounds.iter().find(|round| round.added.is_some())?;
+    let round = diagnosis
+        .rounds
+        .iter()
+        .find(|round| round.added.is_some())?;
     let best = round.refits.first()?.log_evidence;
-    let rival = round.refits.iter().find(|refit| !round.set.contains(&refit.id))?;
+    let rival = round
+        .refits
+        .iter()
+        .find(|refit| !round.set.contains(&refit.id))?;
     let behind = (best - rival.log_evidence) / (round.phi * round.phi);
     Some((rival.id.as_str(), behind))
 }
 
 /// What a row's cycles were to the fit.
 pub(super) fn role(subject: &Subject<'_>, row: &Row) -> &'static str {
-    match (row.fitted, row.condition == subject.case.objective.condition) {
+    match (
+        row.fitted,
+        row.condition == subject.case.objective.condition,
+    ) {
         (true, _) => "cycles that were fitted",
         (false, true) => "held-out cycles",
         (false, false) => "another condition, which took no part",
@@ -218,14 +227,22 @@ pub(super) fn role(subject: &Subject<'_>, row: &Row) -> &'static str {
 fn closing(subject: &Subject<'_>, row: &Row) -> String {
     let closed = row.closed;
     let spread = closed.interval.map_or_else(String::new, |[low, high]| {
-        format!(" (95\u{a0}% interval {} to {})", percent(low), percent(high))
+        format!(
+            " (95\u{a0}% interval {} to {})",
+            percent(low),
+            percent(high)
+        )
     });
     format!(
         "{}, {}: {} of the gap {}{spread}.",
         condition_name(subject.case, row.condition),
         role(subject, row),
         percent(closed.closed.abs()),
-        if closed.closed < 0.0 { "opened" } else { "closed" }
+        if closed.closed < 0.0 {
+            "opened"
+        } else {
+            "closed"
+        }
     )
 }
 
@@ -265,7 +282,7 @@ pub(super) fn next(subject: &Subject<'_>) -> Vec<String> {
     let missing = missing_gauges(subject);
     if !missing.is_empty() && !matches!(diagnosis.verdict, Verdict::NothingDetected) {
         steps.push(format!(
-            "Record {} too: what acts at the ropes and what acts at one gauge part there.",
+            "Record {} too: the more places a record has, the fewer effects look alike in it.",
             listed(&missing, "and")
         ));
     }

@@ -56,7 +56,10 @@ struct Proof {
 impl Figures {
     /// Every figure, in the order of the page.
     pub(super) fn all(&self) -> impl Iterator<Item = &Figure> {
-        let proofs = self.proof.iter().flat_map(|proof| proof.gauges.iter().chain(&proof.others));
+        let proofs = self
+            .proof
+            .iter()
+            .flat_map(|proof| proof.gauges.iter().chain(&proof.others));
         self.place.iter().chain(proofs)
     }
 }
@@ -73,7 +76,9 @@ pub(super) fn figures(subject: &Subject<'_>) -> Result<Figures, ReportError> {
     ) {
         let channels: Vec<String> = record.channels.iter().map(|c| c.name()).collect();
         let conditions = &subject.case.conditions;
-        let speed = conditions.get(record.condition).map_or(f64::NAN, |c| c.speed_rpm);
+        let speed = conditions
+            .get(record.condition)
+            .map_or(f64::NAN, |c| c.speed_rpm);
         place.extend(chart::angle_map(&seen.angle, &channels)?);
         place.extend(chart::order_map(&seen.order, &channels, speed)?);
         place.extend(chart::joints(&seen.joints, seen.equivalent)?);

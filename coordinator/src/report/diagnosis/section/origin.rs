@@ -14,7 +14,11 @@ pub(super) const SECTION: Section = Section {
 
 #[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
 fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
-    let named = subject.library.iter().filter(|effect| !effect.generic).count();
+    let named = subject
+        .library
+        .iter()
+        .filter(|effect| !effect.generic)
+        .count();
     Some(html! {
         dl.facts {
             (provenance::origin(&subject.provenance, subject.case))

@@ -17,7 +17,12 @@ fn render(subject: &Subject<'_>, figures: &Figures) -> Option<Markup> {
     if gaps.is_none() && figures.proof.is_empty() {
         return None;
     }
-    let added = subject.diagnosed.diagnosis.rounds.iter().any(|round| round.added.is_some());
+    let added = subject
+        .diagnosed
+        .diagnosis
+        .rounds
+        .iter()
+        .any(|round| round.added.is_some());
     Some(html! {
         @if !added {
             p { "Nothing was added: before and after are the same model, shown for what it leaves." }
