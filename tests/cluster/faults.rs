@@ -1,6 +1,7 @@
 //! Workers that are killed, frozen or told to end.
 use super::{collect, submit};
 use coordinator::runtime::{BenchPlan, Crew, Dispatch, bench};
+use protocol::{id::JobId, job::Job};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
 use tests::{
@@ -106,6 +107,60 @@ async fn a_frozen_worker_is_replaced_within_six_seconds() {
     });
     let summary = dispatch.close().await.unwrap();
     assert_eq!((summary.last.lost, summary.last.done), (1, 3));
+}
+
+/// A frozen worker with jobs outstanding does not hold up the pipes of the others: results go on
+/// coming all the while it is neither known to be lost nor answers.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_frozen_worker_does_not_hold_up_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    let workers: Vec<Process> = (0..4)
+        .map(|_| Process::worker(&locator, &["--slots", "2"]))
+        .collect();
+    wait_until("all are there", LIMIT, || {
+        dispatch.snapshot().workers.len() == 4
+    });
+    // large orders: a pipe that nobody empties fills up
+    let order = |n: u64| Job::Nothing {
+        payload: vec![1; 300_000],
+        reply_bytes: u32::try_from(n % 5000).unwrap(),
+        delay_ms: 10,
+    };
+    let mut next = 0;
+    let mut freshest = Instant::now();
+    let mut longest = Duration::ZERO;
+    let mut frozen_at = None;
+    let mut done = 0;
+    while frozen_at.is_none_or(|at: Instant| at.elapsed() < Duration::from_secs(6)) {
+        while next < done + 40 {
+            dispatch.submit(JobId(next), order(next)).unwrap();
+            next += 1;
+        }
+        tokio::time::timeout(LIMIT, dispatch.next())
+            .await
+            .unwrap()
+            .unwrap();
+        done += 1;
+        if frozen_at.is_some() {
+            longest = longest.max(freshest.elapsed());
+        }
+        freshest = Instant::now();
+        if done == 200 {
+            workers[0].signal(Signal::STOP);
+            frozen_at = Some(Instant::now());
+        }
+    }
+    eprintln!("{done} results, the longest pause was {longest:?}");
+    assert!(longest < Duration::from_secs(1), "nothing for {longest:?}");
+    let rest = usize::try_from(next - done).unwrap();
+    collect(&mut dispatch, rest, LIMIT).await.unwrap();
+    let summary = dispatch.close().await.unwrap();
+    assert_eq!((summary.last.lost, summary.last.done as u64), (1, next));
+    workers[0].signal(Signal::CONT);
 }
 
 #[tokio::test(flavor = "multi_thread")]

@@ -62,11 +62,11 @@ fn kill_once(process: &mut Process, random: u64) -> bool {
             }
         }
     });
-    if random % 3 == 0 {
-        thread::sleep(Duration::from_micros(random / 3 % 400_000));
+    if random.is_multiple_of(2) {
+        thread::sleep(Duration::from_micros(random / 3 % 300_000));
     } else {
         // new results, not those of the journal
-        let mut fresh = random / 3 % 12;
+        let mut fresh = random / 3 % 10;
         while fresh > 0 {
             match heard.recv_timeout(LIMIT) {
                 Ok(line) if line.starts_with("done") => break,
@@ -81,7 +81,7 @@ fn kill_once(process: &mut Process, random: u64) -> bool {
     all.extend(workers);
     process.signal(Signal::KILL);
     let ended_before = process.wait(LIMIT).is_some();
-    wait_until("its workers are gone", Duration::from_secs(5), || {
+    wait_until("its workers are gone", Duration::from_secs(30), || {
         !all.iter().any(|pid| is_alive(*pid))
     });
     drop(heard);

@@ -50,13 +50,12 @@ async fn outcomes(
 #[tokio::test(flavor = "multi_thread")]
 async fn jobs_that_crash_or_allocate_without_bound_fail_alone_and_say_why() {
     let (results, summary) = outcomes(40, "7:abort,8:allocate", 1).await;
-    let failed: BTreeMap<u64, String> = results
-        .iter()
-        .filter_map(|(id, outcome)| match outcome {
-            Outcome::Failed(failure @ Failure::Crashed { .. }) => Some((id.0, failure.to_string())),
-            _ => None,
-        })
-        .collect();
+    let mut failed: BTreeMap<u64, String> = BTreeMap::new();
+    for (id, outcome) in &results {
+        if let Outcome::Failed(failure @ Failure::Crashed { .. }) = outcome {
+            failed.insert(id.0, failure.to_string());
+        }
+    }
     assert_eq!(failed.keys().copied().collect::<Vec<_>>(), [7, 8]);
     for words in failed.values() {
         assert!(

@@ -4,7 +4,7 @@ use protocol::job::{Job, Outcome};
 use search::{
     space::Space,
     strategy::{
-        Settings, Strategy, Told,
+        Evaluated, Settings, Strategy, Told,
         memetic::{MemeticSettings, window::WindowSettings},
     },
     test_function::SPHERE,
@@ -82,15 +82,14 @@ impl SearchRun {
 
     /// Every bit of every individual and result, in id order, as text.
     pub fn log(&self) -> String {
-        let mut log = String::new();
-        for entry in self.strategy.archive().entries() {
-            log.push_str(&format!("{}", entry.id));
-            for gene in &entry.genes {
-                log.push_str(&format!(" {:016x}", gene.to_bits()));
-            }
-            log.push_str(&format!(" {:016x}\n", entry.told.fitness.to_bits()));
-        }
-        log
+        let line = |entry: &Evaluated| {
+            let genes = entry.genes.iter().chain([&entry.told.fitness]);
+            let bits: Vec<String> = genes
+                .map(|value| format!("{:016x}", value.to_bits()))
+                .collect();
+            format!("{} {}\n", entry.id, bits.join(" "))
+        };
+        self.strategy.archive().entries().iter().map(line).collect()
     }
 }
 

@@ -1,7 +1,8 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
-use protocol::case::{Case, EffectSetting};
-use simulation::effect::{Descriptor, Place, catalogue};
+mod effect;
+
+use protocol::case::Case;
 use simulation::integrator::method::{CATALOGUE, Method};
 use simulation::integrator::tableau::ESDIRK4;
 use simulation::model::Machine;
@@ -67,28 +68,6 @@ fn energy_ledger_closes_over_one_revolution() {
             };
             assert!(defect < allowed, "{name} {}: {defect}", method.name());
         }
-    }
-}
-
-/// The same with each effect that acts on the motion, at its typical size and the recommended
-/// coefficients (measured: the worst is MEASURED).
-#[test]
-fn energy_ledger_closes_with_every_effect() {
-    let case = case();
-    let law = worker::convert::rope_law(&case, &case.recommended()).unwrap();
-    let settings = worker::convert::run_settings(&case);
-    let acts = |d: &&Descriptor| d.place == Place::Dynamics && !d.generic;
-    for d in catalogue().iter().filter(acts) {
-        let sizes = d.parameters.iter().map(|p| (p.name, p.typical));
-        let typical: Vec<(&str, f64)> = sizes.collect();
-        let effect = EffectSetting::new(&d.id, &typical);
-        let machine = worker::convert::machine_with(&case, 0, &[effect]).unwrap();
-        let (result, _) = run(&machine, &law, &settings);
-        let work = result.work;
-        let gained = work.input - work.output - work.dissipated;
-        let defect = (result.stored - gained).abs() / work.input;
-        eprintln!("{}: {defect:.1e}", d.id);
-        assert!(defect < 1e-4, "{}: {defect}", d.id);
     }
 }
 

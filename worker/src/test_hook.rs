@@ -6,7 +6,7 @@
 //! such job they begin. No message can bring either about.
 use protocol::job::Job;
 use rustix::process::{Signal, getppid, kill_process};
-use std::{env, fs::OpenOptions, io::Write, process::Command, thread};
+use std::{env, fs::OpenOptions, io::Write, process::Command, thread, time::Duration};
 
 /// Behaviour by job.
 const MISBEHAVE: &str = "HORSEHEAD_TEST_MISBEHAVE";
@@ -44,13 +44,15 @@ pub(crate) fn before(job: &Job) {
 fn misbehave(behaviour: &str) {
     match behaviour {
         "abort" => std::process::abort(),
-        "hang" => loop {
-            thread::park();
-        },
+        "hang" => {
+            let for_ever = Duration::from_hours(24 * 365);
+            thread::sleep(for_ever);
+        }
         "allocate" => {
-            let mut held = Vec::new();
-            loop {
-                held.push(vec![1_u8; 16 << 20]);
+            // twice as much each time: no machine has room for long
+            let mut held = vec![1_u8; 1 << 20];
+            for _ in 0..40 {
+                held.extend_from_within(..);
                 std::hint::black_box(&held);
             }
         }

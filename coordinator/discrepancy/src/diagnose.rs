@@ -109,11 +109,12 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
         ..Diagnosis::unresolved("")
     };
     diagnosis.reason = None;
-    let gradient = base.fit.search.gradient_ratio();
-    if gradient > GRADIENT {
+    let promised = base.fit.search.promised_decrease();
+    if promised > PROMISED {
         diagnosis.reason = Some(format!(
-            "the recalibration did not converge: a parameter still has a cosine of {gradient:.2} with \
-             the residual, so a test would report calibration error"
+            "the recalibration did not converge: one more step promises to lower the misfit by {:.0} %, \
+             so a test would report calibration error",
+            100.0 * promised
         ));
         return Ok(diagnosis);
     }
@@ -122,8 +123,9 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
     Ok(diagnosis)
 }
 
-/// Beyond this cosine a fit has not converged.
-const GRADIENT: f64 = 0.05;
+/// A fit that one more step promises to lower by more than this share has not converged. What lies
+/// below is taken off by the tests themselves, which look at the residual after that step.
+const PROMISED: f64 = 0.02;
 
 /// Estimates, the proof and the verdict.
 async fn finish<L: Laboratory>(
@@ -148,12 +150,21 @@ async fn finish<L: Laboratory>(
         diagnosis.rival = Some((rival.id, rows));
     }
     diagnosis.effects = estimates(&diagnosis.rounds, &after);
+    let names = diagnosis
+        .rounds
+        .first()
+        .is_some_and(|r| r.p_value < inputs.settings.alpha);
+    let parameters = after.x().len();
+    let misfit = !base.is_noise(after.chi_squared(), parameters, inputs.settings.adequacy);
+    if misfit && diagnosis.generic.is_none() {
+        let ratio = after.chi_squared() / base.bench.metric.len() as f64;
+        diagnosis.notes.push(format!(
+            "what is left is {ratio:.2} times the noise: more than noise, and not explained"
+        ));
+    }
     let findings = Findings {
         sound: true,
-        rejected: diagnosis
-            .rounds
-            .first()
-            .is_some_and(|r| r.p_value < inputs.settings.alpha),
+        rejected: misfit || names,
         added,
         rivals: diagnosis
             .rounds
@@ -165,7 +176,8 @@ async fn finish<L: Laboratory>(
     };
     diagnosis.verdict = verdict(&findings);
     if diagnosis.verdict == Verdict::Unresolved {
-        diagnosis.reason = diagnosis.rounds.first().and_then(|r| r.reason.clone());
+        let why = diagnosis.rounds.first().and_then(|r| r.reason.clone());
+        diagnosis.reason = diagnosis.notes.last().filter(|_| !names).cloned().or(why);
     }
     diagnosis.after = Some(after);
     Ok(())

@@ -99,7 +99,7 @@ async fn contested<L: Laboratory>(
             .max(round.null_evidence),
     };
     let generics = &round.generics;
-    let found = challenge(lab, &base.bench, current, generics, &named, settings).await?;
+    let found = challenge(lab, base, current, generics, &named, settings).await?;
     let Some(challenger) = found else {
         return Ok(None);
     };

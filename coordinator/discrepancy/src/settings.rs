@@ -9,6 +9,8 @@ pub struct Settings {
     pub orders: usize,
     /// Level of the family of all effects' tests.
     pub alpha: f64,
+    /// Level of the test that nothing at all is left: below it a record without a name is unresolved.
+    pub adequacy: f64,
     /// Suspects that are refitted with all genes free.
     pub suspects: usize,
     /// Nats, times the squared misfit, that an effect must gain to be believed.
@@ -37,6 +39,7 @@ impl Default for Settings {
         Self {
             orders: 120,
             alpha: 0.01,
+            adequacy: 1e-3,
             suspects: 8,
             gain: 3.0,
             practical: 0.05,

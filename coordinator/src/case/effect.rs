@@ -8,7 +8,7 @@ use super::{
 };
 use protocol::{case::EffectSetting, unit::EFFECT_UNITS};
 use serde::Deserialize;
-use std::{collections::BTreeMap, fmt::Write};
+use std::collections::BTreeMap;
 
 /// One `[[effects]]` table.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
@@ -179,14 +179,12 @@ pub fn write_effects(effects: &[CaseEffect]) -> String {
             [] => "{}".to_owned(),
             all => format!("{{ {} }}", all.join(", ")),
         };
-        // writing into a string cannot fail
-        drop(write!(
-            text,
-            "\n[[effects]]\nid = {}\nparameters = {inline}\n",
-            quoted(&effect.id)
+        let id = quoted(&effect.id);
+        text.push_str(&format!(
+            "\n[[effects]]\nid = {id}\nparameters = {inline}\n"
         ));
         if let Some(provenance) = &effect.provenance {
-            drop(writeln!(text, "provenance = {}", provenance.inline()));
+            text.push_str(&format!("provenance = {}\n", provenance.inline()));
         }
     }
     text

@@ -12,7 +12,7 @@ use crate::{
 use clap::Args;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, Settings, memetic::window::WindowSettings, preset},
+    strategy::{CATALOGUE, Preset, Settings, memetic::window::WindowSettings, preset},
 };
 use std::{
     path::{Path, PathBuf},
@@ -58,8 +58,7 @@ pub(super) struct Arguments {
 }
 
 fn presets() -> String {
-    let line =
-        |preset: &search::strategy::Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
+    let line = |preset: &Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
     CATALOGUE.iter().map(line).collect()
 }
 
@@ -70,6 +69,17 @@ fn can_go_on(error: &anyhow::Error) -> bool {
         study,
         Some(StudyError::Interrupted | StudyError::Evaluator(_))
     )
+}
+
+/// The preset of a name.
+fn chosen_preset(name: &str) -> Result<&'static Preset, Usage> {
+    preset(name).ok_or_else(|| {
+        let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
+        Usage {
+            message: format!("there is no preset `{name}`"),
+            help: format!("choose one of: {}", known.join(", ")),
+        }
+    })
 }
 
 /// Workers to plan for where any number of machines may connect.
@@ -126,14 +136,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         notes,
     } = arguments.choice.load()?;
     let space = Space::new(&case.genes)?;
-    let Some(preset) = preset(&arguments.preset) else {
-        let known: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
-        return Err(Usage {
-            message: format!("there is no preset `{}`", arguments.preset),
-            help: format!("choose one of: {}", known.join(", ")),
-        }
-        .into());
-    };
+    let preset = chosen_preset(&arguments.preset)?;
     let objective = case.conditions.get(case.objective.condition);
     if objective.is_none_or(|condition| condition.record.is_none()) {
         return Err(Usage {

@@ -100,6 +100,25 @@ fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {
     core.notice(Notice::Left { worker, reason });
 }
 
+/// The transport lost a worker: at once if its process ended, later if it merely does not answer.
+pub(super) fn gone(core: &mut Core, worker: WorkerId, now: Duration) {
+    let Some(member) = core.members.get(&worker) else {
+        return;
+    };
+    let silent = now.saturating_sub(member.heard);
+    let reason = if silent > core.options.policy.silence / 2 {
+        silence(silent)
+    } else {
+        "its connection ended: it was killed, or its machine or the network went down".to_owned()
+    };
+    lose(core, worker, &reason, now);
+}
+
+fn silence(time: Duration) -> String {
+    let seconds = time.as_secs_f64();
+    format!("nothing was heard of it for {seconds:.0} s: it is frozen, overloaded or cut off")
+}
+
 /// Gives up a worker and offers what it held to others.
 pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     let Some(member) = remove(core, worker, reason, now) else {
@@ -174,11 +193,7 @@ pub(super) fn check_silence(core: &mut Core, now: Duration) {
         .map(|(id, _)| *id)
         .collect();
     for worker in silent {
-        let seconds = silence.as_secs_f64();
-        let reason = format!(
-            "nothing was heard of it for {seconds:.0} s: it is frozen, overloaded or cut off"
-        );
-        lose(core, worker, &reason, now);
+        lose(core, worker, &self::silence(silence), now);
     }
 }
 

@@ -153,7 +153,7 @@ impl Core {
             Input::Submit { id, job } => self.submit(id, job, now),
             Input::Heard { from, message } => membership::heard(self, from, message, now),
             Input::Stranger { from } => self.send(from, ToWorker::Identify),
-            Input::Gone { worker } => membership::lose(self, worker, "its connection ended", now),
+            Input::Gone { worker } => membership::gone(self, worker, now),
             Input::Stored { jobs } => result::stored(self, jobs),
             Input::Tick => {
                 membership::check_silence(self, now);

@@ -30,7 +30,7 @@ use quinn::{
 use refusal::Refusals;
 use rustls::{ServerConfig, pki_types::CertificateDer, server::WebPkiClientVerifier};
 use std::{
-    collections::BTreeSet,
+    collections::BTreeMap,
     net::{SocketAddr, ToSocketAddrs},
     sync::Arc,
     time::Duration,
@@ -47,10 +47,14 @@ const STREAMS: u32 = 7;
 pub(crate) const WELCOME: u32 = 0;
 /// The same: its name is not on the list.
 pub(crate) const UNLISTED: u32 = 1;
+/// The same: its certificate has all the connections that one may have.
+const CROWDED: u32 = 2;
 /// How long shaking hands may take.
 const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Peers with which hands are shaken at a time.
 const PENDING: usize = 1024;
+/// Connections of one certificate: the router's sessions are for all.
+const CONNECTIONS: usize = 1024;
 /// Beyond so many, peers must show first that they are where they say.
 const TRUSTING: usize = 64;
 /// Bytes passed on at a time.
@@ -67,7 +71,8 @@ pub(crate) struct Gate {
 
 /// What is needed to let somebody in.
 struct House {
-    workers: BTreeSet<String>,
+    /// By name, how many more connections each may have.
+    workers: BTreeMap<String, Arc<Semaphore>>,
     inner: Arc<Inner>,
     refusals: Refusals,
 }
@@ -91,7 +96,11 @@ impl Gate {
         let endpoint =
             Endpoint::server(config, address).map_err(|error| failed(error.to_string()))?;
         let house = House {
-            workers: keys.workers().clone(),
+            workers: keys
+                .workers()
+                .iter()
+                .map(|name| (name.clone(), Arc::new(Semaphore::new(CONNECTIONS))))
+                .collect(),
             inner,
             refusals: Refusals::default(),
         };
@@ -101,11 +110,21 @@ impl Gate {
 
     /// Closes the gate and the connections through it.
     pub(crate) async fn close(self) {
-        self.task.abort();
-        self.endpoint.close(VarInt::from_u32(WELCOME), b"closed");
+        self.shut();
         if timeout(FAREWELL, self.endpoint.wait_idle()).await.is_err() {
             tracing::debug!("peers did not take leave in time");
         }
+    }
+
+    fn shut(&self) {
+        self.task.abort();
+        self.endpoint.close(VarInt::from_u32(WELCOME), b"closed");
+    }
+}
+
+impl Drop for Gate {
+    fn drop(&mut self) {
+        self.shut();
     }
 }
 
@@ -175,15 +194,20 @@ async fn shake(incoming: Incoming) -> Result<Connection, ConnectionError> {
 /// Lets a peer in whose certificate was accepted, if its name is on the list.
 async fn enter(house: &House, connection: Connection, from: SocketAddr) {
     let owner = owner(&connection).unwrap_or_default();
-    if !house.workers.contains(&owner) {
+    let Some(places) = house.workers.get(&owner) else {
         house.refusals.unlisted(from, &owner);
         connection.close(VarInt::from_u32(UNLISTED), b"not on the list of workers");
         return;
-    }
+    };
     if asks_only(&connection) {
         connection.close(VarInt::from_u32(WELCOME), b"welcome");
         return;
     }
+    let Ok(_place) = places.try_acquire() else {
+        house.refusals.crowded(from, &owner);
+        connection.close(VarInt::from_u32(CROWDED), b"too many connections");
+        return;
+    };
     match house.inner.connect(&owner, streams()).await {
         Ok(inner) => join(&connection, &inner).await,
         Err(error) => {

@@ -72,7 +72,7 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
     let mut endpoint = Endpoint::client(any).map_err(|error| transport(error.to_string()))?;
     endpoint.set_default_client_config(ClientConfig::new(Arc::new(config)));
     let connecting = endpoint
-        .connect(address, &to.host)
+        .connect(address, to.bare_host())
         .map_err(|error| transport(error.to_string()))?;
     // with TLS 1.3 a client is connected before its certificate is looked at: the answer comes after
     let shaken = async { Ok(connecting.await?.closed().await) };

@@ -27,8 +27,6 @@ pub enum Job {
     Score(ScoreSpec),
     /// Simulate and return the curves.
     Simulate(SimulateSpec),
-    /// Simulate and return the measured channels alone.
-    Observe(ObserveSpec),
     /// Reduce the flexible back head from its mesh to modes and influence lines.
     ReduceHead(Box<ReduceHeadSpec>),
     /// Say which effects the model can add to a machine.
@@ -43,6 +41,8 @@ pub enum Job {
         /// How long the slot is held \[ms\].
         delay_ms: u32,
     },
+    /// Simulate and return the measured channels alone.
+    Observe(ObserveSpec),
 }
 
 impl Job {
@@ -66,8 +66,6 @@ pub enum Outcome {
     Scored(Evaluation),
     /// Of [`Job::Simulate`].
     Simulated(Box<Simulation>),
-    /// Of [`Job::Observe`].
-    Observed(Observation),
     /// Of [`Job::ReduceHead`].
     HeadReduced(Box<ReducedHead>),
     /// Of [`Job::Describe`].
@@ -76,6 +74,8 @@ pub enum Outcome {
     Nothing(#[serde(with = "byte_string")] Vec<u8>),
     /// The job could not be done.
     Failed(Failure),
+    /// Of [`Job::Observe`].
+    Observed(Observation),
 }
 
 /// Why a job could not be done.

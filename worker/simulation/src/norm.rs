@@ -1,7 +1,6 @@
 //! What counts as small: Newton's accuracy, and the local error that a step may make.
 //!
 //! What is measured (beam, rod, suspension, modes) is held tightly, the cylinders of a rope loosely.
-use crate::linear::BLOCK;
 
 /// Newton's accuracy: cylinder place \[m\], cylinder angle \[rad\], beam and rod angle \[rad\], modal
 /// coordinate [kg^1/2 m].
@@ -23,21 +22,25 @@ pub(crate) fn worst(norm: f64, x: f64) -> f64 {
 
 /// Largest change of cylinders' coordinates, in units of Newton's accuracy, or `norm` if that is
 /// larger.
-pub(crate) fn cylinders_newton(norm: f64, change: &[f64]) -> f64 {
-    cylinders(norm, change, LENGTH, TURN)
+pub(crate) fn cylinders_newton(norm: f64, change: &[f64], width: usize) -> f64 {
+    cylinders(norm, change, width, [LENGTH, TURN])
 }
 
 /// Largest local error of cylinders' coordinates, in units of what is tolerated, or `norm` if that
 /// is larger.
-pub(crate) fn cylinders_error(norm: f64, error: &[f64]) -> f64 {
-    cylinders(norm, error, 2e-4, 5e-3)
+pub(crate) fn cylinders_error(norm: f64, error: &[f64], width: usize) -> f64 {
+    cylinders(norm, error, width, [2e-4, 5e-3])
 }
 
-fn cylinders(mut norm: f64, x: &[f64], length: f64, turn: f64) -> f64 {
-    for x in x.chunks_exact(BLOCK) {
-        for k in 0..3 {
-            norm = worst(norm, x[k] / length);
-            norm = worst(norm, x[3 + k] / turn);
+/// Of `width` coordinates of a cylinder, lengths come first: two in the plane, three in space.
+fn cylinders(mut norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f64 {
+    let lengths = if width == 3 { 2 } else { 3 };
+    for x in x.chunks_exact(width) {
+        for x in &x[..lengths] {
+            norm = worst(norm, x / length);
+        }
+        for x in &x[lengths..] {
+            norm = worst(norm, x / turn);
         }
     }
     norm

@@ -2,7 +2,6 @@
 use crate::drive::DriveState;
 use crate::effect::Sampled;
 use crate::integrator::State;
-use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
 use crate::model::{Individual, Instant, Machine, description::StressRecovery};
@@ -44,18 +43,21 @@ fn mode_acceleration(system: &Individual<'_>, at: &Instant<'_>, state: &State) -
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    let surface = machine.surface(0, at.q, at.v);
+    let surface = machine.surface(0, at.q, at.v, &system.scratch.deflection);
     let back = &system.scratch.chains[0];
-    machine.chains[0].each_touch(&surface, &back.poses, |share, touch, shape| {
-        let force = share * system.ropes.contact.force(touch.depth, touch.rate).force;
+    machine.chains[0].each_touch(&surface, back, |share, touch| {
+        let force = share * system.ropes.contact.push(touch.depth, touch.rate).0;
         let place = machine.normal_influence.place(touch.angle);
         for (gauge, stress) in stress.iter_mut().enumerate() {
             *stress += force * machine.normal_influence.jet(&place, gauge).value;
         }
-        for (modal, shape) in modal_force.iter_mut().zip(shape) {
-            *modal -= force * shape;
-        }
     });
+    // what the arc's contact does to the modes is at hand
+    back.pressure
+        .gather(&machine.radial, &mut modal_force[..modes]);
+    for modal in &mut modal_force[..modes] {
+        *modal = -*modal;
+    }
 
     // the rope's end pulls at the anchor; in the beam frame
     let beam = layout.beam();
@@ -250,7 +252,7 @@ fn shape(sample: usize, system: &Individual<'_>, drive: &DriveState, state: &Sta
     let [pin, ..] = drive.pin;
     let centers = [0, 1].map(|chain| {
         state.q[machine.chains[chain].range()]
-            .chunks_exact(BLOCK)
+            .chunks_exact(layout.motion.width())
             .map(|q| [q[0], q[1]])
             .collect()
     });

@@ -121,7 +121,7 @@ impl Rig {
     pub fn new(setup: Setup) -> Self {
         Self {
             setup,
-            state: ChainState::new(setup.chain.count),
+            state: ChainState::new(&setup.chain),
         }
     }
 
@@ -152,7 +152,7 @@ impl Rig {
 
     /// Kinetic plus potential energy, that of the dead loads included, at a state \[J\].
     pub fn energy(&mut self, q: &[f64], v: &[f64]) -> f64 {
-        self.setup.chain.pose(q, v, &mut self.state.poses);
+        self.setup.chain.pose(q, v, &mut self.state);
         let mut momentum = vec![0.0; v.len()];
         self.subtract_inertia(q, v, &mut momentum);
         let kinetic: f64 = momentum.iter().zip(v).map(|(p, v)| -0.5 * p * v).sum();
@@ -167,7 +167,7 @@ impl Rig {
                 anchor: 0.0,
                 sense: 1.0,
             };
-            (Surface::new(&arc, [0.0; 2], (&[], &[]), None), drum.law)
+            (Surface::new(&arc, [0.0; 2], None), drum.law)
         })
     }
 
@@ -207,14 +207,14 @@ impl Rig {
 
 impl Equations for Rig {
     fn matrix(&self) -> Bordered {
-        Bordered::new(&[self.setup.chain.count], 0)
+        Bordered::space(&[self.setup.chain.count], 0)
     }
 
     fn forces(&mut self, _t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
         let chain = self.setup.chain;
         force.fill(0.0);
-        chain.pose(q, v, &mut self.state.poses);
-        chain.add_weights(&self.setup.gravity, &self.state.poses, force);
+        chain.pose(q, v, &mut self.state);
+        chain.add_weights(&self.setup.gravity, &self.state, force);
         chain.add_joints(&self.setup.joints(), &mut self.state, force);
         if let Some((surface, law)) = self.surface() {
             chain.add_contact(&surface, &law, &mut self.state, force, &mut []);
@@ -253,10 +253,9 @@ impl Equations for Rig {
         }
         for (j, along, force, _) in self.dead_loads() {
             let bends = self.state.poses[j].axis_by_twice();
-            let block = matrix.diagonal_mut(j);
             for a in 0..2 {
                 for b in 0..2 {
-                    block[(4 + a, 4 + b)] -= along * force.dot(&bends[a + b]);
+                    matrix.add_diagonal(j, 4 + a, 4 + b, -along * force.dot(&bends[a + b]));
                 }
             }
         }
@@ -267,11 +266,11 @@ impl Equations for Rig {
     }
 
     fn newton_norm(&self, change: &[f64]) -> f64 {
-        cylinders_newton(0.0, change)
+        cylinders_newton(0.0, change, BLOCK)
     }
 
     fn error_norm(&self, error: &[f64]) -> f64 {
-        cylinders_error(0.0, error)
+        cylinders_error(0.0, error, BLOCK)
     }
 
     fn powers(&mut self, _t: f64, _q: &[f64], _v: &[f64], _a: &[f64]) -> Powers {

@@ -6,7 +6,7 @@ use crate::integrator::tableau::ESDIRK4;
 use crate::integrator::{State, dense::interpolate};
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Powers};
-use crate::settle::{Settled, equilibrium, guess, overload};
+use crate::settle::{Damping, equilibrium, overload};
 use crate::statistics::Statistics;
 use crate::system::System;
 use crate::verdict::{Failure, Limits, Reached, Verdict};
@@ -29,8 +29,13 @@ pub struct RunSettings {
     pub longest_step: f64,
     /// Newton iterations that one run may take.
     pub budget: u64,
+    /// Iterations of the budget that a run may take from the start; the rest it earns with the time
+    /// that it simulates. A run that chatters on the spot ends early.
+    pub head_start: u64,
     /// When a run is no longer one of this machine.
     pub limits: Limits,
+    /// How the search for equilibrium damps its steps; no result depends on it.
+    pub damping: Damping,
 }
 
 impl Default for RunSettings {
@@ -43,8 +48,18 @@ impl Default for RunSettings {
             tolerance: 1.0,
             longest_step: 0.05,
             budget: 25_000,
+            head_start: 4_000,
             limits: Limits::default(),
+            damping: Damping::default(),
         }
+    }
+}
+
+impl RunSettings {
+    /// Newton iterations that a run may have taken when it has simulated a `fraction` of its time.
+    fn allowed(&self, fraction: f64) -> f64 {
+        let (all, first) = (self.budget as f64, self.head_start as f64);
+        first.min(all) + fraction * (all - first).max(0.0)
     }
 }
 
@@ -83,8 +98,8 @@ pub fn simulate(
         speed: machine.description.crank.speed,
     };
     let mut system = System::new(Individual::new(machine, machine.ropes(law), drive));
-    let swing = swing(machine);
-    let start = match settle(&mut system, settings, swing) {
+    let swing = machine.swing();
+    let start = match settle(&mut system, settings, None) {
         Ok(q) => q,
         Err((kind, fraction)) => {
             return RunResult {
@@ -101,31 +116,16 @@ pub fn simulate(
     revolve(&mut system, settings, swing, start, observer)
 }
 
-/// Range of the beam on the inextensible mechanism \[rad\].
-fn swing(machine: &Machine) -> [f64; 2] {
-    let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
-    let mut at = machine.bottom;
-    let mut highest = at.beam;
-    for k in 1..=90 {
-        if let Ok(next) = mechanism.position(
-            machine.bottom.pin + TAU * f64::from(k) / 90.0,
-            at.beam,
-            at.tangent,
-        ) {
-            at = next;
-            highest = highest.max(at.beam);
-        }
-    }
-    [machine.bottom.beam, highest]
-}
-
-/// Static equilibrium at the start; on failure, the reason at full load and the share of the load
-/// that the machine carries.
-fn settle(
+/// Static equilibrium at time 0; `start` may hint at it and changes nothing but the work.
+///
+/// # Errors
+/// The reason at full load, and the share of the load that the machine carries.
+pub fn settle(
     system: &mut System<Individual<'_>>,
     settings: &RunSettings,
-    swing: [f64; 2],
+    start: Option<&[f64]>,
 ) -> Result<Vec<f64>, (Failure, f64)> {
+    let swing = system.equations.machine.swing();
     let full = system.equations.drive_state(0.0);
     let Individual { machine, ropes, .. } = system.equations;
     if let Some(overload) = overload(machine, &ropes, &full, &settings.limits) {
@@ -133,17 +133,12 @@ fn settle(
     }
     let mut attempt = |share: f64| {
         system.equations.share_load(share);
-        let drive = system.equations.drive_state(0.0);
-        let Ok(mut q) = guess(machine, &ropes, &drive) else {
-            return Err(Failure::OverstretchedRope);
-        };
-        match equilibrium(system, &settings.limits, swing, &mut q) {
-            Settled::Equilibrium => Ok(q),
-            Settled::Failed(kind) => Err(kind),
-        }
+        equilibrium(system, &settings.limits, swing, &settings.damping, start)
     };
     let kind = match attempt(1.0) {
         Ok(q) => return Ok(q),
+        // where no equilibrium is found, less load is no better known
+        Err(Failure::Budget) => return Err((Failure::Budget, 0.0)),
         Err(kind) => kind,
     };
     let (mut carried, mut too_much) = (0.0, 1.0);
@@ -180,9 +175,10 @@ fn revolve(
         if from.t >= end - 1e-9 {
             break Verdict::Complete;
         }
-        let reached = Reached::TimeFraction(from.t / end);
+        let fraction = from.t / end;
+        let reached = Reached::TimeFraction(fraction);
         let failed = |kind| Verdict::Failed { kind, reached };
-        if system.statistics.newton_iterations > settings.budget {
+        if system.statistics.newton_iterations as f64 > settings.allowed(fraction) {
             break failed(Failure::Budget);
         }
         // stop exactly where the recorded revolution begins and ends

@@ -1,5 +1,5 @@
 //! How a simulation ended; every run ends in one of these, none hangs or panics.
-use crate::linear::BLOCK;
+use crate::model::layout::Motion;
 use crate::model::{Machine, Scratch};
 
 /// What ended a simulation early.
@@ -13,7 +13,8 @@ pub enum Failure {
     BeamOvertravel,
     /// The beam stayed below its swing by [`Limits::beam_margin`].
     LoadNotLifted,
-    /// A cylinder turned out of the machine's plane.
+    /// A cylinder turned out of the machine's plane, or cylinders give way sideways because their
+    /// shear stiffness cannot hold them under tension.
     TumbledCylinder,
     /// The step size fell below its limit.
     StepUnderflow,
@@ -98,9 +99,12 @@ impl Limits {
         if beam.is_nan() || beam < swing[0] - self.beam_margin {
             return Some(Failure::LoadNotLifted);
         }
+        if machine.layout.motion == Motion::Plane {
+            return None;
+        }
         for chain in &machine.chains {
-            for j in 0..chain.count {
-                let tilt = q[(chain.first + j) * BLOCK + 4];
+            for q in q[chain.range()].chunks_exact(6) {
+                let tilt = q[4];
                 if tilt.is_nan() || crate::math::elementary::sin_cos(tilt).0.abs() > self.tilt {
                     return Some(Failure::TumbledCylinder);
                 }

@@ -191,9 +191,8 @@ impl State {
     /// Begins to compute the reference individual of the case, if that is still to be done and a
     /// slot is free.
     fn prove(&mut self) -> Option<Step> {
-        let Some(case) = self.case.as_ref().filter(|_| self.proof == Proof::Missing) else {
-            return None;
-        };
+        let missing = self.proof == Proof::Missing;
+        let case = self.case.as_ref().filter(|_| missing)?;
         let slot = (0..self.pool.len()).find(|slot| !self.running.contains_key(slot))?;
         match proof::task(case) {
             Ok(task) => {

@@ -2,15 +2,17 @@
 //!
 //! The library cannot hold everything. A force of simple form across a joint (a constant, a sign, a
 //! power, a harmonic) knows no cause; where such a force, refitted with every gene free, explains much
-//! more than the best name does, the name is not believed. A form that a library effect *is* (its
+//! more than the best name does, or leaves nothing but noise where the name does not, the name is not
+//! believed. A form that a library effect *is* (its
 //! projected signature is nearly the same) is no challenger: then the name is the better word for it.
-use crate::bench::{Bench, Fit};
+use crate::bench::Fit;
 use crate::evidence::{log_evidence, misfit};
 use crate::isolability::likeness;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::Model;
 use crate::score::{chi_squared_tail, family_wise, score};
 use crate::settings::Settings;
+use crate::stage::establish::Base;
 use crate::stage::suspect::Suspect;
 use crate::stage::whereabouts::probe_order;
 use crate::tangent::Tangent;
@@ -60,16 +62,17 @@ const TRIED: usize = 3;
 ///
 /// # Errors
 /// Of the laboratory.
-pub async fn challenge<L: Laboratory>(
+pub(crate) async fn challenge<L: Laboratory>(
     lab: &mut L,
-    bench: &Bench,
+    base: &Base,
     fit: &Fit,
     generics: &[Suspect],
     named: &Named<'_>,
     settings: &Settings,
 ) -> Result<Option<Challenger>, L::Error> {
+    let bench = &base.bench;
     let tangent = Tangent::new(fit.search.best(), fit.variables());
-    let residual = &fit.search.best().residual;
+    let residual = &fit.search.settled_residual();
     let mut forms = forms(generics, residual, &tangent);
     let tests = forms.len();
     forms.retain(|form| {
@@ -98,9 +101,12 @@ pub async fn challenge<L: Laboratory>(
         let removed = fit.chi_squared() - refit.chi_squared();
         let log_evidence = log_evidence(refit.search.best(), refit.variables());
         let gain = log_evidence - named.log_evidence;
-        let beats = removed
-            > settings.generic_factor * named.removed + settings.generic_gain * scale
-            && gain > settings.gain * scale;
+        let margin = settings.generic_gain * scale;
+        let noise = |left: f64| base.is_noise(left, refit.x().len(), settings.adequacy);
+        let clears = noise(refit.chi_squared()) && !noise(named.left);
+        let beats = removed > settings.generic_factor * named.removed + margin
+            || (clears && removed > named.removed + margin);
+        let beats = beats && gain > settings.gain * scale;
         beats.then(|| Challenger {
             id: form.parts[0].effect.id.clone(),
             removed,

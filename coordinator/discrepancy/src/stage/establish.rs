@@ -7,6 +7,7 @@ use crate::metric::Metric;
 use crate::model::{Model, sizes};
 use crate::noise::Noise;
 use crate::record::{Curves, Record};
+use crate::score::misfit_tail;
 use crate::spectrum::Orders;
 use crate::stage::preflight::Preflight;
 use crate::stage::{basin, preflight, recalibrate};
@@ -22,6 +23,16 @@ pub(crate) struct Base {
     pub(crate) assumed: bool,
     pub(crate) freedom: f64,
     pub(crate) notes: Vec<String>,
+}
+
+impl Base {
+    /// Whether noise alone may leave so much after a fit of so many parameters, at a level; always,
+    /// where the noise is only assumed.
+    pub(crate) fn is_noise(&self, chi_squared: f64, parameters: usize, level: f64) -> bool {
+        let n = self.bench.metric.len();
+        let freedom = n as f64 * (self.bench.record.cycles.len() as f64 - 1.0);
+        self.assumed || misfit_tail(chi_squared, n, parameters, freedom) >= level
+    }
 }
 
 /// Noise, way into the valley, recalibration, numerical check, final metric, final fit.

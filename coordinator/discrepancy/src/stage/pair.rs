@@ -65,7 +65,7 @@ struct Proposal<'a> {
 
 fn propose<'a>(fit: &Fit, suspects: &'a [Suspect]) -> Vec<Proposal<'a>> {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
-    let residual = &fit.search.best().residual;
+    let residual = &fit.search.settled_residual();
     let able: Vec<&Suspect> = suspects
         .iter()
         .filter(|s| s.signature.ncols() > 0)

@@ -41,7 +41,8 @@ pub async fn converge<L: Laboratory>(
     x: &[f64],
 ) -> Result<Option<Fit>, L::Error> {
     let settings = Settings {
-        iterations: 8,
+        iterations: 10,
+        decrease: 3e-4,
         central: true,
         ..Settings::default()
     };

@@ -79,7 +79,7 @@ pub async fn examine<L: Laboratory>(
     take(lab, bench, fit, effects, &mut probes).await?;
     adjust(effects, &mut probes, &tangent);
     take(lab, bench, fit, effects, &mut probes).await?;
-    let residual = &fit.search.best().residual;
+    let residual = &fit.search.settled_residual();
     Ok(effects
         .iter()
         .enumerate()

@@ -38,7 +38,7 @@ pub async fn look<L: Laboratory>(
     phi: f64,
 ) -> Result<Where, L::Error> {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
-    let residual = &fit.search.best().residual;
+    let residual = &fit.search.settled_residual();
     let latents = latents(lab, bench, fit, library).await?;
     let joints = joint::rank(&latents, residual, &tangent);
     Ok(Where {

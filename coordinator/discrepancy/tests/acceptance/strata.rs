@@ -51,5 +51,5 @@ pub(crate) const OUTSIDE: [(Unlisted, &[&str]); 5] = [
     (Unlisted::HeadThrice(0.4), &["cos3", "sin3"]),
     (Unlisted::RodDashpot(0.5), &["v"]),
     (Unlisted::GearMesh(1.0), &["cos4", "sin4"]),
-    (Unlisted::SwingingMass(0.1), &[]),
+    (Unlisted::GearFriction(1.0), &["sgn_v"]),
 ];

@@ -27,6 +27,8 @@ pub(crate) struct Setup {
     pub(crate) library: Vec<EffectDescriptor>,
     /// One run in so many is lost; none if 0.
     pub(crate) lost_every: u64,
+    /// Names of the library with the machine's own, where they differ.
+    pub(crate) labels: Vec<(String, String)>,
 }
 
 impl Default for Setup {
@@ -41,6 +43,7 @@ impl Default for Setup {
             },
             library: MACHINE.library().to_vec(),
             lost_every: 0,
+            labels: Vec::new(),
         }
     }
 }
@@ -71,7 +74,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         seed: 1,
         settings: setup.settings.clone(),
     };
-    let mut lab = AtOnce::losing(&MACHINE, setup.lost_every);
+    let mut lab = AtOnce::new(&MACHINE, setup.lost_every, &setup.labels);
     let answer = {
         let mut future = pin!(diagnose(&mut lab, &inputs));
         match future
@@ -133,4 +136,19 @@ pub(crate) fn line(diagnosis: &Diagnosis) -> String {
         diagnosis.reason,
         rounds.join(" ")
     )
+}
+
+/// How many trials a stratum has: more where `HORSEHEAD_ACCEPTANCE=full` is set.
+pub(crate) fn trials(few: u64) -> u64 {
+    let full = std::env::var("HORSEHEAD_ACCEPTANCE").is_ok_and(|v| v == "full");
+    if full { 5 * few } else { few }
+}
+
+/// Says what a stratum measured; shown with `--nocapture`, and when a test fails.
+#[expect(
+    clippy::print_stdout,
+    reason = "captured by the test harness, shown on request"
+)]
+pub(crate) fn say(what: &str) {
+    println!("{what}");
 }

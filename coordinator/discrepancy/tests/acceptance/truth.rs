@@ -21,6 +21,8 @@ pub(crate) enum Unlisted {
     RodDashpot(f64),
     /// A gear that brakes the crank four times a turn (kN m).
     GearMesh(f64),
+    /// A gearbox whose teeth rub (kN m).
+    GearFriction(f64),
     /// A mass that swings on the beam, 3.3 times a turn (1).
     SwingingMass(f64),
 }
@@ -201,7 +203,7 @@ impl March<'_> {
                     mass * 3.3 * 3.3 * (swing - beam) + mass * 0.6 * (swing_rate - beam_rate);
                 on_beam += swing_force;
             }
-            Some(Unlisted::GearMesh(_)) | None => {}
+            Some(Unlisted::GearMesh(_) | Unlisted::GearFriction(_)) | None => {}
         }
         let beam_mass = 4.0 + truth.amount("beam_inertia", 0);
         // a little loss to the ground that the tool has not
@@ -308,6 +310,7 @@ impl March<'_> {
         let phase = truth.amount("counterweight_phase", 0).to_radians();
         let mesh = match truth.unlisted {
             Some(Unlisted::GearMesh(size)) => size * (4.0 * angle + 0.6).cos(),
+            Some(Unlisted::GearFriction(size)) => size * speed / speed.hypot(0.05),
             _ => 0.0,
         };
         out[4] = height - rod;
@@ -433,6 +436,24 @@ fn cycle(
         .iter()
         .map(|c| std::mem::take(&mut all[place(*c)]))
         .collect()
+}
+
+/// Cycles with nothing but noise in them, all channels.
+pub(crate) fn cycles_of_noise(seed: u64, cycles: usize) -> Vec<Curves> {
+    let streams = Streams::new(seed, 13);
+    let one = |k: usize| {
+        let mut stream = streams.at(0, Phase::Resample, k);
+        let mut noise = Noise::default();
+        let mut curves: Curves = vec![Vec::with_capacity(SAMPLES); NOISE.len()];
+        for _ in 0..SAMPLES {
+            let drawn = noise.next(&mut stream);
+            for ((curve, drawn), size) in curves.iter_mut().zip(drawn).zip(NOISE) {
+                curve.push(size * drawn);
+            }
+        }
+        curves
+    };
+    (0..cycles).map(one).collect()
 }
 
 /// Noise of all channels: first-order in time, with a part that the gauges share.

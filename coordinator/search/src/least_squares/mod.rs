@@ -229,6 +229,18 @@ impl LeastSquares {
         step::gradient_ratio(&self.at, &self.variables, self.cost)
     }
 
+    /// The residual at the minimum of the linearised problem: the residual itself where the search
+    /// has converged, to first order what it would have become where it has not.
+    pub fn settled_residual(&self) -> DVector<f64> {
+        step::settled(&self.at, &self.variables)
+    }
+
+    /// By which share of the cost one more step would lower it, by the linearised problem.
+    pub fn promised_decrease(&self) -> f64 {
+        let settled = self.settled_residual().norm_squared();
+        ((self.at.residual.norm_squared() - settled) / self.cost).max(0.0)
+    }
+
     fn arrive(&mut self, residual: DVector<f64>) {
         self.at.residual = residual;
         self.cost = self.at.residual.norm_squared() + step::prior_cost(&self.at.x, &self.variables);

@@ -51,13 +51,40 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
     worst
 }
 
+/// Residual after an undamped step of the free variables.
+pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
+    let (gradient, curvature) = normal(at, variables);
+    let free = free(at, variables, &gradient, &curvature);
+    let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+        // twelve digits below the diagonal: decides nothing, keeps the factor
+        let ridge = if i == j { 1.0 + 1e-12 } else { 1.0 };
+        ridge * curvature[(free[i], free[j])]
+    });
+    let right = DVector::from_fn(free.len(), |i, _| -gradient[free[i]]);
+    matrix.cholesky().map_or_else(
+        || at.residual.clone(),
+        |factor| &at.residual + at.jacobian.select_columns(&free) * factor.solve(&right),
+    )
+}
+
+/// Variables that a step may move: not those that press against a bound, nor those that change
+/// nothing.
+fn free(
+    at: &Linearized,
+    variables: &[Variable],
+    gradient: &DVector<f64>,
+    curvature: &DMatrix<f64>,
+) -> Vec<usize> {
+    (0..variables.len())
+        .filter(|&k| curvature[(k, k)] > 0.0 && !pressed(at.x[k], &variables[k], gradient[k]))
+        .collect()
+}
+
 /// The damped steps from a linearised point: dampings with the points they lead to. Variables that
 /// press against a bound stay; a variable that changes nothing stays.
 pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<(f64, Vec<f64>)> {
     let (gradient, curvature) = normal(at, variables);
-    let free: Vec<usize> = (0..variables.len())
-        .filter(|&k| curvature[(k, k)] > 0.0 && !pressed(at.x[k], &variables[k], gradient[k]))
-        .collect();
+    let free = free(at, variables, &gradient, &curvature);
     if free.is_empty() {
         return Vec::new();
     }

@@ -79,6 +79,23 @@ fn an_exponential_is_fitted_as_by_the_normal_equations_of_its_logarithm() {
 }
 
 #[test]
+fn the_settled_residual_is_that_of_the_linear_minimum() {
+    let model = |x: &[f64]| vec![x[0] + x[1] - 3.0, x[0] - x[1], 2.0 * x[1] + 1.0];
+    let settings = Settings {
+        iterations: 1,
+        ..tight()
+    };
+    let variables = vec![variable(5.0, -9.0, 9.0), variable(5.0, -9.0, 9.0)];
+    let mut search = LeastSquares::new(variables, settings);
+    assert_eq!(run(&mut search, |x| Some(model(x))), Ended::Iterations);
+    // normal equations: 2 x + 0 y = 3, 6 y = 1
+    let expected = DVector::from_vec(model(&[1.5, 1.0 / 6.0]));
+    assert!((search.settled_residual() - &expected).norm() < 1e-6);
+    let promised = 1.0 - expected.norm_squared() / search.cost();
+    assert!((search.promised_decrease() - promised).abs() < 1e-6);
+}
+
+#[test]
 fn a_bound_holds_and_the_others_still_converge() {
     let mut search = LeastSquares::new(
         vec![variable(0.0, -5.0, 0.5), variable(3.0, -5.0, 5.0)],

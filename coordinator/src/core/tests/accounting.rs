@@ -72,7 +72,11 @@ fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one()
     let closing = cluster.core.handle(Input::Close, cluster.now);
     let last = closing.into_iter().filter_map(|command| match command {
         Command::Record(event) => Some(event),
-        _ => None,
+        Command::Send { .. }
+        | Command::Store(_)
+        | Command::Deliver { .. }
+        | Command::Notice(_)
+        | Command::Stop(_) => None,
     });
     let mut workers: BTreeMap<WorkerId, WorkerAccount> = BTreeMap::new();
     let mut minutes = 0;

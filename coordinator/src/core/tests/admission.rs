@@ -18,7 +18,12 @@ fn refusal(scene: &Scene, id: u64) -> Option<String> {
             to,
             message: ToWorker::Refused { reason },
         } if *to == WorkerId(id) => Some(reason.clone()),
-        _ => None,
+        Command::Send { .. }
+        | Command::Store(_)
+        | Command::Record(_)
+        | Command::Deliver { .. }
+        | Command::Notice(_)
+        | Command::Stop(_) => None,
     })?;
     let said = scene.notices().into_iter().any(
         |notice| matches!(notice, Notice::Refused { worker: WorkerId(it), reason, .. } if *it == id && *reason == told),

@@ -192,3 +192,34 @@ fn nobody_gets_what_those_who_outlived_the_coordinator_may_hold() {
     scene.wait(2, &[9]);
     assert_eq!(scene.given().len(), 4);
 }
+
+/// What is said of a loss is what is known: an end at once is one of the process, an end after
+/// silence is not.
+#[test]
+fn the_reason_of_a_loss_tells_an_end_from_a_silence() {
+    let lost = |seconds| {
+        let mut scene = Scene::new();
+        scene.join(1, 1);
+        for _ in 0..seconds * 4 {
+            scene.now += Duration::from_millis(250);
+            scene.tell(Input::Tick);
+        }
+        scene.tell(Input::Gone {
+            worker: WorkerId(1),
+        });
+        let lost = scene.notices().into_iter().find_map(|notice| match notice {
+            Notice::Lost { reason, .. } => Some(reason.clone()),
+            Notice::Joined { .. }
+            | Notice::Left { .. }
+            | Notice::Refused { .. }
+            | Notice::NoWorker { .. }
+            | Notice::Quarantined { .. }
+            | Notice::GivenUp { .. }
+            | Notice::Stalled { .. } => None,
+        });
+        lost.unwrap()
+    };
+    assert!(lost(0).contains("it was killed"));
+    assert!(lost(3).contains("nothing was heard of it for 3 s: it is frozen"));
+    assert!(lost(9).contains("nothing was heard of it for 4 s: it is frozen"));
+}

@@ -2,111 +2,14 @@
 //!
 //! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes
 //! a fraction of a second and is the same each time.
+mod source;
+
+pub(super) use source::{Generations, Search, Source};
+
 use super::*;
 use protocol::event::Event;
-use search::{
-    random::{Phase, Streams},
-    strategy::{Strategy, Told},
-};
+use search::random::{Phase, Streams};
 use std::collections::VecDeque;
-
-/// Where jobs come from.
-pub(super) trait Source {
-    fn ask(&mut self) -> Vec<(u64, Job)>;
-    fn tell(&mut self, id: u64, outcome: &Outcome);
-    fn is_done(&self) -> bool;
-}
-
-/// Generations of equal size: nothing is asked before all of the last one is there.
-pub(super) struct Generations {
-    size: u64,
-    left: u64,
-    next: u64,
-    open: u64,
-}
-
-impl Generations {
-    pub(super) const fn new(size: u64, count: u64) -> Self {
-        Self {
-            size,
-            left: count,
-            next: 0,
-            open: 0,
-        }
-    }
-}
-
-impl Source for Generations {
-    fn ask(&mut self) -> Vec<(u64, Job)> {
-        if self.open > 0 || self.left == 0 {
-            return Vec::new();
-        }
-        self.left -= 1;
-        self.open = self.size;
-        let from = self.next;
-        self.next += self.size;
-        (from..self.next).map(|id| (id, job(id))).collect()
-    }
-
-    fn tell(&mut self, _id: u64, _outcome: &Outcome) {
-        self.open -= 1;
-    }
-
-    fn is_done(&self) -> bool {
-        self.left == 0 && self.open == 0
-    }
-}
-
-/// A search, with a function for the physics.
-pub(super) struct Search<'a> {
-    pub(super) strategy: Box<dyn Strategy>,
-    pub(super) tell: &'a dyn Fn(&[f64]) -> Told,
-    open: BTreeMap<u64, Vec<f64>>,
-    log: blake3::Hasher,
-}
-
-impl<'a> Search<'a> {
-    pub(super) fn new(strategy: Box<dyn Strategy>, tell: &'a dyn Fn(&[f64]) -> Told) -> Self {
-        Self {
-            strategy,
-            tell,
-            open: BTreeMap::new(),
-            log: blake3::Hasher::new(),
-        }
-    }
-
-    /// The name of everything that was evaluated, in index order.
-    pub(super) fn digest(mut self) -> String {
-        for entry in self.strategy.archive().entries() {
-            self.log.update(&entry.id.to_le_bytes());
-            for gene in &entry.genes {
-                self.log.update(&gene.to_bits().to_le_bytes());
-            }
-            self.log.update(&entry.told.fitness.to_bits().to_le_bytes());
-        }
-        self.log.finalize().to_hex().to_string()
-    }
-}
-
-impl Source for Search<'_> {
-    fn ask(&mut self) -> Vec<(u64, Job)> {
-        let proposals = self.strategy.ask();
-        let jobs = proposals.into_iter().map(|proposal| {
-            self.open.insert(proposal.id, proposal.genes);
-            (proposal.id, job(proposal.id))
-        });
-        jobs.collect()
-    }
-
-    fn tell(&mut self, id: u64, _outcome: &Outcome) {
-        let genes = self.open.remove(&id).expect("asked for");
-        self.strategy.tell(id, (self.tell)(&genes));
-    }
-
-    fn is_done(&self) -> bool {
-        self.strategy.finished().is_some()
-    }
-}
 
 /// What happens to workers.
 #[derive(Clone, Copy, Debug)]
@@ -147,6 +50,37 @@ struct Worker {
     settled: BTreeSet<Attempt>,
     frozen: bool,
     held_back: Vec<What>,
+}
+
+impl Worker {
+    fn take_running(&mut self, attempt: Attempt) -> Option<Running> {
+        let mut running = self.running.iter();
+        let at = running.position(|running| running.attempt == attempt)?;
+        Some(self.running.remove(at))
+    }
+
+    /// Stops an attempt; how long it was computed for nothing.
+    fn cancel(&mut self, attempt: Attempt, now: Duration) -> Duration {
+        self.settled.insert(attempt);
+        self.outbox.remove(&attempt);
+        self.waiting.retain(|order| order.attempt != attempt);
+        let running = self.take_running(attempt);
+        running.map_or(Duration::ZERO, |running| now.saturating_sub(running.begun))
+    }
+
+    /// The result of an attempt that is still wanted.
+    fn finish(&mut self, attempt: Attempt, now: Duration) -> Option<Done> {
+        let running = self.take_running(attempt)?;
+        let wall = now.saturating_sub(running.begun);
+        let done = Done {
+            attempt,
+            work: running.work,
+            wall_us: u64::try_from(wall.as_micros()).expect("short"),
+            outcome: Outcome::Nothing(vec![1]),
+        };
+        self.outbox.insert(attempt, done.clone());
+        Some(done)
+    }
 }
 
 /// What a cluster is like.
@@ -191,8 +125,6 @@ pub(super) struct Cluster {
     /// Slot time that was really spent computing, whatever for.
     pub(super) computed: Duration,
     pub(super) begun: u64,
-    /// Times at which cancelled attempts were ended, after the result that made them useless.
-    pub(super) cancels: Vec<Duration>,
 }
 
 impl Cluster {
@@ -221,7 +153,6 @@ impl Cluster {
             notices: Vec::new(),
             computed: Duration::ZERO,
             begun: 0,
-            cancels: Vec::new(),
         };
         for place in 0..setting.workers {
             cluster.start(place);
@@ -258,7 +189,7 @@ impl Cluster {
         let worker = Worker {
             place,
             slots: self.setting.slots,
-            slowness: if slow > 0 && place % slow == 0 {
+            slowness: if slow > 0 && place.is_multiple_of(slow) {
                 2.0
             } else {
                 1.0
@@ -382,18 +313,7 @@ impl Cluster {
                 }
             }
             What::Down(_, ToWorker::Cancel(attempt)) => {
-                worker.settled.insert(attempt);
-                worker.outbox.remove(&attempt);
-                worker.waiting.retain(|order| order.attempt != attempt);
-                let at = worker
-                    .running
-                    .iter()
-                    .position(|running| running.attempt == attempt);
-                if let Some(at) = at {
-                    let running = worker.running.remove(at);
-                    self.computed += now.saturating_sub(running.begun);
-                    self.cancels.push(now);
-                }
+                self.computed += worker.cancel(attempt, now);
             }
             What::Down(_, ToWorker::Stored(attempts)) => {
                 for attempt in attempts {
@@ -402,21 +322,8 @@ impl Cluster {
                 }
             }
             What::End(_, attempt) => {
-                let at = worker
-                    .running
-                    .iter()
-                    .position(|running| running.attempt == attempt);
-                if let Some(at) = at {
-                    let running = worker.running.remove(at);
-                    let wall = now.saturating_sub(running.begun);
-                    self.computed += wall;
-                    let done = Done {
-                        attempt,
-                        work: running.work,
-                        wall_us: u64::try_from(wall.as_micros()).expect("short"),
-                        outcome: Outcome::Nothing(vec![1]),
-                    };
-                    worker.outbox.insert(attempt, done.clone());
+                if let Some(done) = worker.finish(attempt, now) {
+                    self.computed += Duration::from_micros(done.wall_us);
                     self.send(What::Up(id, FromWorker::Done(Box::new(done))));
                 }
             }

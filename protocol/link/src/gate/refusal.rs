@@ -38,6 +38,12 @@ impl Refusals {
         self.say(from, reason, &format!(" (\"{shown}\")"));
     }
 
+    /// A certificate has too many connections already.
+    pub(super) fn crowded(&self, from: SocketAddr, owner: &str) {
+        let reason = "its certificate has as many connections as one may have";
+        self.say(from, reason, &format!(" (\"{owner}\")"));
+    }
+
     fn say(&self, from: SocketAddr, reason: &'static str, detail: &str) {
         if let Some(more) = self.is_news(reason, Instant::now()) {
             let more = match more {

@@ -47,6 +47,9 @@ impl Effect for Ripple {
     }
 }
 
+/// Share of the speed that a motor may lose and still turn.
+const SLOWEST: f64 = 0.9;
+
 /// Samples of the turn.
 const NODES: usize = 720;
 
@@ -58,7 +61,7 @@ pub(super) fn warp(slow: impl Fn(f64) -> f64) -> Splines {
     let mean = slow.iter().sum::<f64>() / NODES as f64;
     let lasting: Vec<f64> = slow
         .iter()
-        .map(|slow| 1.0 / (1.0 - (slow - mean)))
+        .map(|slow| 1.0 / (1.0 - (slow - mean).min(SLOWEST)))
         .collect();
     let whole = lasting.iter().sum::<f64>() / NODES as f64;
     // by the trapezoidal rule: uniform angle less turn, over the turn

@@ -1,12 +1,13 @@
 //! Forces of every effect against differences: the tangent, and the potential at rest.
 use super::tests::typical;
-use super::{Descriptor, Selection, catalogue};
+use super::{Asked, Descriptor, Selection, catalogue};
 use crate::drive::Drive;
-use crate::linear::Bordered;
-use crate::model::tests::{disturbed, free, unit};
+use crate::model::contact::Surface;
+use crate::model::tests::{assert_plane_is_space, disturbed, free, unit};
 use crate::model::{Individual, Machine};
 use crate::reference;
-use crate::system::{Equations, Static};
+use crate::run::RunSettings;
+use crate::system::{Equations, Static, System};
 
 /// The reference machine with one effect at its typical size; nothing where the effect leaves
 /// forces, surfaces and inertia alone.
@@ -56,7 +57,7 @@ fn tangent_is_the_derivative_of_the_forces() {
         let t = 0.7;
         for gamma in [0.0, 40.0] {
             at.forces(t, &q, &v, &mut force);
-            let mut matrix = Bordered::new(&layout.chains(), 1 + layout.modes);
+            let mut matrix = layout.matrix();
             at.tangent(t, (&q, &v), (0.0, gamma), &mut matrix);
             for i in free(&machine) {
                 let column = matrix.product(&unit(n, i));
@@ -120,5 +121,49 @@ fn forces_at_rest_are_the_gradient_of_the_potential() {
                 expected[i]
             );
         }
+    }
+}
+
+/// In the plane every effect does what it does in space.
+#[test]
+fn plane_and_space_agree() {
+    for d in catalogue() {
+        if let Some(machine) = machine(d) {
+            assert_plane_is_space(&machine, &d.id);
+        }
+    }
+}
+
+/// A surface that effects raise above what the head's own deflection reaches is touched there all
+/// the same.
+#[test]
+fn nothing_of_a_raised_surface_lies_out_of_reach() {
+    for (id, parameter, value) in [
+        ("head_profile_wear", "depth", -0.02),
+        ("post_compliance", "compliance", 3e-7),
+    ] {
+        let asked = Asked {
+            id,
+            parameters: vec![(parameter, value)],
+        };
+        let selection = Selection::new(&[asked]).unwrap();
+        let machine = Machine::with_effects(reference::description(), 2, &selection).unwrap();
+        let mut system = System::new(individual(&machine, true));
+        let q = crate::run::settle(&mut system, &RunSettings::default(), None).unwrap();
+        let v = vec![0.0; q.len()];
+        let scratch = &mut system.equations.scratch;
+        machine.pose(&q, &v, scratch);
+        let surface = machine.surface(0, &q, &v, &scratch.deflection);
+        let bend = surface.bend.unwrap();
+        let arc = &machine.description.back_arc;
+        let highest = (0..400).fold(0.0_f64, |highest, k| {
+            let angle = arc.anchor - arc.sense * 0.005 * f64::from(k);
+            let deflected = bend.sum.at(bend.shapes, &bend.shapes.place(angle)).0.value;
+            let height = surface.profile.map_or(0.0, |p| p.height(angle)[0]);
+            highest.max(deflected + height)
+        });
+        let own = Surface::new(arc, surface.beam, None).reach - arc.radius;
+        let reach = surface.reach - arc.radius;
+        assert!(highest > own && highest < reach, "{id}: {highest} {reach}");
     }
 }

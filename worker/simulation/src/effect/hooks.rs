@@ -22,6 +22,8 @@ pub struct Hooks {
     /// Of the back rope and of the front rope.
     pub(super) axial: [Vec<Arc<dyn Axial>>; 2],
     pub(super) profile: Profile,
+    /// How far the back head's surface may move towards the rope beside its own deflection \[m\].
+    pub(super) sway: f64,
     pub(super) readings: Vec<Arc<dyn Reading>>,
 }
 
@@ -215,6 +217,11 @@ impl Hooks {
     /// What the back head's surface lacks, if anything.
     pub(crate) fn profile(&self) -> Option<&Profile> {
         (!self.profile.is_flat()).then_some(&self.profile)
+    }
+
+    /// How much farther from the arc's centre than without effects the rope may touch \[m\].
+    pub(crate) fn bulge(&self) -> f64 {
+        self.profile.highest() + self.sway
     }
 
     /// Reads one sample.

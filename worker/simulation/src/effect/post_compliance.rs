@@ -12,6 +12,7 @@ use crate::math::elementary::sin_cos;
 use crate::model::description::Description;
 use crate::model::{Instant, MAX_MODES, Machine};
 use std::borrow::Cow;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 pub(super) const DESCRIPTOR: Descriptor = Descriptor {
@@ -42,6 +43,14 @@ struct Post {
 }
 
 impl Post {
+    /// Twice what rests on the pivot at most in slow motion \[N\]; no swing comes near it.
+    fn heaviest(&self, d: &Description, cycle: &Cycle) -> f64 {
+        let turns = (0..360_u32).map(|k| TAU * f64::from(k) / 360.0);
+        let rope = turns.map(|turn| cycle.tension(turn)).fold(0.0, f64::max);
+        let load = d.card.iter().copied().fold(0.0, f64::max);
+        2.0 * (rope + load + (d.suspension_mass + self.mass) * d.gravity)
+    }
+
     /// Angular frequency of the mass on the post [rad/s].
     fn frequency(&self) -> f64 {
         (1.0 / (self.compliance * self.mass)).sqrt()
@@ -83,8 +92,9 @@ impl Effect for Post {
         *modes += 2;
     }
 
-    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
         let d = &machine.description;
+        hooks.sway += self.compliance * self.heaviest(d, cycle);
         let layout = machine.layout;
         let [along, across] = [layout.modes - 2, layout.modes - 1].map(|k| layout.mode(k));
         hooks.forces.push(Arc::new(FrontPull {

@@ -29,6 +29,12 @@ impl Profile {
         self.hollows.is_empty()
     }
 
+    /// What no height exceeds \[m\].
+    pub fn highest(&self) -> f64 {
+        let seams = self.hollows.iter().map(|hollow| (-hollow.depth).max(0.0));
+        seams.sum()
+    }
+
     /// Height above the circle \[m\] with its first and second derivative over the arc angle.
     pub fn height(&self, angle: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];

@@ -143,6 +143,44 @@ fn every_effect_at_its_typical_size_acts() {
     }
 }
 
+/// Every parameter at both of its bounds, the others typical: a run ends in a verdict, and what it
+/// gives are numbers.
+#[test]
+fn bounds_end_in_a_verdict() {
+    let settings = RunSettings {
+        samples: SAMPLES,
+        budget: 6000,
+        ..RunSettings::default()
+    };
+    let mut complete = 0;
+    let mut failed = Vec::new();
+    for d in catalogue().iter().filter(|d| !d.generic) {
+        for (k, p) in d.parameters.iter().enumerate() {
+            for bound in [p.lower, p.upper] {
+                let other = |i: usize| d.parameters[i].typical;
+                let asked = at(d, |i| if i == k { bound } else { other(i) });
+                let selection = Selection::new(&[asked]).unwrap();
+                let built = Machine::with_effects(reference::description(), 2, &selection);
+                let Ok(machine) = built else {
+                    failed.push(format!("{}.{} {bound} cannot be built", d.id, p.name));
+                    continue;
+                };
+                let mut recorder = Recorder::gauges_only();
+                let result = simulate(&machine, &reference::law(), &settings, &mut recorder);
+                let mut stress = recorder.curves.gauge.iter().flatten();
+                assert!(stress.all(|s| s.is_finite()), "{}.{} {bound}", d.id, p.name);
+                if result.verdict == Verdict::Complete {
+                    complete += 1;
+                } else {
+                    failed.push(format!("{}.{} {bound} {:?}", d.id, p.name, result.verdict));
+                }
+            }
+        }
+    }
+    eprintln!("{complete} complete; {failed:#?}");
+    assert!(complete > 9 * failed.len(), "{complete} {failed:?}");
+}
+
 /// The order of asking does not matter: all named effects at once, forwards and backwards.
 #[test]
 fn the_order_of_asking_changes_no_bit() {

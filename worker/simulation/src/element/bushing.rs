@@ -68,6 +68,19 @@ pub struct LinkLoad {
     pub dissipated: f64,
 }
 
+/// A pull along the axis of J beside that of a bushing.
+#[derive(Clone, Copy, Debug)]
+pub struct Pull {
+    /// Force, positive where it draws the markers together \[N\].
+    pub force: f64,
+    /// Power that it takes out \[W\].
+    pub dissipated: f64,
+    /// Derivative of the force by the extension [N/m].
+    pub by_extension: f64,
+    /// Derivative of the force by the rate of the extension [N s/m].
+    pub by_rate: f64,
+}
+
 /// Derivatives of a [`LinkLoad`] by the motion of one body.
 ///
 /// Rows: force, torque on I, torque on J. Columns: displacement `p`, velocity `v`, rotation `a`,
@@ -168,20 +181,15 @@ impl Bushing {
         [e.dot(&d), e.dot(&V)]
     }
 
-    /// Adds a pull along the axis \[N\], of which `lost` [W] is taken out, to a load.
-    pub fn add_pull(
-        &self,
-        (i, j): (&Marker, &Marker),
-        (pull, lost): (f64, f64),
-        load: &mut LinkLoad,
-    ) {
+    /// Adds a further pull to a load.
+    pub fn add_pull(&self, (i, j): (&Marker, &Marker), pull: &Pull, load: &mut LinkLoad) {
         let Deformation { e, d, .. } = self.deformation(i, j);
-        let force = e * -pull;
+        let force = e * -pull.force;
         load.force += force;
         load.torque_i += i.rho.cross(&force);
         load.torque_j -= (d + j.rho).cross(&force);
-        load.axial -= pull;
-        load.dissipated += lost;
+        load.axial -= pull.force;
+        load.dissipated += pull.dissipated;
     }
 
     /// Stored energy \[J\]. Exact while torsion and bending do not mix (planar motion).
@@ -199,14 +207,13 @@ impl Bushing {
         self.tangent_with(i, j, load, None)
     }
 
-    /// The same with a further pull along the axis: itself \[N\], and its derivatives by extension
-    /// and by rate.
+    /// The same with a further pull, which `load` contains.
     pub fn tangent_with(
         &self,
         i: &Marker,
         j: &Marker,
         load: &LinkLoad,
-        further: Option<[f64; 3]>,
+        further: Option<&Pull>,
     ) -> [LinkTangent; 2] {
         let [mut k1, k2] = self.stiffness;
         let [mut c1, c2] = self.damping;
@@ -214,10 +221,10 @@ impl Bushing {
         let [c4, c5] = self.rotational_damping;
         let Deformation { e, d, V, theta, w } = self.deformation(i, j);
         let mut pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
-        if let Some([force, by_extension, by_rate]) = further {
-            pull += force;
-            k1 += by_extension;
-            c1 += by_rate;
+        if let Some(further) = further {
+            pull += further.force;
+            k1 += further.by_extension;
+            c1 += further.by_rate;
         }
         let ee = e * e.transpose();
         let K = M3::from_diagonal_element(k2) + ee * (k1 - k2);

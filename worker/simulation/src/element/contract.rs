@@ -1,5 +1,5 @@
 //! What every element of the catalogue must keep, whatever its law.
-use super::bushing::{Bushing, LinkLoad, Marker};
+use super::bushing::{Bushing, LinkLoad, Marker, Pull};
 use super::{CATALOGUE, ForceElement};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -180,15 +180,20 @@ fn a_further_pull_has_its_tangent() {
     };
     let loaded = |m: &[Marker; 2]| {
         let [x, rate] = element.extension(&m[0], &m[1]);
-        let pull = 7.0 * x * x + 2.0 * rate * x;
+        let pull = Pull {
+            force: 7.0 * x * x + 2.0 * rate * x,
+            dissipated: 0.0,
+            by_extension: 14.0 * x + 2.0 * rate,
+            by_rate: 2.0 * x,
+        };
         let mut load = element.load(&m[0], &m[1]);
-        element.add_pull((&m[0], &m[1]), (pull, 0.0), &mut load);
-        (load, [pull, 14.0 * x + 2.0 * rate, 2.0 * x])
+        element.add_pull((&m[0], &m[1]), &pull, &mut load);
+        (load, pull)
     };
     let h = 1e-6;
     for at in motions() {
         let (load, further) = loaded(&at);
-        let tangents = element.tangent_with(&at[0], &at[1], &load, Some(further));
+        let tangents = element.tangent_with(&at[0], &at[1], &load, Some(&further));
         for (body, tangent) in tangents.iter().enumerate() {
             let kinds = [tangent.p, tangent.v, tangent.a, tangent.w];
             for (kind, analytic) in kinds.iter().enumerate() {

@@ -31,36 +31,51 @@ pub struct ImpactForce {
 }
 
 impl Impact {
-    /// Force at penetration `depth` \[m\] and rate `rate` [m/s].
+    /// Spring force, and the damping's ramp with its slope.
     #[inline]
-    pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
-        if depth <= 0.0 {
-            return ImpactForce::default();
-        }
+    fn parts(&self, depth: f64) -> (f64, f64, f64) {
         let spring = self.stiffness * power_law(depth, self.exponent);
+        if depth >= self.full_damping_penetration {
+            return (spring, 1.0, 0.0);
+        }
         let u = depth / self.full_damping_penetration;
-        let (step, slope) = if u >= 1.0 {
-            (1.0, 0.0)
-        } else {
-            (
-                u * u * (3.0 - 2.0 * u),
-                6.0 * u * (1.0 - u) / self.full_damping_penetration,
-            )
-        };
+        let slope = 6.0 * u * (1.0 - u) / self.full_damping_penetration;
+        (spring, u * u * (3.0 - 2.0 * u), slope)
+    }
+
+    /// Force \[N\] at penetration `depth` \[m\] and rate `rate` [m/s], and the power that the damping
+    /// takes \[W\].
+    #[inline]
+    pub fn push(&self, depth: f64, rate: f64) -> (f64, f64) {
+        if depth <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let (spring, step, _) = self.parts(depth);
         let damper = self.damping * step * rate;
         let force = spring + damper;
         if force <= 0.0 {
+            // what the spring gives back while the contact is torn open is lost
+            return (0.0, -spring * rate);
+        }
+        (force, damper * rate)
+    }
+
+    /// [`Self::push`] with its derivatives.
+    #[inline]
+    pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
+        let (force, dissipated) = self.push(depth, rate);
+        if force == 0.0 {
             return ImpactForce {
-                // what the spring gives back while the contact is torn open is lost
-                dissipated: -spring * rate,
+                dissipated,
                 ..ImpactForce::default()
             };
         }
+        let (spring, step, slope) = self.parts(depth);
         ImpactForce {
             force,
             by_penetration: self.exponent * spring / depth + self.damping * slope * rate,
             by_rate: self.damping * step,
-            dissipated: damper * rate,
+            dissipated,
         }
     }
 

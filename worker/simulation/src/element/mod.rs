@@ -8,6 +8,7 @@ pub mod bushing;
 #[cfg(test)]
 mod contract;
 pub mod impact;
+pub mod plane;
 pub mod stop;
 
 use bushing::{Bushing, LinkLoad, LinkTangent, Marker};

@@ -12,12 +12,22 @@ pub struct Adaptive<E> {
     control: StepControl,
     /// Size of the next step \[s\].
     step: f64,
+    /// Largest step that Newton's method is trusted with after it failed \[s\].
+    trusted: f64,
+    /// Steps accepted since then, up to [`LONG_AGO`].
+    since: u32,
 }
 
 /// The step size fell below its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct StepUnderflow;
 
+/// Where Newton's method fails again within so many steps, steps stay below this share of the one
+/// that failed, and may grow again by this factor with every step that succeeds: the error estimate
+/// alone, which sees nothing of a contact that chatters, would lead straight back into the failure.
+const LONG_AGO: u32 = 4;
+const TRUST: f64 = 0.6;
+const REGAIN: f64 = 1.1;
 /// Shortest step; a run that needs shorter ones ends \[s\].
 const SHORTEST_STEP: f64 = 1e-9;
 
@@ -34,6 +44,8 @@ impl<E: Equations> Adaptive<E> {
             },
             method,
             step: 1e-3_f64.min(longest),
+            trusted: longest,
+            since: LONG_AGO,
         }
     }
 
@@ -66,6 +78,10 @@ impl<E: Equations> Adaptive<E> {
                 system.statistics.newton_rejections += 1;
                 self.method.reject();
                 self.step = 0.3 * step;
+                if self.since < LONG_AGO {
+                    self.trusted = TRUST * step;
+                }
+                self.since = 0;
                 Ok(None)
             }
             Ok(done) if done.error > tolerance || !done.error.is_finite() => {
@@ -80,6 +96,9 @@ impl<E: Equations> Adaptive<E> {
                 self.control.order = self.method.error_order();
                 self.method.accept(&system.equations, to);
                 let next = self.method.next(&self.control, step, done.error);
+                let next = next.min(self.trusted);
+                self.trusted = (self.trusted * REGAIN).min(self.control.longest);
+                self.since = (self.since + 1).min(LONG_AGO);
                 self.step = if step < self.step {
                     self.step.min(next.max(self.step))
                 } else {

@@ -42,9 +42,11 @@ impl Esdirk {
         self.base_v.copy_from_slice(&from.v);
         for (weight, (v, a)) in self.tableau.rows[i].iter().zip(&self.stages) {
             let weight = h * weight;
-            for k in 0..v.len() {
-                self.base_q[k] += weight * v[k];
-                self.base_v[k] += weight * a[k];
+            for (base, v) in self.base_q.iter_mut().zip(v) {
+                *base += weight * v;
+            }
+            for (base, a) in self.base_v.iter_mut().zip(a) {
+                *base += weight * a;
             }
         }
     }

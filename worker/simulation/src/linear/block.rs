@@ -1,28 +1,28 @@
-//! Dense 6 x 6 blocks: inversion by elimination with partial pivoting, products.
+//! Dense blocks of three or six: inversion by elimination with partial pivoting, products.
 //!
 //! A factorisation is used for some twenty solutions, and a product with an explicit inverse is six
 //! independent columns where a triangular solution is a chain: it is worth its making.
 use nalgebra::{SMatrix, SVector};
 
-/// Width of a block: the six coordinates of a rigid body.
+/// Coordinates of a rigid body in space, and the width of its block.
 pub const BLOCK: usize = 6;
 
 /// One block, column-major.
-pub type Block = SMatrix<f64, BLOCK, BLOCK>;
+pub type Block<const N: usize = BLOCK> = SMatrix<f64, N, N>;
 
-/// Six entries of a vector of unknowns.
-pub(super) type Column = SVector<f64, BLOCK>;
+/// One body's entries of a vector of unknowns.
+pub(super) type Column<const N: usize> = SVector<f64, N>;
 
 /// Replaces a block by its inverse (Gauss-Jordan with row exchanges).
 ///
 /// # Errors
 /// The column whose pivot vanished or is not finite.
-pub(super) fn invert(a: &mut Block) -> Result<(), usize> {
-    let mut exchanged = [0; BLOCK];
-    for k in 0..BLOCK {
+pub(super) fn invert<const N: usize>(a: &mut Block<N>) -> Result<(), usize> {
+    let mut exchanged = [0; N];
+    for k in 0..N {
         let mut best = k;
         let mut size = a[(k, k)].abs();
-        for i in k + 1..BLOCK {
+        for i in k + 1..N {
             let candidate = a[(i, k)].abs();
             if candidate > size {
                 best = i;
@@ -40,17 +40,17 @@ pub(super) fn invert(a: &mut Block) -> Result<(), usize> {
         let inverse = 1.0 / a[(k, k)];
         let mut column = a.column(k).into_owned();
         column[k] = -1.0;
-        a.set_column(k, &Column::zeros());
+        a.set_column(k, &Column::<N>::zeros());
         a[(k, k)] = 1.0;
-        for j in 0..BLOCK {
+        for j in 0..N {
             let factor = a[(k, j)] * inverse;
-            for i in 0..BLOCK {
+            for i in 0..N {
                 a[(i, j)] -= column[i] * factor;
             }
             a[(k, j)] = factor;
         }
     }
-    for k in (0..BLOCK).rev() {
+    for k in (0..N).rev() {
         a.swap_columns(k, exchanged[k]);
     }
     Ok(())
@@ -58,11 +58,11 @@ pub(super) fn invert(a: &mut Block) -> Result<(), usize> {
 
 /// `A x`.
 #[inline]
-pub(super) fn product(a: &Block, x: &Column) -> Column {
-    let mut y = Column::zeros();
-    for k in 0..BLOCK {
+pub(super) fn product<const N: usize>(a: &Block<N>, x: &Column<N>) -> Column<N> {
+    let mut y = Column::<N>::zeros();
+    for k in 0..N {
         let value = x[k];
-        for i in 0..BLOCK {
+        for i in 0..N {
             y[i] += a[(i, k)] * value;
         }
     }
@@ -71,10 +71,10 @@ pub(super) fn product(a: &Block, x: &Column) -> Column {
 
 /// `y -= A x`.
 #[inline]
-pub(super) fn subtract_product(a: &Block, x: &Column, y: &mut Column) {
-    for k in 0..BLOCK {
+pub(super) fn subtract_product<const N: usize>(a: &Block<N>, x: &Column<N>, y: &mut Column<N>) {
+    for k in 0..N {
         let value = x[k];
-        for i in 0..BLOCK {
+        for i in 0..N {
             y[i] -= a[(i, k)] * value;
         }
     }
@@ -87,18 +87,18 @@ mod tests {
     #[test]
     fn inverse_undoes_a_block_that_needs_row_exchanges() {
         let mut a =
-            Block::from_fn(|i, j| ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64);
+            Block::<6>::from_fn(|i, j| ((3 * i + 5 * j) % 7) as f64 - 2.5 + 0.1 * (i * j) as f64);
         a[(0, 0)] = 0.0;
         let mut inverse = a;
         invert(&mut inverse).unwrap();
         assert!(
-            (a * inverse - Block::identity()).norm() < 1e-12,
+            (a * inverse - Block::<6>::identity()).norm() < 1e-12,
             "{}",
             a * inverse
         );
         let mut singular = a;
         singular.set_column(3, &a.column(1).into_owned());
-        singular.set_column(1, &Column::zeros());
+        singular.set_column(1, &Column::<6>::zeros());
         assert_eq!(invert(&mut singular), Err(1));
     }
 }

@@ -1,7 +1,9 @@
-//! Linear solvers for chains of six-wide blocks that share a thin border. No knowledge of time,
-//! bodies or forces.
+//! Linear solvers for chains of blocks (three or six wide) that share a thin border. No knowledge of
+//! time, bodies or forces.
 mod block;
+mod blocks;
 mod bordered;
 
 pub use block::{BLOCK, Block};
-pub use bordered::{Bordered, SingularPivot};
+pub use blocks::{Blocks, SingularPivot};
+pub use bordered::Bordered;

@@ -6,7 +6,7 @@
 /// Sine and cosine.
 #[inline]
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    (libm::sin(x), libm::cos(x))
+    libm::sincos(x)
 }
 
 /// Angle of the vector `(x, y)` from the x axis, in (-pi, pi].
@@ -41,5 +41,19 @@ pub fn power_law(x: f64, exponent: f64) -> f64 {
         x * x.sqrt()
     } else {
         powf(x, exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    /// One reduction of the argument serves both, to the bit.
+    #[test]
+    fn sine_and_cosine_are_those_of_libm() {
+        for k in -40_000..40_000 {
+            let x = f64::from(k) * 7.3e-4 * (1.0 + f64::from(k % 7));
+            let (s, c) = super::sin_cos(x);
+            let apart = [libm::sin(x), libm::cos(x)];
+            assert_eq!([s, c].map(f64::to_bits), apart.map(f64::to_bits), "{x}");
+        }
     }
 }

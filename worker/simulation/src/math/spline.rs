@@ -3,11 +3,14 @@
 //! Twice continuously differentiable, so that a force interpolated from a table does not make an
 //! adaptive integrator stumble at the table's points.
 
+pub mod sum;
+
 /// Several cubic splines over the same equally spaced abscissae.
 #[derive(Clone, Debug)]
 pub struct Splines {
     start: f64,
     step: f64,
+    per_step: f64,
     periodic: bool,
     curves: usize,
     /// Value and second derivative times step^2 / 6, per point and curve.
@@ -32,6 +35,16 @@ pub struct Place {
     right: usize,
     t: f64,
     clamped: bool,
+}
+
+impl Place {
+    /// Weights of the values and of the bends at the left and the right knot.
+    #[inline]
+    const fn weights(&self) -> [f64; 4] {
+        let b = self.t;
+        let a = 1.0 - b;
+        [a, b, a * a * a - a, b * b * b - b]
+    }
 }
 
 impl Splines {
@@ -64,6 +77,7 @@ impl Splines {
         Self {
             start,
             step,
+            per_step: 1.0 / step,
             periodic,
             curves: curves.len(),
             knots,
@@ -75,9 +89,15 @@ impl Splines {
         self.curves
     }
 
+    /// Number of points on the grid.
+    fn points(&self) -> usize {
+        self.knots.len() / self.curves.max(1)
+    }
+
     /// Finds `x` on the grid.
+    #[inline]
     pub fn place(&self, x: f64) -> Place {
-        let points = self.knots.len() / self.curves.max(1);
+        let points = self.points();
         let u = (x - self.start) / self.step;
         if self.periodic {
             let n = points as f64;
@@ -126,38 +146,13 @@ impl Splines {
         }
     }
 
-    /// Values of the first curves at a place, and their sum with `weights`: value and derivatives.
-    ///
-    /// One pass for all curves, where [`Self::jet`] costs two divisions for each.
-    #[inline]
-    pub fn weighted(&self, place: &Place, weights: &[f64], values: &mut [f64]) -> Jet {
-        let left = &self.knots[place.left * self.curves..][..values.len()];
-        let right = &self.knots[place.right * self.curves..][..values.len()];
-        let b = place.t;
-        let a = 1.0 - b;
-        let (cubic_a, cubic_b) = (a * a * a - a, b * b * b - b);
-        let (mut value, mut rise, mut bend_left, mut bend_right) = (0.0, 0.0, 0.0, 0.0);
-        for k in 0..values.len() {
-            let ([y0, m0], [y1, m1]) = (left[k], right[k]);
-            let at = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
-            values[k] = at;
-            value += weights[k] * at;
-            rise += weights[k] * (y1 - y0);
-            bend_left += weights[k] * m0;
-            bend_right += weights[k] * m1;
-        }
-        if place.clamped {
-            return Jet {
-                value,
-                first: 0.0,
-                second: 0.0,
-            };
-        }
-        let slope = (1.0 - 3.0 * a * a) * bend_left + (3.0 * b * b - 1.0) * bend_right;
-        Jet {
-            value,
-            first: (rise + slope) / self.step,
-            second: 6.0 * (a * bend_left + b * bend_right) / (self.step * self.step),
+    /// Values of the first curves at a place.
+    pub fn values(&self, place: &Place, values: &mut [f64]) {
+        let left = &self.knots[place.left * self.curves..];
+        let right = &self.knots[place.right * self.curves..];
+        let [a, b, cubic_a, cubic_b] = place.weights();
+        for (value, (&[y0, m0], &[y1, m1])) in values.iter_mut().zip(left.iter().zip(right)) {
+            *value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
         }
     }
 
@@ -173,7 +168,7 @@ impl Splines {
     reason = "the argument was reduced to the grid, so it is small and not negative"
 )]
 fn index(u: f64) -> usize {
-    u.floor() as usize
+    u as usize
 }
 
 /// Second derivatives times step^2 of the natural spline (Thomas algorithm).
@@ -249,24 +244,6 @@ mod tests {
         }
         let order = (errors[0] / errors[1]).log2();
         assert!((3.7..4.3).contains(&order), "{order}");
-    }
-
-    #[test]
-    fn a_weighted_sum_is_the_sum_of_the_curves() {
-        let curve = |k: i32| (0..9).map(|i| f64::from((i * k) % 5) - 1.7).collect();
-        let spline = Splines::natural(1.0, 0.3, &[curve(2), curve(3)]);
-        let weights = [0.7, -1.9];
-        for x in [0.2, 1.4, 2.05, 9.0] {
-            let place = spline.place(x);
-            let mut values = [0.0; 2];
-            let sum = spline.weighted(&place, &weights, &mut values);
-            let jets = [spline.jet(&place, 0), spline.jet(&place, 1)];
-            let of = |f: fn(&Jet) -> f64| weights[0] * f(&jets[0]) + weights[1] * f(&jets[1]);
-            assert!((sum.value - of(|j| j.value)).abs() < 1e-14);
-            assert!((sum.first - of(|j| j.first)).abs() < 1e-12);
-            assert!((sum.second - of(|j| j.second)).abs() < 1e-11);
-            assert!((values[1] - jets[1].value).abs() < 1e-15);
-        }
     }
 
     #[test]

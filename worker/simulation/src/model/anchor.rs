@@ -1,6 +1,6 @@
 //! Tangent of the joint that holds a rope on its head: the one joint that couples a cylinder with the
 //! beam angle and the head's modes.
-use crate::linear::{BLOCK, Bordered};
+use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::{Column, EndTangent};
 use crate::model::links::Instant;
@@ -71,13 +71,18 @@ impl Machine {
         };
         let beam_row = |c: &Column| c[1].z + p.x * c[0].y - p.y * c[0].x;
         let angular = pose.angular();
+        let kept = self.layout.motion.kept();
 
         for k in 0..=modes {
             let column = if k == 0 { by_angle } else { by_mode(k - 1) };
             let turned = angular.tr_mul(&column[2]);
-            for row in 0..3 {
-                matrix.add_right(block, row, k, column[0][row]);
-                matrix.add_right(block, 3 + row, k, -turned[row]);
+            for (row, &full) in kept.iter().enumerate() {
+                let entry = if full < 3 {
+                    column[0][full]
+                } else {
+                    -turned[full - 3]
+                };
+                matrix.add_right(block, row, k, entry);
             }
             let mut beam_entry = beam_row(&column);
             let moved = if k == 0 { zp } else { shapes[k - 1] };
@@ -91,8 +96,8 @@ impl Machine {
                 matrix.add_corner(1 + row, k, -entry);
             }
         }
-        for k in 0..BLOCK {
-            let column = by_cylinder.column(k);
+        for (k, &full) in kept.iter().enumerate() {
+            let column = by_cylinder.column(full);
             matrix.add_bottom(block, 0, k, -beam_row(&column));
             for (row, shape) in shapes[..modes].iter().enumerate() {
                 matrix.add_bottom(block, 1 + row, k, -column[0].dot(shape));

@@ -6,7 +6,8 @@
 //! is integrated by three Gauss points, whose weights share the cylinder's coefficients.
 use crate::effect::Profile;
 use crate::math::elementary::{atan2, sin_cos};
-use crate::math::spline::Splines;
+use crate::math::spline::sum::Sum;
+use crate::math::spline::{Place, Splines};
 use crate::model::description::Arc;
 use nalgebra::{Matrix2, Vector2};
 
@@ -30,15 +31,27 @@ pub struct Surface<'a> {
     pub radius: f64,
     /// Beam angle \[rad\] and rate [rad/s].
     pub beam: [f64; 2],
-    /// Modal coordinates.
-    pub modal: &'a [f64],
-    /// Their rates.
-    pub modal_rate: &'a [f64],
-    /// Radial shapes over the arc angle \[rad\].
-    pub shapes: Option<&'a Splines>,
-    /// Where a surface with shapes is not the circle, if anywhere.
+    /// Distance from the centre beyond which nothing touches, however the arc is deflected \[m\].
+    pub reach: f64,
+    /// What bends it, if anything does.
+    pub bend: Option<Bend<'a>>,
+    /// Where it is not the circle, if anywhere.
     pub profile: Option<&'a Profile>,
 }
+
+/// Deflection of an arc by modes.
+#[derive(Clone, Copy, Debug)]
+pub struct Bend<'a> {
+    /// Radial shapes of the modes over the arc angle \[rad\].
+    pub shapes: &'a Splines,
+    /// Their sum under the modal coordinates, and under their rates.
+    pub sum: &'a Sum,
+    /// Rates of the modal coordinates.
+    pub modal_rate: &'a [f64],
+}
+
+/// How far beyond the rigid arc the head's own deflection may reach for contact \[m\].
+const LARGEST_BULGE: f64 = 0.01;
 
 /// Where a cylinder's centre lies, seen from the arc's centre: one arc tangent serves all of its
 /// Gauss points.
@@ -68,7 +81,7 @@ pub struct Touch {
     pub depth: f64,
     /// Its rate [m/s].
     pub rate: f64,
-    /// Arc angle in the beam frame \[rad\]; 0 where the surface has no shapes.
+    /// Arc angle in the beam frame \[rad\]; 0 where the surface is a circle.
     pub angle: f64,
     /// Outward normal and tangent (growing angle).
     pub normal: V2,
@@ -82,6 +95,8 @@ pub struct Touch {
     pub by_beam: f64,
     /// Slope and curvature of the deflected surface over the arc angle [m/rad], [m/rad^2].
     pub slope: [f64; 2],
+    /// Where on the grid of the shapes it lies, if there are any.
+    pub place: Option<Place>,
 }
 
 /// Second derivatives of a penetration.
@@ -100,12 +115,7 @@ pub struct Curvature {
 
 impl<'a> Surface<'a> {
     /// Places an arc.
-    pub fn new(
-        arc: &Arc,
-        beam: [f64; 2],
-        modal: (&'a [f64], &'a [f64]),
-        shapes: Option<&'a Splines>,
-    ) -> Self {
+    pub fn new(arc: &Arc, beam: [f64; 2], bend: Option<Bend<'a>>) -> Self {
         let (s, c) = sin_cos(beam[0]);
         let [x, y] = arc.center;
         let center = V2::new(c * x - s * y, s * x + c * y);
@@ -114,53 +124,76 @@ impl<'a> Surface<'a> {
             center_by_beam: V2::new(-center.y, center.x),
             radius: arc.radius,
             beam,
-            modal: modal.0,
-            modal_rate: modal.1,
-            shapes,
+            reach: arc.radius + LARGEST_BULGE,
+            bend,
             profile: None,
         }
     }
 
+    /// Whether it is more than a circle.
+    const fn asks_for_angle(&self) -> bool {
+        self.bend.is_some() || self.profile.is_some()
+    }
+
+    /// Number of modes that bend it.
+    pub fn modes(&self) -> usize {
+        self.bend.map_or(0, |bend| bend.shapes.curves())
+    }
+
     /// The bearing of a cylinder of half length `half` centred at `g`, if it may touch at all.
+    #[inline]
     pub fn bearing(&self, g: &V2, half: f64) -> Option<Bearing> {
-        let reach = self.radius + half + 0.01;
+        let reach = self.reach + half;
         let w = g - self.center;
         (w.norm_squared() < reach * reach).then(|| Bearing {
             toward: w,
-            // only a deflected surface asks for the angle
-            angle: self.shapes.map_or(0.0, |_| self.arc_angle(&w)),
+            angle: if self.asks_for_angle() {
+                self.arc_angle(&w)
+            } else {
+                0.0
+            },
         })
     }
 
-    /// Penetration of the point `g` that moves with `velocity`; `shape` receives the modes' radial
-    /// shapes there.
-    #[inline]
-    pub fn touch(&self, bearing: &Bearing, g: &V2, velocity: &V2, shape: &mut [f64]) -> Touch {
+    /// Penetration of the point `g` that moves with `velocity`; none where it lies beyond what any
+    /// deflection reaches.
+    #[expect(
+        clippy::inline_always,
+        reason = "forces need a third of a touch; inlined, the rest is never computed"
+    )]
+    #[inline(always)]
+    pub fn touch(&self, bearing: &Bearing, g: &V2, velocity: &V2) -> Option<Touch> {
         let w = g - self.center;
-        let distance = w.norm();
+        let square = w.norm_squared();
+        if square >= self.reach * self.reach {
+            return None;
+        }
+        let distance = square.sqrt();
         let inverse = 1.0 / distance;
         let normal = w * inverse;
         let tangent = V2::new(-normal.y, normal.x);
         let mut angle = bearing.angle;
-        let (mut bulge, mut rate, mut slope) = (0.0, 0.0, [0.0; 2]);
-        if let Some(shapes) = self.shapes {
+        let (mut bulge, mut rate, mut slope, mut place) = (0.0, 0.0, [0.0; 2], None);
+        if self.asks_for_angle() {
             angle += small_angle(&bearing.toward, &w);
-            let deflected = shapes.weighted(&shapes.place(angle), self.modal, shape);
+        }
+        if let Some(bend) = &self.bend {
+            let at = bend.shapes.place(angle);
+            let (deflected, bulging) = bend.sum.at(bend.shapes, &at);
             bulge = deflected.value;
             slope = [deflected.first, deflected.second];
-            for (shape, modal_rate) in shape.iter().zip(self.modal_rate) {
-                rate += modal_rate * shape;
-            }
-            if let Some(profile) = self.profile {
-                let [height, first, second] = profile.height(angle);
-                bulge += height;
-                slope[0] += first;
-                slope[1] += second;
-            }
+            rate = bulging;
+            place = Some(at);
+        }
+        if let Some(profile) = self.profile {
+            let [height, first, second] = profile.height(angle);
+            bulge += height;
+            slope[0] += first;
+            slope[1] += second;
         }
         let by_point = tangent * (slope[0] * inverse) - normal;
         let by_beam = -by_point.dot(&self.center_by_beam) - slope[0];
-        Touch {
+        Some(Touch {
             depth: self.radius + bulge - distance,
             rate: rate + by_point.dot(velocity) + by_beam * self.beam[1],
             angle,
@@ -170,6 +203,14 @@ impl<'a> Surface<'a> {
             by_point,
             by_beam,
             slope,
+            place,
+        })
+    }
+
+    /// Radial shapes of the modes at a touch.
+    pub fn shapes_at(&self, touch: &Touch, shape: &mut [f64]) {
+        if let (Some(bend), Some(place)) = (&self.bend, &touch.place) {
+            bend.shapes.values(place, shape);
         }
     }
 
@@ -231,10 +272,16 @@ mod tests {
         let (modal, rate) = ([0.3, -0.2], [0.5, 0.7]);
         let velocity = V2::new(0.4, -0.9);
         let at = |g: V2, theta: f64| {
-            let surface = Surface::new(&arc, [theta, 0.6], (&modal, &rate), Some(&shapes));
-            let mut shape = [0.0; 2];
+            let mut sum = Sum::default();
+            sum.weigh(&shapes, &modal, &rate);
+            let bend = Bend {
+                shapes: &shapes,
+                sum: &sum,
+                modal_rate: &rate,
+            };
+            let surface = Surface::new(&arc, [theta, 0.6], Some(bend));
             let bearing = surface.bearing(&V2::new(-1.94, -0.41), 0.1).unwrap();
-            let touch = surface.touch(&bearing, &g, &velocity, &mut shape);
+            let touch = surface.touch(&bearing, &g, &velocity).unwrap();
             (touch, surface.curvature(&touch))
         };
         let (g, theta) = (V2::new(-1.93, -0.4), 0.2);

@@ -2,7 +2,8 @@
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
 use crate::math::elementary::sin_cos;
-use crate::model::contact::Surface;
+use crate::math::spline::sum::Sum;
+use crate::model::contact::{Bend, Surface};
 use crate::model::links::Instant;
 use crate::model::{
     Machine, Scratch,
@@ -25,10 +26,14 @@ pub struct Powers {
 }
 
 impl Machine {
-    /// Fills the poses of all cylinders.
+    /// Fills the poses of all cylinders and the deflection of the back head's arc.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
+        let modal = self.layout.beam() + 1..;
+        scratch
+            .deflection
+            .weigh(&self.radial, &q[modal.clone()], &v[modal]);
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
-            chain.pose(q, v, &mut state.poses);
+            chain.pose(q, v, state);
         }
     }
 
@@ -39,11 +44,11 @@ impl Machine {
         self.weights(at, force);
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &mut scratch.chains[k];
-            chain.add_weights(&self.gravity(), &state.poses, force);
+            chain.add_weights(&self.gravity(), state, force);
             let joints = self.joints(k, at);
             chain.add_joints(&joints, state, force);
             self.end_forces(k, at, &joints, scratch, force);
-            let surface = self.surface(k, at.q, at.v);
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             let (blocks, border) = force.split_at_mut(self.layout.beam());
             chain.add_contact(
                 &surface,
@@ -116,23 +121,26 @@ impl Machine {
         }
     }
 
-    /// The arc of a chain at an instant.
-    pub(crate) fn surface<'a>(&'a self, chain: usize, q: &'a [f64], v: &'a [f64]) -> Surface<'a> {
+    /// The arc of a chain at an instant, with the deflection that [`Self::pose`] left behind.
+    pub(crate) fn surface<'a>(
+        &'a self,
+        chain: usize,
+        q: &'a [f64],
+        v: &'a [f64],
+        deflection: &'a Sum,
+    ) -> Surface<'a> {
         let beam = self.layout.beam();
-        let modal = if chain == 0 { beam + 1..q.len() } else { 0..0 };
-        Surface {
-            profile: if chain == 0 {
-                self.hooks.profile()
-            } else {
-                None
-            },
-            ..Surface::new(
-                self.arc(chain),
-                [q[beam], v[beam]],
-                (&q[modal.clone()], &v[modal]),
-                (chain == 0).then_some(&self.radial),
-            )
+        let bend = (chain == 0 && self.layout.modes > 0).then(|| Bend {
+            shapes: &self.radial,
+            sum: deflection,
+            modal_rate: &v[beam + 1..],
+        });
+        let mut surface = Surface::new(self.arc(chain), [q[beam], v[beam]], bend);
+        if chain == 0 {
+            surface.profile = self.hooks.profile();
+            surface.reach += self.hooks.bulge();
         }
+        surface
     }
 
     /// `out -= M(q) a`.
@@ -216,7 +224,7 @@ impl Machine {
             sum += 0.5 * w * w * x * x + g * x * (px * s + py * c);
         }
         for (k, chain) in self.chains.iter().enumerate() {
-            let surface = self.surface(k, q, at.v);
+            let surface = self.surface(k, q, at.v, &scratch.deflection);
             chain.add_potential(
                 &mut sum,
                 &self.gravity(),

@@ -1,7 +1,7 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
 use crate::integrator::State;
-use crate::linear::{BLOCK, Bordered};
+use crate::linear::Bordered;
 use crate::model::{Instant, Machine, Powers, Ropes, Scratch};
 use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, square, worst};
 use crate::system::{Equations, Static};
@@ -28,7 +28,7 @@ impl<'a> Individual<'a> {
             machine,
             ropes,
             drive,
-            scratch: Scratch::new(&machine.layout),
+            scratch: Scratch::new(machine),
             load_share: 1.0,
             at: (0.0, drive.state(machine, 0.0)),
         }
@@ -100,8 +100,7 @@ impl<'a> Individual<'a> {
 
 impl Equations for Individual<'_> {
     fn matrix(&self) -> Bordered {
-        let layout = self.machine.layout;
-        Bordered::new(&layout.chains(), 1 + layout.modes)
+        self.machine.layout.matrix()
     }
 
     fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
@@ -137,11 +136,12 @@ impl Equations for Individual<'_> {
 
     fn newton_norm(&self, change: &[f64]) -> f64 {
         let layout = self.machine.layout;
+        let width = layout.motion.width();
         let mut norm: f64 = 0.0;
         for (k, chain) in self.machine.chains.iter().enumerate() {
             let unit = if k == 0 { ANGLE } else { LENGTH };
-            norm = worst(norm, change[layout.base_block(k) * BLOCK] / unit);
-            norm = cylinders_newton(norm, &change[chain.range()]);
+            norm = worst(norm, change[layout.base_block(k) * width] / unit);
+            norm = cylinders_newton(norm, &change[chain.range()], width);
         }
         norm = worst(norm, change[layout.beam()] / ANGLE);
         for k in 0..layout.modes {
@@ -153,6 +153,7 @@ impl Equations for Individual<'_> {
     /// Root mean square over what is measured, largest over the cylinders (loosely).
     fn error_norm(&self, error: &[f64]) -> f64 {
         let layout = self.machine.layout;
+        let width = layout.motion.width();
         let mut sum = square(error[layout.rod()] / 5e-5)
             + square(error[layout.suspension()] / 5e-5)
             + square(error[layout.beam()] / 1e-5);
@@ -161,7 +162,7 @@ impl Equations for Individual<'_> {
         }
         let norm = (sum / (3 + layout.modes) as f64).sqrt();
         self.machine.chains.iter().fold(norm, |norm, chain| {
-            cylinders_error(norm, &error[chain.range()])
+            cylinders_error(norm, &error[chain.range()], width)
         })
     }
 
@@ -192,7 +193,7 @@ impl Static for Individual<'_> {
     fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
         let layout = self.machine.layout;
         for (k, chain) in self.machine.chains.iter().enumerate() {
-            matrix.diagonal_mut(layout.base_block(k))[(0, 0)] += lambda;
+            matrix.add_diagonal(layout.base_block(k), 0, 0, lambda);
             chain.add_static_weight(lambda, matrix);
         }
         let arm = self.machine.description.front_arc.radius;

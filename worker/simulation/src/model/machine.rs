@@ -1,11 +1,12 @@
 //! A machine ready to be simulated: constants derived once from a description.
 use crate::effect::{Cycle, Hooks, Selection};
 use crate::element::{bushing::Bushing, impact::Impact};
-use crate::math::{elementary::sin_cos, spline::Splines};
+use crate::math::elementary::sin_cos;
+use crate::math::spline::{Splines, sum::Sum};
 use crate::model::chain::{Chain, ChainState};
 use crate::model::description::{Arc, Description, RopeLaw};
 use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
-use crate::model::layout::Layout;
+use crate::model::layout::{Layout, Motion};
 
 /// A machine under one working condition; immutable and shared by every individual.
 #[derive(Clone, Debug)]
@@ -31,6 +32,8 @@ pub struct Machine {
     pub(crate) tangential_influence: Splines,
     /// What effects add.
     pub(crate) hooks: Hooks,
+    /// The effects, and the ideal turn that they refer to.
+    effects: Option<(Selection, Cycle)>,
 }
 
 /// The ropes of one individual: coefficients scaled to the pitch of the chain.
@@ -116,12 +119,20 @@ impl Machine {
         let bottom = mechanism.position(marked.pin, marked.beam, marked.tangent)?;
         let cycle = Cycle::new(&edited, &mechanism, &bottom)?;
         let mut machine = Self::assemble(edited, kept, bottom, lowest)?;
-        let mut hooks = Hooks::default();
-        for effect in &selection.effects {
-            effect.install(&machine, &cycle, &mut hooks);
-        }
-        machine.hooks = hooks;
+        machine.effects = Some((selection.clone(), cycle));
+        machine.install_effects();
         Ok(machine)
+    }
+
+    /// Hangs the effects' pieces, which know where in the layout they act.
+    fn install_effects(&mut self) {
+        let mut hooks = Hooks::default();
+        if let Some((selection, cycle)) = &self.effects {
+            for effect in &selection.effects {
+                effect.install(self, cycle, &mut hooks);
+            }
+        }
+        self.hooks = hooks;
     }
 
     fn assemble(
@@ -135,10 +146,15 @@ impl Machine {
             back: d.rope.back,
             front: d.rope.front,
             modes,
+            motion: Motion::Plane,
         };
         let chain = |k: usize, count: usize| {
             let first = layout.base_block(k) + 1;
-            Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density)
+            let chain = Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density);
+            Chain {
+                motion: layout.motion,
+                ..chain
+            }
         };
         let chains = [chain(0, d.rope.back), chain(1, d.rope.front)];
         let radial = Splines::natural(d.head.start, d.head.step, &d.head.radial[..modes]);
@@ -170,8 +186,38 @@ impl Machine {
             tangential_influence: influence(&d.head.tangential_influence),
             radial,
             hooks: Hooks::default(),
+            effects: None,
             description,
         })
+    }
+
+    /// The same machine with six coordinates per cylinder.
+    ///
+    /// [`Self::new`] takes three, because a symmetric machine stays in its plane; this one shows
+    /// that it does.
+    #[must_use]
+    pub fn in_space(mut self) -> Self {
+        self.layout.motion = Motion::Space;
+        for chain in &mut self.chains {
+            chain.motion = Motion::Space;
+        }
+        self.install_effects();
+        self
+    }
+
+    /// Range of the beam on the inextensible mechanism \[rad\].
+    pub fn swing(&self) -> [f64; 2] {
+        let mechanism = self.mechanism(self.description.back_arc.radius, self.back_length());
+        let mut at = self.bottom;
+        let mut highest = at.beam;
+        for k in 1..=90 {
+            let pin = self.bottom.pin + std::f64::consts::TAU * f64::from(k) / 90.0;
+            if let Ok(next) = mechanism.position(pin, at.beam, at.tangent) {
+                at = next;
+                highest = highest.max(at.beam);
+            }
+        }
+        [self.bottom.beam, highest]
     }
 
     /// The inextensible mechanism with another effective radius and length.
@@ -211,18 +257,21 @@ impl Machine {
     }
 }
 
-/// Buffers of a simulation, allocated once per machine size.
+/// Buffers of a simulation.
 #[derive(Clone, Debug)]
 pub struct Scratch {
     /// Poses and loads of back rope and front rope.
     pub chains: [ChainState; 2],
+    /// Deflection of the back head's arc.
+    pub deflection: Sum,
 }
 
 impl Scratch {
-    /// Buffers for a layout.
-    pub fn new(layout: &Layout) -> Self {
+    /// Buffers for a machine.
+    pub fn new(machine: &Machine) -> Self {
         Self {
-            chains: [ChainState::new(layout.back), ChainState::new(layout.front)],
+            chains: machine.chains.each_ref().map(ChainState::new),
+            deflection: Sum::default(),
         }
     }
 

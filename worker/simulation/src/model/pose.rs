@@ -1,11 +1,13 @@
-//! Kinematics of one cylinder from its six coordinates `(x, y, z, phi, theta, psi)`.
+//! Kinematics of one cylinder from its coordinates: six, `(x, y, z, phi, theta, psi)`, or those three
+//! that it has in the plane, `(x, y, psi)`.
 //!
 //! `R_WB = Rz(psi) Ry(theta) Rx(phi)`, axis `e = R_WB e_x`. Angular velocity
 //! `w = phi' e + theta' c + psi' z = E eta'` with `c = Rz e_y`. The angles are singular only where
 //! the axis points out of the machine's plane (|theta| = 90 deg), which is a verdict of its own.
 use crate::math::elementary::sin_cos;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
+type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
 type M3 = Matrix3<f64>;
 
@@ -108,6 +110,137 @@ impl Pose {
     /// Velocity of the axis.
     pub fn axis_velocity(&self) -> V3 {
         self.axis_by[0] * self.rate.y + self.axis_by[1] * self.rate.z
+    }
+}
+
+/// A cylinder that moves in the machine's plane.
+#[derive(Clone, Copy, Debug)]
+pub struct PlanePose {
+    /// Centre \[m\].
+    pub p: V2,
+    /// Velocity of the centre [m/s].
+    pub v: V2,
+    /// Direction of the axis.
+    pub axis: V2,
+    /// Angle of the axis from +x \[rad\].
+    pub angle: f64,
+    /// Its rate [rad/s].
+    pub rate: f64,
+}
+
+impl PlanePose {
+    /// From the three coordinates and their rates.
+    #[inline]
+    pub fn new(q: &[f64], v: &[f64]) -> Self {
+        let (s, c) = sin_cos(q[2]);
+        Self {
+            p: V2::new(q[0], q[1]),
+            v: V2::new(v[0], v[1]),
+            axis: V2::new(c, s),
+            angle: q[2],
+            rate: v[2],
+        }
+    }
+
+    /// The same cylinder seen in space.
+    pub fn in_space(&self) -> Pose {
+        let e = V3::new(self.axis.x, self.axis.y, 0.0);
+        let c = V3::new(-e.y, e.x, 0.0);
+        Pose {
+            p: V3::new(self.p.x, self.p.y, 0.0),
+            v: V3::new(self.v.x, self.v.y, 0.0),
+            R: M3::from_columns(&[e, c, V3::z()]),
+            w: V3::new(0.0, 0.0, self.rate),
+            rate: V3::new(0.0, 0.0, self.rate),
+            axis_by: [-V3::z(), c],
+            c,
+            c_by_psi: -e,
+            tilt: [0.0, 1.0],
+        }
+    }
+}
+
+/// What contact in the machine's plane asks of a cylinder, whose axis turns with the last `A` of
+/// its coordinates.
+pub(crate) trait InPlane<const A: usize> {
+    /// Centre \[m\].
+    fn center(&self) -> V2;
+    /// Its velocity [m/s].
+    fn velocity(&self) -> V2;
+    /// Axis, in the plane.
+    fn axis(&self) -> V2;
+    /// Its derivatives by the angles.
+    fn axis_by(&self) -> [V2; A];
+    /// Its second derivative by angles `a` and `b`.
+    fn axis_by_twice(&self, a: usize, b: usize) -> V2;
+    /// Its velocity.
+    fn sweep(&self) -> V2;
+    /// Derivatives of its velocity by the angles.
+    fn sweep_by(&self) -> [V2; A];
+}
+
+impl InPlane<2> for Pose {
+    fn center(&self) -> V2 {
+        self.p.xy()
+    }
+
+    fn velocity(&self) -> V2 {
+        self.v.xy()
+    }
+
+    fn axis(&self) -> V2 {
+        self.R.column(0).xy()
+    }
+
+    fn axis_by(&self) -> [V2; 2] {
+        self.axis_by.map(|axis| axis.xy())
+    }
+
+    fn axis_by_twice(&self, a: usize, b: usize) -> V2 {
+        Self::axis_by_twice(self)[a + b].xy()
+    }
+
+    fn sweep(&self) -> V2 {
+        self.axis_velocity().xy()
+    }
+
+    fn sweep_by(&self) -> [V2; 2] {
+        self.axis_velocity_by().map(|sweep| sweep.xy())
+    }
+}
+
+impl InPlane<1> for PlanePose {
+    #[inline]
+    fn center(&self) -> V2 {
+        self.p
+    }
+
+    #[inline]
+    fn velocity(&self) -> V2 {
+        self.v
+    }
+
+    #[inline]
+    fn axis(&self) -> V2 {
+        self.axis
+    }
+
+    #[inline]
+    fn axis_by(&self) -> [V2; 1] {
+        [V2::new(-self.axis.y, self.axis.x)]
+    }
+
+    fn axis_by_twice(&self, _a: usize, _b: usize) -> V2 {
+        -self.axis
+    }
+
+    #[inline]
+    fn sweep(&self) -> V2 {
+        V2::new(-self.axis.y, self.axis.x) * self.rate
+    }
+
+    fn sweep_by(&self) -> [V2; 1] {
+        [-self.axis * self.rate]
     }
 }
 

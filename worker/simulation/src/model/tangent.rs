@@ -4,15 +4,12 @@
 //! of the cylinders' velocity terms and of their inertia by the angles: a cylinder's moment of
 //! inertia is 1e-6 kg m2, so they change the speed of Newton's method by nothing measurable and
 //! its answer not at all.
-use crate::linear::{BLOCK, Block, Bordered};
+use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::anchor::Anchor;
 use crate::model::chain::{Column, EndTangent};
 use crate::model::links::Instant;
 use crate::model::{Machine, Scratch, pose::Pose};
-use nalgebra::Vector3;
-
-type V3 = Vector3<f64>;
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -34,7 +31,7 @@ impl Machine {
             let state = &scratch.chains[k];
             let [base, head] = chain.add_joint_tangent(&self.joints(k, at), state, gamma, matrix);
             if let Some(base) = base {
-                self.base_tangent(k, &base, &state.poses[0], gamma, matrix);
+                self.base_tangent(k, &base, &state.pose(0), gamma, matrix);
             }
             if let (Some(end), Some(load)) = (head, state.joints.last()) {
                 let anchor = Anchor {
@@ -42,11 +39,11 @@ impl Machine {
                     block: chain.first + chain.count - 1,
                     end: &end,
                     force: load.force,
-                    pose: &state.poses[chain.count - 1],
+                    pose: &state.pose(chain.count - 1),
                 };
                 self.anchor_tangent(&anchor, at, gamma, matrix);
             }
-            let surface = self.surface(k, at.q, at.v);
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             chain.add_contact_tangent(&surface, &at.ropes.contact, state, gamma, matrix);
         }
         self.hooks.add_tangent(at, gamma, matrix);
@@ -55,16 +52,14 @@ impl Machine {
     fn inertia_blocks(&self, q: &[f64], mu: f64, matrix: &mut Bordered) {
         let d = &self.description;
         for (k, chain) in self.chains.iter().enumerate() {
-            let block = matrix.diagonal_mut(self.layout.base_block(k));
+            let block = self.layout.base_block(k);
             let inertia = if k == 0 {
                 self.rod_inertia()
             } else {
                 d.suspension_mass
             };
-            block[(0, 0)] += mu * inertia;
-            for k in 1..BLOCK {
-                block[(k, k)] = 1.0;
-            }
+            matrix.add_diagonal(block, 0, 0, mu * inertia);
+            matrix.lock_rest(block);
             chain.add_inertia_blocks(q, mu, matrix);
         }
         matrix.add_corner(0, 0, mu * d.beam_inertia);
@@ -83,8 +78,8 @@ impl Machine {
         let g = d.gravity;
         let (s, c) = sin_cos(q[self.layout.rod()]);
         let pin = drive.pin[2];
-        matrix.diagonal_mut(0)[(0, 0)] -=
-            d.rod.mass * d.rod.center_of_mass * ((pin.y + g) * s + pin.x * c);
+        let hanging = d.rod.mass * d.rod.center_of_mass * ((pin.y + g) * s + pin.x * c);
+        matrix.add_diagonal(0, 0, 0, -hanging);
         let (s, c) = sin_cos(q[self.layout.beam()]);
         matrix.add_corner(0, 0, -d.beam_gravity_moment * s);
         for k in 0..self.layout.modes {
@@ -111,13 +106,17 @@ impl Machine {
         let block = self.layout.base_block(chain);
         let column = base_column(chain, &end.by_body, gamma);
         let row_j = |c: &Column| if chain == 0 { c[2].z } else { -c[0].y };
-        matrix.diagonal_mut(block)[(0, 0)] -= row_j(&column);
-        let (upper, lower) = matrix.coupling_mut(block);
-        for k in 0..BLOCK {
-            upper[(0, k)] -= row_j(&end.by_cylinder.column(k));
-        }
+        matrix.add_diagonal(block, 0, 0, -row_j(&column));
         let torque = pose.angular().tr_mul(&column[1]);
-        subtract_column(lower, 0, &column[0], &torque);
+        for (k, &full) in self.layout.motion.kept().iter().enumerate() {
+            matrix.add_upper(block, 0, k, -row_j(&end.by_cylinder.column(full)));
+            let pull = if full < 3 {
+                column[0][full]
+            } else {
+                torque[full - 3]
+            };
+            matrix.add_lower(block, k, 0, -pull);
+        }
     }
 }
 
@@ -130,11 +129,4 @@ fn base_column(chain: usize, by: &crate::element::bushing::LinkTangent, gamma: f
             (by.p[r] + by.v[r] * gamma).column(1).into_owned()
         }
     })
-}
-
-fn subtract_column(block: &mut Block, column: usize, force: &V3, torque: &V3) {
-    for r in 0..3 {
-        block[(r, column)] -= force[r];
-        block[(3 + r, column)] -= torque[r];
-    }
 }

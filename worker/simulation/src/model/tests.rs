@@ -1,11 +1,17 @@
-use super::{Instant, Machine, Scratch};
+use super::{Individual, Instant, Machine, Scratch};
 use crate::drive::{Drive, DriveState};
-use crate::linear::{BLOCK, Bordered};
+use crate::integrator::State;
 use crate::math::elementary::sin_cos;
 use crate::reference;
+use crate::system::Equations;
 
 fn machine() -> Machine {
     Machine::new(reference::description(), 2).unwrap()
+}
+
+/// With three and with six coordinates per cylinder.
+fn machines() -> [Machine; 2] {
+    [machine(), machine().in_space()]
 }
 
 /// A state near the working position, disturbed in every coordinate so that nothing vanishes.
@@ -25,28 +31,33 @@ pub(crate) fn disturbed(machine: &Machine) -> (Vec<f64>, Vec<f64>) {
 
 #[test]
 fn tangent_is_the_derivative_of_the_forces() {
-    let machine = machine();
+    for machine in machines() {
+        assert_tangent(&machine);
+    }
+}
+
+fn assert_tangent(machine: &Machine) {
     let ropes = machine.ropes(&reference::law());
     let drive = drive(0.7);
     let layout = machine.layout;
-    let (q, v) = disturbed(&machine);
+    let (q, v) = disturbed(machine);
     let at = Instant {
         ropes: &ropes,
         drive: &drive,
         q: &q,
         v: &v,
     };
-    let mut scratch = Scratch::new(&layout);
+    let mut scratch = Scratch::new(machine);
     let mut force = vec![0.0; layout.len()];
     machine.forces(&at, &mut scratch, &mut force);
     let touching = |c: &Vec<f64>| c.iter().filter(|&&f| f > 0.0).count() > 3;
     assert!(scratch.chains.iter().all(|chain| touching(&chain.contact)));
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
-        let mut matrix = Bordered::new(&layout.chains(), 1 + layout.modes);
+        let mut matrix = layout.matrix();
         machine.tangent(&at, (mu, gamma), &scratch, &mut matrix);
-        for i in free(&machine) {
+        for i in free(machine) {
             let column = matrix.product(&unit(layout.len(), i));
-            let numeric = difference(&machine, &at, i, gamma);
+            let numeric = difference(machine, &at, i, gamma);
             let mut inertia = vec![0.0; layout.len()];
             machine.subtract_inertia(&q, &unit(layout.len(), i), &mut inertia);
             let scale = column.iter().map(|x| x.abs()).fold(0.0, f64::max);
@@ -76,10 +87,11 @@ fn drive(t: f64) -> DriveState {
 /// Coordinates that are not locked.
 pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     let layout = machine.layout;
+    let width = layout.motion.width();
     (0..layout.len()).filter(move |&i| {
-        let block = i / BLOCK;
+        let block = i / width;
         let base = block == layout.base_block(0) || block == layout.base_block(1);
-        i >= layout.beam() || !base || i % BLOCK == 0
+        i >= layout.beam() || !base || i % width == 0
     })
 }
 
@@ -96,7 +108,7 @@ fn difference(machine: &Machine, at: &Instant<'_>, i: usize, gamma: f64) -> Vec<
             v: &v,
             ..*at
         };
-        machine.forces(&moved, &mut Scratch::new(&machine.layout), &mut force);
+        machine.forces(&moved, &mut Scratch::new(machine), &mut force);
         force
     };
     let (plus, minus) = (step(h), step(-h));
@@ -114,17 +126,22 @@ pub(crate) fn unit(n: usize, i: usize) -> Vec<f64> {
 
 #[test]
 fn forces_are_the_gradient_of_the_potential() {
-    let machine = machine();
+    for machine in machines() {
+        assert_gradient(&machine);
+    }
+}
+
+fn assert_gradient(machine: &Machine) {
     let mut law = reference::law();
     // torsion and bending must be equal for an exact potential out of plane
     law.bushing.rotational_stiffness = [308.0; 2];
     let ropes = machine.ropes(&law);
     let layout = machine.layout;
-    let (q, _) = disturbed(&machine);
+    let (q, _) = disturbed(machine);
     let v = vec![0.0; layout.len()];
     let mut drive = drive(0.0);
     drive.load = 0.0;
-    let mut scratch = Scratch::new(&layout);
+    let mut scratch = Scratch::new(machine);
     let mut force = vec![0.0; layout.len()];
     machine.forces(
         &Instant {
@@ -141,7 +158,7 @@ fn forces_are_the_gradient_of_the_potential() {
         let energy = |h: f64| {
             let mut q = q.clone();
             q[i] += h;
-            let mut scratch = Scratch::new(&layout);
+            let mut scratch = Scratch::new(machine);
             let mut force = vec![0.0; layout.len()];
             machine.forces(
                 &Instant {
@@ -172,4 +189,93 @@ fn forces_are_the_gradient_of_the_potential() {
             force[i]
         );
     }
+}
+
+/// Where each coordinate of a machine in the plane lives in the same machine in space.
+fn in_space(plane: &Machine) -> Vec<usize> {
+    let layout = plane.layout;
+    (0..layout.len())
+        .map(|i| {
+            if i >= layout.beam() {
+                return i + layout.blocks() * 3;
+            }
+            (i / 3) * 6 + layout.motion.kept()[i % 3]
+        })
+        .collect()
+}
+
+/// Three coordinates per cylinder tell the same as six whose others are zero: forces, tangent,
+/// energy and losses, in a moving state with contact.
+#[test]
+fn plane_and_space_agree() {
+    assert_plane_is_space(&machine(), "");
+}
+
+/// As [`plane_and_space_agree`]; laws with a past have one.
+pub(crate) fn assert_plane_is_space(plane: &Machine, name: &str) {
+    let space = plane.clone().in_space();
+    let place = in_space(plane);
+    let (q, v) = disturbed(plane);
+    let lifted = |x: &[f64]| {
+        let mut y = vec![0.0; space.layout.len()];
+        for i in free(plane) {
+            y[place[i]] = x[i];
+        }
+        y
+    };
+    let evaluate = |machine: &Machine, q: &[f64], v: &[f64]| {
+        let drive = Drive {
+            start: 1.0,
+            ramp: 1.0,
+            speed: 0.5,
+        };
+        let mut at = Individual::new(machine, machine.ropes(&reference::law()), drive);
+        let before = q.iter().map(|q| q * (1.0 + 1e-6)).collect();
+        at.remember(&State::at_rest(0.6, before));
+        let mut force = vec![0.0; q.len()];
+        at.forces(0.7, q, v, &mut force);
+        let mut matrix = machine.layout.matrix();
+        at.tangent(0.7, (q, v), (1600.0, 40.0), &mut matrix);
+        let lost = at.powers(0.7, q, v, v).dissipated;
+        let energy = at.energy(&State {
+            v: v.to_vec(),
+            ..State::at_rest(0.7, q.to_vec())
+        });
+        (force, matrix, energy, lost)
+    };
+    let (force, matrix, energy, lost) = evaluate(plane, &q, &v);
+    let (force_6, matrix_6, energy_6, lost_6) = evaluate(&space, &lifted(&q), &lifted(&v));
+    let close = |a: f64, b: f64, scale: f64| (a - b).abs() <= 1e-12 * scale;
+    let largest = |x: &[f64]| x.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let scale = largest(&force_6);
+    for i in free(plane) {
+        assert!(
+            close(force[i], force_6[place[i]], scale),
+            "{name} {}: {} {}",
+            plane.layout.describe(i),
+            force[i],
+            force_6[place[i]]
+        );
+        let (column, column_6) = (
+            matrix.product(&unit(q.len(), i)),
+            matrix_6.product(&unit(space.layout.len(), place[i])),
+        );
+        let scale = largest(&column_6);
+        for r in free(plane) {
+            assert!(
+                close(column[r], column_6[place[r]], scale),
+                "{name} row {} column {}: {} {}",
+                plane.layout.describe(r),
+                plane.layout.describe(i),
+                column[r],
+                column_6[place[r]]
+            );
+        }
+    }
+    let close = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
+    assert!(close(energy, energy_6), "{name}: {energy} {energy_6}");
+    assert!(
+        lost != 0.0 && close(lost, lost_6),
+        "{name}: {lost} {lost_6}"
+    );
 }

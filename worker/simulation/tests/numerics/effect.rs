@@ -1,6 +1,6 @@
 //! Effects in motion: the energy ledger closes with each of them, and laws with a past converge.
 use simulation::effect::{Asked, Descriptor, Place, Selection, catalogue};
-use simulation::integrator::tableau::ESDIRK4;
+use simulation::integrator::{method::Method, tableau::ESDIRK4};
 use simulation::model::Machine;
 use simulation::observe::Recorder;
 use simulation::reference;
@@ -20,7 +20,7 @@ fn run(asked: &[Asked<'_>], tolerance: f64) -> (RunResult, [Vec<f64>; 4]) {
     let selection = Selection::new(asked).unwrap();
     let machine = Machine::with_effects(reference::description(), 2, &selection).unwrap();
     let settings = RunSettings {
-        method: &ESDIRK4,
+        method: Method::RungeKutta(&ESDIRK4),
         tolerance,
         samples: 180,
         budget: 10_000_000,

@@ -87,12 +87,14 @@ fn defect(example: &Example, method: Method, tolerance: f64) -> f64 {
 /// Every example rig, every method: the ledger closes, and the tighter the tolerance the better.
 ///
 /// A rig has nothing but loosely held cylinders (2e-4 m a step), so it is judged from a tenth of the
-/// default tolerance on. What remains is what Newton's method leaves in joints of 3e8 N/m.
+/// default tolerance on. What remains is what Newton's method leaves in joints of 3e8 N/m, and where
+/// a soft rope cracks like a whip what the stages do not see of its axial waves: that scatters by a
+/// factor of three between neighbouring tolerances, so the last one is far off the first.
 #[test]
 fn ledger_of_every_rig_closes_and_tightens_with_the_tolerance() {
     for example in examples() {
         for method in CATALOGUE {
-            let defects = [1e-1, 1e-2, 1e-3].map(|t| defect(&example, method, t));
+            let defects = [1e-1, 1e-2, 1e-4].map(|t| defect(&example, method, t));
             eprintln!("{} {}: {defects:?}", example.name, method.name());
             let [first, _, last] = defects;
             assert!(

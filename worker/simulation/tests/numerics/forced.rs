@@ -32,7 +32,7 @@ impl Forced {
 
 impl Equations for Forced {
     fn matrix(&self) -> Bordered {
-        Bordered::new(&[1], 0)
+        Bordered::space(&[1], 0)
     }
 
     fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
@@ -62,16 +62,15 @@ impl Equations for Forced {
     ) {
         matrix.clear();
         let m = inertia(q);
-        let block = matrix.diagonal_mut(0);
         for i in 0..BLOCK {
-            block[(i, i)] = mu * m + gamma * DAMPING + STIFFNESS + 3.0 * CUBIC * q[i] * q[i];
+            let stiffness = STIFFNESS + 3.0 * CUBIC * q[i] * q[i];
+            matrix.add(i, i, mu * m + gamma * DAMPING + stiffness);
         }
     }
 
     fn add_spin_tangent(&self, (q, _, a): (&[f64], &[f64], &[f64]), _: f64, matrix: &mut Bordered) {
-        let block = matrix.diagonal_mut(0);
         for i in 0..BLOCK {
-            block[(i, 0)] -= 0.125 * q[0].sin() * a[i];
+            matrix.add(i, 0, -0.125 * q[0].sin() * a[i]);
         }
     }
 

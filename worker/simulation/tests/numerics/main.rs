@@ -10,12 +10,14 @@
     reason = "helpers of tests; what was measured is printed; closed forms use the C library's functions"
 )]
 mod bounce;
+mod box_of_genes;
 mod determinism;
 mod effect;
 mod energy;
 mod forced;
 mod frame;
 mod order;
+mod plane;
 mod reference;
 mod rope;
 mod statics;

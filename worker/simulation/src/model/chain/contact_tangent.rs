@@ -5,10 +5,10 @@
 //! and rate, `H` the second derivatives of the penetration.
 use super::{Chain, ChainState};
 use crate::element::impact::Impact;
-use crate::linear::{Block, Bordered};
+use crate::linear::Bordered;
 use crate::model::MAX_MODES;
 use crate::model::contact::{Curvature, Surface, Touch};
-use crate::model::pose::Pose;
+use crate::model::pose::InPlane;
 use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
@@ -25,6 +25,8 @@ struct Point {
     /// Derivative of the force by the point and by the border's coordinates.
     by_place: V2,
     border: [BorderColumn; MAX_MODES + 1],
+    /// Index of the cylinder's first angle that turns its axis.
+    angles: usize,
 }
 
 /// One coordinate of the border: the beam angle, then the modes.
@@ -54,39 +56,56 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) {
-        let half = 0.5 * self.pitch;
-        let modes = surface.modal.len();
-        let mut shape = [0.0; MAX_MODES];
         for (j, pose) in state.poses.iter().enumerate() {
-            let block = self.first + j;
-            let Some(bearing) = surface.bearing(&pose.p.xy(), half) else {
+            self.add_touching(surface, law, (self.first + j, pose), gamma, matrix);
+        }
+        for (j, pose) in state.plane.iter().enumerate() {
+            self.add_touching(surface, law, (self.first + j, pose), gamma, matrix);
+        }
+    }
+
+    fn add_touching<const A: usize>(
+        &self,
+        surface: &Surface<'_>,
+        law: &Impact,
+        (block, pose): (usize, &impl InPlane<A>),
+        gamma: f64,
+        matrix: &mut Bordered,
+    ) {
+        let half = 0.5 * self.pitch;
+        let modes = surface.modes();
+        let mut shape = [0.0; MAX_MODES];
+        let Some(bearing) = surface.bearing(&pose.center(), half) else {
+            return;
+        };
+        for &(place, share) in self.contact_points {
+            let along = place * half;
+            let g = pose.center() + pose.axis() * along;
+            let velocity = pose.velocity() + pose.sweep() * along;
+            let Some(touch) = surface.touch(&bearing, &g, &velocity) else {
                 continue;
             };
-            for &(place, share) in self.contact_points {
-                let along = place * half;
-                let g: V2 = (pose.p + pose.axis() * along).xy();
-                let velocity: V2 = (pose.v + pose.axis_velocity() * along).xy();
-                let touch = surface.touch(&bearing, &g, &velocity, &mut shape[..modes]);
-                let at = law.force(touch.depth, touch.rate);
-                if at.force == 0.0 {
-                    continue;
-                }
-                let by_rate = share * at.by_rate;
-                let stiff = share * at.by_penetration + gamma * by_rate;
-                let mut point = Point {
-                    curvature: surface.curvature(&touch),
-                    touch,
-                    along,
-                    force: share * at.force,
-                    by_rate,
-                    by_place: V2::zeros(),
-                    border: [BorderColumn::default(); MAX_MODES + 1],
-                };
-                point.differentiate(surface, &velocity, stiff, &shape[..modes]);
-                point.add_cylinder(matrix.diagonal_mut(block), pose);
-                if matrix.border() > 0 {
-                    point.add_border(matrix, block, pose, modes);
-                }
+            let at = law.force(touch.depth, touch.rate);
+            if at.force == 0.0 {
+                continue;
+            }
+            surface.shapes_at(&touch, &mut shape[..modes]);
+            let by_rate = share * at.by_rate;
+            let stiff = share * at.by_penetration + gamma * by_rate;
+            let mut point = Point {
+                curvature: surface.curvature(&touch),
+                touch,
+                along,
+                force: share * at.force,
+                by_rate,
+                by_place: V2::zeros(),
+                border: [BorderColumn::default(); MAX_MODES + 1],
+                angles: self.motion.width() - A,
+            };
+            point.differentiate(surface, &velocity, stiff, &shape[..modes]);
+            point.add_cylinder(matrix, block, pose);
+            if matrix.border() > 0 {
+                point.add_border(matrix, block, pose, modes);
             }
         }
     }
@@ -99,11 +118,10 @@ impl Point {
         let (angle_by_point, angle_by_beam) = self.curvature.angle_by;
         let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
         let mut drift = 0.0;
-        if let Some(shapes) = surface.shapes {
-            let at = shapes.place(self.touch.angle);
+        if let (Some(bend), Some(at)) = (&surface.bend, &self.touch.place) {
             for (k, &shape) in shape.iter().enumerate() {
-                let slope = shapes.jet(&at, k).first;
-                drift += surface.modal_rate[k] * slope;
+                let slope = bend.shapes.jet(at, k).first;
+                drift += bend.modal_rate[k] * slope;
                 self.border[1 + k] = BorderColumn {
                     gradient: shape,
                     force_by: shape * stiff + slope * angle_rate * self.by_rate,
@@ -129,42 +147,56 @@ impl Point {
     }
 
     /// How the point's velocity turns with the cylinder's angles, times the damping.
-    fn turning(&self, pose: &Pose) -> [f64; 2] {
-        pose.axis_velocity_by()
-            .map(|sweep| self.by_rate * self.along * self.touch.by_point.dot(&sweep.xy()))
+    fn turning<const A: usize>(&self, pose: &impl InPlane<A>) -> [f64; A] {
+        pose.sweep_by()
+            .map(|sweep| self.by_rate * self.along * self.touch.by_point.dot(&sweep))
     }
 
-    fn arms(&self, pose: &Pose) -> [V2; 2] {
-        pose.axis_by.map(|axis| axis.xy() * self.along)
+    fn arms<const A: usize>(&self, pose: &impl InPlane<A>) -> [V2; A] {
+        pose.axis_by().map(|axis| axis * self.along)
     }
 
-    fn add_cylinder(&self, block: &mut Block, pose: &Pose) {
+    fn add_cylinder<const A: usize>(
+        &self,
+        matrix: &mut Bordered,
+        block: usize,
+        pose: &impl InPlane<A>,
+    ) {
+        let angles = self.angles;
+        let mut add = |row, column, value| matrix.add_diagonal(block, row, column, value);
         let gradient = self.touch.by_point;
         let core = gradient * self.by_place.transpose() + self.curvature.point * self.force;
         let (arms, turning) = (self.arms(pose), self.turning(pose));
-        let bends = pose.axis_by_twice();
         for r in 0..2 {
             for c in 0..2 {
-                block[(r, c)] += core[(r, c)];
+                add(r, c, core[(r, c)]);
             }
         }
         for (a, arm) in arms.iter().enumerate() {
             let column = core * arm + gradient * turning[a];
             let row = core.tr_mul(arm);
             for k in 0..2 {
-                block[(k, 4 + a)] += column[k];
-                block[(4 + a, k)] += row[k];
+                add(k, angles + a, column[k]);
+                add(angles + a, k, row[k]);
             }
             for (b, other) in arms.iter().enumerate() {
-                let bend = bends[a + b].xy() * self.along;
-                block[(4 + a, 4 + b)] += arm.dot(&(core * other))
+                let bend = pose.axis_by_twice(a, b) * self.along;
+                let value = arm.dot(&(core * other))
                     + arm.dot(&gradient) * turning[b]
                     + self.force * gradient.dot(&bend);
+                add(angles + a, angles + b, value);
             }
         }
     }
 
-    fn add_border(&self, matrix: &mut Bordered, block: usize, pose: &Pose, modes: usize) {
+    fn add_border<const A: usize>(
+        &self,
+        matrix: &mut Bordered,
+        block: usize,
+        pose: &impl InPlane<A>,
+        modes: usize,
+    ) {
+        let angles = self.angles;
         let (arms, turning) = (self.arms(pose), self.turning(pose));
         let (_, angle_by_beam) = self.curvature.angle_by;
         let border = &self.border[..=modes];
@@ -176,8 +208,13 @@ impl Point {
                 matrix.add_bottom(block, k, r, row[r]);
             }
             for (a, arm) in arms.iter().enumerate() {
-                matrix.add_right(block, 4 + a, k, column.dot(arm));
-                matrix.add_bottom(block, k, 4 + a, row.dot(arm) + of.gradient * turning[a]);
+                matrix.add_right(block, angles + a, k, column.dot(arm));
+                matrix.add_bottom(
+                    block,
+                    k,
+                    angles + a,
+                    row.dot(arm) + of.gradient * turning[a],
+                );
             }
             for (m, other) in border.iter().enumerate() {
                 let bend = match (k, m) {

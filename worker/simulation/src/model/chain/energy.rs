@@ -16,10 +16,8 @@ impl Chain {
             return sum;
         }
         for joint in 1..self.count {
-            if let Some(([i, j], law)) = self.link(joint, joints, &state.poses)
-                && let Some(along) = self.along(joint, joints, state, (&i, &j))
-            {
-                sum += along.other * law.extension(&i, &j)[0];
+            if let Some((along, [extension, _])) = self.along(joint, joints, state) {
+                sum += along.other * extension;
             }
         }
         sum
@@ -36,21 +34,27 @@ impl Chain {
         state: &ChainState,
     ) {
         for joint in 0..=self.count {
-            if let Some(([i, j], law)) = self.link(joint, joints, &state.poses) {
+            if self.in_plane(joint) {
+                let [i, j] = self.plane_markers(joint, &state.plane);
+                *sum += joints.inner.plane_energy(&i, &j);
+            } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
                 *sum += law.energy(&i, &j);
-                if let Some(along) = self.along(joint, joints, state, (&i, &j)) {
-                    *sum += along.energy;
-                }
+            }
+            if let Some((along, _)) = self.along(joint, joints, state) {
+                *sum += along.energy;
             }
         }
         if let Some((surface, law)) = contact {
-            self.each_touch(surface, &state.poses, |share, touch, _| {
+            self.each_touch(surface, state, |share, touch| {
                 *sum += share * law.energy(touch.depth);
             });
         }
         let weight = gravity * self.mass;
         for pose in &state.poses {
             *sum -= weight.dot(&pose.p);
+        }
+        for pose in &state.plane {
+            *sum -= weight.xy().dot(&pose.p);
         }
     }
 }

@@ -2,6 +2,7 @@
 use super::Chain;
 use crate::linear::{BLOCK, Bordered};
 use crate::math::elementary::sin_cos;
+use crate::model::layout::Motion;
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -11,33 +12,55 @@ impl Chain {
     /// `out -= M(q) a` of the cylinders.
     pub(crate) fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
         let [along, across] = self.inertia;
-        for j in 0..self.count {
-            let at = (self.first + j) * BLOCK;
-            let (s, _) = sin_cos(q[at + 4]);
-            for k in 0..3 {
-                out[at + k] -= self.mass * a[at + k];
+        let of = self.range();
+        let (q, a, out) = (&q[of.clone()], &a[of.clone()], &mut out[of]);
+        if self.motion == Motion::Plane {
+            for (a, out) in a.chunks_exact(3).zip(out.chunks_exact_mut(3)) {
+                out[0] -= self.mass * a[0];
+                out[1] -= self.mass * a[1];
+                out[2] -= across * a[2];
             }
-            let (a1, a2, a3) = (a[at + 3], a[at + 4], a[at + 5]);
-            out[at + 3] -= along * (a1 - s * a3);
-            out[at + 4] -= across * a2;
-            out[at + 5] -= (across + (along - across) * s * s) * a3 - along * s * a1;
+            return;
+        }
+        let cylinders = q.chunks_exact(6).zip(a.chunks_exact(6));
+        for ((q, a), out) in cylinders.zip(out.chunks_exact_mut(6)) {
+            let (s, _) = sin_cos(q[4]);
+            for k in 0..3 {
+                out[k] -= self.mass * a[k];
+            }
+            let (a1, a2, a3) = (a[3], a[4], a[5]);
+            out[3] -= along * (a1 - s * a3);
+            out[4] -= across * a2;
+            out[5] -= (across + (along - across) * s * s) * a3 - along * s * a1;
         }
     }
 
     /// Adds `mu M(q)` of the cylinders.
     pub(crate) fn add_inertia_blocks(&self, q: &[f64], mu: f64, matrix: &mut Bordered) {
         let [along, across] = self.inertia;
-        for j in 0..self.count {
-            let (s, _) = sin_cos(q[(self.first + j) * BLOCK + 4]);
-            let block = matrix.diagonal_mut(self.first + j);
-            for k in 0..3 {
-                block[(k, k)] += mu * self.mass;
+        match matrix {
+            Bordered::Plane(matrix) => {
+                for j in 0..self.count {
+                    let block = matrix.diagonal_mut(self.first + j);
+                    block[(0, 0)] += mu * self.mass;
+                    block[(1, 1)] += mu * self.mass;
+                    block[(2, 2)] += mu * across;
+                }
             }
-            block[(3, 3)] += mu * along;
-            block[(3, 5)] -= mu * along * s;
-            block[(5, 3)] -= mu * along * s;
-            block[(4, 4)] += mu * across;
-            block[(5, 5)] += mu * (across + (along - across) * s * s);
+            Bordered::Space(matrix) => {
+                for (j, q) in q[self.range()].chunks_exact(6).enumerate() {
+                    let (s, _) = sin_cos(q[4]);
+                    let block = matrix.diagonal_mut(self.first + j);
+                    for k in 0..3 {
+                        block[(k, k)] += mu * self.mass;
+                    }
+                    block[(3, 3)] += mu * along;
+                    block[(3, 5)] -= mu * along * s;
+                    block[(5, 3)] -= mu * along * s;
+                    block[(4, 4)] += mu * across;
+                    block[(5, 5)] += mu * (across + (along - across) * s * s);
+                }
+            }
         }
     }
 
@@ -48,6 +71,10 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) {
+        // in the plane nothing tilts, and a cylinder's inertia is a constant
+        let Bordered::Space(matrix) = matrix else {
+            return;
+        };
         for j in 0..self.count {
             let at = (self.first + j) * BLOCK + 3;
             let turns = at..at + 3;
@@ -99,14 +126,10 @@ impl Chain {
 
     /// Adds `lambda W`: `W` measures a metre of a cylinder, or a turn that moves its end by as much.
     pub(crate) fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
-        for j in 0..self.count {
-            let block = matrix.diagonal_mut(self.first + j);
-            for k in 0..BLOCK {
-                block[(k, k)] += if k < 3 {
-                    lambda
-                } else {
-                    lambda * self.pitch * self.pitch
-                };
+        let turning = lambda * self.pitch * self.pitch;
+        for j in self.first..self.first + self.count {
+            for (k, &full) in self.motion.kept().iter().enumerate() {
+                matrix.add_diagonal(j, k, k, if full < 3 { lambda } else { turning });
             }
         }
     }

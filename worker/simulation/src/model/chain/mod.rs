@@ -4,17 +4,21 @@
 //! hold its ends, not whose they are: what an end joint does to the body that holds it is that
 //! body's business. Joint 0 is before the first cylinder, joint n behind the last; J is the marker
 //! nearer to the chain's base, I the one nearer to its head.
+mod axial;
+mod contact;
 mod contact_tangent;
 mod energy;
 mod forces;
 mod inertia;
+mod plane;
 mod tangent;
 
 use crate::effect::{AxialLaws, Memory};
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
-use crate::linear::BLOCK;
+use crate::math::spline::sum::Spread;
 use crate::model::contact::GAUSS;
-use crate::model::pose::Pose;
+use crate::model::layout::Motion;
+use crate::model::pose::{PlanePose, Pose};
 use nalgebra::Vector3;
 
 pub(crate) use tangent::{Column, EndTangent};
@@ -26,6 +30,8 @@ pub struct Chain {
     pub first: usize,
     /// Number of cylinders, at least one.
     pub count: usize,
+    /// Coordinates of a cylinder.
+    pub motion: Motion,
     /// Length of a cylinder \[m\].
     pub pitch: f64,
     /// Mass of a cylinder \[kg\].
@@ -62,12 +68,16 @@ pub struct Joints<'a> {
 /// Poses and loads of a chain at the last evaluation of its forces; allocated once.
 #[derive(Clone, Debug)]
 pub struct ChainState {
-    /// Pose of each cylinder.
+    /// Pose of each cylinder that moves in space; empty where they move in the plane.
     pub poses: Vec<Pose>,
+    /// Pose of each cylinder that moves in the plane; empty where they move in space.
+    pub plane: Vec<PlanePose>,
     /// Load of each joint, one more than cylinders; zero where an end is free.
     pub joints: Vec<LinkLoad>,
     /// Contact force of each cylinder \[N\].
     pub contact: Vec<f64>,
+    /// Contact forces on a deflected arc, spread over the knots of its shapes.
+    pub pressure: Spread,
     /// Deepest penetration \[m\].
     pub deepest: f64,
     /// Power that the contact's damping takes \[W\].
@@ -78,8 +88,12 @@ pub struct ChainState {
 }
 
 impl ChainState {
-    /// Buffers for `count` cylinders.
-    pub fn new(count: usize) -> Self {
+    /// Buffers for a chain.
+    pub fn new(chain: &Chain) -> Self {
+        let (poses, plane) = match chain.motion {
+            Motion::Plane => (0, chain.count),
+            Motion::Space => (chain.count, 0),
+        };
         let none = LinkLoad {
             force: Vector3::zeros(),
             torque_i: Vector3::zeros(),
@@ -88,13 +102,22 @@ impl ChainState {
             dissipated: 0.0,
         };
         Self {
-            poses: vec![Pose::new(&[0.0; 6], &[0.0; 6]); count],
-            joints: vec![none; count + 1],
-            contact: vec![0.0; count],
+            poses: vec![Pose::new(&[0.0; 6], &[0.0; 6]); poses],
+            plane: vec![PlanePose::new(&[0.0; 3], &[0.0; 3]); plane],
+            joints: vec![none; chain.count + 1],
+            contact: vec![0.0; chain.count],
+            pressure: Spread::default(),
             deepest: 0.0,
             dissipated: 0.0,
             memory: Vec::new(),
         }
+    }
+
+    /// Pose of cylinder `j` in space.
+    pub fn pose(&self, j: usize) -> Pose {
+        self.plane
+            .get(j)
+            .map_or_else(|| self.poses[j], PlanePose::in_space)
     }
 
     /// Power that the damping of joints and contact takes \[W\].
@@ -117,6 +140,7 @@ impl Chain {
         Self {
             first,
             count,
+            motion: Motion::Space,
             pitch,
             mass,
             inertia: [
@@ -129,27 +153,30 @@ impl Chain {
 
     /// Where the cylinders' coordinates lie in a vector of unknowns.
     pub(crate) const fn range(&self) -> std::ops::Range<usize> {
-        self.first * BLOCK..(self.first + self.count) * BLOCK
+        let width = self.motion.width();
+        self.first * width..(self.first + self.count) * width
     }
 
-    /// Markers I and J of a joint and its law; nothing where an end is free.
+    /// Markers I and J of a joint and its law; nothing where an end is free. Between cylinders that
+    /// move in the plane there are plane markers instead.
     fn link<'a>(
         &self,
         joint: usize,
         joints: &Joints<'a>,
-        poses: &[Pose],
+        state: &ChainState,
     ) -> Option<([Marker; 2], &'a Bushing)> {
         let half = 0.5 * self.pitch;
         if joint == 0 {
             let held = joints.base?;
-            return Some(([on_cylinder(&poses[0], -half), held.marker], held.law));
+            return Some(([on_cylinder(&state.pose(0), -half), held.marker], held.law));
         }
-        let j = on_cylinder(&poses[joint - 1], half);
         if joint == self.count {
             let held = joints.head?;
+            let j = on_cylinder(&state.pose(joint - 1), half);
             return Some(([held.marker, j], held.law));
         }
-        Some(([on_cylinder(&poses[joint], -half), j], joints.inner))
+        let j = on_cylinder(&state.poses[joint - 1], half);
+        Some(([on_cylinder(&state.poses[joint], -half), j], joints.inner))
     }
 }
 

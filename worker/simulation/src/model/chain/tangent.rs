@@ -4,7 +4,7 @@
 //! holds it: the cylinder's own block is filled here, the rest is handed to the holder.
 use super::{Chain, ChainState, Joints};
 use crate::element::bushing::LinkTangent;
-use crate::linear::{Block, Bordered};
+use crate::linear::{BLOCK, Block, Blocks, Bordered};
 use crate::model::pose::Pose;
 use nalgebra::{Matrix3, Vector3};
 
@@ -32,7 +32,7 @@ pub(crate) struct EndTangent {
 
 /// Which body of a joint a block's rows belong to.
 #[derive(Clone, Copy)]
-enum Side {
+pub(super) enum Side {
     I,
     J,
 }
@@ -51,10 +51,44 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) -> [Option<EndTangent>; 2] {
-        let poses = &state.poses;
-        let mut ends = [None; 2];
-        for (j, pose) in poses.iter().enumerate() {
-            // the torques of both joints of this cylinder turn with its angles
+        match matrix {
+            Bordered::Plane(matrix) => {
+                self.add_plane_tangent(joints, state, gamma, matrix);
+            }
+            Bordered::Space(matrix) => {
+                self.add_turning(state, matrix);
+                for joint in 1..self.count {
+                    self.add_inner_tangent(joint, joints, state, gamma, matrix);
+                }
+            }
+        }
+        [(0, 0, Side::I), (self.count, self.count - 1, Side::J)].map(|(joint, cylinder, side)| {
+            let ([i, j], law) = self.link(joint, joints, state)?;
+            let [by_i, by_j] = law.tangent(&i, &j, &state.joints[joint]);
+            let (by_own, by_body) = match side {
+                Side::I => (by_i, by_j),
+                Side::J => (by_j, by_i),
+            };
+            let pose = state.pose(cylinder);
+            let by_cylinder = CylinderColumns::new(&by_own, &pose, gamma);
+            let mut own = Block::zeros();
+            subtract_own(&mut own, &by_cylinder, &pose.angular(), side);
+            let kept = self.motion.kept();
+            for (c, &column) in kept.iter().enumerate() {
+                for (r, &row) in kept.iter().enumerate() {
+                    matrix.add_diagonal(self.first + cylinder, r, c, own[(row, column)]);
+                }
+            }
+            Some(EndTangent {
+                by_body,
+                by_cylinder,
+            })
+        })
+    }
+
+    /// The torques of both joints of a cylinder turn with its angles.
+    fn add_turning(&self, state: &ChainState, matrix: &mut Blocks<BLOCK>) {
+        for (j, pose) in state.poses.iter().enumerate() {
             let torque = state.joints[j].torque_i + state.joints[j + 1].torque_j;
             let turning = pose.torque_by_angles(&torque);
             let mut view = matrix
@@ -62,55 +96,34 @@ impl Chain {
                 .fixed_view_mut::<3, 3>(3, 3);
             view -= turning;
         }
-        for joint in 0..=self.count {
-            let Some(([i, j], law)) = self.link(joint, joints, poses) else {
-                continue;
-            };
-            let further = self
-                .along(joint, joints, state, (&i, &j))
-                .map(|along| [along.spring + along.other, along.by_place, along.by_rate]);
-            let [by_i, by_j] = law.tangent_with(&i, &j, &state.joints[joint], further);
-            let before = (joint > 0).then(|| &poses[joint - 1]);
-            let behind = poses.get(joint);
-            let columns_j = before.map(|pose| CylinderColumns::new(&by_j, pose, gamma));
-            let columns_i = behind.map(|pose| CylinderColumns::new(&by_i, pose, gamma));
-            let block = self.first + joint;
-            if let (Some(columns), Some(pose)) = (&columns_j, before) {
-                let own = matrix.diagonal_mut(block - 1);
-                subtract_own(own, columns, &pose.angular(), Side::J);
-            }
-            if let (Some(columns_i), Some(i), Some(columns_j), Some(j)) =
-                (&columns_i, behind, &columns_j, before)
-            {
-                let (upper, lower) = matrix.coupling_mut(block - 1);
-                subtract_own(upper, columns_i, &j.angular(), Side::J);
-                subtract_own(lower, columns_j, &i.angular(), Side::I);
-            }
-            if let (Some(columns), Some(pose)) = (&columns_i, behind) {
-                subtract_own(
-                    matrix.diagonal_mut(block),
-                    columns,
-                    &pose.angular(),
-                    Side::I,
-                );
-            }
-            match (columns_i, columns_j) {
-                (Some(by_cylinder), None) => {
-                    ends[0] = Some(EndTangent {
-                        by_body: by_j,
-                        by_cylinder,
-                    });
-                }
-                (None, Some(by_cylinder)) => {
-                    ends[1] = Some(EndTangent {
-                        by_body: by_i,
-                        by_cylinder,
-                    });
-                }
-                (Some(_), Some(_)) | (None, None) => {}
-            }
-        }
-        ends
+    }
+
+    /// A joint between two cylinders in space.
+    fn add_inner_tangent(
+        &self,
+        joint: usize,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        gamma: f64,
+        matrix: &mut Blocks<BLOCK>,
+    ) {
+        let Some(([i, j], law)) = self.link(joint, joints, state) else {
+            return;
+        };
+        let further = self.pull(joint, joints, state);
+        let [by_i, by_j] = law.tangent_with(&i, &j, &state.joints[joint], further.as_ref());
+        let (pose_i, pose_j) = (&state.poses[joint], &state.poses[joint - 1]);
+        let columns_i = CylinderColumns::new(&by_i, pose_i, gamma);
+        let columns_j = CylinderColumns::new(&by_j, pose_j, gamma);
+        let (angular_i, angular_j) = (pose_i.angular(), pose_j.angular());
+        let block = self.first + joint;
+        let own = matrix.diagonal_mut(block - 1);
+        subtract_own(own, &columns_j, &angular_j, Side::J);
+        let (upper, lower) = matrix.coupling_mut(block - 1);
+        subtract_own(upper, &columns_i, &angular_j, Side::J);
+        subtract_own(lower, &columns_j, &angular_i, Side::I);
+        let own = matrix.diagonal_mut(block);
+        subtract_own(own, &columns_i, &angular_i, Side::I);
     }
 }
 

@@ -157,18 +157,15 @@ fn cost_of_the_window() {
     };
     for function in test_function::ALL {
         let paper = crate::strategy::Settings::Memetic(MemeticSettings::paper());
-        let mut row = format!(
-            "//! | {} | {:.3e} |",
-            function.name,
-            median(&paper, function)
-        );
-        for window in [1, 16, 48, 120, 240] {
+        let windows = [1, 16, 48, 120, 240].map(|window| {
             let settings = crate::strategy::Settings::Window(WindowSettings {
                 window,
                 memetic: MemeticSettings::paper(),
             });
-            row.push_str(&format!(" {:.3e} |", median(&settings, function)));
-        }
-        println!("{row}");
+            format!("{:.3e}", median(&settings, function))
+        });
+        let first = format!("{:.3e}", median(&paper, function));
+        let row = [vec![function.name.to_owned(), first], windows.into()].concat();
+        println!("//! | {} |", row.join(" | "));
     }
 }

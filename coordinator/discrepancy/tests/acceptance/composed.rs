@@ -1,0 +1,89 @@
+//! Two effects at once, and effects that no library has.
+use crate::strata::{OUTSIDE, named, planted};
+use crate::trial::{diagnose_usual, line, say, trials};
+use crate::truth::{Truth, Unlisted};
+use discrepancy::verdict::Verdict;
+
+/// Acceptance 9: two effects at four times their limits.
+#[test]
+fn two_effects_at_once_are_both_found() {
+    let named = named();
+    let sets = trials(14);
+    let (mut exact, mut one) = (0, 0);
+    let mut missed = Vec::new();
+    for seed in 0..sets {
+        let k = usize::try_from(seed).expect("few") % named.len();
+        let (a, b) = (
+            named[(5 * k + 1) % named.len()],
+            named[(7 * k + 3) % named.len()],
+        );
+        let truth = planted(planted(Truth::healthy(4000 + seed), a, 4.0), b, 4.0);
+        let answer = diagnose_usual(&truth);
+        let sets: Vec<&Vec<String>> = answer
+            .rounds
+            .iter()
+            .map(|r| &r.set)
+            .filter(|s| !s.is_empty())
+            .collect();
+        let found = [a, b]
+            .iter()
+            .filter(|e| sets.iter().any(|s| s.contains(&e.id)))
+            .count();
+        one += usize::from(found >= 1);
+        if found == 2 && sets.len() == 2 {
+            exact += 1;
+        } else {
+            missed.push(format!("{} + {}: {}", a.id, b.id, line(&answer)));
+        }
+    }
+    say(&format!(
+        "two effects: exact {exact}, at least one right {one} of {sets}; {missed:#?}"
+    ));
+    assert!(exact as f64 >= 0.6 * sets as f64, "{missed:#?}");
+    assert!(one as f64 >= 0.85 * sets as f64, "{missed:#?}");
+}
+
+/// Acceptance 9: what is in no library is unlisted, mostly with the right form.
+#[test]
+fn what_is_in_no_library_gets_no_name() {
+    let each = trials(3);
+    let (mut unlisted, mut form) = (0, 0);
+    let mut missed = Vec::new();
+    for (k, (what, forms)) in OUTSIDE.iter().enumerate() {
+        for seed in 0..each {
+            let mut truth = Truth::healthy(3000 + 100 * k as u64 + seed);
+            truth.unlisted = Some(*what);
+            let answer = diagnose_usual(&truth);
+            if answer.verdict == Verdict::Unlisted {
+                unlisted += 1;
+                let said = answer.generic.as_deref().unwrap_or_default();
+                form += usize::from(forms.iter().any(|f| said.ends_with(&format!(".{f}"))));
+            } else {
+                missed.push(format!("{what:?}: {}", line(&answer)));
+            }
+        }
+    }
+    let all = each * OUTSIDE.len() as u64;
+    say(&format!(
+        "outside the library: unlisted {unlisted} of {all}, form right {form}; {missed:#?}"
+    ));
+    assert!(unlisted as f64 >= 0.9 * all as f64, "{missed:#?}");
+    assert!(
+        form as f64 >= 0.6 * f64::from(unlisted),
+        "{form} of {unlisted}"
+    );
+}
+
+/// A degree of freedom that no library has, but that acts as a listed effect does: a mass that swings
+/// slowly on the beam is an inertia of the beam up to the noise, and is called so, and nothing else.
+#[test]
+fn what_acts_like_a_listed_effect_takes_only_its_name() {
+    for seed in 0..trials(3) {
+        let mut truth = Truth::healthy(3500 + seed);
+        truth.unlisted = Some(Unlisted::SwingingMass(0.1));
+        let answer = diagnose_usual(&truth);
+        let first = answer.effects.first().map(|e| e.id.as_str());
+        let honest = first == Some("beam_inertia") || answer.verdict == Verdict::Unlisted;
+        assert!(honest, "{}", line(&answer));
+    }
+}

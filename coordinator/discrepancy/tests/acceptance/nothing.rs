@@ -1,0 +1,77 @@
+//! Where nothing can be said, nothing is: healthy machines, effects far below their limits, effects
+//! that are not in the library.
+use crate::strata::{named, planted};
+use crate::trial::{Setup, diagnose_usual, diagnosed, line, say, trials};
+use crate::truth::Truth;
+use discrepancy::verdict::Verdict;
+
+/// Acceptance 3: at most one healthy machine in twenty is said to have anything.
+#[test]
+fn healthy_machines_are_left_alone() {
+    let sets = trials(60);
+    let mut claims = Vec::new();
+    let mut unresolved = 0;
+    for seed in 0..sets {
+        let answer = diagnose_usual(&Truth::healthy(2000 + seed));
+        match answer.verdict {
+            Verdict::NothingDetected => {}
+            Verdict::Unresolved => unresolved += 1,
+            Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => claims.push(line(&answer)),
+        }
+    }
+    say(&format!(
+        "zero effect: {} claims, {unresolved} unresolved of {sets}",
+        claims.len()
+    ));
+    assert!(20 * claims.len() as u64 <= sets, "{claims:#?}");
+    assert!(20 * unresolved <= sets, "{unresolved}");
+}
+
+/// Acceptance 8, first half: at 0.3 times its printed limit an effect is not seen, and the limit is
+/// printed.
+#[test]
+fn effects_far_below_their_limits_are_not_claimed() {
+    let each = trials(2);
+    let mut quiet = 0;
+    let mut loud = Vec::new();
+    for (k, effect) in named().into_iter().enumerate() {
+        for seed in 0..each {
+            let truth = planted(Truth::healthy(5000 + 100 * k as u64 + seed), effect, 0.3);
+            let answer = diagnose_usual(&truth);
+            let limits = answer.limits.iter().filter(|l| l.id == effect.id);
+            assert_eq!(limits.count(), discrepancy::model::sizes(effect).len());
+            if answer.verdict == Verdict::NothingDetected {
+                quiet += 1;
+            } else {
+                loud.push(format!("{}: {}", effect.id, line(&answer)));
+            }
+        }
+    }
+    let all = each * named().len() as u64;
+    say(&format!("0.3 x limit: {quiet} of {all} nothing detected"));
+    assert!(quiet as f64 >= 0.95 * all as f64, "{loud:#?}");
+}
+
+/// With every effect disabled a disagreement has no name, and says so.
+#[test]
+fn without_a_library_there_is_never_a_name() {
+    for (k, multiple) in [0.0, 3.0, 6.0].into_iter().enumerate() {
+        let truth = planted(Truth::healthy(5900 + k as u64), named()[k], multiple);
+        let mut setup = Setup::default();
+        setup.settings.without = setup.library.iter().map(|e| e.id.clone()).collect();
+        let (answer, _) = diagnosed(&truth, &setup);
+        assert!(answer.effects.is_empty());
+        assert!(
+            matches!(
+                answer.verdict,
+                Verdict::NothingDetected | Verdict::Unresolved
+            ),
+            "{}",
+            line(&answer)
+        );
+        if multiple > 5.0 {
+            assert_eq!(answer.verdict, Verdict::Unresolved, "{}", line(&answer));
+            assert!(answer.reason.is_some());
+        }
+    }
+}

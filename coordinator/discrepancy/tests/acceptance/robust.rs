@@ -1,0 +1,176 @@
+//! What must not matter: the library's order and names, lost runs; and what must be said: one cycle
+//! only, missing channels.
+use crate::strata::{named, planted};
+use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
+use crate::truth::{ALL, Truth};
+use discrepancy::record::Source;
+use discrepancy::verdict::Verdict;
+
+/// A few truths of every sort.
+fn sample() -> Vec<Truth> {
+    let named = named();
+    let mut all = vec![Truth::healthy(6000), Truth::healthy(6001)];
+    for (k, &at) in [0, 3, 8, 13, 14].iter().enumerate() {
+        all.push(planted(Truth::healthy(6010 + k as u64), named[at], 3.0));
+    }
+    all
+}
+
+fn sorted(ids: impl Iterator<Item = String>) -> Vec<String> {
+    let mut ids: Vec<String> = ids.collect();
+    ids.sort();
+    ids
+}
+
+/// Acceptance 13: the library's order decides nothing.
+#[test]
+fn a_reversed_library_gives_the_same_verdict() {
+    let mut reversed = Setup::default();
+    reversed.library.reverse();
+    for truth in sample() {
+        let (one, (other, _)) = (diagnose_usual(&truth), diagnosed(&truth, &reversed));
+        let ids =
+            |d: &discrepancy::diagnose::Diagnosis| sorted(d.effects.iter().map(|e| e.id.clone()));
+        assert_eq!(
+            (one.verdict, ids(&one)),
+            (other.verdict, ids(&other)),
+            "{} | {}",
+            line(&one),
+            line(&other)
+        );
+    }
+}
+
+/// Acceptance 15: one run in twenty is lost; no verdict changes, and the losses are counted.
+#[test]
+fn lost_runs_change_no_verdict() {
+    let lossy = Setup {
+        lost_every: 20,
+        ..Setup::default()
+    };
+    for truth in sample() {
+        let (one, (other, lost)) = (diagnose_usual(&truth), diagnosed(&truth, &lossy));
+        assert!(lost > 20, "{lost}");
+        assert_eq!(
+            one.verdict,
+            other.verdict,
+            "{} | {}",
+            line(&one),
+            line(&other)
+        );
+        let first =
+            |d: &discrepancy::diagnose::Diagnosis| d.rounds.first().and_then(|r| r.added.clone());
+        assert_eq!(
+            first(&one),
+            first(&other),
+            "{} | {}",
+            line(&one),
+            line(&other)
+        );
+    }
+}
+
+/// Acceptance 14: under other names the same things are found; the names themselves carry nothing.
+#[test]
+fn permuted_labels_fall_to_chance() {
+    let named = named();
+    let n = named.len();
+    let mut setup = Setup::default();
+    for effect in &mut setup.library {
+        if let Some(k) = named.iter().position(|e| e.id == effect.id) {
+            // the wheel turned by five: no name keeps its meaning
+            let label = named[(k + 5) % n].id.clone();
+            setup.labels.push((label.clone(), effect.id.clone()));
+            effect.id = label;
+        }
+    }
+    let (mut by_name, mut by_meaning) = (0, 0);
+    for (k, effect) in named.iter().enumerate() {
+        let truth = planted(Truth::healthy(7000 + k as u64), effect, 3.0);
+        let (answer, _) = diagnosed(&truth, &setup);
+        let Some(said) = answer.effects.first() else {
+            continue;
+        };
+        by_name += usize::from(said.id == effect.id);
+        let meant = setup.labels.iter().find(|(label, _)| *label == said.id);
+        by_meaning += usize::from(meant.is_some_and(|(_, own)| *own == effect.id));
+    }
+    say(&format!(
+        "permuted labels: {by_name} of {n} by name, {by_meaning} by meaning"
+    ));
+    assert!(by_name <= 2, "{by_name} of {n}: names leak");
+    assert!(by_meaning as f64 >= 0.8 * n as f64, "{by_meaning} of {n}");
+}
+
+/// One cycle says nothing about its own noise: that is marked, and a healthy machine is still left
+/// alone.
+#[test]
+fn one_cycle_only_rests_on_assumed_noise() {
+    let setup = Setup {
+        cycles: 1,
+        ..Setup::default()
+    };
+    let mut claims = 0;
+    for seed in 0..8 {
+        let (answer, _) = diagnosed(&Truth::healthy(8000 + seed), &setup);
+        assert!(answer.assumed_noise);
+        claims += usize::from(!answer.effects.is_empty() || answer.generic.is_some());
+        assert!(
+            answer
+                .rows
+                .iter()
+                .all(|row| row.fitted || row.condition == 1)
+        );
+    }
+    assert!(claims <= 1, "{claims} of 8");
+    let (strong, _) = diagnosed(&planted(Truth::healthy(8100), named()[1], 8.0), &setup);
+    assert!(strong.assumed_noise);
+    assert!(
+        strong.effects.iter().any(|e| e.id == named()[1].id),
+        "{}",
+        line(&strong)
+    );
+}
+
+/// Any one channel is enough to say something, and none makes a healthy machine ill.
+#[test]
+fn missing_channels_are_no_disagreement() {
+    let some: [&[Source]; 4] = [&ALL[..1], &ALL[..2], &ALL[4..5], &ALL[4..]];
+    for (k, channels) in some.into_iter().enumerate() {
+        let setup = Setup {
+            channels: channels.to_vec(),
+            ..Setup::default()
+        };
+        let (answer, _) = diagnosed(&Truth::healthy(8200 + k as u64), &setup);
+        assert_eq!(
+            answer.verdict,
+            Verdict::NothingDetected,
+            "{channels:?} {}",
+            line(&answer)
+        );
+        let named = MACHINE.library().iter().filter(|e| !e.generic);
+        let sizes: usize = named.map(|e| discrepancy::model::sizes(e).len()).sum();
+        assert!(answer.limits.len() <= sizes && !answer.limits.is_empty());
+    }
+}
+
+/// Acceptance 12, on the stand-in: a named effect closes the gap on cycles and under a condition that
+/// took no part, and the best rejected rival stands beside it.
+#[test]
+fn a_named_effect_closes_the_gap_where_nothing_was_fitted() {
+    let truth = planted(Truth::healthy(8300), named()[2], 6.0);
+    let answer = diagnose_usual(&truth);
+    assert_eq!(answer.verdict, Verdict::Named, "{}", line(&answer));
+    let other = answer
+        .rows
+        .iter()
+        .find(|row| row.condition == 1)
+        .expect("a row of the other condition");
+    assert!(!other.fitted);
+    let interval = other.closed.interval.expect("four cycles");
+    assert!(interval[0] > 0.0, "{:?}", other.closed);
+    assert!(other.closed.closed > 0.5, "{:?}", other.closed);
+    let (rival, rows) = answer.rival.as_ref().expect("a rival");
+    assert_ne!(*rival, answer.effects[0].id);
+    assert_eq!(rows.len(), answer.rows.len());
+}

@@ -1,0 +1,209 @@
+//! The bushing between markers that move in one plane: the same law with what vanishes left out.
+//!
+//! All axes lie in the plane and all rotations are about its normal, so that a force has two
+//! components, a torque one, and the rotation vector is a difference of angles. Torsion does not
+//! occur: `K_44` and `C_44` have no part in it.
+use super::bushing::{Bushing, Pull};
+use nalgebra::Vector2;
+use std::f64::consts::{PI, TAU};
+
+type V2 = Vector2<f64>;
+
+/// A frame fixed on a body, and the motion of that body, in the plane.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneMarker {
+    /// Reference point of the body \[m\].
+    pub p: V2,
+    /// From there to the marker \[m\].
+    pub rho: V2,
+    /// Velocity of the reference point [m/s].
+    pub v: V2,
+    /// Angular velocity of the body [rad/s].
+    pub w: f64,
+    /// Direction of the marker's axis, and its angle from +x \[rad\].
+    pub axis: V2,
+    /// Angle of the axis \[rad\].
+    pub angle: f64,
+}
+
+/// Force and torque of a link on both bodies, torques about the bodies' reference points.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneLoad {
+    /// Force on body I \[N\]; body J feels the opposite.
+    pub force: V2,
+    /// Torque on body I [N m].
+    pub torque_i: f64,
+    /// Torque on body J [N m].
+    pub torque_j: f64,
+    /// Component of the force along J's axis; negative where the link pulls \[N\].
+    pub axial: f64,
+    /// Power that the damping takes \[W\].
+    pub dissipated: f64,
+}
+
+/// Derivatives of force, torque on I and torque on J by one coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct PlaneColumn {
+    /// Of the force on I.
+    pub force: V2,
+    /// Of the torque on I.
+    pub torque_i: f64,
+    /// Of the torque on J.
+    pub torque_j: f64,
+}
+
+/// `z x r`.
+#[inline]
+fn across(r: &V2) -> V2 {
+    V2::new(-r.y, r.x)
+}
+
+/// The z component of `a x b`.
+#[inline]
+fn moment(a: &V2, b: &V2) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// Difference of two angles, within half a turn \[rad\].
+#[inline]
+fn turned(i: f64, j: f64) -> f64 {
+    let turn = i - j;
+    if turn.abs() > PI {
+        turn - TAU * (turn / TAU).round()
+    } else {
+        turn
+    }
+}
+
+/// What load and tangent share: distance, its rate in J's frame, turn and its rate.
+struct Deformation {
+    d: V2,
+    V: V2,
+    theta: f64,
+    w: f64,
+}
+
+#[inline]
+fn deformation(i: &PlaneMarker, j: &PlaneMarker) -> Deformation {
+    let d = (i.p + i.rho) - (j.p + j.rho);
+    let velocity = (i.v + across(&i.rho) * i.w) - (j.v + across(&j.rho) * j.w);
+    Deformation {
+        d,
+        V: velocity - across(&d) * j.w,
+        theta: turned(i.angle, j.angle),
+        w: i.w - j.w,
+    }
+}
+
+impl PlaneLoad {
+    /// Adds a further pull between two markers.
+    #[inline]
+    pub fn add_pull(&mut self, (i, j): (&PlaneMarker, &PlaneMarker), pull: &Pull) {
+        let Deformation { d, .. } = deformation(i, j);
+        let force = j.axis * -pull.force;
+        self.force += force;
+        self.torque_i += moment(&i.rho, &force);
+        self.torque_j -= moment(&(d + j.rho), &force);
+        self.axial -= pull.force;
+        self.dissipated += pull.dissipated;
+    }
+}
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "the law in the plane is a file of its own"
+)]
+impl Bushing {
+    /// [`Self::load`] of a motion in the plane.
+    #[inline]
+    pub fn plane_load(&self, i: &PlaneMarker, j: &PlaneMarker) -> PlaneLoad {
+        let [k1, k2] = self.stiffness;
+        let [c1, c2] = self.damping;
+        let [k5, c5] = [self.rotational_stiffness[1], self.rotational_damping[1]];
+        let Deformation { d, V, theta, w } = deformation(i, j);
+        let e = j.axis;
+        let damping = V * c2 + e * ((c1 - c2) * e.dot(&V));
+        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d)) + damping);
+        let bending_damping = w * c5;
+        let torque = -(theta * k5 + bending_damping);
+        PlaneLoad {
+            force,
+            torque_i: torque + moment(&i.rho, &force),
+            torque_j: -torque - moment(&(d + j.rho), &force),
+            axial: e.dot(&force),
+            dissipated: damping.dot(&V) + bending_damping * w,
+        }
+    }
+
+    /// [`Self::extension`] of a motion in the plane: along the axis \[m\], and its rate [m/s].
+    #[inline]
+    pub fn plane_extension(&self, i: &PlaneMarker, j: &PlaneMarker) -> [f64; 2] {
+        let Deformation { d, V, .. } = deformation(i, j);
+        [j.axis.dot(&d), j.axis.dot(&V)]
+    }
+
+    /// [`Self::energy`] of a motion in the plane \[J\].
+    pub fn plane_energy(&self, i: &PlaneMarker, j: &PlaneMarker) -> f64 {
+        let [k1, k2] = self.stiffness;
+        let Deformation { d, theta, .. } = deformation(i, j);
+        let axial = j.axis.dot(&d);
+        0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
+            + 0.5 * self.rotational_stiffness[1] * theta * theta
+    }
+
+    /// Derivatives of [`Self::plane_load`] by x, y and angle of I and of J, whose rates change
+    /// `gamma` times as much; with a further pull, which `force` contains.
+    #[inline]
+    pub fn plane_tangent(
+        &self,
+        (i, j): (&PlaneMarker, &PlaneMarker),
+        force: &V2,
+        gamma: f64,
+        further: Option<&Pull>,
+    ) -> [[PlaneColumn; 3]; 2] {
+        let [mut k1, k2] = self.stiffness;
+        let [mut c1, c2] = self.damping;
+        let Deformation { d, V, w, .. } = deformation(i, j);
+        let mut pull = (k1 - k2) * j.axis.dot(&d) + (c1 - c2) * j.axis.dot(&V);
+        if let Some(further) = further {
+            pull += further.force;
+            k1 += further.by_extension;
+            c1 += further.by_rate;
+        }
+        let e = j.axis;
+        let stiff = |x: V2| x * k2 + e * ((k1 - k2) * e.dot(&x));
+        let damp = |x: V2| x * c2 + e * ((c1 - c2) * e.dot(&x));
+        let bend = self.rotational_stiffness[1] + gamma * self.rotational_damping[1];
+        // how the force turns with the axis of J
+        let side = across(&e);
+        let sweep = side * pull + e * side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
+        let arm = d + j.rho;
+        let turn_i = across(&i.rho);
+
+        let by_place = |x: V2| -stiff(x) - damp(x * gamma - across(&x) * j.w);
+        let force_x = by_place(V2::x());
+        let force_y = by_place(V2::y());
+        let force_i = -stiff(turn_i) - damp(turn_i * gamma - i.rho * w);
+        let force_j = -sweep + stiff(across(&j.rho)) + damp(across(&arm) * gamma);
+
+        let column = |by: V2, torque: f64, own: f64, reaction: f64| PlaneColumn {
+            force: by,
+            torque_i: torque + moment(&i.rho, &by) + own,
+            torque_j: -torque - moment(&arm, &by) + reaction,
+        };
+        // with I moves its arm about J's reference point, with its angle also its arm about its own
+        let along = force.dot(&i.rho);
+        [
+            [
+                column(force_x, 0.0, 0.0, -force.y),
+                column(force_y, 0.0, 0.0, force.x),
+                column(force_i, -bend, -along, along),
+            ],
+            [
+                column(-force_x, 0.0, 0.0, force.y),
+                column(-force_y, 0.0, 0.0, -force.x),
+                column(force_j, bend, 0.0, 0.0),
+            ],
+        ]
+    }
+}

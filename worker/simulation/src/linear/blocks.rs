@@ -1,0 +1,422 @@
+//! Block-tridiagonal chains with a common border: storage, factorisation, solution.
+//!
+//! Every chain is eliminated from its free end towards its anchored end, so the border's columns
+//! fill in only from the first block that touches the border on. Cost O(blocks).
+use super::block::{Block, Column, invert, product, subtract_product};
+
+/// A pivot vanished: the matrix is singular or holds a value that is not finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SingularPivot {
+    /// Global index of the unknown.
+    pub unknown: usize,
+}
+
+/// A square matrix of `blocks * N + border` unknowns: chains one after the other, border last.
+#[derive(Clone, Debug)]
+pub struct Blocks<const N: usize> {
+    chains: Vec<usize>,
+    border: usize,
+    diagonal: Vec<Block<N>>,
+    /// Coupling of block i (row) with block i + 1 (column).
+    upper: Vec<Block<N>>,
+    /// Coupling of block i + 1 (row) with block i (column).
+    lower: Vec<Block<N>>,
+    /// Border columns of block rows: `blocks * border` columns of N.
+    right: Vec<Column<N>>,
+    /// Border rows of block columns: `blocks * border` rows of N.
+    bottom: Vec<Column<N>>,
+    /// Border by border, column-major.
+    corner: Vec<f64>,
+    /// Per block, how many of the border's first unknowns it touches.
+    touches: Vec<usize>,
+    /// Per chain, the first block that the border fills, and how many of its unknowns do.
+    filled: Vec<(usize, usize)>,
+    corner_pivots: Vec<usize>,
+}
+
+impl<const N: usize> Blocks<N> {
+    /// An empty matrix for chains of the given numbers of blocks.
+    pub fn new(chains: &[usize], border: usize) -> Self {
+        let blocks: usize = chains.iter().sum();
+        Self {
+            chains: chains.to_vec(),
+            border,
+            diagonal: vec![Block::zeros(); blocks],
+            upper: vec![Block::zeros(); blocks],
+            lower: vec![Block::zeros(); blocks],
+            right: vec![Column::zeros(); blocks * border],
+            bottom: vec![Column::zeros(); blocks * border],
+            corner: vec![0.0; border * border],
+            touches: vec![0; blocks],
+            filled: vec![(0, 0); chains.len()],
+            corner_pivots: vec![0; border],
+        }
+    }
+
+    /// Number of unknowns.
+    pub fn len(&self) -> usize {
+        self.diagonal.len() * N + self.border
+    }
+
+    /// Whether there are no unknowns.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Width of the border.
+    pub const fn border(&self) -> usize {
+        self.border
+    }
+
+    /// Sets every entry to zero.
+    pub fn clear(&mut self) {
+        self.diagonal.fill(Block::zeros());
+        self.upper.fill(Block::zeros());
+        self.lower.fill(Block::zeros());
+        self.corner.fill(0.0);
+        // a factorisation fills the border beyond the blocks that touched it
+        self.right.fill(Column::zeros());
+        self.bottom.fill(Column::zeros());
+        self.touches.fill(0);
+    }
+
+    /// Diagonal block.
+    #[inline]
+    pub fn diagonal_mut(&mut self, block: usize) -> &mut Block<N> {
+        &mut self.diagonal[block]
+    }
+
+    /// Coupling of `block` (rows) with the next one (columns), and of the next with this one.
+    #[inline]
+    pub fn coupling_mut(&mut self, block: usize) -> (&mut Block<N>, &mut Block<N>) {
+        (&mut self.upper[block], &mut self.lower[block])
+    }
+
+    /// Adds `value` to row `row` of `block`, column `k` of the border.
+    #[inline]
+    pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
+        self.touches[block] = self.touches[block].max(k + 1);
+        self.right[block * self.border + k][row] += value;
+    }
+
+    /// Adds `value` to row `k` of the border, column `column` of `block`.
+    #[inline]
+    pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
+        self.touches[block] = self.touches[block].max(k + 1);
+        self.bottom[block * self.border + k][column] += value;
+    }
+
+    /// Adds `value` within the border.
+    #[inline]
+    pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
+        self.corner[column * self.border + row] += value;
+    }
+
+    /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
+    ///
+    /// # Panics
+    /// In debug builds, between blocks that are not neighbours of one chain.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) {
+        let base = self.diagonal.len() * N;
+        let split = |i: usize| (i / N, i % N);
+        match (row < base, column < base) {
+            (false, false) => self.add_corner(row - base, column - base, value),
+            (true, false) => self.add_right(split(row).0, split(row).1, column - base, value),
+            (false, true) => {
+                self.add_bottom(split(column).0, row - base, split(column).1, value);
+            }
+            (true, true) => {
+                let ((b, r), (c, k)) = (split(row), split(column));
+                debug_assert!(b.abs_diff(c) <= 1, "blocks {b} and {c} are no neighbours");
+                let block = match c.cmp(&b) {
+                    std::cmp::Ordering::Equal => &mut self.diagonal[b],
+                    std::cmp::Ordering::Greater => &mut self.upper[b],
+                    std::cmp::Ordering::Less => &mut self.lower[c],
+                };
+                block[(r, k)] += value;
+            }
+        }
+    }
+
+    /// `y = A x` of the assembled (not factorised) matrix; for tests and checks.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        let base = self.diagonal.len() * N;
+        let part = |b: usize| column::<N>(x, b);
+        let mut first = 0;
+        for &count in &self.chains {
+            for b in first..first + count {
+                let mut sum = self.diagonal[b] * part(b);
+                if b + 1 < first + count {
+                    sum += self.upper[b] * part(b + 1);
+                }
+                if b > first {
+                    sum += self.lower[b - 1] * part(b - 1);
+                }
+                for k in 0..self.border {
+                    sum += self.right[b * self.border + k] * x[base + k];
+                    y[base + k] += self.bottom[b * self.border + k].dot(&part(b));
+                }
+                y[b * N..(b + 1) * N].copy_from_slice(sum.as_slice());
+            }
+            first += count;
+        }
+        for k in 0..self.border {
+            for row in 0..self.border {
+                y[base + row] += self.corner[k * self.border + row] * x[base + k];
+            }
+        }
+    }
+
+    /// Factorises in place; the assembled entries are lost.
+    ///
+    /// # Errors
+    /// [`SingularPivot`] with the unknown whose pivot vanished.
+    pub fn factorize(&mut self) -> Result<(), SingularPivot> {
+        let mut first = 0;
+        for chain in 0..self.chains.len() {
+            let end = first + self.chains[chain];
+            let touches = &self.touches[first..end];
+            let filled = touches.iter().position(|&k| k > 0);
+            let filled = filled.map_or(end, |b| first + b);
+            let reach = touches.iter().copied().max().unwrap_or(0);
+            self.filled[chain] = (filled, reach);
+            for b in first..end {
+                let reach = if b >= filled { reach } else { 0 };
+                self.eliminate(b, b + 1 < end, reach)?;
+            }
+            first = end;
+        }
+        self.factorize_corner()
+    }
+
+    /// Eliminates one block, which the first `reach` unknowns of the border fill: `upper` and `right`
+    /// become `D^-1 upper` and `D^-1 right`.
+    fn eliminate(&mut self, b: usize, has_next: bool, reach: usize) -> Result<(), SingularPivot> {
+        invert(&mut self.diagonal[b]).map_err(|column| SingularPivot {
+            unknown: b * N + column,
+        })?;
+        let m = self.border;
+        if has_next {
+            self.upper[b] = self.diagonal[b] * self.upper[b];
+            let fill = self.lower[b] * self.upper[b];
+            self.diagonal[b + 1] -= fill;
+        }
+        for k in 0..reach {
+            self.right[b * m + k] = product(&self.diagonal[b], &self.right[b * m + k]);
+        }
+        if has_next {
+            let (head, tail) = self.right.split_at_mut((b + 1) * m);
+            for k in 0..reach {
+                subtract_product(&self.lower[b], &head[b * m + k], &mut tail[k]);
+            }
+            let transposed = self.upper[b].transpose();
+            let (head, tail) = self.bottom.split_at_mut((b + 1) * m);
+            for k in 0..reach {
+                subtract_product(&transposed, &head[b * m + k], &mut tail[k]);
+            }
+        }
+        for column in 0..reach {
+            for row in 0..reach {
+                self.corner[column * m + row] -=
+                    self.bottom[b * m + row].dot(&self.right[b * m + column]);
+            }
+        }
+        Ok(())
+    }
+
+    fn factorize_corner(&mut self) -> Result<(), SingularPivot> {
+        let m = self.border;
+        let base = self.diagonal.len() * N;
+        let a = &mut self.corner;
+        for k in 0..m {
+            let best = (k..m)
+                .max_by(|&i, &j| {
+                    a[k * m + i]
+                        .abs()
+                        .total_cmp(&a[k * m + j].abs())
+                        .then(j.cmp(&i))
+                })
+                .unwrap_or(k);
+            let size = a[k * m + best].abs();
+            if !(size > 0.0 && size.is_finite()) {
+                return Err(SingularPivot { unknown: base + k });
+            }
+            self.corner_pivots[k] = best;
+            if best != k {
+                for column in 0..m {
+                    a.swap(column * m + k, column * m + best);
+                }
+            }
+            let inverse = 1.0 / a[k * m + k];
+            for i in k + 1..m {
+                a[k * m + i] *= inverse;
+            }
+            for column in k + 1..m {
+                let factor = a[column * m + k];
+                for i in k + 1..m {
+                    a[column * m + i] -= a[k * m + i] * factor;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Solves in place with the factorised matrix.
+    pub fn solve(&self, x: &mut [f64]) {
+        let m = self.border;
+        let base = self.diagonal.len() * N;
+        let (blocks, border) = x.split_at_mut(base);
+        let (blocks, _) = blocks.as_chunks_mut::<N>();
+        let mut first = 0;
+        for (&count, &(filled, reach)) in self.chains.iter().zip(&self.filled) {
+            let end = first + count;
+            let mut right = Column::<N>::zeros();
+            for b in first..end {
+                let y = product(&self.diagonal[b], &(Column::from(blocks[b]) - right));
+                blocks[b] = y.into();
+                right = product(&self.lower[b], &y);
+                if b >= filled {
+                    let bottom = &self.bottom[b * m..b * m + reach];
+                    for (x, bottom) in border.iter_mut().zip(bottom) {
+                        *x -= bottom.dot(&y);
+                    }
+                }
+            }
+            first = end;
+        }
+        self.solve_corner(border);
+        self.substitute_back(blocks, border);
+    }
+
+    fn solve_corner(&self, x: &mut [f64]) {
+        let m = self.border;
+        for k in 0..m {
+            x.swap(k, self.corner_pivots[k]);
+        }
+        for k in 0..m {
+            for i in k + 1..m {
+                x[i] -= self.corner[k * m + i] * x[k];
+            }
+        }
+        for k in (0..m).rev() {
+            x[k] /= self.corner[k * m + k];
+            for i in 0..k {
+                x[i] -= self.corner[k * m + i] * x[k];
+            }
+        }
+    }
+
+    fn substitute_back(&self, blocks: &mut [[f64; N]], border: &[f64]) {
+        let m = self.border;
+        let mut end = self.diagonal.len();
+        for (&count, &(filled, reach)) in self.chains.iter().zip(&self.filled).rev() {
+            let first = end - count;
+            let mut next = Column::<N>::zeros();
+            for b in (first..end).rev() {
+                let mut y = Column::from(blocks[b]);
+                subtract_product(&self.upper[b], &next, &mut y);
+                if b >= filled {
+                    let right = &self.right[b * m..b * m + reach];
+                    for (x, right) in border.iter().zip(right) {
+                        for i in 0..N {
+                            y[i] -= x * right[i];
+                        }
+                    }
+                }
+                blocks[b] = y.into();
+                next = y;
+            }
+            end = first;
+        }
+    }
+}
+
+/// Entries of block `b`.
+#[inline]
+fn column<const N: usize>(blocks: &[f64], b: usize) -> Column<N> {
+    Column::from_column_slice(&blocks[b * N..(b + 1) * N])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A well-conditioned matrix with no symmetry and no zeros where the structure allows any.
+    fn example(touch_from: &[usize]) -> Blocks<6> {
+        let chains = [4, 7];
+        let mut a = Blocks::<6>::new(&chains, 3);
+        let mut seed = 1_u64;
+        let mut next = || {
+            seed = seed
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((seed >> 33) as f64 / f64::from(u32::MAX)) - 0.25
+        };
+        let mut first = 0;
+        for (chain, &count) in chains.iter().enumerate() {
+            for b in first..first + count {
+                *a.diagonal_mut(b) =
+                    Block::<6>::from_fn(|i, j| next() + if i == j { 4.0 } else { 0.0 });
+                if b + 1 < first + count {
+                    let (upper, lower) = a.coupling_mut(b);
+                    *upper = Block::<6>::from_fn(|_, _| next());
+                    *lower = Block::<6>::from_fn(|_, _| next());
+                }
+                if b >= first + touch_from[chain] {
+                    for k in 0..3 {
+                        for i in 0..6 {
+                            a.add_right(b, i, k, next());
+                            a.add_bottom(b, k, i, next());
+                        }
+                    }
+                }
+            }
+            first += count;
+        }
+        for i in 0..3 {
+            for j in 0..3 {
+                a.add_corner(i, j, next() + if i == j { 5.0 } else { 0.0 });
+            }
+        }
+        a
+    }
+
+    #[test]
+    fn solution_reproduces_the_right_hand_side() {
+        for touch_from in [[0, 0], [2, 5], [4, 6], [4, 7]] {
+            let a = example(&touch_from);
+            let x: Vec<f64> = (0..a.len()).map(|i| 1.0 + 0.37 * (i % 11) as f64).collect();
+            let mut y = vec![0.0; a.len()];
+            a.multiply(&x, &mut y);
+            let mut factors = a.clone();
+            factors.factorize().unwrap();
+            factors.solve(&mut y);
+            let worst = x
+                .iter()
+                .zip(&y)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max);
+            assert!(worst < 1e-11, "{touch_from:?}: {worst}");
+        }
+    }
+
+    #[test]
+    fn a_used_matrix_can_be_assembled_again() {
+        let mut used = example(&[0, 2]);
+        used.factorize().unwrap();
+        used.clear();
+        let mut zeros = vec![0.0; used.len()];
+        used.multiply(&vec![1.0; used.len()], &mut zeros);
+        assert!(zeros.iter().all(|&x| x == 0.0));
+    }
+
+    #[test]
+    fn a_singular_block_is_named() {
+        let mut a = example(&[0, 0]);
+        a.diagonal_mut(0).set_column(2, &Column::<6>::zeros());
+        let (upper, _) = a.coupling_mut(0);
+        upper.fill(0.0);
+        assert_eq!(a.factorize(), Err(SingularPivot { unknown: 2 }));
+    }
+}

@@ -1,0 +1,133 @@
+//! A weighted sum of splines over one grid, as one spline.
+//!
+//! Where many places are asked for under the same weights, the curves are summed knot by knot once
+//! and every place costs one curve. The way back is the same: what acts at places is spread over
+//! the knots, and each curve gathers its share from them at the end.
+use super::{Jet, Place, Splines};
+
+/// Weighted sums of the curves of [`Splines`], under weights and under their rates.
+#[derive(Clone, Debug, Default)]
+pub struct Sum {
+    /// Value and bend under the weights, then under their rates, per knot.
+    knots: Vec<[f64; 4]>,
+}
+
+/// What acts at places of a grid, spread over its knots: per knot with the weight of its value and
+/// with that of its bend.
+#[derive(Clone, Debug, Default)]
+pub struct Spread {
+    knots: Vec<[f64; 2]>,
+}
+
+impl Sum {
+    /// Sums the curves with `weights`, and with their `rates`; one of each per curve.
+    pub fn weigh(&mut self, splines: &Splines, weights: &[f64], rates: &[f64]) {
+        let points = splines.points();
+        self.knots.resize(points, [0.0; 4]);
+        let curves = splines.knots.chunks_exact(splines.curves.max(1));
+        for (sum, knots) in self.knots.iter_mut().zip(curves) {
+            *sum = [0.0; 4];
+            for ((&[value, bend], weight), rate) in knots.iter().zip(weights).zip(rates) {
+                sum[0] += weight * value;
+                sum[1] += weight * bend;
+                sum[2] += rate * value;
+                sum[3] += rate * bend;
+            }
+        }
+    }
+
+    /// The sum under the weights at a place, and its value under their rates.
+    #[inline]
+    pub fn at(&self, splines: &Splines, place: &Place) -> (Jet, f64) {
+        let [y0, m0, dy0, dm0] = self.knots[place.left];
+        let [y1, m1, dy1, dm1] = self.knots[place.right];
+        let [a, b, cubic_a, cubic_b] = place.weights();
+        let value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
+        let rate = a * dy0 + b * dy1 + cubic_a * dm0 + cubic_b * dm1;
+        if place.clamped {
+            let constant = Jet {
+                value,
+                ..Jet::default()
+            };
+            return (constant, rate);
+        }
+        let per_step = splines.per_step;
+        let slope = y1 - y0 + (1.0 - 3.0 * a * a) * m0 + (3.0 * b * b - 1.0) * m1;
+        let jet = Jet {
+            value,
+            first: slope * per_step,
+            second: 6.0 * (a * m0 + b * m1) * (per_step * per_step),
+        };
+        (jet, rate)
+    }
+}
+
+impl Spread {
+    /// Takes everything away, for the grid of `splines`.
+    pub fn clear(&mut self, splines: &Splines) {
+        self.knots.clear();
+        self.knots.resize(splines.points(), [0.0; 2]);
+    }
+
+    /// Adds `force` at a place.
+    #[inline]
+    pub fn add(&mut self, place: &Place, force: f64) {
+        let [a, b, cubic_a, cubic_b] = place.weights();
+        let [value, bend] = &mut self.knots[place.left];
+        *value += force * a;
+        *bend += force * cubic_a;
+        let [value, bend] = &mut self.knots[place.right];
+        *value += force * b;
+        *bend += force * cubic_b;
+    }
+
+    /// Fills `sums`, one per curve, with the sum over all places of force times the curve's value.
+    pub fn gather(&self, splines: &Splines, sums: &mut [f64]) {
+        sums.fill(0.0);
+        let curves = splines.knots.chunks_exact(splines.curves.max(1));
+        for (&[force, moment], knots) in self.knots.iter().zip(curves) {
+            if force == 0.0 && moment == 0.0 {
+                continue;
+            }
+            for (sum, [value, bend]) in sums.iter_mut().zip(knots) {
+                *sum += force * value + moment * bend;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sum_is_the_sum_of_its_curves_there_and_back() {
+        let curve = |k: i32| (0..9).map(|i| f64::from((i * k) % 5) - 1.7).collect();
+        let splines = Splines::natural(1.0, 0.3, &[curve(2), curve(3)]);
+        let (weights, rates) = ([0.7, -1.9], [2.3, 0.4]);
+        let mut sum = Sum::default();
+        sum.weigh(&splines, &weights, &rates);
+        let mut spread = Spread::default();
+        spread.clear(&splines);
+        let mut direct = [0.0; 2];
+        for (x, force) in [(0.2, 3.0), (1.4, -7.0), (2.05, 1.3), (9.0, 0.6)] {
+            let place = splines.place(x);
+            let (jet, rate) = sum.at(&splines, &place);
+            let jets = [splines.jet(&place, 0), splines.jet(&place, 1)];
+            let of = |by: [f64; 2], f: fn(&Jet) -> f64| by[0] * f(&jets[0]) + by[1] * f(&jets[1]);
+            assert!((jet.value - of(weights, |j| j.value)).abs() < 1e-14);
+            assert!((jet.first - of(weights, |j| j.first)).abs() < 1e-12);
+            assert!((jet.second - of(weights, |j| j.second)).abs() < 1e-11);
+            assert!((rate - of(rates, |j| j.value)).abs() < 1e-14);
+            spread.add(&place, force);
+            for (direct, jet) in direct.iter_mut().zip(jets) {
+                *direct += force * jet.value;
+            }
+        }
+        let mut gathered = [f64::NAN; 2];
+        spread.gather(&splines, &mut gathered);
+        for (gathered, direct) in gathered.iter().zip(direct) {
+            assert!((gathered - direct).abs() < 1e-13, "{gathered} {direct}");
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! Joints between cylinders that move in the plane, and their tangent.
+//!
+//! The joints that hold a chain's ends have their spatial form here too: there are two of them.
+use super::tangent::Side;
+use super::{Chain, ChainState, Joints};
+use crate::element::plane::{PlaneColumn, PlaneMarker};
+use crate::linear::{Block, Blocks};
+use crate::model::layout::Motion;
+use crate::model::pose::PlanePose;
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
+impl Chain {
+    /// Whether a joint lies between two cylinders that move in the plane.
+    pub(super) const fn in_plane(&self, joint: usize) -> bool {
+        matches!(self.motion, Motion::Plane) && joint > 0 && joint < self.count
+    }
+
+    /// Markers I and J of a joint between two cylinders.
+    #[inline]
+    pub(super) fn plane_markers(&self, joint: usize, poses: &[PlanePose]) -> [PlaneMarker; 2] {
+        let half = 0.5 * self.pitch;
+        [on(&poses[joint], -half), on(&poses[joint - 1], half)]
+    }
+
+    /// Adds the joints' forces on cylinders that move in the plane; the loads stay in `state`.
+    pub(super) fn add_plane_joints(
+        &self,
+        joints: &Joints<'_>,
+        state: &mut ChainState,
+        force: &mut [f64],
+    ) {
+        let force = &mut force[self.range()];
+        for joint in [0, self.count] {
+            let Some(([i, j], law)) = self.link(joint, joints, state) else {
+                continue;
+            };
+            let load = law.load(&i, &j);
+            let (at, sign, torque) = if joint == 0 {
+                (0, 1.0, load.torque_i.z)
+            } else {
+                ((joint - 1) * 3, -1.0, load.torque_j.z)
+            };
+            force[at] += sign * load.force.x;
+            force[at + 1] += sign * load.force.y;
+            force[at + 2] += torque;
+            state.joints[joint] = load;
+        }
+        for joint in 1..self.count {
+            let [i, j] = self.plane_markers(joint, &state.plane);
+            let mut load = joints.inner.plane_load(&i, &j);
+            if let Some(pull) = self.pull(joint, joints, state) {
+                load.add_pull((&i, &j), &pull);
+            }
+            let at = &mut force[(joint - 1) * 3..][..6];
+            at[0] -= load.force.x;
+            at[1] -= load.force.y;
+            at[2] += load.torque_j;
+            at[3] += load.force.x;
+            at[4] += load.force.y;
+            at[5] += load.torque_i;
+            let kept = &mut state.joints[joint];
+            kept.force.x = load.force.x;
+            kept.force.y = load.force.y;
+            kept.torque_i.z = load.torque_i;
+            kept.torque_j.z = load.torque_j;
+            kept.axial = load.axial;
+            kept.dissipated = load.dissipated;
+        }
+    }
+
+    /// Subtracts the tangent of the joints between the cylinders.
+    pub(super) fn add_plane_tangent(
+        &self,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        gamma: f64,
+        matrix: &mut Blocks<3>,
+    ) {
+        for joint in 1..self.count {
+            let [i, j] = self.plane_markers(joint, &state.plane);
+            let force = state.joints[joint].force.xy();
+            let further = self.pull(joint, joints, state);
+            let tangent = joints
+                .inner
+                .plane_tangent((&i, &j), &force, gamma, further.as_ref());
+            let [by_i, by_j] = tangent;
+            let block = self.first + joint;
+            subtract(matrix.diagonal_mut(block - 1), &by_j, Side::J);
+            let (upper, lower) = matrix.coupling_mut(block - 1);
+            subtract(upper, &by_i, Side::J);
+            subtract(lower, &by_j, Side::I);
+            subtract(matrix.diagonal_mut(block), &by_i, Side::I);
+        }
+    }
+}
+
+fn on(pose: &PlanePose, along: f64) -> PlaneMarker {
+    PlaneMarker {
+        p: pose.p,
+        rho: pose.axis * along,
+        v: pose.v,
+        w: pose.rate,
+        axis: pose.axis,
+        angle: pose.angle,
+    }
+}
+
+/// Subtracts the rows of one side's cylinder.
+#[inline]
+fn subtract(block: &mut Block<3>, columns: &[PlaneColumn; 3], side: Side) {
+    for (k, column) in columns.iter().enumerate() {
+        let (sign, torque) = match side {
+            Side::I => (1.0, column.torque_i),
+            Side::J => (-1.0, column.torque_j),
+        };
+        block[(0, k)] -= sign * column.force.x;
+        block[(1, k)] -= sign * column.force.y;
+        block[(2, k)] -= torque;
+    }
+}

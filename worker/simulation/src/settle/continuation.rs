@@ -1,0 +1,165 @@
+//! Equilibrium followed from a compliant machine, whose equilibrium is known, to a given one.
+//!
+//! Where a minimisation gets lost (a rope so stiff that it stands off its arc, so that every step
+//! sideways stretches it), the equilibrium is still there. The ropes' coefficients are led along a
+//! straight line of their logarithms from values under which the rope lies on its arc, taut and
+//! pliable, to the given ones, and the equilibrium follows by Newton's method. The path is the
+//! individual's own: it depends on no start and on no damping.
+use super::guess::guess;
+use super::minimize::{CONVERGED, Damping, minimize, minimize_within};
+use super::overload::Hanging;
+use crate::math::elementary::powf;
+use crate::model::{Individual, Machine, Ropes};
+use crate::system::{Static, System};
+
+/// Iterations (factorisations) that a continuation may take.
+pub(super) const BUDGET: u64 = 1200;
+
+/// Equilibrium of an individual at time 0, and whether it was reached; `q` is its coordinates then.
+pub fn follow(system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
+    let target = system.equations.ropes;
+    let reached = Path::new(system, &target).is_some_and(|path| path.walk(system, q));
+    system.equations.ropes = target;
+    reached
+}
+
+/// From compliant to given ropes.
+struct Path {
+    from: Ropes,
+    to: Ropes,
+    end_pitches: f64,
+    start: Vec<f64>,
+}
+
+impl Path {
+    /// `None` where not even compliant ropes reach.
+    fn new(system: &mut System<Individual<'_>>, to: &Ropes) -> Option<Self> {
+        let drive = system.equations.drive_state(0.0);
+        let machine = system.equations.machine;
+        let hanging = Hanging::new(machine, &drive).ok()?;
+        let from = compliant(machine, to, hanging.tension[0].max(hanging.tension[1]));
+        let start = guess(machine, &from, &drive).ok()?;
+        Some(Self {
+            from,
+            to: *to,
+            end_pitches: machine.description.rope.end_pitches,
+            start,
+        })
+    }
+
+    /// The ropes at a place on the path, from 0 to 1.
+    fn at(&self, place: f64) -> Ropes {
+        let mix = |a: f64, b: f64| powf(a, 1.0 - place) * powf(b, place);
+        let pair = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
+        let (a, b) = (&self.from, &self.to);
+        let mut ropes = *b;
+        ropes.joint.stiffness = pair(a.joint.stiffness, b.joint.stiffness);
+        ropes.joint.rotational_stiffness =
+            pair(a.joint.rotational_stiffness, b.joint.rotational_stiffness);
+        ropes.anchor = ropes.joint.scaled(1.0 / self.end_pitches);
+        ropes.base = ropes.anchor.revolute();
+        ropes.contact.stiffness = mix(a.contact.stiffness, b.contact.stiffness);
+        ropes
+    }
+
+    fn walk(&self, system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
+        let begun = system.statistics.newton_iterations;
+        q.copy_from_slice(&self.start);
+        system.equations.ropes = self.at(0.0);
+        if !minimize(system, 0.0, q) {
+            return false;
+        }
+        let (mut place, mut stride) = (0.0, FIRST_STRIDE);
+        let mut last: Option<(f64, Vec<f64>)> = None;
+        let mut trial = q.to_vec();
+        while place < 1.0 {
+            let next = f64::min(place + stride, 1.0);
+            system.equations.ropes = if next < 1.0 { self.at(next) } else { self.to };
+            trial.copy_from_slice(q);
+            if let Some((before, of)) = &last {
+                let ratio = (next - place) / (place - before);
+                for ((trial, q), of) in trial.iter_mut().zip(&*q).zip(of) {
+                    *trial += ratio * (q - of);
+                }
+            }
+            let mut found = newton(system, &mut trial);
+            if !found && stride < CAREFUL {
+                trial.copy_from_slice(q);
+                found = minimize_within(system, 0.0, &mut trial, &Damping::default(), PATIENCE);
+            }
+            if found {
+                let (at, of) = last.get_or_insert_with(|| (0.0, q.to_vec()));
+                *at = place;
+                of.copy_from_slice(q);
+                q.copy_from_slice(&trial);
+                place = next;
+                stride *= 2.0;
+            } else {
+                stride *= 0.35;
+            }
+            if stride < SHORTEST_STRIDE || system.statistics.newton_iterations - begun > BUDGET {
+                return false;
+            }
+        }
+        true
+    }
+}
+
+/// Ropes under which a tension \[N\] stretches a joint by a thousandth of its length and sinks a
+/// millimetre into the tighter arc, and whose bending dies out within 0.1 m.
+fn compliant(machine: &Machine, to: &Ropes, tension: f64) -> Ropes {
+    let pitch = machine.description.rope.pitch;
+    let mut ropes = *to;
+    let axial = tension / (1e-3 * pitch);
+    ropes.joint.stiffness = [axial, 0.4 * axial];
+    ropes.joint.rotational_stiffness = [tension * 1e-2 / pitch; 2];
+    let line = tension * pitch / machine.arc(0).radius.min(machine.arc(1).radius);
+    ropes.contact.stiffness = line / powf(1e-3, to.contact.exponent);
+    ropes
+}
+
+/// Newton's method with full steps. A chain that moves sideways stretches before it follows, so the
+/// step may grow now and then on the way.
+fn newton<E: Static>(system: &mut System<E>, q: &mut [f64]) -> bool {
+    let still = vec![0.0; q.len()];
+    let mut step = vec![0.0; q.len()];
+    let (mut shortest, mut setbacks) = (f64::INFINITY, 0);
+    while setbacks <= SETBACKS {
+        system.statistics.newton_iterations += 1;
+        system.forces(0.0, q, &still, &mut step);
+        if system.factorize_static(0.0, (q, &still), 0.0).is_err() {
+            return false;
+        }
+        system.solve(&mut step);
+        let norm = system.equations.newton_norm(&step);
+        if !norm.is_finite() || norm > LOST {
+            return false;
+        }
+        if norm < 0.9 * shortest {
+            shortest = norm;
+        } else {
+            setbacks += 1;
+        }
+        let factor = (LARGEST_STEP / norm).min(1.0);
+        for (q, step) in q.iter_mut().zip(&step) {
+            *q += factor * step;
+        }
+        if norm < CONVERGED {
+            return true;
+        }
+    }
+    false
+}
+
+const FIRST_STRIDE: f64 = 0.25;
+const SHORTEST_STRIDE: f64 = 2e-3;
+/// Stride below which a minimisation, of so many iterations at most, is tried where Newton's method
+/// fails: a cylinder snaps to or off its arc there.
+const CAREFUL: f64 = 0.02;
+const PATIENCE: u32 = 40;
+/// How often a step may fail to be shorter than all before it.
+const SETBACKS: u32 = 3;
+/// Longest step that is taken, and the step at which Newton's method is lost, in units of its
+/// accuracy: 0.2 m, and 20 m.
+const LARGEST_STEP: f64 = 1e5;
+const LOST: f64 = 1e7;

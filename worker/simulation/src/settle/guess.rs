@@ -1,0 +1,129 @@
+//! Where a taut machine about stands: stretched ropes on the arcs, sunk in under their line load.
+use crate::drive::DriveState;
+use crate::math::elementary::sin_cos;
+use crate::model::chain::Chain;
+use crate::model::kinematics::{DoesNotClose, Position};
+use crate::model::{Machine, Ropes};
+
+/// Coordinates near equilibrium: taut, stretched ropes on the arcs, sunk in as far as their line
+/// load asks for.
+///
+/// # Errors
+/// [`DoesNotClose`] when the stretched rope no longer reaches.
+pub fn guess(
+    machine: &Machine,
+    ropes: &Ropes,
+    drive: &DriveState,
+) -> Result<Vec<f64>, DoesNotClose> {
+    let d = &machine.description;
+    let layout = machine.layout;
+    let pull = drive.load + d.suspension_mass * d.gravity;
+    let rigid = rigid_position(machine, drive.pin_angle)?;
+    let front = Strand::new(machine, ropes, 1, pull);
+    let lever = pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1;
+    let back = Strand::new(machine, ropes, 0, lever / rigid.arm);
+    let mechanism = machine.mechanism(
+        back.radius,
+        machine.back_length()
+            + back.extension * (d.rope.back as f64 - 1.0 + 2.0 * d.rope.end_pitches),
+    );
+    let position = mechanism.position(drive.pin_angle, rigid.beam, rigid.tangent)?;
+
+    let mut q = vec![0.0; layout.len()];
+    q[layout.beam()] = position.beam;
+    let (s, c) = sin_cos(position.beam);
+    let [x, y] = d.back_arc.center;
+    let center = [c * x - s * y, s * x + c * y];
+    let leave = position.beam + position.tangent;
+    back.place(
+        machine,
+        0,
+        center,
+        [d.back_arc.anchor + position.beam, leave],
+        &mut q,
+    );
+    let (s, c) = sin_cos(leave);
+    // the rod points along the straight rope, towards the head: -t at the tangent point
+    q[layout.rod()] = crate::math::elementary::atan2(-c, s);
+    let end = front.place(
+        machine,
+        1,
+        [0.0; 2],
+        [d.front_arc.anchor + position.beam, 0.0],
+        &mut q,
+    );
+    q[layout.suspension()] = end;
+    Ok(q)
+}
+
+/// The inextensible position at a pin angle, followed from bottom dead centre.
+pub(super) fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, DoesNotClose> {
+    let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
+    let mut at = machine.bottom;
+    let steps = 24;
+    for k in 1..=steps {
+        let angle =
+            machine.bottom.pin + (pin - machine.bottom.pin) * f64::from(k) / f64::from(steps);
+        at = mechanism.position(angle, at.beam, at.tangent)?;
+    }
+    Ok(at)
+}
+
+/// One rope under a tension.
+struct Strand {
+    radius: f64,
+    extension: f64,
+}
+
+impl Strand {
+    fn new(machine: &Machine, ropes: &Ropes, chain: usize, tension: f64) -> Self {
+        let pitch = machine.description.rope.pitch;
+        let radius = machine.arc(chain).radius;
+        let depth = ropes
+            .contact
+            .depth_under(tension * pitch / radius)
+            .min(0.05);
+        Self {
+            radius: radius - depth,
+            extension: (tension / ropes.joint.stiffness[0]).clamp(0.0, 0.5 * pitch),
+        }
+    }
+
+    /// Places cylinders from the anchor (first angle) over the arc to where the rope leaves it
+    /// (second angle) and on along the tangent; returns the height of the rope's free end.
+    fn place(
+        &self,
+        machine: &Machine,
+        chain: usize,
+        center: [f64; 2],
+        [anchor, leave]: [f64; 2],
+        q: &mut [f64],
+    ) -> f64 {
+        let pitch = machine.description.rope.pitch;
+        let Chain { first, count, .. } = machine.chains[chain];
+        let width = machine.layout.motion.width();
+        let sense = machine.arc(chain).sense;
+        let wrapped = self.radius * (anchor - leave).abs();
+        let end = self.extension * machine.description.rope.end_pitches;
+        let mut along = end + 0.5 * pitch;
+        for j in (0..count).rev() {
+            let angle = if along < wrapped {
+                anchor - sense * along / self.radius
+            } else {
+                leave
+            };
+            let (s, c) = sin_cos(angle);
+            let straight = (along - wrapped).max(0.0);
+            // towards the anchor the rope runs along sense * t
+            let (tx, ty) = (-sense * s, sense * c);
+            let at = (first + j) * width;
+            q[at] = center[0] + self.radius * c - straight * tx;
+            q[at + 1] = center[1] + self.radius * s - straight * ty;
+            q[at + width - 1] = crate::math::elementary::atan2(ty, tx);
+            along += pitch + self.extension;
+        }
+        let (s, c) = sin_cos(leave);
+        let tip = along - 0.5 * pitch - self.extension + end - wrapped;
+        center[1] + self.radius * s - tip * sense * c
+    }
+}

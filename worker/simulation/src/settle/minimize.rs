@@ -1,0 +1,103 @@
+//! Minimisation of the potential from a start nearby.
+use crate::system::{Static, System};
+
+/// Iterations (factorisations) that one minimisation may take.
+const BUDGET: u32 = 150;
+
+/// How a step is damped that would raise the potential.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Damping {
+    /// Stiffness [N/m] with which a failed step is tried again first, and beyond which none is
+    /// tried; an answer must not depend on either.
+    pub first: f64,
+    /// Largest.
+    pub last: f64,
+}
+
+impl Default for Damping {
+    fn default() -> Self {
+        Self {
+            first: 1e2,
+            last: 1e14,
+        }
+    }
+}
+
+/// Minimises the potential at time `t` from `q` on; the loads of the last trial are at hand.
+///
+/// A damped Newton method that only ever accepts a lower potential. Whether a minimum was reached
+/// within the budget.
+pub fn minimize<E: Static>(system: &mut System<E>, t: f64, q: &mut [f64]) -> bool {
+    minimize_within(system, t, q, &Damping::default(), BUDGET)
+}
+
+/// [`minimize`] with a damping and a budget of its own.
+pub fn minimize_within<E: Static>(
+    system: &mut System<E>,
+    t: f64,
+    q: &mut [f64],
+    damping: &Damping,
+    budget: u32,
+) -> bool {
+    let n = q.len();
+    let still = vec![0.0; n];
+    let (mut force, mut step, mut trial) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    system.forces(t, q, &still, &mut force);
+    let mut height = system.equations.potential(t, q, &still);
+    let mut lambda = 0.0;
+    for _ in 0..budget {
+        system.statistics.newton_iterations += 1;
+        let solvable = system.factorize_static(t, (q, &still), lambda).is_ok();
+        step.copy_from_slice(&force);
+        if solvable {
+            system.solve(&mut step);
+        }
+        let norm = system.equations.newton_norm(&step);
+        let slope: f64 = force.iter().zip(&step).map(|(f, s)| f * s).sum();
+        if !(solvable && norm.is_finite() && slope > 0.0) {
+            if solvable && norm < CONVERGED {
+                return true;
+            }
+            lambda = (lambda * 10.0).max(damping.first);
+            if lambda > damping.last {
+                break;
+            }
+            system.forces(t, q, &still, &mut force);
+            continue;
+        }
+        let factor = (LARGEST_STEP / norm).min(1.0);
+        for i in 0..n {
+            trial[i] = q[i] + factor * step[i];
+        }
+        system.forces(t, &trial, &still, &mut force);
+        let next = system.equations.potential(t, &trial, &still);
+        // near the minimum the decrease drowns in rounding: then the step itself must be small
+        if next < height - 1e-4 * factor * slope
+            || (norm < ROUNDING && next < height + 1e-9 * height.abs())
+        {
+            q.copy_from_slice(&trial);
+            height = next;
+            if lambda == 0.0 && norm < CONVERGED {
+                return true;
+            }
+            lambda = if lambda <= damping.first {
+                0.0
+            } else {
+                lambda * 0.1
+            };
+        } else {
+            lambda = (lambda * 10.0).max(damping.first);
+            if lambda > damping.last {
+                break;
+            }
+            system.forces(t, q, &still, &mut force);
+        }
+    }
+    false
+}
+
+/// Longest step, and the step at which equilibrium is reached, in units of Newton's accuracy:
+/// 0.05 m, and 2e-11 m.
+const LARGEST_STEP: f64 = 2.5e4;
+pub(super) const CONVERGED: f64 = 1e-5;
+const ROUNDING: f64 = 1.0;

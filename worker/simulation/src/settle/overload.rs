@@ -1,0 +1,75 @@
+//! What ropes cannot carry whatever their shape: known from the tension alone.
+use super::guess::rigid_position;
+use crate::drive::DriveState;
+use crate::math::elementary::sin_cos;
+use crate::model::kinematics::DoesNotClose;
+use crate::model::{Machine, Ropes};
+use crate::verdict::{Failure, Limits};
+use std::f64::consts::PI;
+
+/// How the inextensible machine hangs under a drive: of back and front rope.
+pub(super) struct Hanging {
+    /// Tension \[N\].
+    pub(super) tension: [f64; 2],
+    /// Length that does not lie on the arc \[m\].
+    pub(super) span: [f64; 2],
+}
+
+impl Hanging {
+    /// # Errors
+    /// [`DoesNotClose`] when the mechanism does not reach the crank.
+    pub(super) fn new(machine: &Machine, drive: &DriveState) -> Result<Self, DoesNotClose> {
+        let d = &machine.description;
+        let pull = drive.load + d.suspension_mass * d.gravity;
+        let rigid = rigid_position(machine, drive.pin_angle)?;
+        let moment = pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1;
+        let leave = [rigid.tangent, -rigid.beam];
+        let span = [0, 1].map(|chain| {
+            let arc = machine.arc(chain);
+            let length = machine.chains[chain].count as f64 * d.rope.pitch;
+            (length - arc.radius * (arc.anchor - leave[chain]).abs()).max(d.rope.pitch)
+        });
+        Ok(Self {
+            tension: [moment / rigid.arm, pull],
+            span,
+        })
+    }
+}
+
+/// What the ropes cannot carry whatever their shape, with the share of the load at which they give
+/// in: the tension follows from the load and the arms alone, so stretch, line load and the
+/// cylinders' own stability are known before any equilibrium is sought.
+///
+/// Cylinders of pitch `p` under a tension `T` that all turn by the same small angle stretch the rope
+/// by `T p` of work and shear their joints by `k2 p^2` of it: where `k2 p < T` a straight rope gives
+/// way sideways, cylinder by cylinder. Bending resists in a span of `n` cylinders with at most
+/// `k5 (pi / n)^2`.
+pub fn overload(
+    machine: &Machine,
+    ropes: &Ropes,
+    drive: &DriveState,
+    limits: &Limits,
+) -> Option<(Failure, f64)> {
+    let Hanging { tension, span } = Hanging::new(machine, drive).ok()?;
+    let pitch = machine.description.rope.pitch;
+    let tightest = tension[0].max(tension[1]);
+    let carried = limits.extension * pitch * ropes.joint.stiffness[0] / tightest;
+    if carried < 1.0 {
+        return Some((Failure::OverstretchedRope, carried.max(0.0)));
+    }
+    let line = (0..2)
+        .map(|chain| tension[chain] * pitch / machine.arc(chain).radius)
+        .fold(0.0, f64::max);
+    let carried = ropes.contact.force(limits.penetration, 0.0).force / line;
+    if carried < 1.0 {
+        return Some((Failure::RopeThroughHead, carried.max(0.0)));
+    }
+    let carried = (0..2)
+        .map(|chain| {
+            let turn = PI * pitch / span[chain];
+            let bend = ropes.joint.rotational_stiffness[1] * turn * turn;
+            (ropes.joint.stiffness[1] * pitch + bend / pitch) / tension[chain]
+        })
+        .fold(f64::INFINITY, f64::min);
+    (carried < 1.0).then_some((Failure::TumbledCylinder, carried.max(0.0)))
+}
