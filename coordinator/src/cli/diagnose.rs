@@ -1,19 +1,19 @@
 //! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
 //! that is, and how far the gap closes.
 use super::{
-    Door, EXIT_CODES, OutputChoice, bus, cores, diagnosis_json, interrupt, output,
+    Door, EXIT_CODES, Output, OutputChoice,
+    answer::Answer,
+    bus, cores, diagnosis_json, interrupt, output,
     problem::Usage,
     progress::StageDisplay,
     run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, command_line},
 };
 use crate::{
     case::{Loaded, Overrides, load_with_notes, read_genes},
-    report::diagnosis as report,
-    study::{self, Diagnosed, StudyError},
+    study::{self, Crew, Diagnosed, StudyError},
 };
-use anyhow::Context as _;
 use clap::Args;
-use discrepancy::{diagnose::Inputs, settings::Settings};
+use discrepancy::{diagnose::Inputs, laboratory::Stage, settings::Settings};
 use protocol::{announce::EffectDescriptor, case::Case, job::Refinement};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
@@ -152,13 +152,81 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         })?;
     let wall_s = begun.wall_s + started.elapsed().as_secs_f64();
     begun.folder.spent(&manifest, case, wall_s)?;
-    show(
-        arguments,
-        &target,
-        &manifest,
-        &begun.folder,
-        (&diagnosed, &library, wall_s),
-    )
+    let answer = Answer {
+        folder: &begun.folder,
+        manifest: &manifest,
+        loaded: &target.loaded,
+        diagnosed: &diagnosed,
+        library: &library,
+        wall_s,
+    };
+    let object = answer.write()?;
+    if arguments.add {
+        answer.add(&target.folder.join("case.toml"))?;
+    }
+    answer.print(arguments.output.output, &object)
+}
+
+/// Writes the files of a finished diagnosis again, from its journal.
+pub(super) fn again(path: &Path, output: Output) -> anyhow::Result<()> {
+    let (folder, manifest, case) = RunFolder::open::<Decides>(path, DIAGNOSE)?;
+    folder.expect_replayable(&manifest)?;
+    let own = PathBuf::from(&manifest.measured);
+    let replaced = std::path::absolute(&own)? != manifest.case_folder;
+    let overrides = Overrides {
+        measured: replaced.then_some(own),
+    };
+    // a run keeps its case, but not the cycles of its records
+    let loaded = load_with_notes(&manifest.case_folder, &overrides)?;
+    if bus::case_hash(&loaded.case)? != bus::case_hash(&case)? {
+        return Err(Usage {
+            message: format!(
+                "the case has changed since {} was made, and its records are read anew",
+                path.display()
+            ),
+            help: format!(
+                "put {} back as it was, or diagnose it again with another --run",
+                manifest.case_folder.display()
+            ),
+        }
+        .into());
+    }
+    let (mut diagnosed, library) = bus::block_on(async {
+        let mut stop = interrupt::listen();
+        let options = bus::Options {
+            run_dir: path.to_owned(),
+            door: Door::default(),
+            local_workers: 0,
+            kind: DIAGNOSE.to_owned(),
+            settings: manifest.settings_json()?,
+        };
+        let mut bus = bus::Bus::replay(options, &case)?;
+        let found = diagnose(&mut bus, &manifest, &loaded, &mut Unwatched, &mut stop).await;
+        let closed = bus.close().await;
+        let found = found?;
+        closed?;
+        anyhow::Ok(found)
+    })?;
+    // reading takes a moment: the times are those of the session that computed
+    let earlier: diagnosis_json::Times = folder.read_json("result.json")?;
+    earlier.restore(&mut diagnosed.accounts);
+    let answer = Answer {
+        folder: &folder,
+        manifest: &manifest,
+        loaded: &loaded,
+        diagnosed: &diagnosed,
+        library: &library,
+        wall_s: manifest.wall_s,
+    };
+    let object = answer.write()?;
+    answer.print(output, &object)
+}
+
+/// Shows nothing.
+struct Unwatched;
+
+impl study::Watch for Unwatched {
+    fn progress(&mut self, _: Stage, _: u64, _: usize, _: &dyn Fn() -> Crew) {}
 }
 
 /// The case, and where the recalibration starts.
@@ -250,7 +318,7 @@ fn experiment(
             recorded => format!("going on with {path}: its journal holds {recorded} results"),
         });
         let mut display = StageDisplay::new();
-        let found = diagnose(&mut bus, manifest, target, &mut display, &mut stop).await;
+        let found = diagnose(&mut bus, manifest, &target.loaded, &mut display, &mut stop).await;
         display.clear();
         let closed = bus.close().await;
         let found = found?;
@@ -262,8 +330,8 @@ fn experiment(
 async fn diagnose(
     bus: &mut bus::Bus,
     manifest: &Manifest<Decides>,
-    target: &Target,
-    display: &mut StageDisplay,
+    loaded: &Loaded,
+    display: &mut dyn study::Watch,
     stop: &mut study::Stop,
 ) -> anyhow::Result<(Diagnosed, Vec<EffectDescriptor>)> {
     let library = study::library(bus, stop).await?;
@@ -279,21 +347,21 @@ async fn diagnose(
             .into());
         }
     }
-    let inputs = inputs(target, manifest, library)?;
+    let inputs = inputs(loaded, manifest, library)?;
     let diagnosed = study::diagnose_on(bus, &inputs, display, stop).await?;
     Ok((diagnosed, inputs.library))
 }
 
 /// What the pipeline takes: the calibrated condition's record first.
 fn inputs(
-    target: &Target,
+    loaded: &Loaded,
     manifest: &Manifest<Decides>,
     library: Vec<EffectDescriptor>,
 ) -> anyhow::Result<Inputs> {
-    let case = &target.loaded.case;
+    let case = &loaded.case;
     let space = Space::new(&case.genes)?;
     let calibrated = case.objective.condition;
-    let mut records = target.loaded.cycles.clone();
+    let mut records = loaded.cycles.clone();
     records.sort_by_key(|record| record.condition != calibrated);
     records.retain(|record| record.condition == calibrated || !record.cycles.is_empty());
     // effects that the case has already are ordinary physics, not suspects
@@ -323,61 +391,4 @@ fn inputs(
         seed: manifest.seed,
         settings: manifest.settings.thresholds.clone(),
     })
-}
-
-/// Writes what was found and prints it.
-fn show(
-    arguments: &Arguments,
-    target: &Target,
-    manifest: &Manifest<Decides>,
-    folder: &RunFolder,
-    (diagnosed, library, wall_s): (&Diagnosed, &[EffectDescriptor], f64),
-) -> anyhow::Result<()> {
-    let case = &target.loaded.case;
-    let subject = report::Subject {
-        case,
-        records: &target.loaded.cycles,
-        library,
-        diagnosed,
-        provenance: crate::report::Provenance {
-            program: manifest.program.clone(),
-            command: manifest.command.clone(),
-            run: folder.path().display().to_string(),
-            case_hash: bus::case_hash(case)?,
-            measured_name: manifest.measured.clone(),
-            synthetic: manifest.synthetic,
-            preset: None,
-            seed: Some(manifest.seed),
-            digest: String::new(),
-        },
-        notes: &manifest.notes,
-        wall_s,
-    };
-    let effects = report::effects_toml(&subject);
-    if let Some(text) = &effects {
-        folder.write("effects.toml", text)?;
-        if arguments.add {
-            append(&target.folder.join("case.toml"), text)?;
-        }
-    }
-    for file in report::write(folder.path(), &subject)?.iter().take(1) {
-        output::tell(&format!("open {}", file.display()));
-    }
-    let object = diagnosis_json::object(&subject);
-    folder.write_json("result.json", &object)?;
-    output::print(arguments.output.output, || report::text(&subject), &object)
-}
-
-/// Appends effects to a case file.
-fn append(file: &Path, text: &str) -> anyhow::Result<()> {
-    let mut whole =
-        std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?;
-    if !whole.ends_with('\n') {
-        whole.push('\n');
-    }
-    whole.push('\n');
-    whole.push_str(text);
-    std::fs::write(file, whole).with_context(|| format!("cannot write {}", file.display()))?;
-    output::tell(&format!("added to {}", file.display()));
-    Ok(())
 }

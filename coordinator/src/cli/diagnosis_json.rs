@@ -1,10 +1,13 @@
 //! The object that `horsehead diagnose --output json` prints: a contract, more may be added.
 use crate::report::diagnosis::Subject;
+use crate::study::Account;
 use discrepancy::diagnose::{Diagnosis, Estimate};
+use discrepancy::laboratory::Stage;
 use discrepancy::stage::show::Row;
 use discrepancy::verdict::Verdict;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// Of `horsehead diagnose`.
 #[derive(Debug, Serialize)]
@@ -99,7 +102,7 @@ struct PeakOutput {
 struct JointOutput {
     joint: String,
     ln_bayes: f64,
-    /// Whether it is told apart from the best.
+    /// Whether it is not told apart from the best.
     equivalent: bool,
 }
 
@@ -148,6 +151,29 @@ struct StageOutput {
     simulations: u64,
     failed: u64,
     wall_s: f64,
+}
+
+/// The times in an object that was written earlier.
+#[derive(Debug, Deserialize)]
+pub(super) struct Times {
+    stages: Vec<StageTime>,
+}
+
+#[derive(Debug, Deserialize)]
+struct StageTime {
+    stage: String,
+    wall_s: f64,
+}
+
+impl Times {
+    /// Puts the times of the stages back.
+    pub(super) fn restore(&self, accounts: &mut [(Stage, Account)]) {
+        for (stage, account) in accounts {
+            let known = self.stages.iter().find(|time| time.stage == stage.name());
+            let wall = known.and_then(|time| Duration::try_from_secs_f64(time.wall_s).ok());
+            account.wall = wall.unwrap_or(account.wall);
+        }
+    }
 }
 
 /// The object of a diagnosis.
@@ -333,3 +359,7 @@ fn gap(rows: &[Row], calibrated: usize) -> GapOutput {
         other_condition: one(false, false),
     }
 }
+
+#[cfg(test)]
+#[path = "diagnosis_json_tests.rs"]
+mod tests;

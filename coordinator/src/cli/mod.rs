@@ -2,6 +2,7 @@
 //!
 //! Results go to standard output, everything else to standard error. `--output json` prints
 //! exactly one object. Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.
+mod answer;
 mod bench;
 mod bus;
 mod calibrate;

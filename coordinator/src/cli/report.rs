@@ -1,11 +1,10 @@
 //! `horsehead report`: the files of a finished run again, from its journal.
 use super::{
-    Door, EXIT_CODES, OutputChoice, bus,
+    Door, EXIT_CODES, OutputChoice, bus, diagnose,
     finish::{self, Session},
     interrupt,
-    problem::Usage,
     progress::Silent,
-    run_folder::{self, RunFolder},
+    run_folder::{CALIBRATE, DIAGNOSE, RunFolder},
 };
 use clap::Args;
 use std::{path::PathBuf, time::Instant};
@@ -15,11 +14,12 @@ use std::{path::PathBuf, time::Instant};
 #[command(after_help = format!("\
 Example:
   horsehead report runs/cyjs10-5-37hb-quick-seed1
+  horsehead report runs/cyjs10-5-37hb-diagnose-seed1
 
 Nothing is simulated: an unfinished run is refused.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
-    /// Run folder of a calibration.
+    /// Run folder of a calibration or a diagnosis.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
     #[command(flatten)]
@@ -28,31 +28,12 @@ pub(super) struct Arguments {
 
 /// Replays the run and writes its files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if RunFolder::kind(&arguments.run).as_deref() == Some(DIAGNOSE) {
+        return diagnose::again(&arguments.run, arguments.output.output);
+    }
     let (folder, manifest, case) =
-        RunFolder::open::<search::strategy::Settings>(&arguments.run, run_folder::CALIBRATE)?;
-    if !folder.is_finished() {
-        return Err(Usage {
-            message: format!("{} is not finished", arguments.run.display()),
-            help: format!(
-                "go on with it first:\n  {}",
-                manifest.resume_command(&arguments.run)
-            ),
-        }
-        .into());
-    }
-    if !folder.has_journal() {
-        return Err(Usage {
-            message: format!(
-                "the journal of {} is gone or empty",
-                arguments.run.display()
-            ),
-            help: format!(
-                "put it back, or compute the run anew:\n  {}",
-                manifest.resume_command(&arguments.run)
-            ),
-        }
-        .into());
-    }
+        RunFolder::open::<search::strategy::Settings>(&arguments.run, CALIBRATE)?;
+    folder.expect_replayable(&manifest)?;
     let session = Session {
         folder: &folder,
         manifest: &manifest,

@@ -217,6 +217,31 @@ impl RunFolder {
         fs::metadata(self.file(journal::FILE)).is_ok_and(|file| file.len() > 0)
     }
 
+    /// Makes sure that the run can be replayed: it is finished and its journal is there.
+    ///
+    /// # Errors
+    /// If not; the error says how to go on.
+    pub(super) fn expect_replayable<S: Decides>(
+        &self,
+        manifest: &Manifest<S>,
+    ) -> Result<(), Usage> {
+        let path = self.path.display();
+        let (message, remedy) = if !self.is_finished() {
+            (format!("{path} is not finished"), "go on with it first")
+        } else if !self.has_journal() {
+            (
+                format!("the journal of {path} is gone or empty"),
+                "put it back, or compute the run anew",
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Usage {
+            message,
+            help: format!("{remedy}:\n  {}", manifest.resume_command(&self.path)),
+        })
+    }
+
     /// The folder of a run of any kind.
     ///
     /// # Errors
@@ -336,7 +361,7 @@ impl RunFolder {
         result.with_context(|| format!("cannot write {}", file.display()))
     }
 
-    fn read_json<T: DeserializeOwned>(&self, name: &str) -> anyhow::Result<T> {
+    pub(super) fn read_json<T: DeserializeOwned>(&self, name: &str) -> anyhow::Result<T> {
         let file = self.file(name);
         let text = fs::read_to_string(&file);
         let damaged = |why: String| {

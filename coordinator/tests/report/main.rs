@@ -1,6 +1,8 @@
 //! The report as a whole, from synthesised results: well-formed, self-contained, honest, small.
+mod diagnosis;
 mod geometry;
 mod sample;
+mod suspicion;
 
 use coordinator::report::{
     Calibration, SingleRun, chart, csv, html, table, write_calibration, write_simulation,

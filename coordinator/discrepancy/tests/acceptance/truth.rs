@@ -387,6 +387,7 @@ pub(crate) fn record(
             angle_tolerance_deg: ANGLE_TOLERANCE_DEG,
             noise: wanted.map(Some).collect(),
             noise_correlation: CORRELATION,
+            ..Stated::default()
         },
     }
 }

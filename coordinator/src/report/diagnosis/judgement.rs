@@ -97,8 +97,9 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
         };
     }
     let Some(best) = best.filter(|best| best.id != own.id) else {
+        // the round's own reason stands below its table
         return format!(
-            "dropped: the likeliest, and its {} nats are not enough",
+            "dropped: the likeliest name, with {} nats, but not believed",
             nats(gain)
         );
     };

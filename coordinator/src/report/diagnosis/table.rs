@@ -188,8 +188,9 @@ pub(super) fn limits(subject: &Subject<'_>) -> Option<Table> {
         );
         made.notes = vec![
             "Before any verdict, at the recalibrated point, each effect alone, with the misfit of the \
-             model without any. A limit well below the usual size means: had it been there, it would \
-             have been seen."
+             model without any: the size that the tests and the evidence asked for would not have \
+             missed. A limit well below the usual size means: had it been there, it would have been \
+             seen."
                 .to_owned(),
         ];
         made

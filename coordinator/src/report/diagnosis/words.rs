@@ -282,7 +282,7 @@ pub(super) fn next(subject: &Subject<'_>) -> Vec<String> {
     let missing = missing_gauges(subject);
     if !missing.is_empty() && !matches!(diagnosis.verdict, Verdict::NothingDetected) {
         steps.push(format!(
-            "Record {} too: what acts at the ropes and what acts at one gauge part there.",
+            "Record {} too: the more places a record has, the fewer effects look alike in it.",
             listed(&missing, "and")
         ));
     }

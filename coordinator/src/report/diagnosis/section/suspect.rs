@@ -22,7 +22,7 @@ fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
         }
         @for (number, round) in (1..).zip(&diagnosis.rounds) {
             (markup(&tables::suspects(number, round)))
-            @if let Some(reason) = &round.reason { p { "No effect was added: " (reason) "." } }
+            @if let Some(reason) = &round.reason { p { "No effect of this round is in the answer: " (reason) "." } }
         }
         @if let Some(generics) = tables::generics(first) { (markup(&generics)) }
         @if let Some(id) = &diagnosis.generic {

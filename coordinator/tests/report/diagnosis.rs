@@ -1,0 +1,170 @@
+//! The report of a diagnosis, for every verdict: complete, well-formed, honest.
+use crate::suspicion::{self, Made};
+use crate::{check_page, words};
+use coordinator::report::diagnosis;
+use discrepancy::verdict::Verdict;
+use roxmltree::Document;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+const ALL: [Verdict; 5] = [
+    Verdict::NothingDetected,
+    Verdict::Named,
+    Verdict::Ambiguous,
+    Verdict::Unlisted,
+    Verdict::Unresolved,
+];
+
+fn page(made: &Made) -> String {
+    let page = diagnosis::page(&made.subject()).expect("a page");
+    check_page(&page);
+    page
+}
+
+#[test]
+fn every_verdict_makes_a_page_and_a_text_without_numbers_that_are_none() {
+    for verdict in ALL {
+        let made = suspicion::diagnosis(verdict);
+        let page = words(&page(&made));
+        let text = diagnosis::text(&made.subject());
+        for said in [&page, &text] {
+            for none in ["NaN", "inf ", " inf", "-inf", "−inf"] {
+                assert!(!said.contains(none), "{verdict:?}: {none}");
+            }
+        }
+        let sections = [
+            "Where the curves part",
+            "What was suspected",
+            "What it shows",
+            "What it rests on",
+            "How it was made",
+        ];
+        for section in sections {
+            assert!(page.contains(section), "{verdict:?} has no {section}");
+        }
+        let added = matches!(verdict, Verdict::Named | Verdict::Ambiguous);
+        assert_eq!(page.contains("What is added"), added, "{verdict:?}");
+        assert_eq!(page.contains("[[effects]]"), added, "{verdict:?}");
+    }
+}
+
+#[test]
+fn a_name_stands_with_its_size_its_rival_and_what_to_do() {
+    let page = words(&page(&suspicion::diagnosis(Verdict::Named)));
+    for said in [
+        "The simulation lacks clearance of the <pins> & their \"bores\" (pin_clearance).",
+        "size = 0.800\u{a0}MPa (95\u{a0}% interval 0.700 to 0.900\u{a0}MPa)"
+            .replace('\u{a0}', " ")
+            .as_str(),
+        "The best rejected rival, drift of the gauges (gauge_drift), lies 2.0 nats behind",
+        "held-out cycles",
+        "another condition, which took no part",
+        "the best rejected rival, load_cell_lag",
+        "appended to case.toml",
+    ] {
+        assert!(
+            page.replace('\u{a0}', " ").contains(said),
+            "{said} is not in\n{page}"
+        );
+    }
+}
+
+#[test]
+fn every_suspect_is_told_why_it_was_kept_or_dropped() {
+    let made = suspicion::diagnosis(Verdict::Ambiguous);
+    let text = diagnosis::text(&made.subject());
+    for (id, why) in [
+        (
+            "pin_clearance",
+            "kept: the best of its ambiguity set, added",
+        ),
+        (
+            "gauge_drift",
+            "kept in the ambiguity set: 2.0 nats behind pin_clearance",
+        ),
+        (
+            "load_cell_lag",
+            "dropped: beaten by 316.3 nats by pin_clearance",
+        ),
+        ("rope_hysteresis", "dropped: not significant"),
+        (
+            "pivot_friction",
+            "dropped: the record asks for the wrong sign",
+        ),
+        ("gauge_gain", "dropped: recalibration absorbs it"),
+        ("twin_rope_inequality", "could not be simulated here"),
+        ("beam_inertia", "dropped: not significant"),
+    ] {
+        let line = text
+            .lines()
+            .find(|line| line.trim_start().starts_with(id) && line.contains(why));
+        assert!(line.is_some(), "{id} without `{why}` in\n{text}");
+    }
+}
+
+#[test]
+fn what_is_not_known_is_said() {
+    let nothing = words(&page(&suspicion::diagnosis(Verdict::NothingDetected)));
+    assert!(nothing.contains("Nothing detected") && nothing.contains("1 would have been seen"));
+    assert!(
+        nothing.contains("never: absorbed"),
+        "an absorbed effect has no limit"
+    );
+    let unlisted = words(&page(&suspicion::diagnosis(Verdict::Unlisted)));
+    assert!(unlisted.contains("it acts like a force on the head, as sgn v (probe.back_head.sign)"));
+    let unresolved = words(&page(&suspicion::diagnosis(Verdict::Unresolved)));
+    assert!(unresolved.contains("The reason: the likeliest is not enough."));
+    let stopped = suspicion::stopped("there is no record of the calibrated condition");
+    let said = words(&page(&stopped));
+    assert!(said.contains("The reason: there is no record of the calibrated condition."));
+    assert!(said.contains("The noise was assumed, not seen"));
+    assert!(!said.contains("What it shows"));
+    assert!(diagnosis::text(&stopped.subject()).starts_with("UNRESOLVED\n"));
+}
+
+#[test]
+fn the_folder_holds_the_figures_and_the_data_behind_them() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnosis");
+    let made = suspicion::diagnosis(Verdict::Named);
+    let written = diagnosis::write(&folder, &made.subject()).unwrap();
+    let names: BTreeSet<String> = written
+        .iter()
+        .filter_map(|path| Some(path.strip_prefix(&folder).ok()?.display().to_string()))
+        .collect();
+    assert_eq!(names.len(), written.len(), "a file is written twice");
+    for name in [
+        "report.html",
+        "tables.txt",
+        "curves.csv",
+        "suspects.csv",
+        "figures/where_angle.svg",
+        "figures/where_order.svg",
+        "figures/where_joint.svg",
+        "figures/proof_5rpm_gauge_1.svg",
+        "figures/proof_4rpm_gauge_3.svg",
+        "figures/proof_5rpm_crank_torque.svg",
+    ] {
+        assert!(names.contains(name), "{name} is not among {names:?}");
+    }
+    for path in &written {
+        let text = std::fs::read_to_string(path).unwrap();
+        if path.extension().is_some_and(|extension| extension == "svg") {
+            Document::parse(&text).expect("well-formed SVG");
+            assert!(!text.contains("NaN"), "{}", path.display());
+        }
+    }
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).unwrap();
+    let curves = read("curves.csv");
+    // two conditions, four channels, 360 angles
+    assert_eq!(curves.lines().count(), 1 + 2 * 4 * 360);
+    assert!(
+        curves.starts_with("condition,channel,unit,turn_deg,measured,spread,before,after,rival")
+    );
+    let suspects = read("suspects.csv");
+    assert_eq!(suspects.lines().count(), 1 + 8 + 1);
+    let best = suspects.lines().nth(1).unwrap();
+    assert!(
+        best.starts_with("1,pin_clearance,") && best.contains(",true,kept"),
+        "{best}"
+    );
+}
