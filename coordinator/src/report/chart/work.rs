@@ -94,27 +94,26 @@ pub fn work_precision(all: &WorkPrecision) -> Result<Figure, ChartError> {
 }
 
 fn caption(title: &str, all: &WorkPrecision) -> String {
-    let mut text = format!(
-        "{title}: root mean square difference to a converged run over the range of the worst gauge \
-         (two converged runs of different methods are {} apart). Dots are runs, lines join those of \
-         a method that none of its others beats; dashed, one per cent.",
-        percent_of(all.resolution)
-    );
-    if let Some(fixed) = &all.fixed {
-        text.push_str(&format!(
+    let fixed = all.fixed.as_ref().map_or_else(String::new, |fixed| {
+        format!(
             " A fixed step of {:e} s would take {}, extrapolated from {} steps.",
             fixed.step_s,
             duration(fixed.whole_s()),
             fixed.steps
-        ));
-    }
-    text
+        )
+    });
+    format!(
+        "{title}: root mean square difference to a converged run over the range of the worst gauge \
+         (two converged runs of different methods are {} apart). Dots are runs, lines join those of \
+         a method that none of its others beats; dashed, one per cent.{fixed}",
+        percent_of(all.resolution)
+    )
 }
 
 /// Small shares with the digits they have.
 fn percent_of(share: f64) -> String {
     if share < 5e-4 {
-        format!("{:.1e}", share)
+        format!("{share:.1e}")
     } else {
         percent(share)
     }

@@ -6,7 +6,7 @@ use simulation::system::Equations;
 
 /// `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with
 /// `m(q) = 1 + cos(q_0) / 8`, solved by `q = x(t)`, `x_i = sin(w_i t + i)`.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Forced;
 
 const STIFFNESS: f64 = 40.0;

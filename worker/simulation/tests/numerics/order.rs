@@ -158,7 +158,7 @@ fn order_holds_for_forced_equations_with_a_known_solution() {
         let (method, order) = fixed(method);
         let coarsest = if order == 4 { 40 } else { 100 };
         let ends = [1, 2, 4].map(|k| {
-            let mut system = System::new(Forced::default());
+            let mut system = System::new(Forced);
             let stepper = method.stepper(&system, TIGHT);
             let start = Forced::exact(0.3);
             equal_steps(&mut system, stepper, start, 1.0, k * coarsest)
@@ -195,7 +195,7 @@ fn each_backward_differentiation_formula_has_its_order() {
             let past: Vec<State> = (0..=order)
                 .map(|i| Forced::exact(0.3 - h * i as f64))
                 .collect();
-            let mut system = System::new(Forced::default());
+            let mut system = System::new(Forced);
             let method = Box::new(Bdf::continuing(order, &past, TIGHT));
             let end = equal_steps(&mut system, method, past[0].clone(), 1.0, k * coarsest);
             largest_difference(&end.q, &Forced::exact(1.3).q)
@@ -209,7 +209,7 @@ fn each_backward_differentiation_formula_has_its_order() {
 #[test]
 fn order_survives_steps_of_changing_size() {
     let uneven = |method: Method, steps: usize| {
-        let mut system = System::new(Forced::default());
+        let mut system = System::new(Forced);
         let mut stepper = method.stepper(&system, TIGHT);
         let mut from = Forced::exact(0.3);
         let mut to = from.clone();
