@@ -46,14 +46,14 @@ pub(super) struct Arguments {
     /// Gene file to start the recalibration from, such as a run's `calibrated.toml`.
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
     genes: Option<PathBuf>,
-    /// Effect that is not to be considered; may be given several times.
-    #[arg(long, value_name = "EFFECT")]
+    /// Effect that is not to be considered; may be given several times, or with commas.
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', env = "HORSEHEAD_WITHOUT")]
     without: Vec<String>,
     /// Effects that are added at most.
-    #[arg(long, default_value_t = 3, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
+    #[arg(long, default_value_t = 3, value_name = "N", env = "HORSEHEAD_ROUNDS", value_parser = clap::value_parser!(u8).range(1..=5))]
     rounds: u8,
     /// Append what is found to the case's case.toml.
-    #[arg(long)]
+    #[arg(long, env = "HORSEHEAD_ADD")]
     add: bool,
     /// Fixes every random choice: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]

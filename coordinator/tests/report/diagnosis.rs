@@ -28,9 +28,9 @@ fn every_verdict_makes_a_page_and_a_text_without_numbers_that_are_none() {
         let page = words(&page(&made));
         let text = diagnosis::text(&made.subject());
         for said in [&page, &text] {
-            for none in ["NaN", "inf ", " inf", "-inf", "−inf"] {
-                assert!(!said.contains(none), "{verdict:?}: {none}");
-            }
+            let mut tokens = said.split(|c: char| !c.is_alphanumeric());
+            let none = tokens.find(|token| matches!(*token, "NaN" | "inf"));
+            assert_eq!(none, None, "{verdict:?}");
         }
         let sections = [
             "Where the curves part",
@@ -56,7 +56,7 @@ fn a_name_stands_with_its_size_its_rival_and_what_to_do() {
         "size = 0.800\u{a0}MPa (95\u{a0}% interval 0.700 to 0.900\u{a0}MPa)"
             .replace('\u{a0}', " ")
             .as_str(),
-        "The best rejected rival, drift of the gauges (gauge_drift), lies 2.0 nats behind",
+        "The best rejected rival, drift of the gauges (gauge_drift), lies 10.2 nats behind",
         "held-out cycles",
         "another condition, which took no part",
         "the best rejected rival, load_cell_lag",

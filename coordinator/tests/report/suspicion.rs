@@ -384,7 +384,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     let added = matches!(verdict, Verdict::Named | Verdict::Ambiguous);
     let mut effects = vec![estimate(&library[0], 0.8, 596.9)];
     match verdict {
-        Verdict::Named => {}
+        // far enough behind to be rejected
+        Verdict::Named => round.refits[1].log_evidence = -100.0,
         Verdict::Ambiguous => {
             effects.push(estimate(&library[1], 0.7, 594.8));
             round.set.push(library[1].id.clone());

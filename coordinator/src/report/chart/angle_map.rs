@@ -15,7 +15,7 @@ const ROW: f64 = 30.0;
 const FOOT: f64 = 46.0;
 /// By how much cells overlap [px]: no seams between them.
 const OVERLAP: f64 = 0.5;
-/// The colour scale ends here at the earliest [standard deviations]: noise stays pale.
+/// The colour scale ends here at the earliest (standard deviations): noise stays pale.
 const LEAST: f64 = 5.0;
 
 /// Draws the map; rows are `channels`, in the map's order. None of an empty map.

@@ -95,7 +95,7 @@ pub fn closing(of: &Closing<'_>) -> Result<Option<Figure>, ChartError> {
     strips.extend(residuals(of));
     let title = format!("{}, condition {}", capitalised(of.channel), of.condition);
     stack(
-        format!("proof_{}_{}", of.condition, of.channel),
+        format!("proof_{}_{}", of.condition, of.channel.replace(' ', "_")),
         &title,
         caption(of, &title),
         &strips,

@@ -1,7 +1,7 @@
 //! What the verdict rests on: numerical error, noise, convergence, parameters, cost.
 use super::{Figures, Section};
 use crate::report::diagnosis::{Subject, table as tables};
-use crate::report::number::figure;
+use crate::report::number::{figure, percent};
 use crate::report::table::markup;
 use maud::{Markup, html};
 
@@ -26,13 +26,14 @@ fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
             }
             dt { "recalibration" }
             dd {
-                "largest cosine between a parameter and the residual "
-                (figure(fit.search.gradient_ratio())) " (0 at a minimum)"
+                "one more step promises to lower the misfit by "
+                (percent(fit.search.promised_decrease()))
+                "; the tests look at the residual after that step"
             }
             @if let Some(after) = &diagnosis.after {
                 @if !after.model.added.is_empty() {
                     dt { "fit with the answer" }
-                    dd { "the same: " (figure(after.search.gradient_ratio())) }
+                    dd { "the same: " (percent(after.search.promised_decrease())) }
                 }
             }
             @if let Some(round) = diagnosis.rounds.first() {
