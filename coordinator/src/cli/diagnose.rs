@@ -47,7 +47,12 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
     genes: Option<PathBuf>,
     /// Effect that is not to be considered; may be given several times, or with commas.
-    #[arg(long, value_name = "EFFECT", value_delimiter = ',', env = "HORSEHEAD_WITHOUT")]
+    #[arg(
+        long,
+        value_name = "EFFECT",
+        value_delimiter = ',',
+        env = "HORSEHEAD_WITHOUT"
+    )]
     without: Vec<String>,
     /// Effects that are added at most.
     #[arg(long, default_value_t = 3, value_name = "N", env = "HORSEHEAD_ROUNDS", value_parser = clap::value_parser!(u8).range(1..=5))]
