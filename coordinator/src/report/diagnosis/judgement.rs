@@ -1,5 +1,5 @@
 //! What became of every suspect, and why: one sentence each.
-use super::words::{nats, p_value};
+use super::words::{equals, nats, p_value};
 use discrepancy::diagnose::Round;
 use discrepancy::score::{chi_squared_tail, family_wise};
 use discrepancy::stage::refit::Refitted;
@@ -147,7 +147,7 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
     }
     let p = tempered(round, suspect).unwrap_or(1.0);
     if p > 0.01 {
-        format!("dropped: not significant (p = {})", p_value(p))
+        format!("dropped: not significant (p {})", equals(&p_value(p)))
     } else {
         "dropped: likelier suspects filled the places for refits".to_owned()
     }

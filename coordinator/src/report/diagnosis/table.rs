@@ -9,6 +9,7 @@ use crate::report::words::{at_bound, condition_name};
 use discrepancy::diagnose::Round;
 use discrepancy::record::Source;
 use discrepancy::stage::show;
+use protocol::announce::{ParameterDescriptor, Role};
 
 fn table<const N: usize>(title: impl Into<String>, head: [&str; N], rows: Vec<Row>) -> Table {
     Table {
@@ -57,8 +58,8 @@ pub(super) fn suspects(number: usize, round: &Round) -> Table {
             figure(round.phi)
         ),
         format!(
-            "Over the whole family of named effects, p = {}.",
-            p_value(round.p_value)
+            "Over the whole family of named effects, p {}.",
+            words::equals(&p_value(round.p_value))
         ),
     ];
     made
@@ -120,7 +121,7 @@ pub(super) fn sizes(subject: &Subject<'_>) -> Option<Table> {
                 [
                     quantity(*value, unit),
                     interval(*ci95, unit),
-                    of(known.map(|p| p.scale)),
+                    of(known.map(usual)),
                     known.map_or_else(|| NONE.to_owned(), |p| interval([p.lower, p.upper], unit)),
                     known
                         .and_then(|p| edge(*value, p.lower, p.upper))
@@ -143,6 +144,14 @@ pub(super) fn sizes(subject: &Subject<'_>) -> Option<Table> {
         ];
         made
     })
+}
+
+/// How large a parameter usually is: of a shape, its typical value.
+fn usual(parameter: &ParameterDescriptor) -> f64 {
+    match parameter.role {
+        Role::Size => parameter.scale,
+        Role::Shape => parameter.typical,
+    }
 }
 
 /// Which bound a value on a linear scale touches.
@@ -200,14 +209,20 @@ pub(super) fn limits(subject: &Subject<'_>) -> Option<Table> {
 /// The gap before and after, of the answer and of the best rejected rival.
 pub(super) fn gaps(subject: &Subject<'_>) -> Option<Table> {
     let diagnosis = &subject.diagnosed.diagnosis;
+    let added = words::added(diagnosis).next().is_some();
     let mut rows: Vec<Row> = Vec::new();
     if !diagnosis.rows.is_empty() {
-        rows.push(Row::Group("the answer".to_owned()));
-        rows.extend(diagnosis.rows.iter().map(|row| gap(subject, row)));
+        let whose = if added {
+            "the answer"
+        } else {
+            "the recalibrated model, to which nothing was added"
+        };
+        rows.push(Row::Group(whose.to_owned()));
+        rows.extend(diagnosis.rows.iter().map(|row| gap(subject, row, added)));
     }
     if let Some((id, rival)) = &diagnosis.rival {
         rows.push(Row::Group(format!("the best rejected rival, {id}")));
-        rows.extend(rival.iter().map(|row| gap(subject, row)));
+        rows.extend(rival.iter().map(|row| gap(subject, row, true)));
     }
     (!rows.is_empty()).then(|| {
         let mut made = table(
@@ -228,7 +243,8 @@ pub(super) fn gaps(subject: &Subject<'_>) -> Option<Table> {
     })
 }
 
-fn gap(subject: &Subject<'_>, of: &show::Row) -> Row {
+/// One row of it; without a change there is nothing after and nothing closed.
+fn gap(subject: &Subject<'_>, of: &show::Row, changed: bool) -> Row {
     let small = |share: f64| {
         if share.is_finite() {
             format!("{}\u{a0}%", figure(100.0 * share))
@@ -244,9 +260,17 @@ fn gap(subject: &Subject<'_>, of: &show::Row) -> Row {
         ),
         [
             small(of.closed.before),
-            small(of.closed.after),
-            percent(of.closed.closed),
-            of.closed.interval.map_or_else(
+            if changed {
+                small(of.closed.after)
+            } else {
+                NONE.to_owned()
+            },
+            if changed {
+                percent(of.closed.closed)
+            } else {
+                NONE.to_owned()
+            },
+            of.closed.interval.filter(|_| changed).map_or_else(
                 || NONE.to_owned(),
                 |[low, high]| format!("{} to {}", percent(low), percent(high)),
             ),

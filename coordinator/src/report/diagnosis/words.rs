@@ -29,7 +29,7 @@ pub(super) fn quantity(value: f64, unit: &str) -> String {
     match unit {
         _ if !value.is_finite() => NONE.to_owned(),
         "" | "1" => figure(value),
-        _ => format!("{}\u{a0}{unit}", figure(value)),
+        _ => format!("{}\u{a0}{}", figure(value), unit.replace('.', "·")),
     }
 }
 
@@ -188,7 +188,7 @@ pub(super) fn confidence(subject: &Subject<'_>) -> Vec<String> {
 }
 
 /// `= x`, or `< x` as it is.
-fn equals(p: &str) -> String {
+pub(super) fn equals(p: &str) -> String {
     if p.starts_with('<') {
         p.to_owned()
     } else {
@@ -253,7 +253,7 @@ pub(super) fn next(subject: &Subject<'_>) -> Vec<String> {
     match diagnosis.verdict {
         Verdict::Named => steps.push(
             "Look at that part of the machine. The entry below, appended to case.toml (or the same \
-             command with --add), makes the effect ordinary physics that `calibrate` fits."
+             command with --add), makes the effect ordinary physics, which a calibration fits."
                 .to_owned(),
         ),
         Verdict::Ambiguous => {

@@ -3,6 +3,7 @@ use super::{Figures, Section};
 use crate::report::diagnosis::{Subject, words};
 use crate::report::number::{figure, fixed};
 use crate::report::section::figure as framed;
+use discrepancy::locate::angle::Window;
 use discrepancy::stage::whereabouts::Where;
 use maud::{Markup, html};
 
@@ -43,7 +44,7 @@ fn windows(seen: &Where, channels: &[String]) -> Markup {
                 @for window in all.iter().take(NAMED) {
                     li {
                         (name(window.channel)) ", " (fixed(window.from_deg, 0)) " to "
-                        (fixed(window.to_deg.rem_euclid(360.0), 0)) " deg: the simulation is too "
+                        (fixed(end_deg(window), 0)) " deg: the simulation is too "
                         @if window.strength > 0.0 { "low" } @else { "high" }
                         " by " (fixed(window.strength.abs(), 1)) " standard deviations"
                     }
@@ -51,6 +52,15 @@ fn windows(seen: &Where, channels: &[String]) -> Markup {
             }
             @if all.len() > NAMED { p { "and " (all.len() - NAMED) " more windows." } }
         }
+    }
+}
+
+/// Where a window ends, within the revolution.
+fn end_deg(window: &Window) -> f64 {
+    if window.to_deg > 360.0 {
+        window.to_deg - 360.0
+    } else {
+        window.to_deg
     }
 }
 

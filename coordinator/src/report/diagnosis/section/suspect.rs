@@ -31,8 +31,9 @@ fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
         @if !classes.is_empty() {
             h3 { "What this record cannot tell apart" }
             p {
-                "At their usual sizes, whatever the verdict; where one member of a group is named, \
-                 suspect the others too:"
+                "At their usual sizes, whatever the verdict. Each member of a group resembles at least \
+                 one other so much that this record would not part the two; the members of a long group \
+                 form a chain, and its ends may well be told apart."
             }
             ul { @for class in classes { li { (class.join(", ")) } } }
         }
