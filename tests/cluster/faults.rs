@@ -44,7 +44,8 @@ async fn local_workers_do_all_jobs_and_are_gone_afterwards() {
         spent.useful_us > 0 && spent.useful_us < spent.connected_us,
         "{spent:?}"
     );
-    wait_until("the slots are gone", Duration::from_secs(1), || {
+    // tests beside this one have slots too, for as long as they run
+    wait_until("the slots are gone", Duration::from_secs(60), || {
         slots.iter().all(|slot| !is_alive(*slot))
     });
 }

@@ -92,14 +92,14 @@ impl Peer {
 fn announcement(model_digest: &str) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
-        build: "0".to_owned(),
+        build: format!("{} test", env!("CARGO_PKG_VERSION")),
         model_digest: model_digest.to_owned(),
         host: "elsewhere".to_owned(),
         pid: 1,
         slots: 1,
         cores: 1,
         job_kinds: Vec::new(),
-        effects: Vec::new(),
+        effects: worker::convert::effect::descriptors(),
     }
 }
 

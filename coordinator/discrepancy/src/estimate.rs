@@ -40,6 +40,10 @@ pub struct Limit {
     pub size: f64,
 }
 
+/// Half-width of a 95 % interval in standard deviations: Student's, for the nine degrees of freedom
+/// that the variance of a low order has from a handful of cycles.
+const QUANTILE: f64 = 2.262;
+
 /// Detection limits and classes of effects, before any verdict.
 pub(crate) fn outlook(
     round: &Round,
@@ -116,7 +120,7 @@ fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
     let deviations = deviations(fit, round.phi);
     let parameters = effect.parameters.iter().enumerate().map(|(k, p)| {
         let x = fit.x()[first + k];
-        let half = 1.96 * deviations[first + k] * p.scale;
+        let half = QUANTILE * deviations[first + k] * p.scale;
         let value = (p.absent + x * p.scale).clamp(p.lower, p.upper);
         let interval = [(value - half).max(p.lower), (value + half).min(p.upper)];
         (p.name.clone(), p.unit.clone(), value, interval)

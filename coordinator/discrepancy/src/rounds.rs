@@ -207,7 +207,9 @@ async fn examine<L: Laboratory>(
         .filter_map(|s| Some((s.score.as_ref()?, s.tries)))
         .map(|(score, tries)| {
             let tail = crate::score::chi_squared_tail(score.statistic / (phi * phi), score.freedom);
-            family_wise(tail.min(score.p_value.max(tail)), tries)
+            // an estimate of the wrong sign speaks against its effect
+            let own = if score.p_value < 1.0 { tail } else { 1.0 };
+            family_wise(own, tries)
         })
         .fold(1.0, f64::min);
     Ok(Round {

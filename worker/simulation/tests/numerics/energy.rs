@@ -135,7 +135,8 @@ fn machine_defect(method: Method, tolerance: f64, stiffer: f64) -> f64 {
 fn ledger_of_the_reference_machine_closes_with_the_tolerance() {
     for method in CATALOGUE {
         let allowed = match method {
-            Method::RungeKutta(_) | Method::GeneralizedAlpha { .. } => [3e-3, 1e-3, 3e-5, 2e-6],
+            Method::RungeKutta(_) => [3e-3, 1e-3, 3e-5, 2e-6],
+            Method::GeneralizedAlpha { .. } => [6e-3, 1e-3, 3e-5, 2e-6],
             Method::Rosenbrock => [3e-3, 1e-3, 1e-4, 1e-5],
             Method::Bdf { .. } => [3e-2, 1e-3, 3e-5, 3e-6],
         };
