@@ -38,7 +38,7 @@ impl Default for Settings {
     fn default() -> Self {
         Self {
             orders: 120,
-            alpha: 0.001,
+            alpha: 0.01,
             adequacy: 1e-3,
             suspects: 8,
             gain: 3.0,
