@@ -45,7 +45,7 @@ async fn local_workers_do_all_jobs_and_are_gone_afterwards() {
         "{spent:?}"
     );
     // tests beside this one have slots too, for as long as they run
-    wait_until("the slots are gone", Duration::from_secs(60), || {
+    wait_until("the slots are gone", Duration::from_mins(1), || {
         slots.iter().all(|slot| !is_alive(*slot))
     });
 }

@@ -54,7 +54,7 @@ fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
 
 /// Slot processes of this process: other tests of the suite have theirs in processes of workers.
 /// Longest that the slots of tests beside may be seen.
-const BESIDE: std::time::Duration = std::time::Duration::from_secs(60);
+const BESIDE: Duration = Duration::from_mins(1);
 
 fn slots() -> BTreeSet<i32> {
     children(getpid())

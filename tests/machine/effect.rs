@@ -78,7 +78,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     ];
     let of_job = observe(&case, &effects, Refinement::default());
     assert_ne!(bits(&of_job), bits(&plain));
-    let mut with = case.clone();
+    let mut with = case;
     with.effects = effects.iter().rev().cloned().collect();
     assert_eq!(
         bits(&observe(&with, &[], Refinement::default())),

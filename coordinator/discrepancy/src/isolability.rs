@@ -38,7 +38,7 @@ pub fn detection_limit(
 ) -> f64 {
     let one = signature.columns(column, 1);
     let own = one.dot(&tangent.project_columns(&one.into_owned()));
-    if !(own > 1e-9 * one.norm_squared()) {
+    if own.is_nan() || own <= 1e-9 * one.norm_squared() {
         return f64::INFINITY;
     }
     let m = signature.ncols() as f64;

@@ -58,7 +58,7 @@ pub fn score(
         .iter()
         .zip(eigen.eigenvectors.column_iter())
     {
-        if !(*value > ABSORBED * raw.max(largest)) {
+        if value.is_nan() || *value <= ABSORBED * raw.max(largest) {
             for (variance, v) in variance.iter_mut().zip(vector.iter()) {
                 if v.abs() > 1e-3 {
                     *variance = f64::INFINITY;

@@ -113,7 +113,7 @@ mod tests {
             &Linearized {
                 jacobian: at.jacobian.columns(1, 1).into_owned(),
                 x: vec![0.0],
-                residual: at.residual.clone(),
+                residual: at.residual,
             },
             &[variable(None)],
         );

@@ -110,10 +110,12 @@ fn square(residual: &[f64]) -> f64 {
     residual.iter().map(|r| r * r).sum()
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the type of those that may fail")]
 fn sphere(x: &[f64], optimum: &[f64]) -> Value {
     Ok(x.iter().zip(optimum).map(|(x, o)| x - o).collect())
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the type of those that may fail")]
 fn rastrigin(x: &[f64], optimum: &[f64]) -> Value {
     let ripple = |d: f64| d * d + 0.5 - 0.5 * libm::cos(4.0 * std::f64::consts::PI * d);
     let distances = x.iter().zip(optimum).map(|(x, o)| x - o);

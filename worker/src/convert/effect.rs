@@ -117,13 +117,11 @@ fn meant<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> Strin
         .map(|other| (strsim::normalized_damerau_levenshtein(name, other), other))
         .filter(|(alike, _)| *alike >= 0.5)
         .max_by(|a, b| a.0.total_cmp(&b.0));
-    match alike {
-        Some((_, near)) => format!("did you mean `{near}`?"),
-        None => {
-            let plain: Vec<&str> = known.filter(|name| !name.contains('.')).collect();
-            format!("known are {}", plain.join(", "))
-        }
+    if let Some((_, near)) = alike {
+        return format!("did you mean `{near}`?");
     }
+    let plain: Vec<&str> = known.filter(|name| !name.contains('.')).collect();
+    format!("known are {}", plain.join(", "))
 }
 
 #[cfg(test)]
@@ -133,10 +131,11 @@ mod tests {
     fn refused(id: &str, name: &str, value: f64) -> (String, String) {
         let good = EffectSetting::new("load_offset", &[("force", 500.0)]);
         let settings = [good, EffectSetting::new(id, &[(name, value)])];
-        match selection(&settings).unwrap_err() {
-            Failure::Misconfigured { field, problem } => (field, problem),
-            other => unreachable!("{other:?}"),
-        }
+        let failure = selection(&settings).unwrap_err();
+        let Failure::Misconfigured { field, problem } = failure else {
+            unreachable!("{failure:?}");
+        };
+        (field, problem)
     }
 
     #[test]

@@ -65,7 +65,7 @@ fn log_bayes(latent: &Latent, residual: &DVector<f64>, tangent: &Tangent) -> f64
     let scaled = DMatrix::from_fn(n, n, |i, j| shape(i) * information[(i, j)] * shape(j));
     let u = DVector::from_fn(n, |i, _| shape(i) * gain[i]);
     let typical = scaled.trace() / n as f64;
-    if !(typical > 0.0) {
+    if typical.is_nan() || typical <= 0.0 {
         return 0.0;
     }
     let at = |s2: f64| -> f64 {

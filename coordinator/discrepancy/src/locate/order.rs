@@ -81,7 +81,7 @@ pub fn map(
         .enumerate()
         .filter(|(i, peak)| peak.p_value <= level * (i + 1) as f64 / tests)
         .map(|(i, _)| i + 1)
-        .last();
+        .next_back();
     entries.truncate(last.unwrap_or(0));
     OrderMap {
         ratio,

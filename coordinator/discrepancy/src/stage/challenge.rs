@@ -122,7 +122,11 @@ fn forms<'a>(generics: &'a [Suspect], residual: &DVector<f64>, tangent: &Tangent
         parts.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
         let columns: Vec<DVector<f64>> = parts
             .iter()
-            .flat_map(|part| part.signature.column_iter().map(|c| c.into_owned()))
+            .flat_map(|part| {
+                part.signature
+                    .column_iter()
+                    .map(nalgebra::Matrix::into_owned)
+            })
             .collect();
         if columns.is_empty() {
             return None;

@@ -75,21 +75,16 @@ pub(crate) async fn establish<L: Laboratory>(
     };
     let preflight = preflight::check(lab, &bench, &second, inputs.finer).await?;
     let mut notes = Vec::new();
-    let (bench, fit) = match &preflight {
-        Some(seen) => {
-            noise.add_error(&seen.left);
-            let bench = weigh(&noise);
-            match recalibrate::converge(lab, &bench, model, second.x()).await? {
-                Some(fit) => (bench, fit),
-                None => return Ok(None),
-            }
+    let (bench, fit) = if let Some(seen) = &preflight {
+        noise.add_error(&seen.left);
+        let bench = weigh(&noise);
+        match recalibrate::converge(lab, &bench, model, second.x()).await? {
+            Some(fit) => (bench, fit),
+            None => return Ok(None),
         }
-        None => {
-            notes.push(
-                "the finer model did not complete: the numerical error is unknown".to_owned(),
-            );
-            (bench, second)
-        }
+    } else {
+        notes.push("the finer model did not complete: the numerical error is unknown".to_owned());
+        (bench, second)
     };
     Ok(Some(Base {
         bench,

@@ -74,7 +74,7 @@ fn propose<'a>(fit: &Fit, suspects: &'a [Suspect]) -> Vec<Proposal<'a>> {
     for (k, &a) in able.iter().enumerate() {
         for &b in &able[k + 1..] {
             let columns = a.signature.column_iter().chain(b.signature.column_iter());
-            let columns: Vec<DVector<f64>> = columns.map(|c| c.into_owned()).collect();
+            let columns: Vec<DVector<f64>> = columns.map(nalgebra::Matrix::into_owned).collect();
             let signature = DMatrix::from_columns(&columns);
             let found = score(residual, &signature, &[], &tangent, 1.0);
             let signs = [a, b].into_iter().flat_map(|one| {

@@ -160,7 +160,7 @@ fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent)
             None => 0.25 * probe.amount,
             Some(column) => {
                 let change = tangent.project(column).norm() * probe.amount.abs();
-                if !(change > 0.0) || (USABLE[0]..=USABLE[1]).contains(&change) {
+                if change.is_nan() || change <= 0.0 || (USABLE[0]..=USABLE[1]).contains(&change) {
                     continue;
                 }
                 probe.amount * (WANTED / change).clamp(1e-2, 10.0)

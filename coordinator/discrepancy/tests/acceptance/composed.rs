@@ -39,7 +39,7 @@ fn two_effects_at_once_are_both_found() {
     say(&format!(
         "two effects: exact {exact}, at least one right {one} of {sets}; {missed:#?}"
     ));
-    assert!(exact as f64 >= 0.6 * sets as f64, "{missed:#?}");
+    assert!(f64::from(exact) >= 0.6 * sets as f64, "{missed:#?}");
     assert!(one as f64 >= 0.85 * sets as f64, "{missed:#?}");
 }
 
@@ -67,7 +67,7 @@ fn what_is_in_no_library_gets_no_name() {
     say(&format!(
         "outside the library: unlisted {unlisted} of {all}, form right {form}; {missed:#?}"
     ));
-    assert!(unlisted as f64 >= 0.9 * all as f64, "{missed:#?}");
+    assert!(f64::from(unlisted) >= 0.9 * all as f64, "{missed:#?}");
     assert!(
         form as f64 >= 0.6 * f64::from(unlisted),
         "{form} of {unlisted}"

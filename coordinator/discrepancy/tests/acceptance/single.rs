@@ -52,21 +52,21 @@ fn every_effect_is_named_at_three_times_its_limit() {
     say(&format!(
         "3 x limit: top {top}, in set {within} of {all}; mean set {:.2}; {predicted} of {confusions} \
          confusions predicted; interval holds {covered} of {top}; median error {:.1} %",
-        members as f64 / within as f64,
+        members as f64 / f64::from(within),
         100.0 * median
     ));
-    assert!(within as f64 >= 0.95 * all as f64, "{missed:#?}");
+    assert!(f64::from(within) >= 0.95 * all as f64, "{missed:#?}");
     assert!(
-        top as f64 >= 0.85 * all as f64,
+        f64::from(top) >= 0.85 * all as f64,
         "{top} of {all} {missed:#?}"
     );
-    assert!(members as f64 <= 2.0 * within as f64);
+    assert!(members as f64 <= 2.0 * f64::from(within));
     assert!(
         5 * predicted >= 4 * confusions,
         "{predicted} of {confusions}"
     );
     // the aim is 85 %; laws that are a little otherwise than the truth's bias the sizes
-    assert!(covered as f64 >= 0.8 * top as f64, "{covered} of {top}");
+    assert!(covered as f64 >= 0.8 * f64::from(top), "{covered} of {top}");
     assert!(median <= 0.1, "{median}");
 }
 

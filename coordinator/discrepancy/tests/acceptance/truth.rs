@@ -193,7 +193,7 @@ impl March<'_> {
         let (mut swing_force, mut swing_mass) = (0.0, 1.0);
         match truth.unlisted {
             Some(Unlisted::BeamSpring(size)) => {
-                on_beam += size * ((height - beam) / 1.5 - 1.0).powi(3)
+                on_beam += size * ((height - beam) / 1.5 - 1.0).powi(3);
             }
             Some(Unlisted::HeadThrice(size)) => on_head += size * (3.0 * angle + 1.0).cos(),
             Some(Unlisted::RodDashpot(size)) => on_rod += size * (v - rod_rate),

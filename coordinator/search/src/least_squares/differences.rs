@@ -9,8 +9,26 @@ pub(super) struct Difference {
     variable: usize,
     /// Signed step.
     step: f64,
-    /// The residual there; none while it is awaited, and none inside if it could not be evaluated.
-    found: Option<Option<DVector<f64>>>,
+    found: Found,
+}
+
+/// What became of a difference.
+#[derive(Clone, Debug)]
+enum Found {
+    Awaited,
+    /// The residual there.
+    Residual(DVector<f64>),
+    /// It could not be evaluated.
+    Failed,
+}
+
+impl Found {
+    const fn residual(&self) -> Option<&DVector<f64>> {
+        match self {
+            Self::Residual(residual) => Some(residual),
+            Self::Awaited | Self::Failed => None,
+        }
+    }
 }
 
 /// The differences of all columns.
@@ -37,7 +55,7 @@ impl Columns {
                     differences.push(Difference {
                         variable,
                         step,
-                        found: None,
+                        found: Found::Awaited,
                     });
                 }
             };
@@ -53,7 +71,9 @@ impl Columns {
     }
 
     fn open(&self) -> impl Iterator<Item = &Difference> {
-        self.differences.iter().filter(|d| d.found.is_none())
+        self.differences
+            .iter()
+            .filter(|d| matches!(d.found, Found::Awaited))
     }
 
     /// The points that are awaited.
@@ -72,9 +92,12 @@ impl Columns {
         variables: &[Variable],
         residuals: Vec<Option<DVector<f64>>>,
     ) {
-        let awaited = self.differences.iter_mut().filter(|d| d.found.is_none());
+        let awaited = self
+            .differences
+            .iter_mut()
+            .filter(|d| matches!(d.found, Found::Awaited));
         for (difference, residual) in awaited.zip(residuals) {
-            difference.found = Some(residual);
+            difference.found = residual.map_or(Found::Failed, Found::Residual);
         }
         if !self.retried {
             self.retried = true;
@@ -92,12 +115,12 @@ impl Columns {
             };
             let step = -0.5 * first.step;
             let moved = x[variable] + step;
-            let evaluated = own.any(|d| matches!(d.found, Some(Some(_))));
+            let evaluated = own.any(|d| d.found.residual().is_some());
             if !evaluated && moved >= v.lower && moved <= v.upper {
                 again.push(Difference {
                     variable,
                     step,
-                    found: None,
+                    found: Found::Awaited,
                 });
             }
         }
@@ -121,7 +144,7 @@ impl Columns {
                 .differences
                 .iter()
                 .filter(|d| d.variable == variable)
-                .filter_map(|d| Some((d.step, d.found.as_ref()?.as_ref()?)))
+                .filter_map(|d| Some((d.step, d.found.residual()?)))
                 .collect();
             let column = match own.as_slice() {
                 [] => continue,

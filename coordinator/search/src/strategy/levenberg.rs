@@ -168,7 +168,7 @@ impl Piece for Levenberg {
 
     fn remaining(&self) -> u64 {
         let rounds = self.generations().saturating_sub(self.round);
-        let per_round = (self.space.dimension() as u64 + 5) / 2;
+        let per_round = u64::midpoint(self.space.dimension() as u64, 5);
         let awaited = self
             .searches
             .iter()

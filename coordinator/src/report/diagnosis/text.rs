@@ -24,10 +24,10 @@ pub fn text(subject: &Subject<'_>) -> String {
     for sentence in words::confidence(subject) {
         item(&mut text, &sentence);
     }
-    if diagnosis.verdict == Verdict::NothingDetected {
-        if let Some(sentence) = words::reach(subject) {
-            item(&mut text, &sentence);
-        }
+    if diagnosis.verdict == Verdict::NothingDetected
+        && let Some(sentence) = words::reach(subject)
+    {
+        item(&mut text, &sentence);
     }
     for sentence in words::next(subject) {
         item(&mut text, &format!("Next: {sentence}"));

@@ -105,7 +105,7 @@ pub(super) fn sizes(subject: &Subject<'_>, effect: &Estimate) -> String {
 }
 
 /// The rounds' added effects.
-pub(super) fn added<'a>(diagnosis: &'a Diagnosis) -> impl Iterator<Item = &'a Estimate> + 'a {
+pub(super) fn added(diagnosis: &Diagnosis) -> impl Iterator<Item = &Estimate> + '_ {
     diagnosis.effects.iter().filter(|effect| {
         let mut rounds = diagnosis.rounds.iter();
         rounds.any(|round| round.added.as_ref() == Some(&effect.id))

@@ -27,7 +27,7 @@ fn bits(gauges: &[Vec<f64>; 4]) -> Vec<u64> {
     gauges.iter().flatten().map(|x| x.to_bits()).collect()
 }
 
-fn at<'a>(descriptor: &'a Descriptor, value: impl Fn(usize) -> f64) -> Asked<'a> {
+fn at(descriptor: &Descriptor, value: impl Fn(usize) -> f64) -> Asked<'_> {
     let parameters = descriptor.parameters.iter().enumerate();
     Asked {
         id: &descriptor.id,
@@ -132,13 +132,6 @@ fn every_effect_at_its_typical_size_acts() {
             assert!(a.is_finite(), "{}", d.id);
             largest = largest.max((a - b).abs());
         }
-        eprintln!(
-            "{:<28} {:>12.1} Pa, {} Newton iterations, {} rejected steps",
-            d.id,
-            largest,
-            result.statistics.newton_iterations,
-            result.statistics.newton_rejections + result.statistics.error_rejections
-        );
         assert!(largest > 0.0, "{} does nothing", d.id);
     }
 }
@@ -177,7 +170,6 @@ fn bounds_end_in_a_verdict() {
             }
         }
     }
-    eprintln!("{complete} complete; {failed:#?}");
     assert!(complete > 9 * failed.len(), "{complete} {failed:?}");
 }
 
