@@ -1,6 +1,11 @@
 //! Any bytes against the readers of files: an answer or an error in words, never a panic.
 //!
 //! The short form of `tests/fuzz`, which does the same a million times with a compiler's help.
+#![expect(
+    clippy::unwrap_used,
+    clippy::format_collect,
+    reason = "small inputs of a test"
+)]
 use coordinator::{case, journal};
 use proptest::{collection::vec, prelude::*};
 use protocol::{

@@ -81,7 +81,7 @@ fn kill_once(process: &mut Process, random: u64) -> bool {
     all.extend(workers);
     process.signal(Signal::KILL);
     let ended_before = process.wait(LIMIT).is_some();
-    wait_until("its workers are gone", Duration::from_secs(120), || {
+    wait_until("its workers are gone", Duration::from_mins(2), || {
         !all.iter().any(|pid| is_alive(*pid))
     });
     drop(heard);

@@ -1,4 +1,9 @@
 //! Effects on the real unit, and jobs that ask for them.
+#![expect(
+    clippy::wildcard_enum_match_arm,
+    clippy::too_many_lines,
+    reason = "whatever else comes back is a failed test"
+)]
 use super::{case, run};
 use protocol::case::{Case, EffectSetting};
 use protocol::job::{

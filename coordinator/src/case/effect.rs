@@ -180,11 +180,15 @@ pub fn write_effects(effects: &[CaseEffect]) -> String {
             all => format!("{{ {} }}", all.join(", ")),
         };
         let id = quoted(&effect.id);
-        text.push_str(&format!(
-            "\n[[effects]]\nid = {id}\nparameters = {inline}\n"
-        ));
+        text.extend([
+            "\n[[effects]]\nid = ",
+            &id,
+            "\nparameters = ",
+            &inline,
+            "\n",
+        ]);
         if let Some(provenance) = &effect.provenance {
-            text.push_str(&format!("provenance = {}\n", provenance.inline()));
+            text.extend(["provenance = ", &provenance.inline(), "\n"]);
         }
     }
     text

@@ -71,7 +71,8 @@ impl<S: Decides> Manifest<S> {
             command.push_str(" --preset ");
             command.push_str(&quote(&self.preset));
         }
-        command.push_str(&format!(" --seed {} --run {}", self.seed, word(folder)));
+        let seed = self.seed.to_string();
+        command.extend([" --seed ", &seed, " --run ", &word(folder)]);
         command.push_str(&self.settings.arguments());
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)

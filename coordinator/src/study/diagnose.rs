@@ -50,20 +50,20 @@ pub async fn library<E: Evaluator>(
     stop: &mut Stop,
 ) -> Result<Vec<EffectDescriptor>, StudyError> {
     evaluator.submit(LIBRARY, Job::Describe)?;
-    loop {
-        let completed = or_stop(evaluator.next(), stop).await??;
-        match completed.outcome {
-            Outcome::Described(effects) => return Ok(effects),
-            Outcome::Failed(failure) => {
-                return Err(
-                    StudyError::hopeless(&failure).unwrap_or(StudyError::Unavailable {
-                        what: "the list of effects".to_owned(),
-                        failure,
-                    }),
-                );
-            }
-            _ => return Err(StudyError::WrongKind { id: completed.id }),
-        }
+    let completed = or_stop(evaluator.next(), stop).await??;
+    match completed.outcome {
+        Outcome::Described(effects) => Ok(effects),
+        Outcome::Failed(failure) => Err(StudyError::hopeless(&failure).unwrap_or(
+            StudyError::Unavailable {
+                what: "the list of effects".to_owned(),
+                failure,
+            },
+        )),
+        Outcome::Scored(_)
+        | Outcome::Simulated(_)
+        | Outcome::Observed(_)
+        | Outcome::HeadReduced(_)
+        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: completed.id }),
     }
 }
 
@@ -137,7 +137,13 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
                     Some(error) => return Err(error),
                     None => account.failed += 1,
                 },
-                _ => return Err(StudyError::WrongKind { id: completed.id }),
+                Outcome::Scored(_)
+                | Outcome::Simulated(_)
+                | Outcome::Described(_)
+                | Outcome::HeadReduced(_)
+                | Outcome::Nothing(_) => {
+                    return Err(StudyError::WrongKind { id: completed.id });
+                }
             }
             open -= 1;
             let evaluator = &*self.evaluator;
