@@ -120,7 +120,7 @@ impl<L: CoordinatorEnd> Engine<L> {
     /// Handles what has arrived already: nobody is silent whose words wait to be read.
     async fn catch_up(&mut self) {
         for _ in 0..MOST_WAITING {
-            let waiting = tokio::task::unconstrained(self.link.receive());
+            let waiting = tokio::task::coop::unconstrained(self.link.receive());
             let heard = tokio::select! {
                 biased;
                 Some(heard) = waiting => heard,
