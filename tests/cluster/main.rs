@@ -16,6 +16,10 @@ use coordinator::runtime::{Dispatch, DispatchError};
 use protocol::{id::JobId, job::Outcome};
 use std::{collections::BTreeMap, time::Duration};
 
+/// Taken by tests whose slots are children of the test process itself, so that each can count its
+/// own.
+static OWN_SLOTS: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+
 /// Collects results until there are `jobs` of them.
 async fn collect(
     dispatch: &mut Dispatch,

@@ -1,5 +1,5 @@
 //! Slots: jobs that never return, slots that crash, and a link that misbehaves.
-use super::{collect, submit};
+use super::{OWN_SLOTS, collect, submit};
 use coordinator::runtime::Dispatch;
 use link::memory::{Faults, Hub};
 use protocol::{
@@ -14,7 +14,7 @@ use std::{
 };
 use tests::{
     expect_results, options,
-    process::{children, is_alive, wait_until, worker_program},
+    process::{children, command_line, is_alive, wait_until, worker_program},
 };
 use tokio::sync::mpsc::unbounded_channel;
 use worker::{
@@ -52,13 +52,12 @@ fn task(job: u64, delay_ms: u32, deadline: Duration) -> Task {
     }
 }
 
-/// Slot processes of this process: other tests of the suite have theirs in processes of workers.
-/// Longest that the slots of tests beside may be seen.
-const BESIDE: Duration = Duration::from_mins(1);
-
+/// Slot processes of this process, whose tests take turns; others have theirs in processes of
+/// workers.
 fn slots() -> BTreeSet<i32> {
     children(getpid())
         .into_iter()
+        .filter(|pid| command_line(*pid).get(1).is_some_and(|word| word == "slot"))
         .map(|pid| pid.as_raw_nonzero().get())
         .collect()
 }
@@ -72,6 +71,7 @@ fn failure(freed: Freed) -> Failure {
 
 #[test]
 fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
+    let _turn = OWN_SLOTS.blocking_lock();
     let (to, mut freed) = unbounded_channel();
     let pool = Pool::start(1, &slot_options(), &to).unwrap();
     let before = slots();
@@ -116,8 +116,7 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     assert!(pool.is_alive());
     drop(pool);
     assert!(!is_alive(pid));
-    // tests beside this one have slots too, for as long as they run
-    wait_until("the slots are gone", BESIDE, || {
+    wait_until("the slots are gone", LIMIT, || {
         slots().difference(&before).count() == 0
     });
 }
@@ -173,6 +172,7 @@ async fn over_memory(
 /// A fifth of all messages lost, a fifth doubled, all in disorder: the same results.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_link_that_loses_doubles_and_reorders_changes_nothing() {
+    let _turn = OWN_SLOTS.lock().await;
     let (clean, summary) = over_memory(Faults::NONE, 100).await;
     assert_eq!((summary.last.repeated, summary.last.duplicates), (0, 0));
     for seed in [1, 2] {

@@ -189,6 +189,13 @@ pub fn children(parent: Pid) -> Vec<Pid> {
         .collect()
 }
 
+/// The words a process was started with; none if it has ended.
+pub fn command_line(pid: Pid) -> Vec<String> {
+    let words = fs::read_to_string(format!("/proc/{}/cmdline", pid.as_raw_nonzero()));
+    let words = words.unwrap_or_default();
+    words.split_terminator('\0').map(str::to_owned).collect()
+}
+
 /// Whether a process is there and not just waiting to be reaped.
 pub fn is_alive(pid: Pid) -> bool {
     let stat = fs::read_to_string(format!("/proc/{}/stat", pid.as_raw_nonzero()));

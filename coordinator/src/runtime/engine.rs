@@ -29,6 +29,8 @@ use tokio::{
 const TICK: Duration = Duration::from_millis(250);
 /// How old a snapshot may be: making one costs more than a result does.
 const FRESH: Duration = Duration::from_millis(20);
+/// Most messages that are read before the core looks at its clocks.
+const MOST_WAITING: usize = 1 << 16;
 /// How long the last results may take to reach the disk at the end.
 const LAST_WRITE: Duration = Duration::from_secs(1);
 
@@ -105,6 +107,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 Some(appended) = self.said.recv() => self.appended(appended),
                 event = local_event(&mut self.workers) => self.local(event),
                 _ = ticks.tick() => {
+                    self.catch_up().await;
                     self.handle(Input::Tick);
                     self.show();
                 }
@@ -112,6 +115,19 @@ impl<L: CoordinatorEnd> Engine<L> {
             }
         }
         self.close().await
+    }
+
+    /// Handles what has arrived already: nobody is silent whose words wait to be read.
+    async fn catch_up(&mut self) {
+        for _ in 0..MOST_WAITING {
+            let waiting = tokio::task::coop::unconstrained(self.link.receive());
+            let heard = tokio::select! {
+                biased;
+                Some(heard) = waiting => heard,
+                () = std::future::ready(()) => return,
+            };
+            self.hear(heard);
+        }
     }
 
     fn submit(&mut self, id: JobId, job: Job) {
