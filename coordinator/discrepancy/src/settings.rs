@@ -11,6 +11,8 @@ pub struct Settings {
     pub alpha: f64,
     /// Level of the test that nothing at all is left: below it a record without a name is unresolved.
     pub adequacy: f64,
+    /// Misfit from which a fit is suspected to lie outside the valley of the rope's stiffness.
+    pub valley: f64,
     /// Suspects that are refitted with all genes free.
     pub suspects: usize,
     /// Nats, times the squared misfit, that an effect must gain to be believed.
@@ -40,6 +42,7 @@ impl Default for Settings {
             orders: 120,
             alpha: 0.01,
             adequacy: 1e-3,
+            valley: 2.0,
             suspects: 8,
             gain: 3.0,
             practical: 0.05,
