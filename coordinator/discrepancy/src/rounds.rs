@@ -15,6 +15,9 @@ use crate::stage::{again, pair, refit, suspect};
 use protocol::announce::EffectDescriptor;
 use search::least_squares;
 
+/// Suspects that are refitted in any case.
+const RIVALS: usize = 3;
+
 /// One round of suspicion.
 #[derive(Clone, Debug)]
 pub struct Round {
@@ -196,7 +199,10 @@ async fn examine<L: Laboratory>(
             .total_cmp(&b.p_value())
             .then(b.statistic().total_cmp(&a.statistic()))
     });
-    order.truncate(settings.suspects);
+    // what its own test does not speak for is refitted only to have rivals
+    let clear = order.iter().filter(|s| s.p_value() < settings.alpha);
+    let worth = clear.count().clamp(RIVALS, settings.suspects.max(RIVALS));
+    order.truncate(worth);
     let refits = refit::refit(lab, &base.bench, current, &order).await?;
     let mut round = Round {
         p_value: 1.0,

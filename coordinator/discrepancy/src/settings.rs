@@ -29,6 +29,9 @@ pub struct Settings {
     pub alike: f64,
     /// Noise sets that the angle map is held against.
     pub draws: usize,
+    /// Longest step of all experiments, as a share of the case's: what is enough for a search is
+    /// seen beside averaged noise.
+    pub step: f64,
     /// Cylinder length of the numerical check and, where it matters, of the last refits, as a share
     /// of the case's.
     pub refinement: f64,
@@ -51,6 +54,7 @@ impl Default for Settings {
             generic_gain: 10.0,
             alike: 0.9,
             draws: 400,
+            step: 0.7,
             refinement: 0.5,
             without: Vec::new(),
         }

@@ -18,6 +18,8 @@ use search::least_squares;
 const LEADERS: usize = 3;
 /// Share of the best refit's gain of evidence from which a suspect is one of them.
 const SHARE: f64 = 0.3;
+/// The same, from which a suspect is refitted from the deepest valley.
+const WORTH: f64 = 0.1;
 
 /// Looks again if the best refit of a round leaves much; changes its refits, their order and what is
 /// derived from them.
@@ -57,8 +59,13 @@ pub(crate) async fn look<L: Laboratory>(
         return Ok(());
     };
     let genes = current.model.space.dimension();
-    let starts: Vec<(Model, Vec<f64>)> = round
+    let null = round.null_evidence;
+    let mut again: Vec<&mut Refitted> = round
         .refits
+        .iter_mut()
+        .filter(|refit| refit.log_evidence - null > WORTH * best)
+        .collect();
+    let starts: Vec<(Model, Vec<f64>)> = again
         .iter()
         .map(|refit| {
             let own = refit.fit.x().iter().skip(genes);
@@ -71,7 +78,7 @@ pub(crate) async fn look<L: Laboratory>(
         ..least_squares::Settings::default()
     };
     let fits = bench.fit(lab, Stage::Refit, starts, how).await?;
-    for (refit, fit) in round.refits.iter_mut().zip(fits) {
+    for (refit, fit) in again.iter_mut().zip(fits) {
         if let Some(fit) = fit {
             replace(refit, fit);
         }

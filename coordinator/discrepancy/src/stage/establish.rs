@@ -14,7 +14,6 @@ use crate::stage::preflight::Preflight;
 use crate::stage::{basin, preflight, recalibrate, valley};
 use nalgebra::{Complex, DVector};
 use protocol::announce::EffectDescriptor;
-use protocol::job::Refinement;
 
 /// The recalibrated model in its final metric.
 pub(crate) struct Base {
@@ -47,7 +46,7 @@ pub(crate) async fn establish<L: Laboratory>(
     let channels = record.channels.len();
     let rough = Noise::estimate(&record, &orders, &[]);
     let metric = Metric::new(orders.clone(), channels, &rough.covariances);
-    let bench = Bench::new(record.clone(), metric, Refinement::default());
+    let bench = Bench::new(record.clone(), metric, inputs.usual);
     let starts = match &inputs.start {
         Some(start) => vec![start.clone()],
         None => basin::enter(lab, &bench, model, inputs.seed).await?,
@@ -73,7 +72,7 @@ pub(crate) async fn establish<L: Laboratory>(
             .map(|(curves, deviation)| metric.whiten(curves) * *deviation)
             .collect();
         metric.marginalize(&directions);
-        Bench::new(record.clone(), metric, Refinement::default())
+        Bench::new(record.clone(), metric, inputs.usual)
     };
     let bench = weigh(&noise);
     let Some(second) = recalibrate::converge(lab, &bench, model, first.x()).await? else {

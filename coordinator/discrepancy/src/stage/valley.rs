@@ -60,7 +60,7 @@ pub async fn enter<L: Laboratory>(
         }
     }
     let short = Settings {
-        iterations: 5,
+        iterations: 3,
         ..Settings::default()
     };
     let fits = bench.fit(lab, stage, starts, short).await?;
