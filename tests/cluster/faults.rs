@@ -180,16 +180,12 @@ async fn a_worker_that_is_told_to_end_gives_its_jobs_back_and_says_nothing() {
     submit(&mut dispatch, 20, 100);
     let early = collect(&mut dispatch, 4, LIMIT).await.unwrap();
     first.signal(Signal::TERM);
-    assert_eq!(first.wait(Duration::from_secs(4)), Some(0));
+    assert_eq!(first.wait(LIMIT), Some(0));
     let mut idle = Process::worker(&locator, &["--slots", "4", "--idle-timeout", "2"]);
     let mut results = collect(&mut dispatch, 16, LIMIT).await.unwrap();
     results.extend(early);
     expect_results(&results, 20);
-    assert_eq!(
-        idle.wait(Duration::from_secs(6)),
-        Some(0),
-        "ends by itself without work"
-    );
+    assert_eq!(idle.wait(LIMIT), Some(0), "ends by itself without work");
     let summary = dispatch.close().await.unwrap();
     assert_eq!(
         summary.last.lost, 0,

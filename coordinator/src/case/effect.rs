@@ -39,7 +39,7 @@ pub struct CaseParameter {
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Provenance {
-    /// Content hash of the records that it was found in.
+    /// Content hash of the case, with the records that it was found in.
     pub dataset: Option<String>,
     /// Name of the run that found it.
     pub run: Option<String>,

@@ -1,8 +1,10 @@
 //! The report of a diagnosis, for every verdict: complete, well-formed, honest.
 use crate::suspicion::{self, Made};
 use crate::{check_page, words};
+use coordinator::case::CaseEffect;
 use coordinator::report::diagnosis;
 use discrepancy::verdict::Verdict;
+use protocol::unit::EFFECT_UNITS;
 use roxmltree::Document;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -45,6 +47,35 @@ fn every_verdict_makes_a_page_and_a_text_without_numbers_that_are_none() {
         let added = matches!(verdict, Verdict::Named | Verdict::Ambiguous);
         assert_eq!(page.contains("What is added"), added, "{verdict:?}");
         assert_eq!(page.contains("[[effects]]"), added, "{verdict:?}");
+    }
+}
+
+#[test]
+fn what_is_added_is_read_back_by_a_case_file() {
+    #[derive(serde::Deserialize)]
+    struct File {
+        effects: Vec<CaseEffect>,
+    }
+    for verdict in [Verdict::Named, Verdict::Ambiguous] {
+        let made = suspicion::diagnosis(verdict);
+        let text = diagnosis::effects_toml(&made.subject()).expect("something was added");
+        let file: File = toml::from_str(&text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let found: Vec<&String> = file.effects.iter().map(|effect| &effect.id).collect();
+        let added: Vec<&String> = made
+            .diagnosed
+            .diagnosis
+            .rounds
+            .iter()
+            .filter_map(|round| round.added.as_ref())
+            .collect();
+        assert_eq!(found, added);
+        for effect in &file.effects {
+            let provenance = effect.provenance.as_ref().expect("where it comes from");
+            assert!(provenance.run.is_some() && provenance.dataset.is_some());
+            for parameter in effect.parameters.values() {
+                assert!(EFFECT_UNITS.contains(&parameter.unit.as_str()));
+            }
+        }
     }
 }
 

@@ -1,48 +1,44 @@
 //! What was found, as entries of a model file.
 use super::Subject;
+use crate::case::{CaseEffect, CaseParameter, Provenance, write_effects};
 use discrepancy::diagnose::Estimate;
-use std::fmt::Write as _;
 
-/// `[[effects]]` tables of the added effects, with intervals and where they come from; nothing if no
-/// effect was added. Members of an ambiguity set beside the best are named in its provenance.
+/// `[[effects]]` tables of the added effects, with intervals and where they come from, as a case file
+/// takes them; nothing if no effect was added.
 pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
     let diagnosis = &subject.diagnosed.diagnosis;
-    let mut text = String::new();
-    for (number, round) in (1..).zip(&diagnosis.rounds) {
-        let Some(id) = &round.added else { continue };
-        let Some(found) = diagnosis.effects.iter().find(|effect| effect.id == *id) else {
-            continue;
-        };
-        entry(&mut text, subject, found, (number, &round.set));
-    }
-    (!text.is_empty()).then_some(text)
+    let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
+        let id = round.added.as_ref()?;
+        let found = diagnosis.effects.iter().find(|effect| effect.id == *id)?;
+        Some(entry(subject, found, (number, &round.set)))
+    });
+    let effects: Vec<CaseEffect> = found.collect();
+    (!effects.is_empty()).then(|| write_effects(&effects))
 }
 
-fn entry(
-    text: &mut String,
-    subject: &Subject<'_>,
-    found: &Estimate,
-    (round, set): (usize, &[String]),
-) {
+fn entry(subject: &Subject<'_>, found: &Estimate, (round, set): (u32, &[String])) -> CaseEffect {
+    let parameters = found.parameters.iter().map(|(name, unit, value, ci95)| {
+        let [low, high] = *ci95;
+        let parameter = CaseParameter {
+            value: *value,
+            unit: unit.clone(),
+            // a value at its bound has no interval around it
+            ci95: (low.is_finite() && high.is_finite() && (low..=high).contains(value))
+                .then_some(*ci95),
+        };
+        (name.clone(), parameter)
+    });
     let verdict = if set.len() > 1 { "ambiguous" } else { "named" };
-    let set: Vec<String> = set.iter().map(|id| format!("\"{id}\"")).collect();
-    // a String takes everything that is written to it
-    let _infallible = write!(
-        text,
-        "# {}\n[[effects]]\nid = \"{}\"\n",
-        found.title, found.id
-    );
-    for (name, unit, value, [low, high]) in &found.parameters {
-        let _infallible = writeln!(
-            text,
-            "parameters.{name} = {{ value = {value:e}, unit = \"{unit}\", ci95 = [{low:e}, {high:e}] }}"
-        );
+    CaseEffect {
+        id: found.id.clone(),
+        parameters: parameters.collect(),
+        provenance: Some(Provenance {
+            dataset: Some(subject.provenance.case_hash.clone()),
+            run: Some(subject.provenance.run.clone()),
+            verdict: Some(verdict.to_owned()),
+            set: set.to_vec(),
+            ln_evidence_gain: found.ln_evidence.is_finite().then_some(found.ln_evidence),
+            round: Some(round),
+        }),
     }
-    let _infallible = writeln!(
-        text,
-        "provenance = {{ case = \"{}\", round = {round}, verdict = \"{verdict}\", set = [{}], ln_evidence = {:.1} }}\n",
-        subject.provenance.case_hash,
-        set.join(", "),
-        found.ln_evidence
-    );
 }

@@ -1,0 +1,103 @@
+//! Numbers of the answer: parameters of its effects, and genes.
+use super::{row, table};
+use crate::report::diagnosis::Subject;
+use crate::report::diagnosis::words::{self, interval, quantity};
+use crate::report::number::{NONE, figure, unit};
+use crate::report::table::{Label, Row, Table};
+use crate::report::words::at_bound;
+use protocol::announce::{ParameterDescriptor, Role};
+
+/// Parameters of the effects of the answer.
+pub(in crate::report::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
+    let mut rows = Vec::new();
+    for effect in &subject.diagnosed.diagnosis.effects {
+        rows.push(Row::Group(format!("{} ({})", effect.title, effect.id)));
+        for (name, unit, value, ci95) in &effect.parameters {
+            let known = words::parameter(subject, &effect.id, name);
+            let of = |value: Option<f64>| {
+                value.map_or_else(|| NONE.to_owned(), |value| quantity(value, unit))
+            };
+            rows.push(row(
+                name.replace('_', " "),
+                [
+                    quantity(*value, unit),
+                    interval(*ci95, unit),
+                    of(known.map(usual)),
+                    known.map_or_else(|| NONE.to_owned(), |p| interval([p.lower, p.upper], unit)),
+                    known
+                        .and_then(|p| edge(*value, p.lower, p.upper))
+                        .unwrap_or("")
+                        .to_owned(),
+                ],
+            ));
+        }
+    }
+    (!rows.is_empty()).then(|| {
+        let mut made = table(
+            "Sizes of the answer",
+            ["", "value", "95\u{a0}% interval", "usual size", "bounds", ""],
+            rows,
+        );
+        made.notes = vec![
+            "Intervals are those of the linearised fit with all genes free, inflated by its misfit; \
+             they hold if the name is right."
+                .to_owned(),
+        ];
+        made
+    })
+}
+
+/// How large a parameter usually is: of a shape, its typical value.
+fn usual(parameter: &ParameterDescriptor) -> f64 {
+    match parameter.role {
+        Role::Size => parameter.scale,
+        Role::Shape => parameter.typical,
+    }
+}
+
+/// Which bound a value on a linear scale touches.
+fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
+    let share = (value - lower) / (upper - lower);
+    match share {
+        _ if share < 0.005 => Some("at its lower bound"),
+        _ if share > 0.995 => Some("at its upper bound"),
+        _ => None,
+    }
+}
+
+/// Genes before and after, with their bounds.
+pub(in crate::report::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table> {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    let before = diagnosis
+        .before
+        .as_ref()
+        .map(|fit| fit.model.genes(fit.x()))?;
+    let after = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x()));
+    let rows = subject.case.genes.iter().enumerate().map(|(k, gene)| {
+        let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));
+        let last = after.as_ref().unwrap_or(&before).get(k);
+        let edge = last.and_then(|v| at_bound(gene.lower, gene.upper, *v));
+        Row::Values(
+            Label::Gene(gene.name),
+            vec![
+                figure(gene.recommended),
+                of(before.get(k)),
+                of(after.as_ref().and_then(|after| after.get(k))),
+                interval([gene.lower, gene.upper], unit(gene.unit)),
+                edge.map_or_else(String::new, |edge| format!("at its {edge} bound")),
+            ],
+        )
+    });
+    Some(table(
+        "Parameters of the calibration",
+        [
+            "",
+            "recommended",
+            "recalibrated",
+            "with the answer",
+            "bounds",
+            "",
+        ],
+        rows.collect(),
+    ))
+}

@@ -1,0 +1,87 @@
+//! What the diagnosis stands on and what it cost: numerical error, simulations.
+use super::{row, table};
+use crate::report::diagnosis::Subject;
+use crate::report::diagnosis::words::{self, quantity};
+use crate::report::number::{NONE, count, duration, fixed};
+use crate::report::table::{Row, Table};
+
+/// How far the discretisation moves each channel.
+pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
+    let preflight = subject.diagnosed.diagnosis.preflight.as_ref()?;
+    let record = words::calibrated(subject)?;
+    let rows = record.channels.iter().enumerate().map(|(c, source)| {
+        let of = |values: &[f64]| {
+            values
+                .get(c)
+                .map_or_else(|| NONE.to_owned(), |value| quantity(*value, source.unit()))
+        };
+        row(
+            source.name(),
+            [
+                of(&preflight.rms),
+                of(&preflight.rms_left),
+                of(&preflight.standard_error),
+            ],
+        )
+    });
+    let mut made = table(
+        "Numerical check: the finer model less the one that is fitted, root mean square",
+        [
+            "",
+            "difference",
+            "after recalibration",
+            "standard error of the mean",
+        ],
+        rows.collect(),
+    );
+    made.notes = vec![format!(
+        "What recalibration leaves of the difference is at most {} of the standard error; it counts as \
+         noise in every test, so that no effect is named for what a coarser rope does.",
+        if preflight.ratio().is_finite() {
+            format!("{}\u{a0}×", fixed(preflight.ratio(), 2))
+        } else {
+            "an unknown multiple".to_owned()
+        }
+    )];
+    Some(made)
+}
+
+/// What each stage cost.
+pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Table> {
+    let accounts = &subject.diagnosed.accounts;
+    let mut rows: Vec<Row> = accounts
+        .iter()
+        .map(|(stage, account)| {
+            row(
+                stage.name(),
+                [
+                    count(account.experiments),
+                    count(account.failed),
+                    duration(account.wall.as_secs_f64()),
+                ],
+            )
+        })
+        .collect();
+    let total = |of: fn(&crate::study::Account) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
+    rows.push(row(
+        "all",
+        [
+            count(total(|account| account.experiments)),
+            count(total(|account| account.failed)),
+            duration(subject.wall_s),
+        ],
+    ));
+    (!accounts.is_empty()).then(|| {
+        let mut made = table(
+            "What each stage cost",
+            ["", "simulations", "did not complete", "time in this session"],
+            rows,
+        );
+        made.notes = vec![
+            "Results that the journal held already take no time; the last line's time is that of all \
+             sessions."
+                .to_owned(),
+        ];
+        made
+    })
+}

@@ -1,0 +1,132 @@
+//! What was suspected, and what would have been seen.
+use super::{row, table};
+use crate::report::diagnosis::Subject;
+use crate::report::diagnosis::judgement::{ranked, tempered};
+use crate::report::diagnosis::words::{self, nats, p_value, quantity};
+use crate::report::number::{NONE, figure, percent};
+use crate::report::table::{Row, Table};
+use discrepancy::diagnose::Round;
+
+/// Every suspect of a round, with what became of it.
+pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Table {
+    let rows = ranked(round).into_iter().map(|(suspect, judgement)| {
+        let score = suspect.score.as_ref();
+        row(
+            &suspect.effect.id,
+            [
+                judgement.p_value.map_or_else(|| NONE.to_owned(), p_value),
+                score.map_or_else(|| NONE.to_owned(), |score| percent(score.absorbed)),
+                judgement.gain.map_or_else(|| NONE.to_owned(), nats),
+                judgement.why,
+            ],
+        )
+    });
+    let mut made = table(
+        format!("Round {number}: every suspect, and what became of it"),
+        [
+            "",
+            "p of its test",
+            "absorbed",
+            "nats after refit",
+            "kept or dropped, and why",
+        ],
+        rows.collect(),
+    );
+    made.notes = vec![
+        format!(
+            "p: probability of a test as clear as this one if the effect is not there, with the \
+             variances inflated by the misfit of the best model ({}²). Absorbed: share of the effect's \
+             signature that recalibration takes up. Nats: gain of the log evidence over the model \
+             without it, with all genes free, over the squared misfit.",
+            figure(round.phi)
+        ),
+        format!(
+            "Over the whole family of named effects, p {}.",
+            words::equals(&p_value(round.p_value))
+        ),
+    ];
+    made
+}
+
+/// The forces without a cause that explain most; none where none was tried.
+pub(in crate::report::diagnosis) fn generics(round: &Round) -> Option<Table> {
+    const SHOWN: usize = 6;
+    let mut forces: Vec<_> = round.generics.iter().collect();
+    forces.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
+    let scale = round.phi * round.phi;
+    let rows: Vec<Row> = forces
+        .iter()
+        .filter(|force| force.statistic() > 0.0)
+        .take(SHOWN)
+        .map(|force| {
+            let p = tempered(round, force).map_or_else(|| NONE.to_owned(), p_value);
+            let size = force.score.as_ref().and_then(|score| {
+                let first = force.effect.parameters.first()?;
+                Some(quantity(score.size.first()? * first.scale, &first.unit))
+            });
+            row(
+                force.effect.title.clone(),
+                [
+                    figure(force.statistic() / scale),
+                    p,
+                    size.unwrap_or_else(|| NONE.to_owned()),
+                ],
+            )
+        })
+        .collect();
+    (!rows.is_empty()).then(|| {
+        let mut made = table(
+            "Forces without a cause that explain most",
+            ["", "statistic over squared misfit", "p", "amplitude"],
+            rows,
+        );
+        made.notes = vec![
+            "A name must explain more than the best of these: if one of them beats every name by a \
+             wide margin, the cause is not in the library."
+                .to_owned(),
+        ];
+        made
+    })
+}
+
+/// From which size on each effect would have been seen.
+pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
+    let limits = &subject.diagnosed.diagnosis.limits;
+    let rows: Vec<Row> = limits
+        .iter()
+        .map(|limit| {
+            let scale = words::parameter(subject, &limit.id, &limit.parameter).map(|p| p.scale);
+            let seen = if limit.size.is_finite() {
+                quantity(limit.size, &limit.unit)
+            } else {
+                "never: absorbed".to_owned()
+            };
+            row(
+                format!("{}, {}", limit.id, limit.parameter.replace('_', " ")),
+                [
+                    seen,
+                    scale.map_or_else(|| NONE.to_owned(), |s| quantity(s, &limit.unit)),
+                    scale.map_or_else(
+                        || NONE.to_owned(),
+                        |s| crate::report::number::ratio(limit.size, s),
+                    ),
+                ],
+            )
+        })
+        .collect();
+    (!rows.is_empty()).then(|| {
+        let mut made = table(
+            "Detection limits: the size from which this record shows an effect",
+            ["", "seen from", "usual size", "limit over usual size"],
+            rows,
+        );
+        made.notes = vec![
+            "Before any verdict, at the recalibrated point, each effect alone, with the misfit of the \
+             model without any: the size that the tests and the evidence asked for would not have \
+             missed. A limit well below the usual size means: had it been there, it would have been \
+             seen."
+                .to_owned(),
+        ];
+        made
+    })
+}
