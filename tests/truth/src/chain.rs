@@ -332,6 +332,7 @@ mod tests {
             torque: wave(1e4),
             push: [wave(1.0), wave(1.0)],
             tension: wave(1.0),
+            rope: 1.0,
         };
         Turns {
             plain: turn(10.0),

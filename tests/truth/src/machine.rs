@@ -143,7 +143,7 @@ pub fn turn(
     if result.verdict != Verdict::Complete {
         bail!("the machine does not come round: {:?}", result.verdict);
     }
-    let mut turn = watch.turn(&machine);
+    let mut turn = watch.turn(&machine, &law);
     for hidden in hidden {
         hidden.law.read(&mut turn);
     }

@@ -1,6 +1,7 @@
 //! One turn of a machine as a recorder with perfect sensors would see it: samples at equal times.
 use simulation::integrator::State;
 use simulation::math::spline::Splines;
+use simulation::model::description::RopeLaw;
 use simulation::model::{Individual, Machine};
 use simulation::observe::Recorder;
 use simulation::run::Observe;
@@ -22,6 +23,8 @@ pub struct Turn {
     pub push: [Vec<f64>; 2],
     /// Tension of the back rope at the crossbeam \[N\].
     pub tension: Vec<f64>,
+    /// Stiffness of the whole back rope [N/m].
+    pub rope: f64,
 }
 
 impl Turn {
@@ -71,7 +74,7 @@ pub struct Watch {
 
 impl Watch {
     /// The turn of a machine that was watched.
-    pub fn turn(self, machine: &Machine) -> Turn {
+    pub fn turn(self, machine: &Machine, law: &RopeLaw) -> Turn {
         let curves = self.recorder.curves;
         let [position, ..] = curves.suspension;
         Turn {
@@ -86,6 +89,7 @@ impl Watch {
             torque: curves.torque,
             push: self.push,
             tension: curves.back_tension,
+            rope: machine.ropes(law).joint.stiffness[0] / machine.description.rope.back as f64,
         }
     }
 }

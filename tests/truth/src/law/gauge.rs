@@ -162,29 +162,29 @@ impl Law for Clearance {
 }
 
 /// Two ropes of unequal length under one crossbeam: each carries `T / 2 +- k dL / 2`, nothing where it
-/// hangs slack, and a tenth of each cheek's load crosses to the other.
+/// hangs slack, and some of each cheek's load crosses to the other.
 pub(super) fn twins(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
     Arc::new(Twins {
         length: size,
-        stiffness: note(shape, "stiffness_n_m", draw.log_between(6e6, 1.6e7)),
+        crossing: note(shape, "crossing_1", draw.between(0.0, 0.15)),
     })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Twins {
     length: f64,
-    /// Of both ropes together [N/m].
-    stiffness: f64,
+    /// Share of a cheek's load that the other feels.
+    crossing: f64,
 }
 
 impl Effect for Twins {}
 
 impl Law for Twins {
     fn read(&self, turn: &mut Turn) {
-        let difference = 0.5 * self.stiffness * self.length;
+        let difference = 0.5 * turn.rope * self.length;
         for i in 0..turn.len() {
             let tension = turn.tension[i];
-            let uneven = 0.8 * (difference / tension).clamp(-1.0, 1.0);
+            let uneven = (1.0 - 2.0 * self.crossing) * (difference / tension).clamp(-1.0, 1.0);
             for (curve, side) in turn.stress.iter_mut().zip([1.0, 1.0, -1.0, -1.0]) {
                 curve[i] *= 1.0 + side * uneven;
             }
@@ -215,6 +215,7 @@ mod tests {
             torque: wave(0.0, 2e4),
             push: [wave(0.0, 5e4), wave(0.5, 5e4)],
             tension: vec![1e5; 360],
+            rope: 1e7,
         }
     }
 

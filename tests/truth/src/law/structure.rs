@@ -1,12 +1,9 @@
 //! Steel that is not as drawn.
-use super::friction::{Scheduled, curve};
 use super::{Law, Shape, note};
 use crate::draw::Draw;
 use simulation::effect::{Cycle, Effect, Hollow, Hooks};
-use simulation::math::spline::Splines;
 use simulation::model::Machine;
 use simulation::model::description::Description;
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// A worn place of the back head with straight flanks, one steeper than the other: a triangle, as a
@@ -91,26 +88,28 @@ impl Effect for FrontArc {
 
 impl Law for FrontArc {}
 
-/// Ice and fluid carried on both ends of the beam: they are felt as the beam accelerates, taken from
-/// its ideal motion.
-pub(super) fn carried(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
-    Arc::new(Carried { share: size })
+/// Ice and fluid carried near both ends of the beam, a little more on one of them: inertia, and a
+/// weight out of balance.
+pub(super) fn carried(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Carried {
+        share: size,
+        arm: note(shape, "arm_m", draw.between(2.8, 3.5)),
+        uneven: note(shape, "uneven_1", draw.between(-0.1, 0.1)),
+    })
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Carried {
     share: f64,
+    arm: f64,
+    uneven: f64,
 }
 
 impl Effect for Carried {
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
-        let d = &machine.description;
-        let carried = self.share * d.beam_inertia * d.crank.speed * d.crank.speed;
-        let moment = curve(|turn| -carried * cycle.beam(turn).second);
-        hooks.add_force(Arc::new(Scheduled {
-            coordinate: machine.layout.beam(),
-            force: Splines::periodic(0.0, TAU / moment.len() as f64, &[moment]),
-        }));
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        let inertia = self.share * d.beam_inertia;
+        d.beam_inertia += inertia;
+        d.beam_gravity_moment += self.uneven * inertia / self.arm * d.gravity;
     }
 }
 
