@@ -14,4 +14,6 @@ pub mod law;
 pub mod machine;
 pub mod plan;
 pub mod seal;
+pub mod table;
 pub mod turn;
+pub mod verdict;

@@ -116,9 +116,9 @@ pub fn turn(
         modes: Some((case.run.modes + fineness.more_modes).min(available)),
         ..Refinement::default()
     };
-    let case = worker::convert::refined(case, &finer).map_err(refused)?;
-    let law = worker::convert::rope_law(&case, genes).map_err(refused)?;
-    let plain = worker::convert::machine(&case, condition).map_err(refused)?;
+    let case = worker::convert::refined(case, &finer).map_err(|why| refused(&why))?;
+    let law = worker::convert::rope_law(&case, genes).map_err(|why| refused(&why))?;
+    let plain = worker::convert::machine(&case, condition).map_err(|why| refused(&why))?;
     let mut description = plain.description;
     description.crank.speed *= 1.0 + variation.speed;
     let laws = hidden.iter().map(|hidden| {
@@ -150,6 +150,6 @@ pub fn turn(
     Ok(turn)
 }
 
-fn refused(failure: Failure) -> anyhow::Error {
+fn refused(failure: &Failure) -> anyhow::Error {
     anyhow!("the case is refused: {failure:?}")
 }

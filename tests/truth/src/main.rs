@@ -4,10 +4,12 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
-use truth::judge::{Trial, Verdict, table};
+use truth::judge::Trial;
 use truth::machine::Fineness;
 use truth::plan::{Order, Stratum, asked_kind, make};
 use truth::seal::Sealed;
+use truth::table::table;
+use truth::verdict::Verdict;
 
 /// Makes test records with a hidden effect, and judges verdicts about them.
 #[derive(Debug, Parser)]

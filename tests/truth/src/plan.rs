@@ -100,10 +100,10 @@ impl Order {
         } else {
             &CATALOGUE
         };
-        let mut kinds = match self.stratum {
-            Stratum::Zero => Vec::new(),
-            _ => vec![self.effect.unwrap_or_else(|| any(&mut draw, from))],
-        };
+        let mut kinds = Vec::new();
+        if self.stratum != Stratum::Zero {
+            kinds.push(self.effect.unwrap_or_else(|| any(&mut draw, from)));
+        }
         while self.stratum == Stratum::Double && kinds.len() < 2 {
             let other = any(&mut draw, from);
             let first = kinds[0].id;

@@ -138,9 +138,10 @@ fn run_library(case: &Case, effect: &EffectSetting, values: &[f64]) -> Turn {
         cylinder_length_m: Some(FINENESS.cylinder),
         ..protocol::job::Refinement::default()
     };
-    let case = worker::convert::refined(case, &finer).unwrap();
-    let law = worker::convert::rope_law(&case, values).unwrap();
-    let machine = worker::convert::machine_with(&case, 0, std::slice::from_ref(effect)).unwrap();
+    let case = worker::convert::refined(case, &finer).expect("the case fits");
+    let law = worker::convert::rope_law(&case, values).expect("the case fits");
+    let machine = worker::convert::machine_with(&case, 0, std::slice::from_ref(effect))
+        .expect("the case fits");
     let settings = RunSettings {
         method: (&TR_BDF2).into(),
         lead_in: 240_f64.to_radians(),

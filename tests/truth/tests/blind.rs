@@ -60,7 +60,7 @@ fn coarse_case(folder: &Path) -> PathBuf {
 
 /// Makes one set, diagnoses it, opens the answer: the verdict's words and the table.
 fn trial(arguments: &[&str]) -> (serde_json::Value, String) {
-    let scratch = tempfile::tempdir().unwrap();
+    let scratch = tempfile::tempdir().expect("a folder");
     let at = |name: &str| scratch.path().join(name).display().to_string();
     let case = coarse_case(scratch.path());
     let case = case.display().to_string();
@@ -76,9 +76,12 @@ fn trial(arguments: &[&str]) -> (serde_json::Value, String) {
         "--coarse",
     ];
     let said = truth(&[&make, arguments].concat());
-    let set = PathBuf::from(said.lines().next().unwrap());
-    let commitment = said.split_whitespace().last().unwrap();
-    let name = set.file_name().unwrap().to_str().unwrap();
+    let set = PathBuf::from(said.lines().next().expect("a folder's name"));
+    let commitment = said.split_whitespace().last().expect("a commitment");
+    let name = set
+        .file_name()
+        .and_then(|name| name.to_str())
+        .expect("a name");
 
     let runs = at("run");
     let mut diagnose = Command::new(horsehead());
@@ -88,21 +91,21 @@ fn trial(arguments: &[&str]) -> (serde_json::Value, String) {
         .args(["--run", &runs, "--rounds", "1", "--output", "json"])
         .current_dir(scratch.path());
     let verdict = run(&mut diagnose);
-    fs::create_dir(&verdicts).unwrap();
-    fs::write(Path::new(&verdicts).join(format!("{name}.json")), &verdict).unwrap();
+    fs::create_dir(&verdicts).expect("a folder");
+    fs::write(Path::new(&verdicts).join(format!("{name}.json")), &verdict).expect("a file");
 
     let open = ["open", "--answers", &answers, "--verdicts", &verdicts];
     let table = truth(&[&open[..], &["--commitment", commitment]].concat());
     // whoever changes the answers afterwards is found out
-    let sealed = fs::read_to_string(&answers).unwrap();
-    fs::write(&answers, sealed.replace("\"seed\"", " \"seed\"")).unwrap();
+    let sealed = fs::read_to_string(&answers).expect("answers");
+    fs::write(&answers, sealed.replace("\"seed\"", " \"seed\"")).expect("a file");
     let forged = Command::new(env!("CARGO_BIN_EXE_truth"))
         .args(open)
         .args(["--commitment", commitment])
         .output()
-        .unwrap();
+        .expect("it starts");
     assert!(!forged.status.success());
-    (serde_json::from_str(&verdict).unwrap(), table)
+    (serde_json::from_str(&verdict).expect("a verdict"), table)
 }
 
 #[test]

@@ -3,55 +3,18 @@
 //! Cycles differ in load and speed; an index pulse marks each turn a little early or late, and angles
 //! between two pulses are taken as uniform in time; gauges have zeros, coloured noise and a step of
 //! resolution; a wireless link loses samples.
+mod sensors;
+mod time;
+
+pub use sensors::Sensors;
+
 use crate::draw::Draw;
 use crate::law::Law;
 use crate::turn::Turn;
+use sensors::{Link, Noise};
 use simulation::math::spline::Splines;
-use std::f64::consts::TAU;
 use std::sync::Arc;
-
-/// Sizes of what sensors do, as in the case's own records.
-#[derive(Clone, Copy, Debug)]
-pub struct Sensors {
-    /// Samples a second \[Hz\].
-    pub rate: f64,
-    /// Noise of a gauge, rms \[MPa\].
-    pub gauge_noise: f64,
-    /// How much of it comes back in the next sample.
-    pub correlation: f64,
-    /// Share of its variance that all gauges have in common.
-    pub common: f64,
-    /// Step of a gauge's reading \[MPa\].
-    pub resolution: f64,
-    /// Spread of a gauge's zero \[MPa\].
-    pub zero: f64,
-    /// Noise of the position \[m\] and of the torque [N m].
-    pub others: [f64; 2],
-    /// Spread of the index pulse \[deg\].
-    pub index: f64,
-    /// Share of samples that are lost one by one.
-    pub lost: f64,
-    /// Spread of load swing and of speed from cycle to cycle.
-    pub cycles: [f64; 2],
-}
-
-impl Sensors {
-    /// With a factor on all noise.
-    pub fn with_noise(factor: f64) -> Self {
-        Self {
-            rate: 100.0,
-            gauge_noise: 0.2 * factor,
-            correlation: 0.6,
-            common: 0.1,
-            resolution: 0.206,
-            zero: 1.0,
-            others: [0.002 * factor, 200.0 * factor],
-            index: 0.1,
-            lost: 0.0025,
-            cycles: [0.004, 0.001],
-        }
-    }
-}
+use time::Time;
 
 /// One sample of a record.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -181,142 +144,15 @@ impl Curves {
     }
 }
 
-/// When cycles begin, really and by their pulses, and what is different in each.
-struct Time {
-    /// Begin of each cycle and of one beyond the last \[s\].
-    begin: Vec<f64>,
-    /// The same as the pulses mark it.
-    pulse: Vec<f64>,
-    varied: Vec<[f64; 2]>,
-}
-
-impl Time {
-    /// The record begins with the first pulse.
-    fn new(period: f64, sensors: &Sensors, cycles: usize, draw: &mut Draw) -> Self {
-        let varied: Vec<[f64; 2]> = (0..cycles + 2)
-            .map(|_| sensors.cycles.map(|spread| spread * draw.cut_normal()))
-            .collect();
-        let mut begin = vec![0.0];
-        let mut sum = 0.0;
-        for [_, speed] in &varied {
-            sum += period / (1.0 + speed);
-            begin.push(sum);
-        }
-        let mut pulse: Vec<f64> = begin
-            .iter()
-            .map(|begin| begin + sensors.index / 360.0 * period * draw.cut_normal())
-            .collect();
-        let first = pulse[0];
-        for time in begin.iter_mut().chain(&mut pulse) {
-            *time -= first;
-        }
-        Self {
-            begin,
-            pulse,
-            varied,
-        }
-    }
-
-    /// Turns since the begin of the first cycle.
-    fn turned(&self, at: f64) -> f64 {
-        Self::share(&self.begin, at)
-    }
-
-    /// Crank angle by the pulses \[deg\].
-    fn indicated(&self, at: f64) -> f64 {
-        let turned = Self::share(&self.pulse, at);
-        360.0 * (turned - turned.floor())
-    }
-
-    /// Number of the interval that a time is in, and the share of it that is over.
-    fn share(marks: &[f64], at: f64) -> f64 {
-        let left = marks
-            .partition_point(|mark| *mark <= at)
-            .clamp(1, marks.len() - 1)
-            - 1;
-        left as f64 + (at - marks[left]) / (marks[left + 1] - marks[left])
-    }
-
-    /// What differs, going over gently from the middle of a cycle to that of the next.
-    fn varied(&self, turned: f64) -> [f64; 2] {
-        let place = (turned - 0.5).max(0.0);
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a number of cycles, not negative"
-        )]
-        let left = (place as usize).min(self.varied.len() - 2);
-        let share = (place - left as f64).min(1.0);
-        let (a, b) = (self.varied[left], self.varied[left + 1]);
-        [0, 1].map(|k| a[k] + (b[k] - a[k]) * share)
-    }
-}
-
-/// Noise of the gauges: first order, a part of it common to all.
-struct Noise {
-    state: [f64; 5],
-    kept: f64,
-    fresh: f64,
-    own: f64,
-    common: f64,
-}
-
-impl Noise {
-    fn new(sensors: &Sensors, draw: &mut Draw) -> Self {
-        let kept = sensors.correlation;
-        Self {
-            state: [0.0; 5].map(|_: f64| draw.normal()),
-            kept,
-            fresh: (1.0 - kept * kept).sqrt(),
-            own: sensors.gauge_noise * (1.0 - sensors.common).sqrt(),
-            common: sensors.gauge_noise * sensors.common.sqrt(),
-        }
-    }
-
-    fn next(&mut self, draw: &mut Draw) -> [f64; 4] {
-        for state in &mut self.state {
-            *state = self.kept * *state + self.fresh * draw.normal();
-        }
-        let [a, b, c, d, all] = self.state;
-        [a, b, c, d].map(|own| self.own * own + self.common * all)
-    }
-}
-
-/// A wireless link: single samples are lost, and one burst.
-struct Link {
-    burst: [f64; 2],
-    share: f64,
-    lost: usize,
-}
-
-impl Link {
-    fn new(samples: f64, share: f64, draw: &mut Draw) -> Self {
-        let begin = draw.between(0.1, 0.9) * samples;
-        Self {
-            burst: [begin, begin + draw.between(4.0, 14.0)],
-            share,
-            lost: 0,
-        }
-    }
-
-    /// The first sample always arrives.
-    fn delivers(&mut self, number: f64, draw: &mut Draw) -> bool {
-        let in_burst = (self.burst[0]..self.burst[1]).contains(&number);
-        let single = draw.unit() < self.share;
-        let lost = number > 0.0 && (in_burst || single);
-        self.lost += usize::from(lost);
-        !lost
-    }
-}
-
 /// The uniform speed of a condition [rad/s].
 pub fn speed(rpm: f64) -> f64 {
-    rpm * TAU / 60.0
+    rpm * std::f64::consts::TAU / 60.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     fn turns() -> Turns {
         let n = 1440;
@@ -394,20 +230,5 @@ mod tests {
         assert_eq!(back, 5);
         assert_eq!(sampled(1.0, 5), sampled(1.0, 5));
         assert_ne!(sampled(1.0, 5), sampled(1.0, 6));
-    }
-
-    #[test]
-    fn what_differs_goes_over_gently() {
-        let sensors = Sensors::with_noise(1.0);
-        let time = Time::new(12.0, &sensors, 5, &mut Draw::new(1, "time"));
-        for k in 0..500 {
-            let [a, b] = [0.0, 0.01].map(|more| time.varied(0.01 * f64::from(k) + more));
-            assert!((a[0] - b[0]).abs() < 3e-4);
-        }
-        assert!(
-            time.begin
-                .windows(2)
-                .all(|w| (w[1] - w[0] - 12.0).abs() < 0.05)
-        );
     }
 }
