@@ -3,7 +3,7 @@
 //! A machine without effects has an empty set of them and computes what it always did. Nothing here
 //! knows which effect a piece belongs to. Pieces of one kind add up in the order of the catalogue.
 use super::line::Along;
-use super::profile::Profile;
+use super::profile::{Hollow, Profile};
 use crate::drive::DriveState;
 use crate::linear::Bordered;
 use crate::math::spline::Splines;
@@ -139,6 +139,35 @@ pub struct Sampled<'a, 'b> {
 }
 
 impl Hooks {
+    /// Hangs a force on the machine.
+    pub fn add_force(&mut self, force: Arc<dyn Force>) {
+        self.forces.push(force);
+    }
+
+    /// Adds a law along the back rope (0) or the front rope (1); one of them may have a past.
+    ///
+    /// # Panics
+    /// If there is no such rope.
+    pub fn add_axial(&mut self, rope: usize, law: Arc<dyn Axial>) {
+        self.axial[rope].push(law);
+    }
+
+    /// Lets the crank go ahead of uniform rotation \[rad\], by a curve over the uniform turn \[rad\].
+    pub fn add_warp(&mut self, ahead: Splines) {
+        self.warps.push(ahead);
+    }
+
+    /// Takes material from the back head's surface.
+    pub fn dig(&mut self, hollow: Hollow) {
+        self.profile.dig(hollow);
+    }
+
+    /// Lets the back head's surface move towards the rope beside its own deflection, by no more
+    /// than this \[m\].
+    pub fn add_sway(&mut self, sway: f64) {
+        self.sway += sway;
+    }
+
     /// Turn angle, rate and acceleration of the crank, from those of uniform rotation.
     pub(crate) fn turn(&self, uniform: [f64; 3]) -> [f64; 3] {
         let [turn, rate, acceleration] = uniform;

@@ -136,6 +136,11 @@ impl Selection {
         })
     }
 
+    /// Effects that need not be in the catalogue, acting in the order given.
+    pub const fn of(effects: Vec<Arc<dyn Effect>>) -> Self {
+        Self { effects }
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.effects.is_empty()

@@ -1,0 +1,102 @@
+//! Sizes of what sensors do; noise and losses.
+use crate::draw::Draw;
+
+/// Sizes of what sensors do, as in the case's own records.
+#[derive(Clone, Copy, Debug)]
+pub struct Sensors {
+    /// Samples a second \[Hz\].
+    pub rate: f64,
+    /// Noise of a gauge, rms \[MPa\].
+    pub gauge_noise: f64,
+    /// How much of it comes back in the next sample.
+    pub correlation: f64,
+    /// Share of its variance that all gauges have in common.
+    pub common: f64,
+    /// Step of a gauge's reading \[MPa\].
+    pub resolution: f64,
+    /// Spread of a gauge's zero \[MPa\].
+    pub zero: f64,
+    /// Noise of the position \[m\] and of the torque [N m].
+    pub others: [f64; 2],
+    /// Spread of the index pulse \[deg\].
+    pub index: f64,
+    /// Share of samples that are lost one by one.
+    pub lost: f64,
+    /// Spread of load swing and of speed from cycle to cycle.
+    pub cycles: [f64; 2],
+}
+
+impl Sensors {
+    /// With a factor on all noise.
+    pub fn with_noise(factor: f64) -> Self {
+        Self {
+            rate: 100.0,
+            gauge_noise: 0.2 * factor,
+            correlation: 0.6,
+            common: 0.1,
+            resolution: 0.206,
+            zero: 1.0,
+            others: [0.002 * factor, 200.0 * factor],
+            index: 0.1,
+            lost: 0.0025,
+            cycles: [0.004, 0.001],
+        }
+    }
+}
+
+/// Noise of the gauges: first order, a part of it common to all.
+pub(super) struct Noise {
+    state: [f64; 5],
+    kept: f64,
+    fresh: f64,
+    own: f64,
+    common: f64,
+}
+
+impl Noise {
+    pub(super) fn new(sensors: &Sensors, draw: &mut Draw) -> Self {
+        let kept = sensors.correlation;
+        Self {
+            state: [0.0; 5].map(|_: f64| draw.normal()),
+            kept,
+            fresh: (1.0 - kept * kept).sqrt(),
+            own: sensors.gauge_noise * (1.0 - sensors.common).sqrt(),
+            common: sensors.gauge_noise * sensors.common.sqrt(),
+        }
+    }
+
+    pub(super) fn next(&mut self, draw: &mut Draw) -> [f64; 4] {
+        for state in &mut self.state {
+            *state = self.kept * *state + self.fresh * draw.normal();
+        }
+        let [a, b, c, d, all] = self.state;
+        [a, b, c, d].map(|own| self.own * own + self.common * all)
+    }
+}
+
+/// A wireless link: single samples are lost, and one burst.
+pub(super) struct Link {
+    burst: [f64; 2],
+    share: f64,
+    pub(super) lost: usize,
+}
+
+impl Link {
+    pub(super) fn new(samples: f64, share: f64, draw: &mut Draw) -> Self {
+        let begin = draw.between(0.1, 0.9) * samples;
+        Self {
+            burst: [begin, begin + draw.between(4.0, 14.0)],
+            share,
+            lost: 0,
+        }
+    }
+
+    /// The first sample always arrives.
+    pub(super) fn delivers(&mut self, number: f64, draw: &mut Draw) -> bool {
+        let in_burst = (self.burst[0]..self.burst[1]).contains(&number);
+        let single = draw.unit() < self.share;
+        let lost = number > 0.0 && (in_burst || single);
+        self.lost += usize::from(lost);
+        !lost
+    }
+}

@@ -1,0 +1,94 @@
+//! When cycles begin, what their pulses say, and what differs from cycle to cycle.
+use super::Sensors;
+use crate::draw::Draw;
+
+/// When cycles begin, really and by their pulses, and what is different in each.
+pub(super) struct Time {
+    /// Begin of each cycle and of one beyond the last \[s\].
+    begin: Vec<f64>,
+    /// The same as the pulses mark it.
+    pulse: Vec<f64>,
+    varied: Vec<[f64; 2]>,
+}
+
+impl Time {
+    /// The record begins with the first pulse.
+    pub(super) fn new(period: f64, sensors: &Sensors, cycles: usize, draw: &mut Draw) -> Self {
+        let varied: Vec<[f64; 2]> = (0..cycles + 2)
+            .map(|_| sensors.cycles.map(|spread| spread * draw.cut_normal()))
+            .collect();
+        let mut begin = vec![0.0];
+        let mut sum = 0.0;
+        for [_, speed] in &varied {
+            sum += period / (1.0 + speed);
+            begin.push(sum);
+        }
+        let mut pulse: Vec<f64> = begin
+            .iter()
+            .map(|begin| begin + sensors.index / 360.0 * period * draw.cut_normal())
+            .collect();
+        let first = pulse[0];
+        for time in begin.iter_mut().chain(&mut pulse) {
+            *time -= first;
+        }
+        Self {
+            begin,
+            pulse,
+            varied,
+        }
+    }
+
+    /// Turns since the begin of the first cycle.
+    pub(super) fn turned(&self, at: f64) -> f64 {
+        Self::share(&self.begin, at)
+    }
+
+    /// Crank angle by the pulses \[deg\].
+    pub(super) fn indicated(&self, at: f64) -> f64 {
+        let turned = Self::share(&self.pulse, at);
+        360.0 * (turned - turned.floor())
+    }
+
+    /// Number of the interval that a time is in, and the share of it that is over.
+    fn share(marks: &[f64], at: f64) -> f64 {
+        let left = marks
+            .partition_point(|mark| *mark <= at)
+            .clamp(1, marks.len() - 1)
+            - 1;
+        left as f64 + (at - marks[left]) / (marks[left + 1] - marks[left])
+    }
+
+    /// What differs, going over gently from the middle of a cycle to that of the next.
+    pub(super) fn varied(&self, turned: f64) -> [f64; 2] {
+        let place = (turned - 0.5).max(0.0);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of cycles, not negative"
+        )]
+        let left = (place as usize).min(self.varied.len() - 2);
+        let share = (place - left as f64).min(1.0);
+        let (a, b) = (self.varied[left], self.varied[left + 1]);
+        [0, 1].map(|k| a[k] + (b[k] - a[k]) * share)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_differs_goes_over_gently() {
+        let sensors = Sensors::with_noise(1.0);
+        let time = Time::new(12.0, &sensors, 5, &mut Draw::new(1, "time"));
+        for k in 0..500 {
+            let [a, b] = [0.0, 0.01].map(|more| time.varied(0.01 * f64::from(k) + more));
+            assert!((a[0] - b[0]).abs() < 3e-4);
+        }
+        assert!(
+            time.begin
+                .windows(2)
+                .all(|w| (w[1] - w[0] - 12.0).abs() < 0.05)
+        );
+    }
+}

@@ -1,0 +1,258 @@
+//! Dry friction that sticks: hard signs, a Stribeck peak, sliding that sets in over a way.
+use super::{Law, Shape, note};
+use crate::draw::Draw;
+use libm::exp;
+use simulation::drive::DriveState;
+use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce};
+use simulation::math::spline::Splines;
+use simulation::model::Machine;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Nodes of a curve over the turn.
+const NODES: usize = 1440;
+
+/// A grease-starved plain bearing: `M = mu r N (1 + p exp(-|w| / w_s)) sgn(w)`, with the bearing's
+/// own load `N`; the sign is hard but for `w_h`.
+pub(super) fn plain_bearing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Bearing {
+        moment: size,
+        peak: note(shape, "stribeck_peak_1", draw.between(0.1, 0.4)),
+        speed: note(shape, "stribeck_speed_rad_s", draw.log_between(0.005, 0.03)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Bearing {
+    /// Moment at the mean load [N m].
+    moment: f64,
+    peak: f64,
+    speed: f64,
+}
+
+/// Speed at which the hard sign is full [rad/s].
+const HARD: f64 = 3e-4;
+
+impl Effect for Bearing {
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+        let d = &machine.description;
+        let weight = 2.0 * d.suspension_mass * d.gravity;
+        let card = Splines::periodic(
+            0.0,
+            TAU / d.card.len() as f64,
+            std::slice::from_ref(&d.card),
+        );
+        let load = curve(|turn| cycle.tension(turn) + card.value(turn, 0) + weight);
+        let mean = load.iter().sum::<f64>() / load.len() as f64;
+        let share: Vec<f64> = load.iter().map(|load| load / mean).collect();
+        hooks.add_force(Arc::new(Rubbing {
+            law: *self,
+            share: Splines::periodic(0.0, TAU / NODES as f64, &[share]),
+            beam: machine.layout.beam(),
+        }));
+    }
+}
+
+impl Law for Bearing {}
+
+#[derive(Clone, Debug)]
+struct Rubbing {
+    law: Bearing,
+    /// Load of the bearing over its mean.
+    share: Splines,
+    beam: usize,
+}
+
+impl LineForce for Rubbing {
+    fn coordinate(&self) -> usize {
+        self.beam
+    }
+
+    fn along(&self, drive: &DriveState, _: f64, rate: f64) -> Along {
+        let size = self.law.moment * self.share.value(drive.turn, 0);
+        let rise = self.law.peak * exp(-rate.abs() / self.law.speed);
+        if rate.abs() < HARD {
+            // the peak is taken as flat here: it falls by some per cent
+            let slope = size * (1.0 + self.law.peak) / HARD;
+            return Along {
+                other: -slope * rate,
+                by_rate: -slope,
+                ..Along::default()
+            };
+        }
+        Along {
+            other: -size * (1.0 + rise) * rate.signum(),
+            by_rate: size * rise / self.law.speed,
+            ..Along::default()
+        }
+    }
+}
+
+/// Packing that gives before it slides (Dahl): after a turn-round the friction goes over with the way,
+/// `F_s (1 - 2 exp(-x / x_d))`, and it is larger on one stroke than on the other.
+pub(super) fn packing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Packing {
+        force: size,
+        way: note(shape, "way_m", draw.log_between(0.004, 0.02)),
+        uneven: note(shape, "upstroke_excess_1", draw.between(-0.1, 0.1)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Packing {
+    force: f64,
+    way: f64,
+    uneven: f64,
+}
+
+impl Effect for Packing {
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+        let arm = machine.description.front_arc.radius;
+        let side = dahl(&curve(|turn| arm * cycle.beam(turn).value), self.way);
+        let force = side
+            .iter()
+            .map(|side| -self.force * (side + self.uneven * side.abs()));
+        hooks.add_force(Arc::new(Scheduled {
+            coordinate: machine.layout.suspension(),
+            force: Splines::periodic(0.0, TAU / NODES as f64, &[force.collect()]),
+        }));
+    }
+}
+
+impl Law for Packing {}
+
+/// Loss of a rope that winds on and off its head: a share of the tension and a constant, setting in
+/// over an angle of winding.
+pub(super) fn winding(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Winding {
+        loss: size,
+        constant: note(shape, "constant_share_1", draw.between(0.1, 0.4)),
+        way: note(shape, "way_rad", draw.log_between(0.005, 0.02)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Winding {
+    loss: f64,
+    constant: f64,
+    way: f64,
+}
+
+impl Effect for Winding {
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+        let tension = curve(|turn| cycle.tension(turn));
+        let mean = tension.iter().sum::<f64>() / tension.len() as f64;
+        let side = dahl(&curve(|turn| cycle.tangent(turn).value), self.way);
+        let arm = curve(|turn| cycle.arm(turn));
+        let moment = (0..NODES).map(|i| {
+            let pull = (1.0 - self.constant) * tension[i] + self.constant * mean;
+            self.loss * pull * arm[i] * side[i]
+        });
+        hooks.add_force(Arc::new(Scheduled {
+            coordinate: machine.layout.beam(),
+            force: Splines::periodic(0.0, TAU / NODES as f64, &[moment.collect()]),
+        }));
+    }
+}
+
+impl Law for Winding {}
+
+/// A force that is known over the turn.
+#[derive(Clone, Debug)]
+pub(super) struct Scheduled {
+    pub(super) coordinate: usize,
+    pub(super) force: Splines,
+}
+
+impl LineForce for Scheduled {
+    fn coordinate(&self) -> usize {
+        self.coordinate
+    }
+
+    fn along(&self, drive: &DriveState, _: f64, _: f64) -> Along {
+        Along {
+            other: self.force.value(drive.turn, 0),
+            ..Along::default()
+        }
+    }
+}
+
+/// A curve over the turn.
+pub(super) fn curve(at: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..NODES)
+        .map(|i| at(TAU * i as f64 / NODES as f64))
+        .collect()
+}
+
+/// Where Dahl's friction stands between -1 and 1 along a periodic motion: `dz = (1 - z sgn dx) dx / way`.
+fn dahl(motion: &[f64], way: f64) -> Vec<f64> {
+    let n = motion.len();
+    let mut side = vec![0.0; n];
+    let mut z: f64 = 0.0;
+    for k in 1..=2 * n {
+        let moved = motion[k % n] - motion[(k - 1) % n];
+        let end = if moved < 0.0 { -1.0 } else { 1.0 };
+        z = end + (z - end) * exp(-moved.abs() / way);
+        side[k % n] = z;
+    }
+    side
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::law::by_id;
+
+    #[test]
+    fn dahl_follows_its_equation_and_repeats() {
+        let motion = curve(|turn| 0.2 * libm::cos(turn));
+        let way = 0.01;
+        let side = dahl(&motion, way);
+        // on the way down from the top: z = -1 + (z_0 + 1) exp(-x / way), with z_0 = 1 at the top
+        let x = motion[0] - motion[300];
+        assert!((side[300] - (-1.0 + 2.0 * exp(-x / way))).abs() < 1e-6);
+        assert!(side.iter().all(|side| side.abs() <= 1.0));
+        assert!((side[0] - 1.0).abs() < 1e-6, "it has come up all the way");
+    }
+
+    #[test]
+    fn a_bearing_rubs_against_its_motion_whatever_its_speed() {
+        let law = Bearing {
+            moment: 1500.0,
+            peak: 0.3,
+            speed: 0.02,
+        };
+        let rubbing = Rubbing {
+            law,
+            share: Splines::periodic(0.0, 1.0, &[vec![1.0; 8]]),
+            beam: 0,
+        };
+        let drive = DriveState {
+            turn: 0.0,
+            pin: Default::default(),
+            pin_angle: 0.0,
+            pin_rate: 0.0,
+            load: 0.0,
+        };
+        for rate in [-0.3, -0.02, -1e-4, 1e-4, 0.02, 0.3] {
+            let along = rubbing.along(&drive, 0.0, rate);
+            assert!(along.other * rate < 0.0);
+            let h = 1e-9;
+            let slope = (rubbing.along(&drive, 0.0, rate + h).other
+                - rubbing.along(&drive, 0.0, rate - h).other)
+                / (2.0 * h);
+            assert!((slope - along.by_rate).abs() <= 1e-3 * slope.abs().max(1.0));
+        }
+        let slow = rubbing.along(&drive, 0.0, 0.001).other.abs();
+        let fast = rubbing.along(&drive, 0.0, 0.3).other.abs();
+        assert!(slow > 1.2 * fast, "it falls as the bearing floats");
+    }
+
+    #[test]
+    fn sizes_are_what_was_asked_for() {
+        let hidden = by_id("pivot_friction")
+            .expect("in the catalogue")
+            .hide(5.0, &mut Draw::new(1, "law"));
+        assert!((hidden.size - 7500.0).abs() < 1e-9 && hidden.shape.len() == 2);
+    }
+}

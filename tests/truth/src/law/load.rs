@@ -1,0 +1,289 @@
+//! A card that is not the load: late, lagged, smoothed, of another zero, of another pump.
+use super::{Law, Shape, note};
+use crate::draw::Draw;
+use libm::{exp, sin};
+use simulation::drive::DriveState;
+use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce};
+use simulation::math::harmonics::filter;
+use simulation::model::Machine;
+use simulation::model::description::Description;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The load comes later than the card says.
+pub(super) fn late_card(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(LateCard { time: size })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct LateCard {
+    time: f64,
+}
+
+impl Effect for LateCard {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        let n = d.card.len();
+        let behind = self.time * d.crank.speed / TAU * n as f64;
+        let card = d.card.clone();
+        for (i, load) in d.card.iter_mut().enumerate() {
+            let place = (i as f64 - behind).rem_euclid(n as f64);
+            let share = place.fract();
+            let at = |offset: usize| card[(whole(place) + offset) % n];
+            *load = at(0) * (1.0 - share) + at(1) * share;
+        }
+    }
+}
+
+impl Law for LateCard {}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a place in a table, not negative"
+)]
+fn whole(place: f64) -> usize {
+    place as usize
+}
+
+/// The beam is out of balance, and the load cell is right.
+pub(super) fn unbalance(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Unbalance { force: size })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Unbalance {
+    /// At the front head \[N\].
+    force: f64,
+}
+
+impl Effect for Unbalance {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        d.beam_gravity_moment += self.force * d.front_arc.radius;
+    }
+}
+
+impl Law for Unbalance {}
+
+/// The logger's filter has two poles: the delivered card is the load, smoothed and late.
+pub(super) fn slow_logger(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(SlowLogger { lag: size })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct SlowLogger {
+    /// Delay of slow changes: both poles' time constants \[s\].
+    lag: f64,
+}
+
+impl Effect for SlowLogger {}
+
+impl Law for SlowLogger {
+    fn deliver(&self, card: &mut Vec<f64>, speed: f64) {
+        *card = filter(card, u32::MAX, |harmonic| {
+            let x = 0.5 * self.lag * speed * f64::from(harmonic);
+            // 1 / (1 + i x)^2
+            let size = 1.0 / ((1.0 + x * x) * (1.0 + x * x));
+            [(1.0 - x * x) * size, -2.0 * x * size]
+        });
+    }
+}
+
+/// The card was smoothed by a moving average.
+pub(super) fn moving_average(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(MovingAverage { window: size })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct MovingAverage {
+    /// Width \[deg\].
+    window: f64,
+}
+
+impl Effect for MovingAverage {}
+
+impl Law for MovingAverage {
+    fn deliver(&self, card: &mut Vec<f64>, _: f64) {
+        let n = card.len();
+        let reach = whole((0.5 * self.window / 360.0 * n as f64).round()).min(n / 2);
+        let own = card.clone();
+        for (i, load) in card.iter_mut().enumerate() {
+            let window = (0..=2 * reach).map(|k| own[(i + n + k - reach) % n]);
+            *load = window.sum::<f64>() / (2 * reach + 1) as f64;
+        }
+    }
+}
+
+/// A pump that does not fill: the plunger carries its load down until it meets the liquid, loses it by
+/// an exponential, and the rods ring.
+pub(super) fn pound(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Pound {
+        held: size,
+        fillage: note(shape, "fillage_1", draw.between(0.7, 0.92)),
+        fall: note(shape, "fall_deg", draw.between(2.0, 4.0)),
+        blow: size * note(shape, "blow_n", draw.between(1000.0, 4000.0)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Pound {
+    held: f64,
+    fillage: f64,
+    fall: f64,
+    blow: f64,
+}
+
+/// The rods' own frequency \[Hz\] and the time in which their ringing dies out \[s\].
+const RODS: (f64, f64) = (0.739, 2.0);
+
+impl Effect for Pound {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        let Ok(cycle) = Cycle::of(d) else { return };
+        let (top, meets) = (cycle.descent(0.0), cycle.descent(1.0 - self.fillage));
+        let n = d.card.len();
+        let step = TAU / n as f64;
+        let place = |turn: f64| whole((turn / step).round()) % n;
+        let full = d.card[place(top)];
+        let period = TAU / d.crank.speed;
+        for (i, load) in d.card.iter_mut().enumerate() {
+            let turn = step * i as f64;
+            if turn > top {
+                let held = if turn < meets {
+                    1.0
+                } else {
+                    exp(-(turn - meets) / self.fall.to_radians())
+                };
+                *load += self.held * held * (full - *load);
+            }
+            for earlier in 0..3 {
+                let t = (turn - meets) / d.crank.speed + period * f64::from(earlier);
+                if t > 0.0 {
+                    *load -= self.blow * sin(TAU * RODS.0 * t) * exp(-t / RODS.1);
+                }
+            }
+        }
+    }
+}
+
+impl Law for Pound {}
+
+/// The rod string answers motion that the card does not know: by its impedance, the more the faster,
+/// and by a soft spring, for what comes back from its lower end.
+pub(super) fn rods(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Rods {
+        impedance: size,
+        spring: note(shape, "spring_n_m", draw.log_between(2e3, 1e4)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rods {
+    impedance: f64,
+    spring: f64,
+}
+
+impl Effect for Rods {
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+        hooks.add_force(Arc::new(Answer {
+            law: *self,
+            arm: machine.description.front_arc.radius,
+            height: machine.lowest_suspension,
+            lowest: machine.bottom.beam,
+            cycle: cycle.clone(),
+            suspension: machine.layout.suspension(),
+        }));
+    }
+}
+
+impl Law for Rods {}
+
+#[derive(Clone, Debug)]
+struct Answer {
+    law: Rods,
+    arm: f64,
+    height: f64,
+    lowest: f64,
+    cycle: Cycle,
+    suspension: usize,
+}
+
+/// Speed at which the impedance is a quarter more [m/s].
+const FAST: f64 = 0.4;
+
+impl LineForce for Answer {
+    fn coordinate(&self) -> usize {
+        self.suspension
+    }
+
+    fn along(&self, drive: &DriveState, place: f64, rate: f64) -> Along {
+        let beam = self.cycle.beam(drive.turn);
+        let turning = self.cycle.crank().sense * drive.pin_rate;
+        let beyond = place - self.height - self.arm * (beam.value - self.lowest);
+        let faster = rate - self.arm * beam.first * turning;
+        let growth = 0.25 * faster.abs() / FAST;
+        Along {
+            spring: -self.law.spring * beyond,
+            energy: 0.5 * self.law.spring * beyond * beyond,
+            other: -self.law.impedance * faster * (1.0 + growth),
+            by_place: -self.law.spring,
+            by_rate: -self.law.impedance * (1.0 + 2.0 * growth),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use libm::cos;
+
+    fn wave(harmonic: f64, phase: f64) -> Vec<f64> {
+        (0..720)
+            .map(|i| cos(harmonic * TAU * f64::from(i) / 720.0 - phase))
+            .collect()
+    }
+
+    #[test]
+    fn a_two_pole_filter_delays_and_weakens() {
+        let speed = TAU / 12.0;
+        let mut card = wave(5.0, 0.0);
+        SlowLogger { lag: 0.2 }.deliver(&mut card, speed);
+        let x: f64 = 0.1 * speed * 5.0;
+        let expected = wave(5.0, 2.0 * libm::atan(x));
+        for (found, expected) in card.iter().zip(expected) {
+            assert!((found - expected / (1.0 + x * x)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_late_card_and_a_smoothed_one() {
+        let mut d = simulation::reference::description();
+        let plain = d.card.clone();
+        // by one sample of the table
+        let step = TAU / plain.len() as f64 / d.crank.speed;
+        LateCard { time: step }.describe(&mut d, &mut 2);
+        assert!((0..plain.len()).all(|i| (d.card[(i + 1) % plain.len()] - plain[i]).abs() < 1e-6));
+        let mut card = wave(24.0, 0.3);
+        MovingAverage { window: 14.5 }.deliver(&mut card, 0.5);
+        assert!(
+            card.iter().all(|load| load.abs() < 0.05),
+            "a wave of 15 deg averages out"
+        );
+    }
+
+    #[test]
+    fn a_pound_holds_the_load_and_then_drops_it() {
+        let mut d = simulation::reference::description();
+        d.card = (0..720)
+            .map(|i| if i < 360 { 70e3 } else { 40e3 })
+            .collect();
+        let pound = Pound {
+            held: 1.0,
+            fillage: 0.8,
+            fall: 3.0,
+            blow: 0.0,
+        };
+        pound.describe(&mut d, &mut 2);
+        let cycle = Cycle::of(&d).unwrap();
+        let meets = whole(cycle.descent(0.2) / TAU * 720.0);
+        assert!(d.card[meets - 2] > 69e3 && d.card[meets + 40] < 42e3);
+    }
+}

@@ -1,0 +1,163 @@
+//! Effects as they really are: laws of their own, not those of the program that is judged.
+//!
+//! What the program's library takes as smooth, of first order or constant is hard, hysteretic,
+//! delayed or load-dependent here. [`CATALOGUE`] lists effects that the library names, with the
+//! size that machines like this one typically have; [`OUTSIDE`] lists some that it does not name.
+mod drive;
+mod friction;
+mod gauge;
+mod load;
+mod outside;
+mod post;
+mod rope;
+mod structure;
+
+use crate::draw::Draw;
+use crate::turn::Turn;
+use simulation::effect::Effect;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// An effect with its size. What acts on the machine itself is the [`Effect`] part, load included;
+/// the rest is what becomes of load card and readings on their way to the record.
+pub trait Law: Effect {
+    /// Makes the delivered card of the true one \[N\]; the crank turns with `speed` [rad/s].
+    fn deliver(&self, _card: &mut Vec<f64>, _speed: f64) {}
+
+    /// Changes what the sensors of one turn give.
+    fn read(&self, _turn: &mut Turn) {}
+
+    /// Moves the zeros of the gauges \[MPa\], a number of turns after the record's begin.
+    fn drift(&self, _turns: f64) -> [f64; 4] {
+        [0.0; 4]
+    }
+}
+
+/// A kind of effect that can be hidden.
+#[derive(Clone, Copy, Debug)]
+pub struct Kind {
+    /// Identifier; that of the program's library where it names the effect.
+    pub id: &'static str,
+    /// Name of the number that is drawn.
+    pub parameter: &'static str,
+    /// Unit of the number.
+    pub unit: &'static str,
+    /// Typical size, in that unit.
+    pub scale: f64,
+    /// Whether it may be negative.
+    pub signed: bool,
+    /// Most times its scale.
+    pub most: f64,
+    /// Makes it; shape numbers are drawn and noted.
+    build: fn(f64, &mut Draw, &mut Shape) -> Arc<dyn Law>,
+}
+
+/// Further numbers of a law, by name with the unit in it.
+pub type Shape = BTreeMap<String, f64>;
+
+/// An effect that was hidden.
+#[derive(Debug)]
+pub struct Hidden {
+    /// What it is.
+    pub kind: Kind,
+    /// Its size in the kind's unit.
+    pub size: f64,
+    /// Further numbers.
+    pub shape: Shape,
+    /// The law itself.
+    pub law: Arc<dyn Law>,
+}
+
+impl Kind {
+    /// Hides it with a size in units of its scale.
+    pub fn hide(self, times: f64, draw: &mut Draw) -> Hidden {
+        let size = times.clamp(-self.most, self.most) * self.scale;
+        let mut shape = Shape::new();
+        let law = (self.build)(size, draw, &mut shape);
+        Hidden {
+            kind: self,
+            size,
+            shape,
+            law,
+        }
+    }
+}
+
+/// A shape number, noted.
+fn note(shape: &mut Shape, name: &str, value: f64) -> f64 {
+    shape.insert(name.to_owned(), value);
+    value
+}
+
+const fn kind(
+    id: &'static str,
+    (parameter, unit): (&'static str, &'static str),
+    scale: f64,
+    build: fn(f64, &mut Draw, &mut Shape) -> Arc<dyn Law>,
+) -> Kind {
+    Kind {
+        id,
+        parameter,
+        unit,
+        scale,
+        signed: false,
+        most: 10.0,
+        build,
+    }
+}
+
+const fn signed(kind: Kind) -> Kind {
+    Kind {
+        signed: true,
+        ..kind
+    }
+}
+
+const fn at_most(most: f64, kind: Kind) -> Kind {
+    Kind { most, ..kind }
+}
+
+/// Effects that the library names.
+#[rustfmt::skip]
+pub const CATALOGUE: [Kind; 24] = [
+    at_most(3.0, kind("crank_speed_ripple", ("slip", "1"), 0.0267, drive::kloss)),
+    signed(kind("crank_angle_offset", ("angle", "deg"), 2.0, drive::late_index)),
+    kind("pivot_friction", ("moment", "N.m"), 1500.0, friction::plain_bearing),
+    kind("stuffing_box_friction", ("force", "N"), 800.0, friction::packing),
+    at_most(5.0, kind("rope_bending_loss", ("loss", "1"), 0.015, friction::winding)),
+    at_most(8.0, kind("rope_hysteresis", ("share", "1"), 0.05, rope::wires)),
+    at_most(6.0, kind("rope_toe", ("strain", "1"), 7.5e-4, rope::bedding)),
+    at_most(4.0, signed(kind("rope_stretch", ("length", "m"), 0.02, rope::stretch))),
+    at_most(8.0, signed(kind("twin_rope_inequality", ("length", "m"), 0.002, gauge::twins))),
+    signed(kind("pin_clearance", ("step", "MPa"), 0.5, gauge::clearance)),
+    at_most(5.0, signed(kind("card_time_shift", ("time", "s"), 0.1, load::late_card))),
+    signed(kind("load_offset", ("force", "N"), 1000.0, load::unbalance)),
+    at_most(3.0, kind("load_cell_lag", ("lag", "s"), 0.15, load::slow_logger)),
+    at_most(4.0, kind("card_smoothing", ("window", "deg"), 15.0, load::moving_average)),
+    at_most(1.2, kind("fluid_pound", ("held", "1"), 1.0, load::pound)),
+    at_most(8.0, kind("amplifier_lag", ("lag", "s"), 0.05, gauge::delay)),
+    signed(kind("gauge_drift", ("drift", "MPa/rev"), 0.5, gauge::warming)),
+    at_most(4.0, kind("head_profile_wear", ("depth", "m"), 0.004, structure::worn_edge)),
+    at_most(5.0, kind("post_compliance", ("compliance", "m/N"), 5e-8, post::sinking)),
+    at_most(6.0, signed(kind("gauge_gain", ("gain", "1"), 0.05, gauge::gain))),
+    at_most(6.0, signed(kind("gauge_cross_talk", ("into", "1"), 0.05, gauge::rotated))),
+    at_most(4.0, signed(kind("front_head_radius", ("centre", "m"), 0.02, structure::front_arc))),
+    at_most(4.0, kind("beam_inertia", ("share", "1"), 0.2, structure::carried)),
+    at_most(3.0, kind("rod_string_reaction", ("impedance", "N.s/m"), 20500.0, load::rods)),
+];
+
+/// Effects that it does not name.
+#[rustfmt::skip]
+pub const OUTSIDE: [Kind; 5] = [
+    signed(kind("saddle_cubic_spring", ("moment", "N.m"), 4000.0, outside::cubic_spring)),
+    kind("beam_quadratic_drag", ("moment", "N.m"), 4000.0, outside::drag),
+    kind("crosshead_harmonic", ("force", "N"), 1500.0, outside::crosshead),
+    signed(kind("beam_gust", ("moment", "N.m"), 5000.0, outside::gust)),
+    kind("loose_ballast", ("mass", "kg"), 150.0, outside::ballast),
+];
+
+/// The kind of an identifier.
+pub fn by_id(id: &str) -> Option<Kind> {
+    let all = CATALOGUE.iter().chain(&OUTSIDE);
+    all.copied().find(|kind| kind.id == id)
+}

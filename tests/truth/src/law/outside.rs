@@ -1,0 +1,260 @@
+//! Effects that nobody has put into a library.
+use super::friction::{Scheduled, curve};
+use super::{Law, Shape, note};
+use crate::draw::Draw;
+use libm::{cos, exp, sqrt};
+use simulation::drive::DriveState;
+use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce};
+use simulation::math::spline::Splines;
+use simulation::model::Machine;
+use simulation::model::description::Description;
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Beam angle at the ends of the stroke \[rad\], and its greatest rate at 5 turns a minute [rad/s].
+const FULL: [f64; 2] = [0.55, 0.29];
+
+/// A spring at the saddle that hardens: `-M (theta / theta_full)^3`.
+pub(super) fn cubic_spring(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(OnBeam {
+        moment: size,
+        form: Form::Cubic,
+    })
+}
+
+/// Drag of the beam with the square of its rate: `-M w |w| / w_full^2`.
+pub(super) fn drag(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(OnBeam {
+        moment: size,
+        form: Form::Drag,
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Form {
+    Cubic,
+    Drag,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct OnBeam {
+    moment: f64,
+    form: Form,
+}
+
+impl Effect for OnBeam {
+    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+        hooks.add_force(Arc::new(BeamLaw {
+            law: *self,
+            beam: machine.layout.beam(),
+        }));
+    }
+}
+
+impl Law for OnBeam {}
+
+#[derive(Clone, Copy, Debug)]
+struct BeamLaw {
+    law: OnBeam,
+    beam: usize,
+}
+
+impl LineForce for BeamLaw {
+    fn coordinate(&self) -> usize {
+        self.beam
+    }
+
+    fn along(&self, _: &DriveState, place: f64, rate: f64) -> Along {
+        let m = self.law.moment;
+        match self.law.form {
+            Form::Cubic => {
+                let u = place / FULL[0];
+                Along {
+                    spring: -m * u * u * u,
+                    energy: 0.25 * m * FULL[0] * u * u * u * u,
+                    by_place: -3.0 * m * u * u / FULL[0],
+                    ..Along::default()
+                }
+            }
+            Form::Drag => {
+                let u = rate / FULL[1];
+                Along {
+                    other: -m * u * u.abs(),
+                    by_rate: -2.0 * m * u.abs() / FULL[1],
+                    ..Along::default()
+                }
+            }
+        }
+    }
+}
+
+/// Something pushes the crosshead sideways, several times a turn of the crank.
+pub(super) fn crosshead(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Crosshead {
+        force: size,
+        order: note(shape, "order_1", 2.0 + draw.index(4) as f64),
+        phase: note(shape, "phase_rad", draw.between(0.0, TAU)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Crosshead {
+    force: f64,
+    order: f64,
+    phase: f64,
+}
+
+impl Effect for Crosshead {
+    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+        let moment = self.force * machine.description.rod.length;
+        let moment = curve(|turn| moment * cos(self.order * turn + self.phase));
+        hooks.add_force(Arc::new(Scheduled {
+            coordinate: machine.layout.rod(),
+            force: Splines::periodic(0.0, TAU / moment.len() as f64, &[moment]),
+        }));
+    }
+}
+
+impl Law for Crosshead {}
+
+/// The beam comes out of the mast's lee once a turn and catches the wind for a while.
+pub(super) fn gust(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Gust {
+        moment: size,
+        at: note(shape, "turn_deg", draw.between(0.0, 360.0)),
+        width: note(shape, "width_deg", draw.between(12.0, 30.0)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Gust {
+    moment: f64,
+    at: f64,
+    width: f64,
+}
+
+impl Effect for Gust {
+    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+        let moment = curve(|turn| {
+            // nearest way round the turn
+            let away = (turn - self.at.to_radians() + PI).rem_euclid(TAU) - PI;
+            let u = away / self.width.to_radians();
+            self.moment * exp(-u * u)
+        });
+        hooks.add_force(Arc::new(Scheduled {
+            coordinate: machine.layout.beam(),
+            force: Splines::periodic(0.0, TAU / moment.len() as f64, &[moment]),
+        }));
+    }
+}
+
+impl Law for Gust {}
+
+/// Ballast has come loose and swings on the beam: a degree of freedom that no drawing has, one more
+/// mode of the head that the beam's turning drives.
+pub(super) fn ballast(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Ballast {
+        mass: size,
+        arm: note(shape, "arm_m", draw.between(2.5, 3.5)),
+        frequency: note(shape, "frequency_hz", draw.between(0.25, 0.6)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Ballast {
+    mass: f64,
+    arm: f64,
+    frequency: f64,
+}
+
+impl Effect for Ballast {
+    fn describe(&self, d: &mut Description, modes: &mut usize) {
+        let head = &mut d.head;
+        head.frequencies.truncate(*modes);
+        head.radial.truncate(*modes);
+        head.tangential.truncate(*modes);
+        head.gauge_stress.truncate(*modes);
+        head.participation.truncate(*modes);
+        let stations = head.radial.first().map_or(2, Vec::len);
+        head.frequencies.push(TAU * self.frequency);
+        head.radial.push(vec![0.0; stations]);
+        head.tangential.push(vec![0.0; stations]);
+        head.gauge_stress.push([0.0; 4]);
+        head.participation
+            .push([0.0, 0.0, sqrt(self.mass) * self.arm]);
+        *modes += 1;
+    }
+
+    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+        let d = &machine.description;
+        let mode = machine.layout.modes - 1;
+        hooks.add_force(Arc::new(Slosh {
+            mode: machine.layout.mode(mode),
+            damping: 2.0 * (SLOSH - d.head.damping_ratio) * d.head.frequencies[mode],
+        }));
+    }
+}
+
+impl Law for Ballast {}
+
+/// Damping ratio of the swinging ballast.
+const SLOSH: f64 = 0.08;
+
+#[derive(Clone, Copy, Debug)]
+struct Slosh {
+    mode: usize,
+    damping: f64,
+}
+
+impl LineForce for Slosh {
+    fn coordinate(&self) -> usize {
+        self.mode
+    }
+
+    fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
+        Along {
+            other: -self.damping * rate,
+            by_rate: -self.damping,
+            ..Along::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn laws_on_the_beam_have_the_stated_size_and_their_own_derivatives() {
+        let drive = DriveState {
+            turn: 0.0,
+            pin: Default::default(),
+            pin_angle: 0.0,
+            pin_rate: 0.0,
+            load: 0.0,
+        };
+        for form in [Form::Cubic, Form::Drag] {
+            let law = BeamLaw {
+                law: OnBeam {
+                    moment: 3000.0,
+                    form,
+                },
+                beam: 0,
+            };
+            let full = law.along(&drive, FULL[0], FULL[1]);
+            assert!((full.spring + full.other + 3000.0).abs() < 1e-9);
+            for (place, rate) in [(0.3, -0.2), (-0.5, 0.1)] {
+                let h = 1e-6;
+                let at = |dp: f64, dr: f64| law.along(&drive, place + dp, rate + dr);
+                let sum = |a: Along| a.spring + a.other;
+                let own = at(0.0, 0.0);
+                let by_place = (sum(at(h, 0.0)) - sum(at(-h, 0.0))) / (2.0 * h);
+                let by_rate = (sum(at(0.0, h)) - sum(at(0.0, -h))) / (2.0 * h);
+                let by_energy = (at(h, 0.0).energy - at(-h, 0.0).energy) / (2.0 * h);
+                assert!((by_place - own.by_place).abs() < 1e-2);
+                assert!((by_rate - own.by_rate).abs() < 1e-2);
+                assert!((by_energy + own.spring).abs() < 1e-2);
+            }
+        }
+    }
+}

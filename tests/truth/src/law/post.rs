@@ -1,0 +1,157 @@
+//! A foundation that gives: the beam's pivot sinks under what rests on it, up and down alone.
+//!
+//! The sinking is one more mode of the head, a rigid translation across the beam; the front side's
+//! pull hangs on it as a given force.
+use super::{Law, Shape, note};
+use crate::draw::Draw;
+use libm::{cos, sin, sqrt};
+use simulation::effect::{Along, Cycle, Effect, Force, Hooks, LineForce};
+use simulation::linear::Bordered;
+use simulation::model::description::Description;
+use simulation::model::{Instant, Machine};
+use std::sync::Arc;
+
+pub(super) fn sinking(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Sinking {
+        compliance: size,
+        damping: note(shape, "damping_1", draw.between(0.02, 0.06)),
+        mass: note(shape, "mass_kg", draw.between(5e3, 12e3)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Sinking {
+    compliance: f64,
+    damping: f64,
+    mass: f64,
+}
+
+impl Sinking {
+    fn frequency(&self) -> f64 {
+        sqrt(1.0 / (self.compliance * self.mass))
+    }
+}
+
+impl Effect for Sinking {
+    fn describe(&self, d: &mut Description, modes: &mut usize) {
+        let head = &mut d.head;
+        head.frequencies.truncate(*modes);
+        head.radial.truncate(*modes);
+        head.tangential.truncate(*modes);
+        head.gauge_stress.truncate(*modes);
+        head.participation.truncate(*modes);
+        let stations = head.radial.first().map_or(2, Vec::len);
+        let root = sqrt(self.mass);
+        let angle = |i: usize| head.start + head.step * i as f64;
+        let [radial, tangential] = [sin, cos].map(|part| {
+            (0..stations)
+                .map(|i| part(angle(i)) / root)
+                .collect::<Vec<f64>>()
+        });
+        head.frequencies.push(self.frequency());
+        head.radial.push(radial);
+        head.tangential.push(tangential);
+        head.gauge_stress.push([0.0; 4]);
+        let offset = d.beam_gravity_moment / d.gravity / root;
+        head.participation.push([0.0, root, offset]);
+        *modes += 1;
+    }
+
+    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+        let d = &machine.description;
+        let heaviest = (0..360)
+            .map(|k| cycle.tension(f64::from(k).to_radians()))
+            .chain(d.card.iter().copied())
+            .fold(0.0, f64::max);
+        hooks.add_sway(5.0 * self.compliance * heaviest);
+        let mode = machine.layout.mode(machine.layout.modes - 1);
+        hooks.add_force(Arc::new(FrontPull {
+            weight: d.suspension_mass * d.gravity,
+            root: sqrt(self.mass),
+            mode,
+            beam: machine.layout.beam(),
+        }));
+        hooks.add_force(Arc::new(Dashpot {
+            mode,
+            // beside what every mode of the head has
+            damping: 2.0 * (self.damping - d.head.damping_ratio) * self.frequency(),
+        }));
+    }
+}
+
+impl Law for Sinking {}
+
+#[derive(Clone, Copy, Debug)]
+struct Dashpot {
+    mode: usize,
+    damping: f64,
+}
+
+impl LineForce for Dashpot {
+    fn coordinate(&self) -> usize {
+        self.mode
+    }
+
+    fn along(&self, _: &simulation::drive::DriveState, _: f64, rate: f64) -> Along {
+        Along {
+            other: -self.damping * rate,
+            by_rate: -self.damping,
+            ..Along::default()
+        }
+    }
+}
+
+/// Potential `P y cos(theta) / sqrt(m)` of the load on a pivot that is `y / sqrt(m)` out of its place
+/// across the beam.
+#[derive(Clone, Copy, Debug)]
+struct FrontPull {
+    weight: f64,
+    root: f64,
+    mode: usize,
+    beam: usize,
+}
+
+impl FrontPull {
+    /// Pull per root of mass, `y sin(theta)`, `y cos(theta)`, sine, cosine.
+    fn parts(&self, at: &Instant<'_>) -> [f64; 5] {
+        let (s, c) = (sin(at.q[self.beam]), cos(at.q[self.beam]));
+        let y = at.q[self.mode];
+        [
+            (at.drive.load + self.weight) / self.root,
+            y * s,
+            y * c,
+            s,
+            c,
+        ]
+    }
+}
+
+impl Force for FrontPull {
+    fn add(&self, at: &Instant<'_>, force: &mut [f64]) {
+        let [pull, along, _, _, c] = self.parts(at);
+        force[self.mode] -= pull * c;
+        force[self.beam] += pull * along;
+    }
+
+    fn add_tangent(&self, at: &Instant<'_>, _: f64, matrix: &mut Bordered) {
+        // the matrix takes the derivative of the force with the other sign
+        let [pull, _, across, s, _] = self.parts(at);
+        matrix.add(self.mode, self.beam, -(pull * s));
+        matrix.add(self.beam, self.mode, -(pull * s));
+        matrix.add(self.beam, self.beam, -(pull * across));
+    }
+
+    fn energy(&self, _: &Instant<'_>) -> f64 {
+        0.0
+    }
+
+    fn potential(&self, at: &Instant<'_>) -> f64 {
+        let [pull, _, across, ..] = self.parts(at);
+        pull * across
+    }
+
+    fn lost(&self, at: &Instant<'_>) -> f64 {
+        let [pull, along, _, _, c] = self.parts(at);
+        pull * (c * at.v[self.mode] - along * at.v[self.beam])
+    }
+}

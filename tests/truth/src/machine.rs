@@ -1,0 +1,155 @@
+//! The machine as it really is: the case's drawing, discretised and integrated otherwise than the
+//! program that is judged does it, with the hidden effects in it.
+use crate::draw::Draw;
+use crate::law::Hidden;
+use crate::turn::{Turn, Watch};
+use anyhow::{Context as _, anyhow, bail};
+use protocol::case::{Case, GeneName};
+use protocol::job::{Failure, Refinement};
+use simulation::effect::{Effect, Selection};
+use simulation::integrator::method::Method;
+use simulation::integrator::tableau::TR_BDF2;
+use simulation::model::Machine;
+use simulation::model::description::Description;
+use simulation::run::{RunSettings, simulate};
+use simulation::verdict::Verdict;
+use std::sync::Arc;
+
+/// How finely the truth is computed.
+#[derive(Clone, Copy, Debug)]
+pub struct Fineness {
+    /// Length of a rope cylinder \[m\].
+    pub cylinder: f64,
+    /// Longest step of TR-BDF2 \[s\].
+    pub step: f64,
+    /// Head modes beside those of the case, as far as there are any.
+    pub more_modes: usize,
+    /// Samples of a turn.
+    pub samples: usize,
+}
+
+impl Fineness {
+    /// Against a case with cylinders of 50 mm.
+    pub const FULL: Self = Self {
+        cylinder: 0.025,
+        step: 0.002,
+        more_modes: 6,
+        samples: 1440,
+    };
+
+    /// Against a case with long cylinders, where minutes count.
+    pub const COARSE: Self = Self {
+        cylinder: 0.075,
+        step: 0.004,
+        more_modes: 2,
+        samples: 1440,
+    };
+}
+
+/// The middle of what coefficients are drawn about: Table 3 of the paper, optimised. Its axial damping,
+/// 5201 N.s/m, leaves the rope's swinging undamped for minutes; a steel rope loses some per cent a
+/// cycle, which is about this.
+const MIDDLE: [(GeneName, f64); 10] = [
+    (GeneName::Kb1, 7.81e8),
+    (GeneName::Kb23, 2.26e8),
+    (GeneName::Kb4, 204.0),
+    (GeneName::Kb56, 308.0),
+    (GeneName::Cb1, 1.0e6),
+    (GeneName::Cb23, 4287.0),
+    (GeneName::Cb4, 45.0),
+    (GeneName::Cb56, 56.0),
+    (GeneName::Kc, 4.01e8),
+    (GeneName::Cc, 1020.0),
+];
+
+/// Standard deviation of the logarithm of a coefficient; cut at twice that.
+const SPREAD: f64 = 0.35;
+
+/// Coefficients of a rope nobody has a data sheet of, in the case's units and order.
+///
+/// # Errors
+/// A case that lacks one of the ten.
+pub fn genes(case: &Case, draw: &mut Draw) -> anyhow::Result<Vec<f64>> {
+    let genes = case.genes.iter().map(|gene| {
+        let (_, middle) = MIDDLE
+            .iter()
+            .find(|(name, _)| *name == gene.name)
+            .with_context(|| format!("no middle for {}", gene.name.as_str()))?;
+        let value = middle * libm::exp(SPREAD * draw.cut_normal());
+        Ok(value.clamp(gene.lower, gene.upper))
+    });
+    genes.collect()
+}
+
+/// What differs from cycle to cycle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Variation {
+    /// Share by which the load's swing is larger.
+    pub load: f64,
+    /// Share by which the crank is faster.
+    pub speed: f64,
+}
+
+impl Effect for Variation {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        let mean = d.card.iter().sum::<f64>() / d.card.len() as f64;
+        for load in &mut d.card {
+            *load += self.load * (*load - mean);
+        }
+    }
+}
+
+/// One turn of the machine with its hidden effects, as its sensors see it.
+///
+/// # Errors
+/// A case that cannot be refined so, or a machine that does not come round.
+pub fn turn(
+    case: &Case,
+    condition: usize,
+    (genes, hidden): (&[f64], &[Hidden]),
+    variation: Variation,
+    fineness: &Fineness,
+) -> anyhow::Result<Turn> {
+    let available = case.modal_head.frequencies_hz.len();
+    let finer = Refinement {
+        cylinder_length_m: Some(fineness.cylinder),
+        modes: Some((case.run.modes + fineness.more_modes).min(available)),
+        ..Refinement::default()
+    };
+    let case = worker::convert::refined(case, &finer).map_err(|why| refused(&why))?;
+    let law = worker::convert::rope_law(&case, genes).map_err(|why| refused(&why))?;
+    let plain = worker::convert::machine(&case, condition).map_err(|why| refused(&why))?;
+    let mut description = plain.description;
+    description.crank.speed *= 1.0 + variation.speed;
+    let laws = hidden.iter().map(|hidden| {
+        let effect: Arc<dyn Effect> = Arc::clone(&hidden.law) as Arc<dyn Effect>;
+        effect
+    });
+    let varied: Arc<dyn Effect> = Arc::new(variation);
+    let effects = Selection::of(laws.chain([varied]).collect());
+    let machine = Machine::with_effects(description, plain.layout.modes, &effects)?;
+    let settings = RunSettings {
+        method: Method::from(&TR_BDF2),
+        lead_in: 240_f64.to_radians(),
+        samples: fineness.samples,
+        tolerance: 0.3,
+        longest_step: fineness.step,
+        budget: 2_000_000,
+        head_start: 200_000,
+        ..RunSettings::default()
+    };
+    let mut watch = Watch::default();
+    let result = simulate(&machine, &law, &settings, &mut watch);
+    if result.verdict != Verdict::Complete {
+        bail!("the machine does not come round: {:?}", result.verdict);
+    }
+    let mut turn = watch.turn(&machine, &law);
+    for hidden in hidden {
+        hidden.law.read(&mut turn);
+    }
+    Ok(turn)
+}
+
+fn refused(failure: &Failure) -> anyhow::Error {
+    anyhow!("the case is refused: {failure:?}")
+}

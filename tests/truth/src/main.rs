@@ -1,0 +1,178 @@
+//! `truth make` and `truth open`.
+use anyhow::{Context as _, bail, ensure};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+use truth::judge::Trial;
+use truth::machine::Fineness;
+use truth::plan::{Order, Stratum, asked_kind, make};
+use truth::seal::Sealed;
+use truth::table::table;
+use truth::verdict::Verdict;
+
+/// Makes test records with a hidden effect, and judges verdicts about them.
+#[derive(Debug, Parser)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Make(Make),
+    Open(Open),
+}
+
+/// Make sets of records, each in a folder with a random name, and seal what they hide.
+#[derive(Debug, Args)]
+struct Make {
+    /// Case folder whose machine it is.
+    #[arg(long)]
+    case: PathBuf,
+    /// Where the folders go.
+    #[arg(long)]
+    out: PathBuf,
+    /// File of the answers; those of earlier sets stay in it. Keep it away from the records.
+    #[arg(long)]
+    answers: PathBuf,
+    /// What everything is drawn from; whoever knows it can draw the answers.
+    #[arg(long)]
+    seed: u64,
+    /// What the sets test.
+    #[arg(long, value_enum)]
+    stratum: StratumChoice,
+    /// Effect to hide, instead of one that is drawn.
+    #[arg(long, value_name = "ID")]
+    effect: Option<String>,
+    /// Its size in units of its typical size, instead of one that is drawn.
+    #[arg(long, value_name = "TIMES", allow_negative_numbers = true)]
+    times: Option<f64>,
+    /// Factor on the noise of all sensors.
+    #[arg(long, default_value_t = 1.0)]
+    noise: f64,
+    /// Cycles of each record.
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=200))]
+    cycles: u16,
+    /// Cylinders of 75 mm, for a case whose own are longer.
+    #[arg(long)]
+    coarse: bool,
+    /// Number of sets; each next one takes the next seed.
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    count: u16,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum StratumChoice {
+    Single,
+    Zero,
+    Double,
+    Outside,
+    Below,
+}
+
+impl From<StratumChoice> for Stratum {
+    fn from(choice: StratumChoice) -> Self {
+        match choice {
+            StratumChoice::Single => Self::Single,
+            StratumChoice::Zero => Self::Zero,
+            StratumChoice::Double => Self::Double,
+            StratumChoice::Outside => Self::Outside,
+            StratumChoice::Below => Self::Below,
+        }
+    }
+}
+
+/// Open the answers and print what the verdicts are worth.
+#[derive(Debug, Args)]
+struct Open {
+    /// File of the answers.
+    #[arg(long)]
+    answers: PathBuf,
+    /// Folder of the verdicts: NAME.json is what `horsehead diagnose --measured .../NAME --output json`
+    /// printed.
+    #[arg(long)]
+    verdicts: PathBuf,
+    /// What the answers were committed to when the records were given away.
+    #[arg(long, value_name = "HEX")]
+    commitment: Option<String>,
+}
+
+fn main() -> anyhow::Result<()> {
+    match Cli::parse().command {
+        Command::Make(arguments) => make_sets(&arguments),
+        Command::Open(arguments) => open(&arguments),
+    }
+}
+
+fn make_sets(arguments: &Make) -> anyhow::Result<()> {
+    let case = coordinator::case::load(&arguments.case, &coordinator::case::Overrides::default())?;
+    ensure!(
+        arguments.noise > 0.0 && arguments.noise < 1e3,
+        "--noise must be a factor above 0"
+    );
+    let effect = arguments.effect.as_deref().map(asked_kind).transpose()?;
+    let mut sealed = Sealed::load_or_new(&arguments.answers)?;
+    let mut commitment = String::new();
+    for k in 0..arguments.count {
+        let order = Order {
+            seed: arguments.seed + u64::from(k),
+            stratum: arguments.stratum.into(),
+            effect,
+            times: arguments.times,
+            noise: arguments.noise,
+            cycles: usize::from(arguments.cycles),
+            fineness: if arguments.coarse {
+                Fineness::COARSE
+            } else {
+                Fineness::FULL
+            },
+        };
+        let name = sealed.name();
+        let folder = arguments.out.join(&name);
+        fs::create_dir_all(&folder).with_context(|| format!("making {}", folder.display()))?;
+        let answer = make(&case, &order, &folder, &name)?;
+        sealed.sets.insert(name, answer);
+        commitment = sealed.save(&arguments.answers)?;
+        say(&format!("{}\n", folder.display()))?;
+    }
+    say(&format!(
+        "{} sets sealed; commitment {commitment}\n",
+        sealed.sets.len()
+    ))
+}
+
+fn open(arguments: &Open) -> anyhow::Result<()> {
+    let (sealed, commitment) = Sealed::load(&arguments.answers)?;
+    if let Some(committed) = &arguments.commitment
+        && *committed != commitment
+    {
+        bail!("the answers are not those that were committed to: {commitment}");
+    }
+    let mut trials = Vec::new();
+    let mut without = 0;
+    for (name, answer) in sealed.sets {
+        let path = arguments.verdicts.join(format!("{name}.json"));
+        if !path.is_file() {
+            without += 1;
+            continue;
+        }
+        trials.push(Trial {
+            verdict: Verdict::load(&path)?,
+            name,
+            answer,
+        });
+    }
+    say(&format!(
+        "commitment {commitment}\n\n{}",
+        table(&trials, without)?
+    ))
+}
+
+/// To standard output; a reader that has gone is no error.
+fn say(text: &str) -> anyhow::Result<()> {
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(error.into()),
+        Ok(()) | Err(_) => Ok(()),
+    }
+}

@@ -1,0 +1,132 @@
+//! Answers in a file of their own, and the commitment to them.
+//!
+//! The commitment is the BLAKE3 hash of the file's bytes, in which a random salt keeps anybody from
+//! trying answers until one fits. Names of sets depend on the salt, not on what they hide.
+use crate::plan::Answer;
+use anyhow::{Context as _, bail};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read as _;
+use std::path::Path;
+
+/// Answers by the names of their sets.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sealed {
+    /// Form of the file.
+    format: u32,
+    /// Random, hexadecimal.
+    salt: String,
+    /// Answers.
+    pub sets: BTreeMap<String, Answer>,
+}
+
+const FORMAT: u32 = 1;
+
+impl Sealed {
+    /// No answers, and a new salt from the system's random numbers.
+    ///
+    /// # Errors
+    /// A system without any.
+    pub fn new() -> anyhow::Result<Self> {
+        let mut salt = [0_u8; 32];
+        fs::File::open("/dev/urandom")
+            .and_then(|mut source| source.read_exact(&mut salt))
+            .context("drawing a salt from /dev/urandom")?;
+        Ok(Self {
+            format: FORMAT,
+            salt: blake3::Hash::from_bytes(salt).to_hex().to_string(),
+            sets: BTreeMap::new(),
+        })
+    }
+
+    /// Answers of a file, or none yet.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is of another form.
+    pub fn load_or_new(path: &Path) -> anyhow::Result<Self> {
+        if path.exists() {
+            Self::load(path).map(|(sealed, _)| sealed)
+        } else {
+            Self::new()
+        }
+    }
+
+    /// Answers of a file, and its commitment.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is of another form.
+    pub fn load(path: &Path) -> anyhow::Result<(Self, String)> {
+        let bytes = fs::read(path).with_context(|| format!("reading {}", path.display()))?;
+        let sealed: Self = serde_json::from_slice(&bytes)
+            .with_context(|| format!("{} holds no answers", path.display()))?;
+        if sealed.format != FORMAT {
+            bail!("{} is of form {}", path.display(), sealed.format);
+        }
+        Ok((sealed, commitment(&bytes)))
+    }
+
+    /// A name for another set: as random as the salt.
+    pub fn name(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(self.salt.as_bytes());
+        hasher.update(&(self.sets.len() as u64).to_le_bytes());
+        let hex = hasher.finalize().to_hex();
+        hex.chars().take(10).collect()
+    }
+
+    /// Writes the file; its commitment comes back.
+    ///
+    /// # Errors
+    /// What the file system refuses.
+    pub fn save(&self, path: &Path) -> anyhow::Result<String> {
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        fs::write(path, &text).with_context(|| format!("writing {}", path.display()))?;
+        Ok(commitment(text.as_bytes()))
+    }
+}
+
+/// Hash of a file of answers, hexadecimal.
+pub fn commitment(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Stratum;
+
+    fn answer(seed: u64) -> Answer {
+        Answer {
+            seed,
+            stratum: Stratum::Zero,
+            case: "case".to_owned(),
+            noise: 1.0,
+            cycles: 5,
+            genes: BTreeMap::new(),
+            effects: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_commitment_holds_for_these_answers_and_no_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("answers.json");
+        let mut sealed = Sealed::new().unwrap();
+        let name = sealed.name();
+        sealed.sets.insert(name.clone(), answer(7));
+        let committed = sealed.save(&path).unwrap();
+        let (loaded, found) = Sealed::load(&path).unwrap();
+        assert_eq!((loaded, &found), (sealed.clone(), &committed));
+        // another size, another salt: another commitment
+        sealed.sets.insert(name.clone(), answer(8));
+        assert_ne!(sealed.save(&path).unwrap(), committed);
+        let mut other = Sealed::new().unwrap();
+        other.sets.insert(name.clone(), answer(7));
+        assert_ne!(other.save(&path).unwrap(), committed);
+        assert_ne!(other.name(), name);
+        fs::write(&path, "{}").unwrap();
+        assert!(Sealed::load(&path).is_err());
+    }
+}

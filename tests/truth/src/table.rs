@@ -1,0 +1,217 @@
+//! The table of metrics, and every trial by itself, as Markdown.
+use crate::interval::clopper_pearson;
+use crate::judge::Trial;
+use crate::plan::Stratum;
+use std::fmt::{Result, Write as _};
+
+/// Shares in words, with their intervals.
+fn share(hits: usize, trials: usize) -> String {
+    if trials == 0 {
+        return "-".to_owned();
+    }
+    let [lower, upper] = clopper_pearson(hits, trials).map(|x| 100.0 * x);
+    let percent = 100.0 * hits as f64 / trials as f64;
+    format!("{hits}/{trials} = {percent:.0} % [{lower:.0}-{upper:.0}]")
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// Metrics by stratum, then every trial by itself.
+///
+/// # Errors
+/// Never: text grows in memory.
+pub fn table(trials: &[Trial], unjudged: usize) -> std::result::Result<String, std::fmt::Error> {
+    let mut table = Table {
+        trials,
+        text: String::new(),
+    };
+    table.line("metric", "target", "found [95 %]")?;
+    table.line("---", "---", "---")?;
+    table.singles()?;
+    table.names()?;
+    table.others()?;
+    table.sizes()?;
+    let judged = trials.len();
+    writeln!(
+        table.text,
+        "\n{judged} sets judged, {unjudged} without a verdict.\n"
+    )?;
+    table.list()?;
+    Ok(table.text)
+}
+
+struct Table<'a> {
+    trials: &'a [Trial],
+    text: String,
+}
+
+impl<'a> Table<'a> {
+    fn line(&mut self, metric: &str, target: &str, value: &str) -> Result {
+        writeln!(self.text, "| {metric} | {target} | {value} |")
+    }
+
+    /// A share of trials that pass a test.
+    fn share(
+        &mut self,
+        metric: &str,
+        target: &str,
+        among: &[&Trial],
+        test: impl Fn(&Trial) -> bool,
+    ) -> Result {
+        let hits = among.iter().filter(|trial| test(trial)).count();
+        let value = share(hits, among.len());
+        self.line(metric, target, &value)
+    }
+
+    fn of(&self, stratum: Stratum) -> Vec<&'a Trial> {
+        let all = self.trials.iter();
+        all.filter(|trial| trial.answer.stratum == stratum)
+            .collect()
+    }
+
+    fn singles(&mut self) -> Result {
+        let single = self.of(Stratum::Single);
+        let large = |trial: &&Trial| trial.over_limit().is_some_and(|times| times >= 3.0);
+        let large: Vec<&Trial> = single.iter().copied().filter(large).collect();
+        self.share(
+            "single, at least 3 x limit: first name right",
+            ">= 85 %",
+            &large,
+            Trial::first_is_right,
+        )?;
+        self.share(
+            "the same: set holds the truth",
+            ">= 95 %",
+            &large,
+            Trial::covered,
+        )?;
+        self.share(
+            "single, all: first name right",
+            "",
+            &single,
+            Trial::first_is_right,
+        )?;
+        let named = |trial: &&Trial| trial.verdict.has_names();
+        let named: Vec<&Trial> = single.into_iter().filter(named).collect();
+        self.share(
+            "single, named: set holds the truth",
+            ">= 95 %",
+            &named,
+            Trial::covered,
+        )?;
+        let size = |trial: &&Trial| {
+            let first = trial.verdict.added().next()?;
+            Some(trial.verdict.set_of(first).len() as f64)
+        };
+        let sets: Vec<f64> = named.iter().filter_map(size).collect();
+        self.line("mean size of the set", "<= 2", &mean(&sets))
+    }
+
+    fn names(&mut self) -> Result {
+        let wrong = self.trials.iter().map(Trial::false_names).sum();
+        let all = self.trials.iter().map(|t| t.verdict.added().count()).sum();
+        self.line("false names of all names", "<= 10 %", &share(wrong, all))
+    }
+
+    fn others(&mut self) -> Result {
+        let claims = |trial: &Trial| trial.verdict.claims();
+        let zero = self.of(Stratum::Zero);
+        self.share("zero: any claim", "<= 5 %", &zero, claims)?;
+        let double = self.of(Stratum::Double);
+        let exact = |trial: &Trial| trial.right() == 2 && trial.verdict.added().count() == 2;
+        self.share("double: exactly both", ">= 60 %", &double, exact)?;
+        self.share("double: at least one", ">= 85 %", &double, |t| {
+            t.right() > 0
+        })?;
+        let detected = |trial: &&Trial| trial.verdict.verdict != "nothing_detected";
+        let outside: Vec<&Trial> = self.of(Stratum::Outside);
+        let outside: Vec<&Trial> = outside.into_iter().filter(detected).collect();
+        self.share("outside, detected: unlisted", ">= 90 %", &outside, |t| {
+            t.verdict.verdict == "unlisted"
+        })?;
+        let below = self.of(Stratum::Below);
+        self.share("below the limit: any claim", "<= 5 %", &below, claims)
+    }
+
+    fn sizes(&mut self) -> Result {
+        let sizes: Vec<(f64, bool)> = self.trials.iter().filter_map(Trial::size_error).collect();
+        let error = median(sizes.iter().map(|(error, _)| 100.0 * error).collect());
+        let error = error.map_or("-".to_owned(), |error| format!("{error:.1} %"));
+        self.line("size of a right name: median error", "<= 10 %", &error)?;
+        let covered = sizes.iter().filter(|(_, covered)| *covered).count();
+        let covered = share(covered, sizes.len());
+        self.line("its 95 % interval holds it", ">= 85 %", &covered)?;
+        let right = self.trials.iter().filter(|trial| trial.first_is_right());
+        let closed = median(
+            right
+                .filter_map(|trial| trial.verdict.closed_elsewhere())
+                .collect(),
+        );
+        let closed = closed.map_or("-".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+        self.line(
+            "other condition: gap closed, median, right name",
+            ">= 80 %",
+            &closed,
+        )
+    }
+
+    /// Every trial: what was hidden, what was said.
+    fn list(&mut self) -> Result {
+        self.text.push_str(
+            "| set | stratum | noise | hidden | times limit | verdict | named (set) | mark |\n\
+             |---|---|---|---|---|---|---|---|\n",
+        );
+        let mut sorted: Vec<&Trial> = self.trials.iter().collect();
+        let first = |trial: &Trial| trial.answer.effects.first().map(|effect| effect.id.clone());
+        sorted.sort_by_key(|trial| (trial.answer.stratum, first(trial)));
+        for trial in sorted {
+            let effects = trial.answer.effects.iter();
+            let hidden: Vec<String> = effects
+                .map(|e| format!("{} {:.3e} {}", e.id, e.value, e.unit))
+                .collect();
+            let over = trial.over_limit();
+            writeln!(
+                self.text,
+                "| {} | {} | {} | {} | {} | {} | {} | {} |",
+                trial.name,
+                trial.answer.stratum.name(),
+                trial.answer.noise,
+                hidden.join(" + "),
+                over.map_or("-".to_owned(), |times| format!("{times:.1}")),
+                trial.verdict.verdict,
+                names(trial),
+                trial.mark(),
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// Names with their sets.
+fn names(trial: &Trial) -> String {
+    let one = |id: &str| {
+        let set = trial.verdict.set_of(id);
+        let others: Vec<&str> = set.into_iter().filter(|other| *other != id).collect();
+        if others.is_empty() {
+            id.to_owned()
+        } else {
+            format!("{id} ({})", others.join(", "))
+        }
+    };
+    trial
+        .verdict
+        .added()
+        .map(one)
+        .collect::<Vec<_>>()
+        .join(" + ")
+}
+
+fn mean(values: &[f64]) -> String {
+    if values.is_empty() {
+        return "-".to_owned();
+    }
+    format!("{:.2}", values.iter().sum::<f64>() / values.len() as f64)
+}

@@ -1,0 +1,129 @@
+//! One turn of a machine as a recorder with perfect sensors would see it: samples at equal times.
+use simulation::integrator::State;
+use simulation::math::spline::Splines;
+use simulation::model::description::RopeLaw;
+use simulation::model::{Individual, Machine};
+use simulation::observe::Recorder;
+use simulation::run::Observe;
+use simulation::system::System;
+
+/// Curves over one turn, samples at equal times from turn 0 on; the sample after the last is the
+/// first again.
+#[derive(Clone, Debug, Default)]
+pub struct Turn {
+    /// Time of the turn \[s\].
+    pub period: f64,
+    /// Stress at gauges 1 to 4 \[MPa\].
+    pub stress: [Vec<f64>; 4],
+    /// Height of the suspension point over its lowest design place \[m\].
+    pub position: Vec<f64>,
+    /// Net torque at the crank [N m].
+    pub torque: Vec<f64>,
+    /// Force of the back rope on its head, along and across the beam \[N\].
+    pub push: [Vec<f64>; 2],
+    /// Tension of the back rope at the crossbeam \[N\].
+    pub tension: Vec<f64>,
+    /// Stiffness of the whole back rope [N/m].
+    pub rope: f64,
+}
+
+impl Turn {
+    /// Number of samples.
+    pub fn len(&self) -> usize {
+        self.tension.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.tension.is_empty()
+    }
+
+    /// Channels that are recorded: stress, position, torque.
+    pub fn recorded(&self) -> Vec<Vec<f64>> {
+        let mut channels = self.stress.to_vec();
+        channels.push(self.position.clone());
+        channels.push(self.torque.clone());
+        channels
+    }
+
+    /// Every curve at `ahead` of a turn later.
+    pub fn shift(&mut self, ahead: f64) {
+        let all = self.stress.iter_mut().chain(&mut self.push);
+        let others = [&mut self.position, &mut self.torque, &mut self.tension];
+        for curve in all.chain(others) {
+            *curve = shifted(curve, ahead);
+        }
+    }
+}
+
+/// A periodic curve at `ahead` of its period later.
+pub fn shifted(curve: &[f64], ahead: f64) -> Vec<f64> {
+    let n = curve.len() as f64;
+    let spline = Splines::periodic(0.0, 1.0, &[curve.to_vec()]);
+    (0..curve.len())
+        .map(|i| spline.value(i as f64 + ahead * n, 0))
+        .collect()
+}
+
+/// Records what a [`Turn`] holds.
+#[derive(Debug, Default)]
+pub struct Watch {
+    recorder: Recorder,
+    push: [Vec<f64>; 2],
+}
+
+impl Watch {
+    /// The turn of a machine that was watched.
+    pub fn turn(self, machine: &Machine, law: &RopeLaw) -> Turn {
+        let curves = self.recorder.curves;
+        let [position, ..] = curves.suspension;
+        Turn {
+            period: std::f64::consts::TAU / machine.description.crank.speed,
+            stress: curves
+                .gauge
+                .map(|curve| curve.iter().map(|pascal| pascal * 1e-6).collect()),
+            position: position
+                .iter()
+                .map(|height| height - machine.lowest_suspension)
+                .collect(),
+            torque: curves.torque,
+            push: self.push,
+            tension: curves.back_tension,
+            rope: machine.ropes(law).joint.stiffness[0] / machine.description.rope.back as f64,
+        }
+    }
+}
+
+impl Observe for Watch {
+    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
+        self.recorder.sample(index, system, state);
+        let individual = &system.equations;
+        let beam = state.q[individual.machine.layout.beam()];
+        let (s, c) = (libm::sin(beam), libm::cos(beam));
+        let [x, y] = individual.head_push();
+        self.push[0].push(c * x + s * y);
+        self.push[1].push(c * y - s * x);
+    }
+
+    fn complete(&mut self, machine: &Machine, spacing: f64) {
+        self.recorder.complete(machine, spacing);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    #[test]
+    fn a_shift_by_a_share_of_the_turn_is_one_of_the_phase() {
+        let wave = |phase: f64| -> Vec<f64> {
+            (0..240)
+                .map(|i| libm::cos(TAU * 3.0 * (f64::from(i) / 240.0 + phase)))
+                .collect()
+        };
+        for (found, expected) in shifted(&wave(0.0), 0.013).iter().zip(wave(0.013)) {
+            assert!((found - expected).abs() < 1e-5);
+        }
+    }
+}
