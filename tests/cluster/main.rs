@@ -7,6 +7,7 @@
 mod disk;
 mod faults;
 mod hundred_kills;
+mod late_reading;
 mod misbehaviour;
 mod outage;
 mod resume;

@@ -189,9 +189,11 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     fn local(&mut self, event: LocalEvent) {
         match event {
-            LocalEvent::Ended { how } => tracing::warn!("a local worker {how}; it is restarted"),
+            LocalEvent::Ended { how } => {
+                tracing::warn!("a local worker {how}; it is started again")
+            }
             LocalEvent::GivenUp { how } => {
-                tracing::warn!("a local worker {how} too often; it is not restarted");
+                tracing::warn!("a local worker {how}, too often by now; it is not started again");
             }
             LocalEvent::AllGivenUp { how } if self.only_local => {
                 self.give(Err(DispatchError::LocalWorkers { how }));
@@ -209,6 +211,9 @@ impl<L: CoordinatorEnd> Engine<L> {
                 Command::Store(finished) => self.record(Event::Finished(finished)),
                 Command::Record(event) => self.record(event),
                 Command::Deliver { id, outcome } => {
+                    if let Some(workers) = &self.workers {
+                        workers.note_result();
+                    }
                     self.give(Ok(Completed {
                         id,
                         outcome,
