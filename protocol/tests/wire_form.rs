@@ -57,8 +57,7 @@ fn nothing_that_travels_changes_without_the_wire_version() {
     let same_version = is.lines().next() == was.lines().next();
     assert!(
         !same_version,
-        "the form of what travels has changed: raise wire::VERSION (and the mark of the journal, if \
-         an Event is touched), then take over {}\n{}",
+        "the form of what travels has changed: raise wire::VERSION, then take over {}\n{}",
         kept.display(),
         changed.join("\n")
     );

@@ -180,6 +180,10 @@ impl<L: CoordinatorEnd> Engine<L> {
                      is lost; make room on the disk and it goes on by itself"
                 );
             }
+            Appended::Deleted => {
+                self.handle(Input::Writable(false));
+                self.give(Err(self.journal.deleted().into()));
+            }
             Appended::Resumed => {
                 self.handle(Input::Writable(true));
                 tracing::warn!("the journal is written again: the run goes on");
