@@ -57,6 +57,7 @@ pub(crate) async fn rounds<L: Laboratory>(
         .cloned()
         .partition(|effect| effect.generic);
     let mut current = base.fit.clone();
+    let mut in_valley = false;
     for number in 0..settings.rounds {
         let open: Vec<EffectDescriptor> = named
             .iter()
@@ -64,7 +65,10 @@ pub(crate) async fn rounds<L: Laboratory>(
             .cloned()
             .collect();
         let mut round = examine(lab, base, &current, (&open, &generic), settings).await?;
-        again::look(lab, base, (&current, &mut round), settings).await?;
+        // the valley does not move far once it is found
+        if !in_valley {
+            in_valley = again::look(lab, base, (&current, &mut round), settings).await?;
+        }
         if number == 0 {
             (diagnosis.limits, diagnosis.classes) = outlook(&round, &current, base, settings);
         }

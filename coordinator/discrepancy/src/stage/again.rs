@@ -15,14 +15,14 @@ use crate::stage::valley;
 use search::least_squares;
 
 /// Suspects whose own valley is looked for.
-const LEADERS: usize = 3;
+const LEADERS: usize = 2;
 /// Share of the best refit's gain of evidence from which a suspect is one of them.
 const SHARE: f64 = 0.3;
 /// The same, from which a suspect is refitted from the deepest valley.
 const WORTH: f64 = 0.1;
 
 /// Looks again if the best refit of a round leaves much; changes its refits, their order and what is
-/// derived from them.
+/// derived from them. Says whether another valley was found.
 ///
 /// # Errors
 /// Of the laboratory.
@@ -31,11 +31,11 @@ pub(crate) async fn look<L: Laboratory>(
     base: &Base,
     (current, round): (&Fit, &mut Round),
     settings: &Settings,
-) -> Result<(), L::Error> {
+) -> Result<bool, L::Error> {
     let bench = &base.bench;
     let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
     let Some(best) = round.refits.first().map(gain).filter(|gain| *gain > 0.0) else {
-        return Ok(());
+        return Ok(false);
     };
     let stuck = |refit: &Refitted| {
         misfit(refit.fit.chi_squared(), bench.metric.len()) > settings.valley
@@ -56,7 +56,7 @@ pub(crate) async fn look<L: Laboratory>(
         .into_iter()
         .min_by(|a, b| a.chi_squared().total_cmp(&b.chi_squared()));
     let Some(deepest) = deepest else {
-        return Ok(());
+        return Ok(false);
     };
     let genes = current.model.space.dimension();
     let null = round.null_evidence;
@@ -84,7 +84,7 @@ pub(crate) async fn look<L: Laboratory>(
         }
     }
     round.judge(current, bench.metric.len());
-    Ok(())
+    Ok(true)
 }
 
 /// Takes a fit if it leaves less.

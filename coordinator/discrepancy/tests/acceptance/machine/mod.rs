@@ -4,15 +4,21 @@
 //! reaches the rope. `y` are their lags behind the drive: `M y'' + C y' + K y = f`, order by order
 //! of the crank; what is not linear is a force or an imposed stretch, evaluated on a first, linear
 //! solution. Units: kN, m, t (2 pi t is a turn of the first condition).
+mod at_once;
+mod drive;
+mod lags;
 pub(crate) mod library;
+mod turn;
 
-use crate::case::{ORDERS, RECOMMENDED, SAMPLES, SPEED, card, grid};
-use discrepancy::laboratory::{Laboratory, Stage};
-use nalgebra::{Complex, Matrix3, Vector3};
+pub(crate) use at_once::AtOnce;
+
+use crate::case::{ORDERS, SAMPLES, SPEED, card, grid};
+use drive::{Drive, Warp, drive};
+use lags::{Genes, Lags, solve};
+use nalgebra::Complex;
 use protocol::announce::EffectDescriptor;
 use protocol::job::{Counters, Observation, ObserveSpec, PhysicsFailure, Reached, Verdict};
-use std::convert::Infallible;
-use std::f64::consts::TAU;
+use turn::Turn;
 
 type C = Complex<f64>;
 
@@ -25,66 +31,6 @@ const ALONG: [f64; 4] = [0.8, -0.5, 0.3, 1.2];
 const BENDING: [f64; 4] = [0.05, 0.03, -0.04, 0.02];
 const CONTACT: [f64; 4] = [0.02, -0.05, 0.03, 0.06];
 const WEAR: [f64; 4] = [1.0, 0.6, -0.4, 0.2];
-
-/// Sines and cosines of the grid.
-struct Turn(Vec<C>);
-
-impl Turn {
-    fn new() -> Self {
-        let unit = |i: usize| C::from_polar(1.0, TAU * i as f64 / SAMPLES as f64);
-        Self((0..SAMPLES).map(unit).collect())
-    }
-
-    /// Orders 0 to the highest.
-    fn transform(&self, curve: &[f64]) -> Vec<C> {
-        let coefficient = |h: usize| {
-            let mut sum = C::new(0.0, 0.0);
-            let mut at = 0;
-            for y in curve {
-                sum += self.0[at].conj() * *y;
-                at += h;
-                if at >= SAMPLES {
-                    at -= SAMPLES;
-                }
-            }
-            sum / SAMPLES as f64
-        };
-        (0..=HIGHEST).map(coefficient).collect()
-    }
-
-    /// A curve at any angles (rad).
-    fn at(spectrum: &[C], angles: &[f64]) -> Vec<f64> {
-        let value = |angle: &f64| {
-            let unit = C::from_polar(1.0, *angle);
-            let mut turned = unit;
-            let mut sum = 0.5 * spectrum[0].re;
-            for f in &spectrum[1..] {
-                sum += (f * turned).re;
-                turned *= unit;
-            }
-            2.0 * sum
-        };
-        angles.iter().map(value).collect()
-    }
-
-    fn curve(&self, spectrum: &[C]) -> Vec<f64> {
-        (0..SAMPLES)
-            .map(|i| {
-                let mut sum = 0.5 * spectrum[0].re;
-                let mut at = i;
-                for f in &spectrum[1..] {
-                    let u = self.0[at];
-                    sum += f.re * u.re - f.im * u.im;
-                    at += i;
-                    if at >= SAMPLES {
-                        at -= SAMPLES;
-                    }
-                }
-                2.0 * sum
-            })
-            .collect()
-    }
-}
 
 /// The machine and what it announces.
 pub(crate) struct Machine {
@@ -116,45 +62,6 @@ impl Amounts<'_> {
     }
 }
 
-/// The drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).
-struct Drive {
-    height: Vec<f64>,
-    speed: Vec<f64>,
-    acceleration: Vec<f64>,
-    slope: Vec<f64>,
-}
-
-fn drive(amounts: &Amounts<'_>, ratio: f64) -> Drive {
-    let offset = amounts.get("crank_angle_offset", 0).to_radians();
-    let (a, b) = (
-        amounts.get("crank_speed_ripple", 0),
-        amounts.get("crank_speed_ripple", 1),
-    );
-    let mut drive = Drive {
-        height: Vec::with_capacity(SAMPLES),
-        speed: Vec::with_capacity(SAMPLES),
-        acceleration: Vec::with_capacity(SAMPLES),
-        slope: Vec::with_capacity(SAMPLES),
-    };
-    for angle in grid() {
-        let p = angle + offset;
-        // stroke of 3 m by a crank whose rod is four times as long
-        let slope = 1.5 * (p.sin() + 0.125 * (2.0 * p).sin());
-        let bend = 1.5 * (p.cos() + 0.25 * (2.0 * p).cos());
-        let rate = ratio * (1.0 + a * angle.cos() + b * angle.sin());
-        let change = ratio * (b * angle.cos() - a * angle.sin());
-        drive
-            .height
-            .push(1.5 * (1.0 - p.cos() + 0.0625 * (1.0 - (2.0 * p).cos())));
-        drive.speed.push(slope * rate);
-        drive
-            .acceleration
-            .push(bend * rate * rate + slope * rate * change);
-        drive.slope.push(slope);
-    }
-    drive
-}
-
 /// Effects that follow the motion: evaluated on a solution without them.
 const BY_MOTION: [&str; 5] = [
     "pivot_friction",
@@ -163,52 +70,6 @@ const BY_MOTION: [&str; 5] = [
     "pin_clearance",
     "rope_toe",
 ];
-
-/// Crank angle against time where the crank's speed ripples: the machine swings in time.
-struct Warp(Option<[Vec<f64>; 2]>);
-
-impl Warp {
-    fn new(turn: &Turn, amounts: &Amounts<'_>) -> Self {
-        let (a, b) = (
-            amounts.get("crank_speed_ripple", 0),
-            amounts.get("crank_speed_ripple", 1),
-        );
-        if a == 0.0 && b == 0.0 {
-            return Self(None);
-        }
-        let late = |angle: f64| a * angle.sin() - b * angle.cos();
-        let to: Vec<f64> = grid().map(|angle| angle - late(angle)).collect();
-        let from = grid()
-            .map(|time| (0..4).fold(time, |angle, _| time + late(angle)))
-            .collect();
-        debug_assert_eq!(to.len(), turn.0.len());
-        Self(Some([from, to]))
-    }
-
-    /// The spectrum over time of a curve over the angle.
-    fn enter(&self, turn: &Turn, curve: &[f64]) -> Vec<C> {
-        let spectrum = turn.transform(curve);
-        match &self.0 {
-            None => spectrum,
-            Some([from, _]) => turn.transform(&Turn::at(&spectrum, from)),
-        }
-    }
-
-    /// Spectra over the angle of a solution over time.
-    fn leave(&self, turn: &Turn, lags: &mut Lags, tensions: &mut (Vec<C>, Vec<C>)) {
-        let Some([_, to]) = &self.0 else { return };
-        let back = |spectrum: &[C]| turn.transform(&Turn::at(spectrum, to));
-        tensions.0 = back(&tensions.0);
-        tensions.1 = back(&tensions.1);
-        let rod = back(&lags.0.iter().map(|y| y[0]).collect::<Vec<C>>());
-        for (y, rod) in lags.0.iter_mut().zip(rod) {
-            y[0] = rod;
-        }
-    }
-}
-
-/// The lags of one solution, order by order.
-struct Lags(Vec<Vector3<C>>);
 
 impl Machine {
     /// With its whole library.
@@ -476,87 +337,6 @@ impl Machine {
     }
 }
 
-/// The genes as the equations need them.
-struct Genes {
-    back: f64,
-    back_loss: f64,
-    front: f64,
-    front_loss: f64,
-    contact: f64,
-    contact_loss: f64,
-    bending: f64,
-    bending_loss: f64,
-    torsion: f64,
-}
-
-impl Genes {
-    fn new(spec: &ObserveSpec) -> Self {
-        let g = &spec.genes;
-        // longer elements are a little too stiff
-        let length = spec.refinement.cylinder_length_m.unwrap_or(0.05);
-        let rough = 1.0 + 0.4 * length * length;
-        Self {
-            back: g[0] * rough,
-            front: g[1] * rough,
-            torsion: g[2] / RECOMMENDED[2],
-            bending: (g[3] / RECOMMENDED[3]).powf(0.3),
-            back_loss: g[4],
-            front_loss: g[5],
-            bending_loss: (g[7] / RECOMMENDED[7]).powf(0.3),
-            contact: g[8],
-            contact_loss: g[9],
-        }
-    }
-}
-
-impl Lags {
-    /// Tension of the back rope.
-    fn rope(&self, g: &Genes, ratio: f64) -> Vec<C> {
-        let part =
-            |(h, y): (usize, &Vector3<C>)| C::new(g.back, h as f64 * ratio * g.back_loss) * y[2];
-        self.0.iter().enumerate().map(part).collect()
-    }
-
-    /// Force between beam and head.
-    fn pin(&self, g: &Genes, ratio: f64) -> Vec<C> {
-        let part = |(h, y): (usize, &Vector3<C>)| {
-            C::new(g.contact, h as f64 * ratio * g.contact_loss) * (y[1] - y[2])
-        };
-        self.0.iter().enumerate().map(part).collect()
-    }
-}
-
-/// `(K + i w C - w^2 M) y = f` at every order.
-fn solve(g: &Genes, ratio: f64, spectra: &[Vec<C>; 3], beam: f64) -> Lags {
-    let at = |h: usize| {
-        let w = h as f64 * ratio;
-        let (f, c, b) = (
-            C::new(g.front, w * g.front_loss),
-            C::new(g.contact, w * g.contact_loss),
-            C::new(g.back, w * g.back_loss),
-        );
-        let w2 = w * w;
-        let zero = C::new(0.0, 0.0);
-        let matrix = Matrix3::new(
-            f - w2 * MASSES[0],
-            -f,
-            zero,
-            -f,
-            f + c - w2 * (MASSES[1] + beam),
-            -c,
-            zero,
-            -c,
-            c + b - w2 * MASSES[2],
-        );
-        let force = Vector3::new(spectra[0][h], spectra[1][h], spectra[2][h]);
-        matrix
-            .lu()
-            .solve(&force)
-            .unwrap_or_else(|| Vector3::from_element(zero))
-    };
-    Lags((0..=HIGHEST).map(at).collect())
-}
-
 fn failed() -> Observation {
     Observation {
         verdict: Verdict::Failed {
@@ -567,61 +347,5 @@ fn failed() -> Observation {
         gauge_mpa: [Vec::new(), Vec::new(), Vec::new(), Vec::new()],
         suspension_m: Vec::new(),
         crank_torque_n_m: Vec::new(),
-    }
-}
-
-/// A laboratory that simulates at once; some of its runs may be lost, and its effects may go by
-/// other names.
-pub(crate) struct AtOnce<'a> {
-    machine: &'a Machine,
-    /// One run in so many is lost, spread as a counter's hash spreads them; none if 0.
-    lost_every: u64,
-    /// Names that are used outside, with the machine's own.
-    labels: &'a [(String, String)],
-    runs: u64,
-    /// Runs that were lost.
-    pub(crate) lost: u64,
-}
-
-impl<'a> AtOnce<'a> {
-    pub(crate) const fn new(
-        machine: &'a Machine,
-        lost_every: u64,
-        labels: &'a [(String, String)],
-    ) -> Self {
-        Self {
-            machine,
-            lost_every,
-            labels,
-            runs: 0,
-            lost: 0,
-        }
-    }
-
-    fn one(&mut self, mut spec: ObserveSpec) -> Option<Observation> {
-        self.runs += 1;
-        let hash = self.runs.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
-        if self.lost_every > 0 && hash.is_multiple_of(self.lost_every) {
-            self.lost += 1;
-            return None;
-        }
-        for effect in &mut spec.effects {
-            if let Some((_, own)) = self.labels.iter().find(|(label, _)| *label == effect.id) {
-                effect.id.clone_from(own);
-            }
-        }
-        Some(self.machine.observe(&spec))
-    }
-}
-
-impl Laboratory for AtOnce<'_> {
-    type Error = Infallible;
-
-    async fn observe(
-        &mut self,
-        _: Stage,
-        batch: Vec<ObserveSpec>,
-    ) -> Result<Vec<Option<Observation>>, Infallible> {
-        Ok(batch.into_iter().map(|spec| self.one(spec)).collect())
     }
 }
