@@ -31,7 +31,7 @@ fn stretch() -> impl Strategy<Value = Stretch> {
     ];
     prop_oneof![
         bytes().prop_map(Stretch::Rubbish),
-        Just(Stretch::Rubbish(b"HHJ1".to_vec())),
+        Just(Stretch::Rubbish(journal::MARK.to_vec())),
         bytes().prop_map(Stretch::Sealed),
         sound.prop_map(Stretch::Sound),
     ]
@@ -43,7 +43,7 @@ fn sealed(body: &[u8]) -> Vec<u8> {
     checksum.update(&length);
     checksum.update(body);
     let checksum = checksum.finalize().to_le_bytes();
-    [b"HHJ1", &length, &checksum, body].concat()
+    [journal::MARK.as_slice(), &length, &checksum, body].concat()
 }
 
 proptest! {

@@ -17,7 +17,8 @@ use crate::{
     name::WorkerName,
 };
 
-/// What every key begins with; the number is the wire version.
+/// What every key begins with. The number is that of this layout and not the wire version: ends of
+/// different wire versions must hear each other to say so.
 pub const ROOT: &str = "horsehead/1";
 
 /// Which of a coordinator's lanes a message takes: a long job must not hold up an end.

@@ -7,14 +7,20 @@
 mod disk;
 mod faults;
 mod hundred_kills;
+mod late_reading;
+mod local;
 mod misbehaviour;
 mod outage;
 mod resume;
+mod sixty_four;
 mod slots;
 
 use coordinator::runtime::{Dispatch, DispatchError};
 use protocol::{id::JobId, job::Outcome};
 use std::{collections::BTreeMap, time::Duration};
+
+/// Longest time that anything may take.
+const LIMIT: Duration = Duration::from_mins(1);
 
 /// Taken by tests whose slots are children of the test process itself, so that each can count its
 /// own.

@@ -70,7 +70,6 @@ async fn jobs_that_crash_or_allocate_without_bound_fail_alone_and_say_why() {
 /// The job takes its worker with it: after two of them it runs alone, after four it is given up;
 /// no other job fails.
 #[tokio::test(flavor = "multi_thread")]
-#[ignore = "on a loaded machine all local workers may die of it before it is given up: to be mended"]
 async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
     let (results, summary) = outcomes(30, "3:kill-worker", 6).await;
     assert_eq!(

@@ -280,6 +280,8 @@ pub fn overridden(case: &Case, integration: Option<&job::Integration>) -> RunSet
     RunSettings {
         method: method(other.integrator, case.run.spectral_radius),
         longest_step: other.longest_step_s,
+        // a step that was asked for is taken as it is
+        slow_swing: f64::INFINITY,
         tolerance: other.tolerance,
         budget: other.budget.unwrap_or(settings.budget),
         ..settings

@@ -30,6 +30,8 @@ pub struct Inputs {
     pub library: Vec<EffectDescriptor>,
     /// A calibrated point (decades), if there is one.
     pub start: Option<Vec<f64>>,
+    /// Discretisation of all experiments but that of the numerical check.
+    pub usual: Refinement,
     /// A finer discretisation, for the numerical check.
     pub finer: Refinement,
     /// Seed of the way into the valley.

@@ -5,15 +5,18 @@ use crate::diagnose::{Diagnosis, Inputs};
 use crate::estimate::outlook;
 use crate::evidence::{ambiguity_set, log_evidence, misfit};
 use crate::laboratory::{Laboratory, Stage};
-use crate::score::family_wise;
+use crate::score::{chi_squared_tail, family_wise};
 use crate::settings::Settings;
 use crate::stage::challenge::{Challenger, Named, challenge};
 use crate::stage::establish::Base;
 use crate::stage::refit::Refitted;
 use crate::stage::suspect::Suspect;
-use crate::stage::{pair, refit, suspect};
+use crate::stage::{again, pair, refit, suspect};
 use protocol::announce::EffectDescriptor;
 use search::least_squares;
+
+/// Suspects that are refitted in any case.
+const RIVALS: usize = 3;
 
 /// One round of suspicion.
 #[derive(Clone, Debug)]
@@ -61,6 +64,7 @@ pub(crate) async fn rounds<L: Laboratory>(
             .cloned()
             .collect();
         let mut round = examine(lab, base, &current, (&open, &generic), settings).await?;
+        again::look(lab, base, (&current, &mut round), settings).await?;
         if number == 0 {
             (diagnosis.limits, diagnosis.classes) = outlook(&round, &current, base, settings);
         }
@@ -195,35 +199,50 @@ async fn examine<L: Laboratory>(
             .total_cmp(&b.p_value())
             .then(b.statistic().total_cmp(&a.statistic()))
     });
-    order.truncate(settings.suspects);
-    let mut refits = refit::refit(lab, &base.bench, current, &order).await?;
-    refits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-    let best = refits
-        .first()
-        .map_or(current.chi_squared(), |r| r.fit.chi_squared());
-    let phi = misfit(best.min(current.chi_squared()), base.bench.metric.len());
-    let least = suspects
-        .iter()
-        .filter_map(|s| Some((s.score.as_ref()?, s.tries)))
-        .map(|(score, tries)| {
-            let tail = crate::score::chi_squared_tail(score.statistic / (phi * phi), score.freedom);
-            // an estimate of the wrong sign speaks against its effect
-            let own = if score.p_value < 1.0 { tail } else { 1.0 };
-            family_wise(own, tries)
-        })
-        .fold(1.0, f64::min);
-    Ok(Round {
-        // no test at all rejects nothing
-        p_value: family_wise(least, suspects.len().max(1)),
+    // what its own test does not speak for is refitted only to have rivals
+    let clear = order.iter().filter(|s| s.p_value() < settings.alpha);
+    let worth = clear.count().clamp(RIVALS, settings.suspects.max(RIVALS));
+    order.truncate(worth);
+    let refits = refit::refit(lab, &base.bench, current, &order).await?;
+    let mut round = Round {
+        p_value: 1.0,
         null_evidence: log_evidence(current.search.best(), current.variables()),
         suspects,
         generics,
         refits,
-        phi,
+        phi: 1.0,
         set: Vec::new(),
         added: None,
         reason: None,
-    })
+    };
+    round.judge(current, base.bench.metric.len());
+    Ok(round)
+}
+
+impl Round {
+    /// Ranks the refits, and derives the misfit of the best and the family's p-value under it; `n` is
+    /// the length of the residual.
+    pub(crate) fn judge(&mut self, current: &Fit, n: usize) {
+        self.refits
+            .sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        let left = current.chi_squared();
+        let best = self.refits.first().map_or(left, |r| r.fit.chi_squared());
+        self.phi = misfit(best.min(left), n);
+        let scale = self.phi * self.phi;
+        let least = self
+            .suspects
+            .iter()
+            .filter_map(|s| Some((s.score.as_ref()?, s.tries)))
+            .map(|(score, tries)| {
+                let tail = chi_squared_tail(score.statistic / scale, score.freedom);
+                // an estimate of the wrong sign speaks against its effect
+                let own = if score.p_value < 1.0 { tail } else { 1.0 };
+                family_wise(own, tries)
+            })
+            .fold(1.0, f64::min);
+        // no test at all rejects nothing
+        self.p_value = family_wise(least, self.suspects.len().max(1));
+    }
 }
 
 /// Whether the best refit is believed; then it is the next model.

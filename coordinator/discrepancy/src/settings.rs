@@ -11,6 +11,8 @@ pub struct Settings {
     pub alpha: f64,
     /// Level of the test that nothing at all is left: below it a record without a name is unresolved.
     pub adequacy: f64,
+    /// Misfit from which a fit is suspected to lie outside the valley of the rope's stiffness.
+    pub valley: f64,
     /// Suspects that are refitted with all genes free.
     pub suspects: usize,
     /// Nats, times the squared misfit, that an effect must gain to be believed.
@@ -27,6 +29,9 @@ pub struct Settings {
     pub alike: f64,
     /// Noise sets that the angle map is held against.
     pub draws: usize,
+    /// Longest step of all experiments, as a share of the case's: what is enough for a search is
+    /// seen beside averaged noise.
+    pub step: f64,
     /// Cylinder length of the numerical check and, where it matters, of the last refits, as a share
     /// of the case's.
     pub refinement: f64,
@@ -40,6 +45,7 @@ impl Default for Settings {
             orders: 120,
             alpha: 0.01,
             adequacy: 1e-3,
+            valley: 2.0,
             suspects: 8,
             gain: 3.0,
             practical: 0.05,
@@ -48,6 +54,7 @@ impl Default for Settings {
             generic_gain: 10.0,
             alike: 0.9,
             draws: 400,
+            step: 0.7,
             refinement: 0.5,
             without: Vec::new(),
         }

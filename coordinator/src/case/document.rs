@@ -148,6 +148,7 @@ impl Document {
         let Some(source) = self.text.lines().nth(line) else {
             return String::new();
         };
+        let (source, column) = around(source, column);
         let room = source.chars().count().saturating_sub(column).max(1);
         let width = span.end.saturating_sub(span.start).clamp(1, room);
         let number = (line + 1).to_string();
@@ -158,6 +159,21 @@ impl Document {
             "^".repeat(width)
         )
     }
+}
+
+/// A line as far as a terminal shows it, with the column moved accordingly.
+fn around(line: &str, column: usize) -> (String, usize) {
+    const WIDEST: usize = 120;
+    const BEFORE: usize = 60;
+    if line.chars().count() <= WIDEST {
+        return (line.to_owned(), column);
+    }
+    let from = column.saturating_sub(BEFORE);
+    let part: String = line.chars().skip(from).take(WIDEST).collect();
+    if from == 0 {
+        return (part + " ...", column);
+    }
+    (format!("... {part}"), column - from + 4)
 }
 
 /// The way to a field as it is written in messages: `conditions[0].speed_rpm`.
@@ -287,7 +303,19 @@ pub(super) fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, 
 
 #[cfg(test)]
 mod tests {
-    use super::{advice, first_line};
+    use super::{advice, around, first_line};
+
+    /// A line of a hundred thousand brackets filled the terminal.
+    #[test]
+    fn of_a_long_line_only_what_is_around_the_place_is_shown() {
+        assert_eq!(around("a = 1", 4), ("a = 1".to_owned(), 4));
+        let long: String = "0123456789".repeat(100);
+        for column in [0, 5, 61, 500, 999] {
+            let (shown, at) = around(&long, column);
+            assert!(shown.chars().count() <= 124, "{column}");
+            assert_eq!(shown.chars().nth(at), long.chars().nth(column), "{column}");
+        }
+    }
 
     #[test]
     fn the_words_of_the_library_become_what_to_write() {

@@ -11,7 +11,20 @@ const LIMIT: u64 = 1 << 30;
 /// # Errors
 /// Missing (with `role`: what it is needed for), unreadable, empty or larger than 1 GiB.
 pub(super) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
-    let file = fs::File::open(path).map_err(|source| {
+    // opening a pipe would wait for somebody to write into it
+    let opened = fs::metadata(path).and_then(|there| {
+        if there.is_file() {
+            fs::File::open(path)
+        } else {
+            let what = if there.is_dir() {
+                "a folder"
+            } else {
+                "a device or a pipe"
+            };
+            Err(io::Error::other(format!("it is {what}, not a file")))
+        }
+    });
+    let file = opened.map_err(|source| {
         if source.kind() == io::ErrorKind::NotFound {
             CaseError::Missing {
                 path: path.into(),

@@ -1,7 +1,8 @@
 //! `horsehead bench`: what the machinery costs without physics, and what accuracy costs with it.
 use super::{EXIT_CODES, Output, OutputChoice, bus, integrators, output};
-use crate::runtime::{BenchPlan, Crew};
+use crate::runtime::{self, BenchPlan, Crew};
 use clap::{Args, Subcommand};
+use link::locator::Locator;
 
 /// Measure what the machinery costs, or what accuracy costs.
 #[derive(Debug, Args)]
@@ -16,6 +17,7 @@ enum What {
     #[command(after_help = format!("\
 Examples:
   horsehead bench dispatch --workers 2 --jobs 20000
+  horsehead bench dispatch --connections 512
   horsehead bench dispatch --sessions 512 --jobs 1000000 --result-bytes 300
 
 {EXIT_CODES}"))]
@@ -27,6 +29,10 @@ Examples:
         /// the memory link: no transport and no slots, the rest is real.
         #[arg(long, value_name = "N", env = "HORSEHEAD_SESSIONS", value_parser = clap::value_parser!(u32).range(1..=16_384))]
         sessions: Option<u32>,
+        /// Instead of processes, so many workers that are only sessions of one other process, over
+        /// TCP on loopback: no slots, the rest is real.
+        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_CONNECTIONS", value_parser = clap::value_parser!(u32).range(1..=1900))]
+        connections: Option<u32>,
         /// Jobs to do.
         #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
         jobs: u64,
@@ -37,6 +43,16 @@ Examples:
         output: OutputChoice,
     },
     Integrators(integrators::Arguments),
+    /// Be many workers that are only sessions
+    #[command(hide = true)]
+    Sessions {
+        /// Whom to dial
+        #[arg(long, value_parser = Locator::parse)]
+        connect: Locator,
+        /// How many
+        #[arg(long)]
+        sessions: usize,
+    },
 }
 
 /// Measures and shows.
@@ -45,17 +61,23 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         What::Dispatch {
             workers,
             sessions,
+            connections,
             jobs,
             result_bytes,
             output: OutputChoice { output },
         } => {
-            let (crew, workers, of_what) = match sessions {
-                Some(sessions) => (
+            let (crew, workers, of_what) = match (sessions, connections) {
+                (Some(sessions), _) => (
                     Crew::Sessions,
                     *sessions,
                     "sessions of this process (memory link)",
                 ),
-                None => (
+                (None, Some(connections)) => (
+                    Crew::Connections,
+                    *connections,
+                    "sessions of another process (TCP on loopback)",
+                ),
+                (None, None) => (
                     Crew::Processes,
                     *workers,
                     "worker processes (TCP on loopback)",
@@ -70,6 +92,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             dispatch(plan, of_what, *output)
         }
         What::Integrators(arguments) => integrators::run(arguments),
+        What::Sessions { connect, sessions } => {
+            bus::block_on(async { Ok(runtime::connect(connect, *sessions).await?) })
+        }
     }
 }
 
@@ -81,10 +106,13 @@ fn dispatch(plan: BenchPlan, of_what: &str, output: Output) -> anyhow::Result<()
     let result = bus::block_on(bus::bench(plan))?;
     let table = || {
         format!(
-            "round trip   {:>10.3} ms median, {:.3} ms at 99 %\n\
+            "{} workers   joined within {:.2} s\n\
+             round trip   {:>10.3} ms median, {:.3} ms at 99 %\n\
              throughput   {:>10.0} jobs/s\n\
              coordinator  {:>10.1} us CPU per job, {:.2} times as much for the last tenth as for \
              the first; {:.1} MiB\n",
+            result.workers,
+            result.joined_s,
             result.rtt_ms.median,
             result.rtt_ms.p99,
             result.jobs_per_s,

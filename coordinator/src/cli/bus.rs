@@ -234,9 +234,11 @@ pub(super) async fn bench(plan: BenchPlan) -> anyhow::Result<BenchOutput> {
     Ok(BenchOutput {
         crew: match plan.crew {
             runtime::Crew::Processes => "processes",
+            runtime::Crew::Connections => "connections",
             runtime::Crew::Sessions => "sessions",
         },
         workers: result.workers,
+        joined_s: result.joined_s,
         jobs: result.jobs,
         rtt_ms: RoundTrip {
             median: result.rtt_median_ms,

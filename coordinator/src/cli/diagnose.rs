@@ -384,13 +384,17 @@ fn inputs(
         space,
         records,
         library,
+        usual: Refinement {
+            longest_step_s: Some(manifest.settings.thresholds.step * case.run.longest_step_s),
+            ..Refinement::default()
+        },
         finer: Refinement {
             cylinder_length_m: Some(
                 case.ropes.cylinder_length_m * manifest.settings.thresholds.refinement,
             ),
             lead_in_deg: Some(case.run.lead_in_deg + 180.0),
             modes: Some((case.run.modes + 2).min(available)),
-            longest_step_s: Some(0.5 * case.run.longest_step_s),
+            longest_step_s: Some(0.5 * manifest.settings.thresholds.step * case.run.longest_step_s),
             tolerance: None,
         },
         seed: manifest.seed,

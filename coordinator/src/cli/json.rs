@@ -281,10 +281,13 @@ pub(super) struct Both<T> {
 /// Of `horsehead bench dispatch`.
 #[derive(Debug, Serialize)]
 pub(super) struct BenchOutput {
-    /// `processes` over TCP on loopback, or `sessions` of this process over the memory link.
+    /// `processes` over TCP on loopback, `connections` of one other process over the same, or
+    /// `sessions` of this process over the memory link.
     pub(super) crew: &'static str,
     /// How many of them.
     pub(super) workers: usize,
+    /// Time until all of them had joined (s).
+    pub(super) joined_s: f64,
     /// Jobs that were done.
     pub(super) jobs: u64,
     /// Round trip of one job at a time (ms).

@@ -214,6 +214,7 @@ fn a_bench_has_the_fields_that_programs_rely_on() {
     let object = BenchOutput {
         crew: "processes",
         workers: 2,
+        joined_s: 0.5,
         jobs: 1000,
         rtt_ms: RoundTrip {
             median: 0.25,
@@ -234,6 +235,7 @@ fn a_bench_has_the_fields_that_programs_rely_on() {
             "crew",
             "jobs",
             "jobs_per_s",
+            "joined_s",
             "rtt_ms",
             "workers"
         ]

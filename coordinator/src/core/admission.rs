@@ -136,6 +136,7 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
             leases: Vec::new(),
             alone: false,
             claims: Vec::new(),
+            taken: Vec::new(),
             done: 0,
             failed: 0,
             purse: Purse::new(&core.clocks),

@@ -60,6 +60,7 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
                 && member.leases.len() < room(member)
                 && reserved != Some(**id)
                 && !pending.refused_by.contains(id)
+                && (!alone || member.taken.is_empty())
         })
         .min_by_key(|(_, member)| member.leases.len() * 4096 / member.slots())
         .map(|(id, _)| *id)

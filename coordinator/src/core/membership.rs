@@ -11,11 +11,11 @@ use super::{
 };
 use protocol::{
     event::{Event, WorkerAccount},
-    id::WorkerId,
+    id::{JobId, WorkerId},
     job::Failure,
     message::{Beat, FromWorker, ToWorker},
 };
-use std::time::Duration;
+use std::{collections::BTreeSet, time::Duration};
 
 pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: Duration) {
     let known = core
@@ -43,6 +43,7 @@ fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
     let Some(ready) = admission::is_ready(core, from, beat) else {
         return;
     };
+    let unmentioned = core.options.policy.unmentioned;
     if let Some(member) = core.members.get_mut(&from) {
         if member.ready != ready {
             account::settle(member, &core.clocks);
@@ -54,6 +55,10 @@ fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
             }
         }
         member.claims.clear();
+        member.taken.retain(|(attempt, at)| {
+            let mut held = beat.running.iter().chain(&beat.waiting);
+            held.any(|held| held == attempt) || now.saturating_sub(*at) < unmentioned
+        });
     }
     reconcile::reconcile(core, from, beat, now);
     if beat.case.is_some() {
@@ -120,26 +125,41 @@ fn silence(time: Duration) -> String {
 }
 
 /// Gives up a worker and offers what it held to others.
+///
+/// Whatever it held may be to blame, even what waited there when it was last heard of: the results
+/// before it may have been lost with the worker. So may what was taken from it and not yet let go.
+/// The innocent clear themselves by running alone.
 pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     let Some(member) = remove(core, worker, reason, now) else {
         return;
     };
     core.counts.lost += 1;
-    let (jobs, slots) = (member.leases.len(), member.slots());
+    let offered = member.leases.len();
     core.notice(Notice::Lost {
         worker,
         reason: reason.to_owned(),
-        jobs,
+        jobs: offered,
     });
-    for (place, lease) in member.leases.into_iter().enumerate() {
-        let job = lease.attempt.job;
-        // what still waited there is not to blame
+    let held = member.leases.iter().map(|lease| lease.attempt.job);
+    let taken = member.taken.iter().map(|(attempt, _)| attempt.job);
+    let jobs: BTreeSet<JobId> = held.chain(taken).collect();
+    let mut suspects = Vec::new();
+    for job in jobs {
         assign::requeue(core, worker, job);
-        if lease.running.is_none() && place >= slots {
+        let Some(pending) = core.jobs.get(&job) else {
             continue;
-        }
-        let losses = core.jobs.get(&job).map_or(0, |job| job.failures.losses) + 1;
+        };
+        let losses = pending.failures.losses + 1;
         result::failed(core, worker, job, Failure::Lost { workers: losses }, now);
+        if losses == core.options.policy.suspect && core.jobs.contains_key(&job) {
+            suspects.push(job);
+        }
+    }
+    if !suspects.is_empty() {
+        core.notice(Notice::Quarantined {
+            jobs: suspects,
+            workers: core.options.policy.suspect,
+        });
     }
 }
 

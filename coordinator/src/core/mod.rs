@@ -174,7 +174,7 @@ impl Core {
                 self.closing = true;
             }
         }
-        if !self.closing && !self.paused && membership::is_complete(self, now) {
+        if !self.closing && self.may_give_out() && membership::is_complete(self, now) {
             assign::assign(self, now);
         }
         let waits = self.clocks_wait();
@@ -182,9 +182,15 @@ impl Core {
         mem::take(&mut self.out)
     }
 
+    /// Whether what comes of new orders can be written down: a disk that is full, or slower than the
+    /// workers, must not fill the memory instead.
+    fn may_give_out(&self) -> bool {
+        !self.paused && self.storing.len() < self.options.policy.unstored
+    }
+
     /// Whether idle slots wait for what others compute: everything asked for is given out.
     fn clocks_wait(&self) -> bool {
-        self.queue.is_empty() && !self.jobs.is_empty() && !self.paused
+        self.queue.is_empty() && !self.jobs.is_empty() && self.may_give_out()
     }
 
     /// Writes down how the present workers spent their time.

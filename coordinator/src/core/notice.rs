@@ -5,6 +5,9 @@ use protocol::{
 };
 use std::fmt;
 
+/// Most jobs that are named one by one.
+const MOST_NAMED: usize = 5;
+
 /// Something worth a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Notice {
@@ -49,11 +52,11 @@ pub enum Notice {
         /// How many workers were refused.
         refused: usize,
     },
-    /// A job is kept apart from others because workers were lost over it.
+    /// Jobs are kept apart from all others because workers were lost that held them.
     Quarantined {
-        /// The job.
-        job: JobId,
-        /// Workers lost over it.
+        /// The jobs.
+        jobs: Vec<JobId>,
+        /// How many workers that held each of them were lost.
         workers: u32,
     },
     /// A job is given up.
@@ -115,11 +118,27 @@ impl fmt::Display for Notice {
                 "every worker was refused ({refused}) and {jobs} jobs wait: use the same build of \
                  horsehead and horsehead-worker everywhere"
             ),
-            Self::Quarantined { job, workers } => write!(
-                to,
-                "job {job} was running on {workers} workers when they were lost: from now on it \
-                 runs alone"
-            ),
+            Self::Quarantined { jobs, workers } => {
+                let named: Vec<String> =
+                    jobs.iter().take(MOST_NAMED).map(JobId::to_string).collect();
+                let named = named.join(", ");
+                match jobs.len() {
+                    0 | 1 => write!(
+                        to,
+                        "{workers} workers were lost that held job {named}: from now on it runs alone"
+                    ),
+                    count if count <= MOST_NAMED => write!(
+                        to,
+                        "{workers} workers were lost that held the jobs {named}: from now on each \
+                         runs alone"
+                    ),
+                    count => write!(
+                        to,
+                        "{workers} workers were lost that held {count} jobs ({named}, ...): from \
+                         now on each runs alone"
+                    ),
+                }
+            }
             Self::GivenUp { job, failure } => write!(to, "job {job} is given up: {failure}"),
             Self::Stalled { ms } => write!(
                 to,

@@ -5,7 +5,7 @@
 //! | the physics (a verdict) | never | | it is the job's result |
 //! | deadline | with twice the time | 2 attempts | a failed result, recorded |
 //! | crashed | on any worker | 2 attempts | a failed result, recorded |
-//! | lost | on any worker; alone on one after 2 | 4 workers | a failed result, recorded |
+//! | its worker was lost | on any worker; alone on one after 2 | 4 workers | a failed result, recorded |
 //! | refused | on workers that have not refused | all have | handed on, not recorded |
 //! | misconfigured | never | | handed on, not recorded |
 //!
@@ -45,6 +45,9 @@ pub struct Policy {
     /// time waiting for the next order, in percent (default 4). Where jobs are long, what waits
     /// behind a slow one would hold up a search that needs results in order.
     pub prefetch_percent: u32,
+    /// Results on their way to the disk beyond which nothing is given out (default 1024): memory is
+    /// not there to hold what a slow disk does not take.
+    pub unstored: usize,
     /// Deadline while fewer than [`Self::deadline_samples`] jobs are done (default 120 s).
     pub first_deadline: Duration,
     /// Least deadline (default 10 s).
@@ -66,9 +69,11 @@ pub struct Policy {
     /// Crashed attempts before a job is given up (default 2): a slot that crashes ran nothing
     /// else, so the job is to blame.
     pub crashes: u32,
-    /// Lost workers before a job runs alone (default 2): until then it may be bad company.
+    /// Lost workers that held a job, computing it or not, before it runs alone (default 2): until
+    /// then it may be bad company.
     pub suspect: u32,
-    /// Lost workers before a job is given up (default 4).
+    /// Lost workers that held a job before it is given up (default 4): on the last two of them there
+    /// was nothing else.
     pub losses: u32,
     /// Time between two accounts of slot time in the journal (default 60 s).
     pub account: Duration,
@@ -88,6 +93,7 @@ impl Default for Policy {
             steal_after: Duration::from_millis(50),
             per_slot: 2,
             prefetch_percent: 4,
+            unstored: 1024,
             first_deadline: Duration::from_mins(2),
             least_deadline: Duration::from_secs(10),
             deadline_factor: 4,

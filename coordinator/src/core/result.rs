@@ -4,7 +4,6 @@ use super::{
     account::{self, Use},
     assign,
     input::Command,
-    membership,
     notice::{Notice, Stop},
     reconcile,
 };
@@ -22,6 +21,9 @@ const MOST_EARLY: usize = 4096;
 /// A worker brought a result.
 pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     let job = done.attempt.job;
+    if let Some(member) = core.members.get_mut(&from) {
+        member.taken.retain(|(attempt, _)| *attempt != done.attempt);
+    }
     if let Some(waiting) = core.storing.get_mut(&job) {
         if !waiting.contains(&(from, done.attempt)) {
             waiting.push((from, done.attempt));
@@ -160,7 +162,6 @@ pub(super) fn failed(
     let Some(pending) = core.jobs.get_mut(&job) else {
         return;
     };
-    let before = pending.failures;
     let mut again = pending.failures.count(&failure, policy);
     if let Failure::Refused { .. } = failure {
         pending.refused_by.insert(worker);
@@ -169,13 +170,6 @@ pub(super) fn failed(
             .members
             .keys()
             .any(|member| !refused_by.contains(member));
-    }
-    let (after, suspect) = (pending.failures, policy.suspect);
-    if !membership::is_suspect(before, suspect) && membership::is_suspect(after, suspect) && again {
-        core.notice(Notice::Quarantined {
-            job,
-            workers: after.losses,
-        });
     }
     if !again {
         give_up(core, job, failure);

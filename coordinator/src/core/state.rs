@@ -67,6 +67,8 @@ pub(super) struct Member {
     pub(super) alone: bool,
     /// Attempts it holds of jobs that were not submitted (yet).
     pub(super) claims: Vec<Attempt>,
+    /// Attempts that were taken from it, and when: it may compute them until it has read so.
+    pub(super) taken: Vec<(Attempt, Duration)>,
     pub(super) done: u64,
     pub(super) failed: u64,
     pub(super) purse: Purse,

@@ -45,6 +45,9 @@ pub(super) fn steal(core: &mut Core, now: Duration) {
             return;
         };
         core.send(busy, ToWorker::Cancel(attempt));
+        if let Some(member) = core.members.get_mut(&busy) {
+            member.taken.push((attempt, now));
+        }
         assign::release(core, busy, attempt.job, Use::Lost);
         core.queue.remove(&attempt.job);
         assign::lease(core, idle, attempt.job, now);

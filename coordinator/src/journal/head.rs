@@ -20,12 +20,16 @@ pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalE
         return Ok(None);
     }
     let mut found = None;
-    fold(&path, |_, event| {
+    let read = fold(&path, |_, event| {
         if let Event::Begun { run, header } = event {
             found = Some((run, header));
         }
-    })?;
-    Ok(found)
+    });
+    match read {
+        // the journal itself has been asked for its version
+        Ok(_) | Err(JournalError::Version { .. }) => Ok(found),
+        Err(error) => Err(error),
+    }
 }
 
 /// Puts a copy into a run folder, whole or not at all.

@@ -1,13 +1,14 @@
 //! The append-only record of a run: what is in it is true, and nothing else is.
 //!
 //! ```text
-//! record:  "HHJ1" | length u32 | crc32 u32 of length and body | body (an encoded Event)
+//! record:  "HHJ" version | length u32 | crc32 u32 of length and body | body (an encoded Event)
 //! ```
 //!
 //! Each record carries its own mark and checksum, so that a flipped byte, a zeroed block or a
 //! torn tail costs the records it touched and no other. What the run *is* stands in the first
 //! record, in every later opening's, and in a file of its own ([`HEAD`]): no single damage makes
-//! a run impossible to continue. Readers are folds over the events ([`fold`]). The writer
+//! a run impossible to continue. The version is that of the wire, since a record holds what came
+//! over it; a journal of another one is refused as such and not taken for damage. Readers are folds over the events ([`fold`]). The writer
 //! ([`Journal`]) holds a lock, so that one run has one writer; on a full disk it waits.
 mod head;
 mod open;
@@ -15,10 +16,13 @@ mod read;
 mod write;
 
 pub use open::{Begun, Journal};
-pub use read::{Damage, Entry, ReadReport, fold};
+pub use read::{Damage, Entry, ReadReport, fold, words};
 pub use write::Appended;
 
-use protocol::{event::RunHeader, wire::WireError};
+use protocol::{
+    event::RunHeader,
+    wire::{VERSION, WireError},
+};
 use serde_json::Value;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -36,7 +40,8 @@ pub const LOCK: &str = "lock";
 /// Most differing settings that are named one by one.
 const MOST_NAMED: usize = 3;
 
-const MARK: [u8; 4] = *b"HHJ1";
+/// What each record begins with; the last byte is the version, as a digit.
+pub const MARK: [u8; 4] = [b'H', b'H', b'J', b'0' + VERSION];
 /// Bytes before a record's body.
 const RECORD_HEADER: usize = 12;
 
@@ -76,6 +81,18 @@ pub enum JournalError {
         /// What differs, with both values.
         what: Vec<String>,
     },
+    /// It was written by another version of this program.
+    #[error(
+        "the journal {} is of version {found}, and this build reads version {VERSION}: go on with \
+         the build that began the run, or choose another run folder",
+        path.display()
+    )]
+    Version {
+        /// The journal.
+        path: PathBuf,
+        /// Its version.
+        found: u8,
+    },
     /// Every record that says what the run is, is lost, and so is the copy beside the journal.
     #[error(
         "nothing says any more what run the journal {} belongs to (every copy of its first record \
@@ -83,6 +100,16 @@ pub enum JournalError {
         path.display()
     )]
     Headless {
+        /// The journal.
+        path: PathBuf,
+    },
+    /// Somebody deleted it while the run went on.
+    #[error(
+        "the journal {} was deleted while the run went on: its results cannot be kept, so the run \
+         stops; leave run folders alone until `horsehead` has ended",
+        path.display()
+    )]
+    Deleted {
         /// The journal.
         path: PathBuf,
     },

@@ -73,8 +73,8 @@ impl Journal {
     /// Opens the journal of a run folder, or begins it; `said` is called from the writing thread.
     ///
     /// # Errors
-    /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Headless`] or
-    /// [`JournalError::Io`].
+    /// [`JournalError::Locked`], [`JournalError::Differs`], [`JournalError::Headless`],
+    /// [`JournalError::Version`] or [`JournalError::Io`].
     pub fn open(
         folder: &Path,
         header: &RunHeader,
@@ -203,6 +203,13 @@ impl Journal {
             Ok(())
         } else {
             Err(JournalError::Closed)
+        }
+    }
+
+    /// The error of a run whose journal was deleted under it.
+    pub fn deleted(&self) -> JournalError {
+        JournalError::Deleted {
+            path: self.path.clone(),
         }
     }
 

@@ -39,6 +39,24 @@ impl fmt::Display for Damage {
     }
 }
 
+/// Most stretches of damage that are named one by one.
+const MOST_NAMED: usize = 3;
+
+/// Damage in words: a few stretches one by one, and how much more there is.
+pub fn words(damage: &[Damage]) -> Vec<String> {
+    let named = damage.iter().take(MOST_NAMED).map(ToString::to_string);
+    let mut words: Vec<String> = named.collect();
+    let more = damage.get(MOST_NAMED..).unwrap_or_default();
+    if !more.is_empty() {
+        let bytes: u64 = more.iter().map(|damage| damage.bytes).sum();
+        words.push(format!(
+            "{} more stretches are damaged, {bytes} bytes together",
+            more.len()
+        ));
+    }
+    words
+}
+
 /// Where a record lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
@@ -62,7 +80,8 @@ pub struct ReadReport {
 /// Calls `apply` for each readable event of a journal, in order.
 ///
 /// # Errors
-/// [`JournalError::Io`] if the file cannot be read; damage is no error.
+/// [`JournalError::Io`] if the file cannot be read, [`JournalError::Version`] if all that is sound
+/// in it was written by another version; damage is no error.
 pub fn fold(path: &Path, mut apply: impl FnMut(Entry, Event)) -> Result<ReadReport, JournalError> {
     let failed = |source| JournalError::Io {
         doing: "read",
@@ -75,6 +94,7 @@ pub fn fold(path: &Path, mut apply: impl FnMut(Entry, Event)) -> Result<ReadRepo
         file: BufReader::with_capacity(1 << 16, file),
         at: 0,
         length,
+        foreign: None,
     };
     let mut report = ReadReport::default();
     let mut lost_from = None;
@@ -103,13 +123,21 @@ pub fn fold(path: &Path, mut apply: impl FnMut(Entry, Event)) -> Result<ReadRepo
             torn: true,
         });
     }
-    Ok(report)
+    match reader.foreign {
+        Some(found) if report.records == 0 => Err(JournalError::Version {
+            path: path.to_owned(),
+            found,
+        }),
+        Some(_) | None => Ok(report),
+    }
 }
 
 struct Reader {
     file: BufReader<File>,
     at: u64,
     length: u64,
+    /// Version of a sound record that is not of ours.
+    foreign: Option<u8>,
 }
 
 impl Reader {
@@ -125,12 +153,17 @@ impl Reader {
         let length = u32::from_le_bytes([l0, l1, l2, l3]);
         let fits =
             length as usize <= BODY_LIMIT && u64::from(length) + RECORD_HEADER as u64 <= left;
-        if [m0, m1, m2, m3] != MARK || !fits {
+        let [h0, h1, j, version] = MARK;
+        if [m0, m1, m2] != [h0, h1, j] || !fits {
             return Ok(None);
         }
         let mut body = vec![0; length as usize];
         self.file.read_exact(&mut body)?;
         if checksum(length, &body) != u32::from_le_bytes([c0, c1, c2, c3]) {
+            return Ok(None);
+        }
+        if m3 != version {
+            self.foreign = Some(m3.wrapping_sub(b'0'));
             return Ok(None);
         }
         let Ok(event) = wire::decode(&body) else {

@@ -280,6 +280,46 @@ fn a_journal_of_zeros_is_begun_anew_under_its_own_name() {
     assert_eq!(goes_on(folder.path(), &zeros, 3, "more zeros"), 0);
 }
 
+/// Found as a run folder of an older build whose results were all taken for damage, and would have
+/// been computed again.
+#[test]
+fn a_journal_of_another_version_is_refused_as_such_and_left_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bytes = written(folder.path(), 3);
+    let of_ours = |bytes: &[u8]| bytes.windows(4).position(|part| part == MARK);
+    while let Some(at) = of_ours(&bytes) {
+        bytes[at + 3] = b'1';
+    }
+    let path = folder.path().join(FILE);
+    fs::write(&path, &bytes).unwrap();
+    let refused = open(folder.path()).unwrap_err().to_string();
+    let words = format!("is of version 1, and this build reads version {VERSION}");
+    assert!(refused.contains(&words), "{refused}");
+    assert!(matches!(
+        fold(&path, |_, _| {}),
+        Err(JournalError::Version { found: 1, .. })
+    ));
+    assert_eq!(fs::read(&path).unwrap(), bytes);
+}
+
+/// A file that nobody can find again must not pass for a journal.
+#[test]
+fn nothing_is_acknowledged_that_was_written_to_a_deleted_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let (say, said) = std::sync::mpsc::channel();
+    let (journal, _) = Journal::open(folder.path(), &header(), RunId(5), 17, move |appended| {
+        say.send(appended).unwrap();
+    })
+    .unwrap();
+    journal.append(result(1)).unwrap();
+    assert_eq!(said.recv(), Ok(Appended::Stored(vec![JobId(1)])));
+    fs::remove_dir_all(folder.path()).unwrap();
+    journal.append(result(2)).unwrap();
+    assert_eq!(said.recv(), Ok(Appended::Deleted));
+    drop(journal);
+    assert!(said.recv().is_err(), "nothing else");
+}
+
 fn record_length() -> usize {
     protocol::wire::encode(&result(1)).unwrap().len() + RECORD_HEADER
 }

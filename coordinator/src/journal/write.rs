@@ -5,6 +5,7 @@ use protocol::{event::Event, id::JobId, wire};
 use std::{
     fs::File,
     io::{self, Seek, SeekFrom, Write},
+    os::unix::fs::MetadataExt,
     sync::{
         Arc,
         atomic::{AtomicBool, Ordering},
@@ -26,6 +27,8 @@ pub enum Appended {
     Paused(String),
     /// Writing goes on.
     Resumed,
+    /// The file was deleted: what is written to it now is lost with this process.
+    Deleted,
 }
 
 /// Encodes an event as a record.
@@ -51,6 +54,8 @@ pub(super) trait Medium {
     fn flush(&mut self) -> io::Result<()>;
     /// Shortens to a length (bytes).
     fn cut(&mut self, length: u64) -> io::Result<()>;
+    /// Whether anybody will ever find it again.
+    fn is_there(&self) -> bool;
 }
 
 impl Medium for File {
@@ -65,6 +70,11 @@ impl Medium for File {
     fn cut(&mut self, length: u64) -> io::Result<()> {
         self.set_len(length)?;
         self.seek(SeekFrom::Start(length)).map(drop)
+    }
+
+    fn is_there(&self) -> bool {
+        // what cannot be asked is told by the next attempt to write
+        self.metadata().map_or(true, |file| file.nlink() > 0)
     }
 }
 
@@ -112,7 +122,12 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
                     Err(error) => tracing::error!(%error, "an event cannot be recorded"),
                 }
             }
-            if !self.insist(&batch) {
+            let written = self.insist(&batch);
+            if !self.medium.is_there() {
+                (self.said)(Appended::Deleted);
+                return;
+            }
+            if !written {
                 tracing::error!(
                     "{} results were not written: no worker was told to forget them, they are \
                      computed or handed in again",
@@ -219,6 +234,10 @@ mod tests {
             state.mishap()?;
             state.bytes.truncate(usize::try_from(length).unwrap());
             Ok(())
+        }
+
+        fn is_there(&self) -> bool {
+            true
         }
     }
 

@@ -1,14 +1,17 @@
-//! The bus alone: jobs that do nothing, over a real journal; workers are real processes, or
-//! sessions within this process where there are to be more of them than the machine can bear.
+//! The bus alone: jobs that do nothing, over a real journal; workers are real processes, or mere
+//! sessions where there are to be more of them than the machine can bear.
 mod sessions;
+
+pub use sessions::connect;
 
 use super::{Dispatch, DispatchError, DispatchOptions};
 use protocol::{id::JobId, job::Job};
-use sessions::Sessions;
+use sessions::{Connections, Sessions};
 use std::{
     fs,
     time::{Duration, Instant},
 };
+use tokio::time::sleep;
 
 /// Bytes of a job on its way to a worker, about those of a gene vector with its frame.
 const JOB_BYTES: usize = 1000;
@@ -16,6 +19,8 @@ const JOB_BYTES: usize = 1000;
 const ALONE: u64 = 1000;
 /// Jobs asked for ahead, per worker: enough to keep them busy.
 const AHEAD: u64 = 4;
+/// How long workers may take to join before it is measured with those that are there.
+const JOINING: Duration = Duration::from_mins(3);
 /// Parts of the measurement whose cost is compared.
 const PARTS: u64 = 10;
 
@@ -24,6 +29,8 @@ const PARTS: u64 = 10;
 pub enum Crew {
     /// Worker processes with one slot process each, over TCP on loopback.
     Processes,
+    /// Sessions of one other process, over TCP on loopback: all is real but the slots.
+    Connections,
     /// Sessions of one thread of this process, over the memory link: frames, core and journal are
     /// the real ones, transport and slots are not there.
     Sessions,
@@ -47,6 +54,8 @@ pub struct BenchPlan {
 pub struct BenchResult {
     /// Workers with one slot each.
     pub workers: usize,
+    /// From the opening until all of them had joined \[s\].
+    pub joined_s: f64,
     /// Jobs done as fast as possible.
     pub jobs: u64,
     /// Median round trip of one job at a time \[ms\].
@@ -60,7 +69,7 @@ pub struct BenchResult {
     pub coordinator_cpu_us_per_job: f64,
     /// The same for the last tenth of the jobs over the first: what stored results cost \[1\].
     pub cost_ratio: f64,
-    /// Memory of this process at the end (MiB).
+    /// Memory of this process at the end (MiB); with sessions of it, theirs too.
     pub coordinator_rss_mib: f64,
 }
 
@@ -72,21 +81,34 @@ pub async fn bench(
     mut options: DispatchOptions,
     plan: BenchPlan,
 ) -> Result<BenchResult, DispatchError> {
-    let (mut dispatch, sessions) = match plan.crew {
+    let begun = Instant::now();
+    let (mut dispatch, crew) = match plan.crew {
         Crew::Processes => {
             options.local_workers = plan.workers;
-            (Dispatch::open(options).await?, None)
+            (Dispatch::open(options).await?, Running::Local)
+        }
+        Crew::Connections => {
+            options.listen = Some("tcp/127.0.0.1:0".to_owned());
+            let dispatch = Dispatch::open(options).await?;
+            let at = dispatch.listening().into_iter().next().unwrap_or_default();
+            let connections = Connections::start(plan.workers, &at);
+            let connections = connections.map_err(DispatchError::Start)?;
+            (dispatch, Running::Connections(connections))
         }
         Crew::Sessions => {
-            let mut sessions = None;
+            let mut crew = Running::Local;
             let dispatch = Dispatch::over(&options, |_, blob| {
                 let (end, started) = Sessions::start(plan.workers, blob);
-                sessions = Some(started);
+                crew = Running::Sessions(started);
                 end
             })?;
-            (dispatch, sessions)
+            (dispatch, crew)
         }
     };
+    while dispatch.snapshot().workers.len() < plan.workers && begun.elapsed() < JOINING {
+        sleep(Duration::from_millis(5)).await;
+    }
+    let (joined, workers) = (begun.elapsed(), dispatch.snapshot().workers.len());
     let mut load = Load {
         plan,
         next: 0,
@@ -115,9 +137,10 @@ pub async fn bench(
     let cpu = marks[marks.len() - 1].saturating_sub(marks[0]);
     let coordinator_rss_mib = resident_mib();
     dispatch.close().await?;
-    drop(sessions);
+    drop(crew);
     Ok(BenchResult {
-        workers: plan.workers,
+        workers,
+        joined_s: joined.as_secs_f64(),
         jobs: plan.jobs,
         rtt_median_ms: quantile_ms(&trips, 50),
         rtt_p99_ms: quantile_ms(&trips, 99),
@@ -126,6 +149,15 @@ pub async fn bench(
         cost_ratio: part(marks.len() - 2) / part(0),
         coordinator_rss_mib,
     })
+}
+
+/// What does the jobs, where it is not the dispatcher's own workers; ends when dropped.
+enum Running {
+    Local,
+    #[expect(dead_code, reason = "held for its end")]
+    Connections(Connections),
+    #[expect(dead_code, reason = "held for its end")]
+    Sessions(Sessions),
 }
 
 /// Jobs that do nothing.

@@ -180,6 +180,10 @@ impl<L: CoordinatorEnd> Engine<L> {
                      is lost; make room on the disk and it goes on by itself"
                 );
             }
+            Appended::Deleted => {
+                self.handle(Input::Writable(false));
+                self.give(Err(self.journal.deleted().into()));
+            }
             Appended::Resumed => {
                 self.handle(Input::Writable(true));
                 tracing::warn!("the journal is written again: the run goes on");
@@ -189,9 +193,11 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     fn local(&mut self, event: LocalEvent) {
         match event {
-            LocalEvent::Ended { how } => tracing::warn!("a local worker {how}; it is restarted"),
+            LocalEvent::Ended { how } => {
+                tracing::warn!("a local worker {how}; it is started again")
+            }
             LocalEvent::GivenUp { how } => {
-                tracing::warn!("a local worker {how} too often; it is not restarted");
+                tracing::warn!("a local worker {how}, too often by now; it is not started again");
             }
             LocalEvent::AllGivenUp { how } if self.only_local => {
                 self.give(Err(DispatchError::LocalWorkers { how }));
@@ -209,6 +215,9 @@ impl<L: CoordinatorEnd> Engine<L> {
                 Command::Store(finished) => self.record(Event::Finished(finished)),
                 Command::Record(event) => self.record(event),
                 Command::Deliver { id, outcome } => {
+                    if let Some(workers) = &self.workers {
+                        workers.note_result();
+                    }
                     self.give(Ok(Completed {
                         id,
                         outcome,

@@ -30,7 +30,7 @@ pub enum DispatchError {
     NobodyToAsk,
     /// Local workers end again and again, and nobody else can join.
     #[error(
-        "the local workers end as soon as they are started (the last one {how}): run horsehead-worker by hand to see why"
+        "the local workers end again and again without a result (the last one {how}): run horsehead-worker by hand to see why"
     )]
     LocalWorkers {
         /// How the last one ended.

@@ -1,5 +1,9 @@
 //! Worker processes on this machine: started, restarted within limits, ended.
 //!
+//! A job may take its worker with it, and the next one too; the core gives such a job up. So a
+//! worker that ends is started again as long as the run makes progress, and given up only after
+//! several ends without a result between them.
+//!
 //! One thread owns them all and lives as long as they do, because the parent-death signal that
 //! ends them follows the thread that started them. They also end when their standard input does.
 use super::DispatchError;
@@ -9,7 +13,11 @@ use std::{
     os::unix::process::{CommandExt, ExitStatusExt},
     path::{Path, PathBuf},
     process::{Child, Command, ExitStatus, Stdio},
-    sync::mpsc,
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+        mpsc,
+    },
     thread,
     time::{Duration, Instant},
 };
@@ -17,10 +25,15 @@ use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
 
 /// How often the processes are looked at.
 const LOOK: Duration = Duration::from_millis(50);
-/// Restarts of one worker in a row.
-const RESTARTS: u32 = 5;
+/// Restarts of one worker without a result of the run between them: more than a job needs that
+/// kills its workers before it is given up.
+const RESTARTS: u32 = 8;
 /// After so long a worker counts as having worked.
 const WORKED: Duration = Duration::from_mins(1);
+/// Pause before a first restart; twice as long each time, up to the longest.
+const PAUSE: Duration = Duration::from_millis(100);
+/// Longest pause before a restart.
+const LONGEST_PAUSE: Duration = Duration::from_millis(800);
 /// How long they may take to end by themselves.
 const PATIENCE: Duration = Duration::from_millis(1500);
 
@@ -36,6 +49,8 @@ pub(super) enum LocalEvent {
 #[derive(Debug)]
 pub(super) struct LocalWorkers {
     events: UnboundedReceiver<LocalEvent>,
+    /// Results of the run, whoever brought them.
+    results: Arc<AtomicU64>,
     end: Option<mpsc::Sender<()>>,
     thread: Option<thread::JoinHandle<()>>,
 }
@@ -51,6 +66,8 @@ impl LocalWorkers {
         let (end, ended) = mpsc::channel();
         let (begun_to, begun) = mpsc::channel();
         let connect = connect.to_string();
+        let results = Arc::new(AtomicU64::new(0));
+        let progress = Arc::clone(&results);
         let tend = move || {
             let mut places = Vec::new();
             // the first one shows whether it can be done; nobody should wait for hundreds more,
@@ -75,7 +92,8 @@ impl LocalWorkers {
                     drop(begun_to.send(Ok(())));
                 }
             }
-            tend(&mut places, &program, &connect, &say, &ended);
+            let started = (program.as_path(), connect.as_str());
+            tend(&mut places, started, &progress, &say, &ended);
             end_all(places);
         };
         let thread = thread::Builder::new()
@@ -85,12 +103,18 @@ impl LocalWorkers {
         match begun.recv() {
             Ok(Ok(())) => Ok(Self {
                 events,
+                results,
                 end: Some(end),
                 thread: Some(thread),
             }),
             Ok(Err(error)) => Err(DispatchError::Start(error)),
             Err(_) => Err(DispatchError::Closed),
         }
+    }
+
+    /// The run has another result: it makes progress.
+    pub(super) fn note_result(&self) {
+        self.results.fetch_add(1, Ordering::Relaxed);
     }
 
     /// Waits for the next thing that happens; loses nothing when dropped.
@@ -114,7 +138,12 @@ impl Drop for LocalWorkers {
 struct Place {
     child: Option<Child>,
     begun: Instant,
+    /// Results of the run when it last ended.
+    results: u64,
+    /// Ends without a result between them.
     restarts: u32,
+    /// Pause before the next restart.
+    pause: Duration,
     again_at: Option<Instant>,
 }
 
@@ -131,7 +160,9 @@ impl Place {
         Ok(Self {
             child: Some(child),
             begun: Instant::now(),
+            results: 0,
             restarts: 0,
+            pause: PAUSE,
             again_at: None,
         })
     }
@@ -145,63 +176,67 @@ impl Place {
         };
         self.child = None;
         if self.begun.elapsed() >= WORKED {
-            self.restarts = 0;
+            (self.restarts, self.pause) = (0, PAUSE);
         }
         Some(how)
+    }
+
+    /// It ended: to be started again after a pause, or given up. The run has so many results now.
+    fn again(&mut self, how: String, results: u64) -> LocalEvent {
+        if results > self.results {
+            (self.results, self.restarts) = (results, 0);
+        }
+        if self.restarts == RESTARTS {
+            return LocalEvent::GivenUp { how };
+        }
+        self.restarts += 1;
+        self.again_at = Some(Instant::now() + self.pause);
+        self.pause = (self.pause * 2).min(LONGEST_PAUSE);
+        LocalEvent::Ended { how }
+    }
+
+    /// Starts it again if it is time; what is wrong if that fails.
+    fn restart_when_due(&mut self, program: &Path, connect: &str) -> Option<String> {
+        self.again_at.filter(|at| *at <= Instant::now())?;
+        self.again_at = None;
+        match Self::start(program, connect) {
+            Ok(started) => {
+                (self.child, self.begun) = (started.child, started.begun);
+                None
+            }
+            Err(error) => Some(format!("cannot be started again: {error}")),
+        }
     }
 }
 
 fn tend(
     places: &mut [Place],
-    program: &Path,
-    connect: &str,
+    (program, connect): (&Path, &str),
+    results: &AtomicU64,
     say: &UnboundedSender<LocalEvent>,
-    ended: &mpsc::Receiver<()>,
+    end: &mpsc::Receiver<()>,
 ) {
-    let mut given_up = 0;
-    while matches!(
-        ended.recv_timeout(LOOK),
-        Err(mpsc::RecvTimeoutError::Timeout)
-    ) {
+    let (count, mut given_up) = (places.len(), 0);
+    while matches!(end.recv_timeout(LOOK), Err(mpsc::RecvTimeoutError::Timeout)) {
         for place in &mut *places {
-            if let Some(how) = place.ended() {
-                let event = if place.restarts < RESTARTS {
-                    let pause = Duration::from_millis(100) * 2_u32.pow(place.restarts);
-                    place.again_at = Some(Instant::now() + pause);
-                    LocalEvent::Ended { how }
-                } else {
-                    given_up += 1;
-                    LocalEvent::GivenUp { how }
+            let results = results.load(Ordering::Relaxed);
+            let ended = place.ended().map(|how| place.again(how, results));
+            let restarted = place.restart_when_due(program, connect);
+            let failed = restarted.map(|error| place.again(error, results));
+            for event in ended.into_iter().chain(failed) {
+                let gone = match &event {
+                    LocalEvent::GivenUp { how } => Some(how.clone()),
+                    LocalEvent::Ended { .. } | LocalEvent::AllGivenUp { .. } => None,
                 };
                 drop(say.send(event));
+                given_up += usize::from(gone.is_some());
+                if let Some(how) = gone.filter(|_| given_up == count) {
+                    drop(say.send(LocalEvent::AllGivenUp { how }));
+                    // waits for the end
+                    end.recv().unwrap_or_default();
+                    return;
+                }
             }
-            if place.again_at.is_some_and(|at| at <= Instant::now()) {
-                restart(place, program, connect);
-            }
-        }
-        if given_up == places.len() {
-            let how = "ended too often".to_owned();
-            drop(say.send(LocalEvent::AllGivenUp { how }));
-            // waits for the end
-            ended.recv().unwrap_or_default();
-            return;
-        }
-    }
-}
-
-fn restart(place: &mut Place, program: &Path, connect: &str) {
-    let restarts = place.restarts + 1;
-    match Place::start(program, connect) {
-        Ok(started) => {
-            *place = Place {
-                restarts,
-                ..started
-            }
-        }
-        Err(error) => {
-            tracing::warn!("a local worker cannot be restarted: {error}");
-            place.restarts = restarts;
-            place.again_at = (restarts < RESTARTS).then(|| Instant::now() + Duration::from_secs(1));
         }
     }
 }

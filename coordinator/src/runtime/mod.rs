@@ -9,7 +9,7 @@ mod local;
 pub mod locate;
 
 pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
-pub use bench::{BenchPlan, BenchResult, Crew, bench};
+pub use bench::{BenchPlan, BenchResult, Crew, bench, connect};
 pub use error::DispatchError;
 pub use protocol::event::{RunHeader, Spent};
 
@@ -257,7 +257,7 @@ impl Parts {
                 drop(say.send(appended));
             },
         )?;
-        for damage in &begun.report.damage {
+        for damage in crate::journal::words(&begun.report.damage) {
             tracing::warn!("{damage}");
         }
         let blob = Blob::new(wire::encode(&options.case)?);

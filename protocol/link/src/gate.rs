@@ -53,8 +53,8 @@ const CROWDED: u32 = 2;
 const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Peers with which hands are shaken at a time.
 const PENDING: usize = 1024;
-/// Connections of one certificate: the router's sessions are for all.
-const CONNECTIONS: usize = 1024;
+/// Connections, and workers, of one certificate: the router's sessions are for all.
+pub(crate) const CONNECTIONS: usize = 1024;
 /// Beyond so many, peers must show first that they are where they say.
 const TRUSTING: usize = 64;
 /// Bytes passed on at a time.

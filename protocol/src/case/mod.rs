@@ -76,7 +76,8 @@ pub struct RunSettings {
     /// Spectral radius at infinite frequency of [`Integrator::GeneralizedAlpha`], 0 to 1 \[1\].
     #[serde(default = "half")]
     pub spectral_radius: f64,
-    /// Longest step \[s\]; it bounds how coarsely the rope's own modes are resolved.
+    /// Longest step \[s\]; it bounds how coarsely the rope's own modes are resolved. It holds where the
+    /// beam swings slowly on its ropes; stiffer ropes get shorter steps in proportion.
     pub longest_step_s: f64,
     /// Tolerance of the integrator, relative to its built-in error scales.
     pub tolerance: f64,

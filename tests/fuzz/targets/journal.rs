@@ -19,7 +19,7 @@ fuzz_target!(|bytes: &[u8]| {
             let length = u32::try_from(body.len()).expect("at most 255").to_le_bytes();
             let mut checked = length.to_vec();
             checked.extend_from_slice(body);
-            journal.extend_from_slice(b"HHJ1");
+            journal.extend_from_slice(&journal::MARK);
             journal.extend_from_slice(&length);
             journal.extend_from_slice(&crc32(&checked).to_le_bytes());
         }

@@ -33,15 +33,24 @@ pub(crate) fn cylinders_error(norm: f64, error: &[f64], width: usize) -> f64 {
 }
 
 /// Of `width` coordinates of a cylinder, lengths come first: two in the plane, three in space.
-fn cylinders(mut norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f64 {
-    let lengths = if width == 3 { 2 } else { 3 };
-    for x in x.chunks_exact(width) {
-        for x in &x[..lengths] {
-            norm = worst(norm, x / length);
-        }
-        for x in &x[lengths..] {
-            norm = worst(norm, x / turn);
+fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f64 {
+    let largest = if width == 3 {
+        let [x, y, psi] = largest(x);
+        [worst(x, y), psi]
+    } else {
+        let [x, y, z, phi, theta, psi] = largest(x);
+        [worst(worst(x, y), z), worst(worst(phi, theta), psi)]
+    };
+    worst(worst(norm, largest[0] / length), largest[1] / turn)
+}
+
+/// Largest absolute value of each of a cylinder's coordinates.
+fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
+    let mut norms = [0.0; W];
+    for x in x.as_chunks::<W>().0 {
+        for k in 0..W {
+            norms[k] = worst(norms[k], x[k]);
         }
     }
-    norm
+    norms
 }

@@ -16,9 +16,9 @@ use crate::system::System;
 ///
 /// Mode displacement: `sum_k s_k q_k` alone. The strain beside a pin is local, and six modes miss
 /// much of it; it is here to compare with programs that recover stress so.
-pub fn gauge_stress(system: &Individual<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
+pub fn gauge_stress(system: &Individual<'_>, state: &State) -> [f64; 4] {
     match system.machine.description.head.recovery {
-        StressRecovery::ModeAcceleration => mode_acceleration(system, at, state),
+        StressRecovery::ModeAcceleration => mode_acceleration(system, state),
         StressRecovery::ModeDisplacement => mode_displacement(system.machine, state),
     }
 }
@@ -36,22 +36,22 @@ fn mode_displacement(machine: &Machine, state: &State) -> [f64; 4] {
     stress
 }
 
-fn mode_acceleration(system: &Individual<'_>, at: &Instant<'_>, state: &State) -> [f64; 4] {
+fn mode_acceleration(system: &Individual<'_>, state: &State) -> [f64; 4] {
     let machine = system.machine;
     let head = &machine.description.head;
     let layout = machine.layout;
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    let surface = machine.surface(0, at.q, at.v, &system.scratch.deflection);
     let back = &system.scratch.chains[0];
-    machine.chains[0].each_touch(&surface, back, |share, touch| {
-        let force = share * system.ropes.contact.push(touch.depth, touch.rate).0;
-        let place = machine.normal_influence.place(touch.angle);
-        for (gauge, stress) in stress.iter_mut().enumerate() {
-            *stress += force * machine.normal_influence.jet(&place, gauge).value;
+    for (angle, force) in back.points.forces() {
+        let place = machine.normal_influence.place(angle);
+        let mut unit = [0.0; 4];
+        machine.normal_influence.values(&place, &mut unit);
+        for (stress, unit) in stress.iter_mut().zip(unit) {
+            *stress += force * unit;
         }
-    });
+    }
     // what the arc's contact does to the modes is at hand
     back.pressure
         .gather(&machine.radial, &mut modal_force[..modes]);
@@ -188,7 +188,16 @@ impl Recorder {
 impl Observe for Recorder {
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
         self.force.resize(state.q.len(), 0.0);
-        system.forces(state.t, &state.q, &state.v, &mut self.force);
+        // stress of the head asks for less than all loads; what readings and curves ask for is unknown
+        let part = self.gauges_only && !system.equations.machine.hooks.has_readings();
+        if part {
+            let at = (state.t, &state.q, &state.v);
+            system
+                .equations
+                .load_back_head(at.0, at.1, at.2, &mut self.force);
+        } else {
+            system.forces(state.t, &state.q, &state.v, &mut self.force);
+        }
         let system = &mut system.equations;
         let drive = system.drive_state(state.t);
         let at = Instant {
@@ -197,7 +206,7 @@ impl Observe for Recorder {
             q: &state.q,
             v: &state.v,
         };
-        let mut stress = gauge_stress(system, &at, state);
+        let mut stress = gauge_stress(system, state);
         let machine = system.machine;
         let hooks = &machine.hooks;
         let recorded = system.drive.turn(state.t)[0] - hooks.index_offset();

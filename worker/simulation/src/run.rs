@@ -6,7 +6,7 @@ use crate::integrator::tableau::ESDIRK4;
 use crate::integrator::{State, dense::interpolate};
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Powers};
-use crate::settle::{Damping, equilibrium, overload};
+use crate::settle::{Damping, equilibrium, overload, swing_rate};
 use crate::statistics::Statistics;
 use crate::system::System;
 use crate::verdict::{Failure, Limits, Reached, Verdict};
@@ -25,8 +25,12 @@ pub struct RunSettings {
     pub samples: usize,
     /// Local error per step, in units of the built-in scales.
     pub tolerance: f64,
-    /// Longest step \[s\]; it bounds how coarsely the rope modes (5 to 7 Hz) are resolved.
+    /// Longest step \[s\], where the beam swings slowly on its ropes; it bounds how coarsely the
+    /// ropes' own modes are resolved.
     pub longest_step: f64,
+    /// Rate of that swing ([`swing_rate`]) beyond which the longest step shrinks in proportion
+    /// [rad/s]; infinite: it never does.
+    pub slow_swing: f64,
     /// Newton iterations that one run may take.
     pub budget: u64,
     /// Iterations of the budget that a run may take from the start; the rest it earns with the time
@@ -38,6 +42,10 @@ pub struct RunSettings {
     pub damping: Damping,
 }
 
+/// 2.65 Hz: steps of 0.06 s resolve such a swing by 6.3 steps. Then the worst gauge of the
+/// fourth-order method errs by 0.17 % of its range in the median, by 0.44 % at most (measured).
+const SLOW_SWING: f64 = 16.65;
+
 impl Default for RunSettings {
     fn default() -> Self {
         Self {
@@ -47,6 +55,7 @@ impl Default for RunSettings {
             samples: 720,
             tolerance: 1.0,
             longest_step: 0.05,
+            slow_swing: SLOW_SWING,
             budget: 25_000,
             head_start: 4_000,
             limits: Limits::default(),
@@ -161,7 +170,9 @@ fn revolve(
     observer: &mut dyn Observe,
 ) -> RunResult {
     let tolerance = settings.tolerance;
-    let mut method = Adaptive::new(settings.method, system, tolerance, settings.longest_step);
+    let swings = swing_rate(system, &start).unwrap_or(0.0);
+    let longest = settings.longest_step / (swings / settings.slow_swing).max(1.0);
+    let mut method = Adaptive::new(settings.method, system, tolerance, longest);
     let mut from = State::at_rest(0.0, start);
     let mut to = from.clone();
     let mut between = from.clone();

@@ -8,6 +8,7 @@ mod continuation;
 mod guess;
 mod minimize;
 mod overload;
+mod swing;
 
 use crate::model::Individual;
 use crate::system::System;
@@ -17,6 +18,7 @@ pub use continuation::follow;
 pub use guess::guess;
 pub use minimize::{Damping, minimize, minimize_within};
 pub use overload::overload;
+pub use swing::swing_rate;
 
 /// Iterations that a minimisation gets before the continuation takes over.
 const DIRECT: u32 = 50;

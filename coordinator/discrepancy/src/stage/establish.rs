@@ -2,6 +2,7 @@
 //! in the final metric.
 use crate::bench::{Bench, Fit};
 use crate::diagnose::Inputs;
+use crate::evidence::misfit;
 use crate::laboratory::{Laboratory, Stage};
 use crate::metric::Metric;
 use crate::model::{Model, sizes};
@@ -10,10 +11,9 @@ use crate::record::{Curves, Record};
 use crate::score::misfit_tail;
 use crate::spectrum::Orders;
 use crate::stage::preflight::Preflight;
-use crate::stage::{basin, preflight, recalibrate};
+use crate::stage::{basin, preflight, recalibrate, valley};
 use nalgebra::{Complex, DVector};
 use protocol::announce::EffectDescriptor;
-use protocol::job::Refinement;
 
 /// The recalibrated model in its final metric.
 pub(crate) struct Base {
@@ -46,14 +46,19 @@ pub(crate) async fn establish<L: Laboratory>(
     let channels = record.channels.len();
     let rough = Noise::estimate(&record, &orders, &[]);
     let metric = Metric::new(orders.clone(), channels, &rough.covariances);
-    let bench = Bench::new(record.clone(), metric, Refinement::default());
+    let bench = Bench::new(record.clone(), metric, inputs.usual);
     let starts = match &inputs.start {
         Some(start) => vec![start.clone()],
         None => basin::enter(lab, &bench, model, inputs.seed).await?,
     };
-    let Some(first) = recalibrate::from_starts(lab, &bench, model, starts).await? else {
+    let Some(mut first) = recalibrate::from_starts(lab, &bench, model, starts).await? else {
         return Ok(None);
     };
+    if misfit(first.chi_squared(), bench.metric.len()) > inputs.settings.valley
+        && let Some(other) = valley::enter(lab, (&bench, Stage::Basin), &first).await?
+    {
+        first = other;
+    }
     let inputs_of_cycles = input_curves(lab, &bench, &first, &inputs.library).await?;
     let spectra: Vec<Vec<Vec<Complex<f64>>>> = inputs_of_cycles
         .iter()
@@ -67,7 +72,7 @@ pub(crate) async fn establish<L: Laboratory>(
             .map(|(curves, deviation)| metric.whiten(curves) * *deviation)
             .collect();
         metric.marginalize(&directions);
-        Bench::new(record.clone(), metric, Refinement::default())
+        Bench::new(record.clone(), metric, inputs.usual)
     };
     let bench = weigh(&noise);
     let Some(second) = recalibrate::converge(lab, &bench, model, first.x()).await? else {

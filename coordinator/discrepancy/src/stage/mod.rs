@@ -1,4 +1,5 @@
 //! The stages of a diagnosis, in order: each plans experiments, absorbs what they show and hands on.
+pub(crate) mod again;
 pub mod basin;
 pub mod challenge;
 pub(crate) mod establish;
@@ -8,4 +9,5 @@ pub mod recalibrate;
 pub mod refit;
 pub mod show;
 pub mod suspect;
+pub mod valley;
 pub mod whereabouts;

@@ -51,6 +51,7 @@ impl Suspect {
 struct Probe {
     effect: usize,
     shape: Vec<f64>,
+    typical: bool,
     size: usize,
     amount: f64,
     column: Option<DVector<f64>>,
@@ -76,9 +77,13 @@ pub async fn examine<L: Laboratory>(
 ) -> Result<Vec<Suspect>, L::Error> {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
     let mut probes = plan(effects);
-    take(lab, bench, fit, effects, &mut probes).await?;
+    // what a size does in the effect's typical shape tells how much of it to take in the others
+    take(lab, bench, fit, effects, &mut probes, |probe| probe.typical).await?;
     adjust(effects, &mut probes, &tangent);
-    take(lab, bench, fit, effects, &mut probes).await?;
+    spread(&mut probes);
+    take(lab, bench, fit, effects, &mut probes, |_| true).await?;
+    adjust(effects, &mut probes, &tangent);
+    take(lab, bench, fit, effects, &mut probes, |_| true).await?;
     let residual = &fit.search.settled_residual();
     Ok(effects
         .iter()
@@ -91,12 +96,13 @@ pub async fn examine<L: Laboratory>(
 fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
     let mut probes = Vec::new();
     for (k, effect) in effects.iter().enumerate() {
-        for shape in shape_choices(effect) {
+        for (choice, shape) in shape_choices(effect).into_iter().enumerate() {
             for size in sizes(effect) {
                 let p = &effect.parameters[size];
                 probes.push(Probe {
                     effect: k,
                     shape: shape.clone(),
+                    typical: choice == 0,
                     size,
                     amount: (p.typical - p.absent) / p.scale,
                     column: None,
@@ -122,15 +128,34 @@ fn shape_choices(effect: &EffectDescriptor) -> Vec<Vec<f64>> {
     choices
 }
 
-/// Simulates what has no column yet.
+/// Gives every other shape the amount that suits the typical one.
+fn spread(probes: &mut [Probe]) {
+    let typical: Vec<(usize, usize, f64)> = probes
+        .iter()
+        .filter(|probe| probe.typical)
+        .map(|probe| (probe.effect, probe.size, probe.amount))
+        .collect();
+    for probe in probes.iter_mut().filter(|probe| !probe.typical) {
+        let own = |(effect, size, _): &&(usize, usize, f64)| {
+            *effect == probe.effect && *size == probe.size
+        };
+        if let Some((.., amount)) = typical.iter().find(own) {
+            probe.amount = *amount;
+        }
+    }
+}
+
+/// Simulates what is asked for and has no column yet.
 async fn take<L: Laboratory>(
     lab: &mut L,
     bench: &Bench,
     fit: &Fit,
     effects: &[EffectDescriptor],
     probes: &mut [Probe],
+    asked: impl Fn(&Probe) -> bool,
 ) -> Result<(), L::Error> {
-    let open: Vec<&mut Probe> = probes.iter_mut().filter(|p| p.column.is_none()).collect();
+    let open = |probe: &&mut Probe| probe.column.is_none() && asked(probe);
+    let open: Vec<&mut Probe> = probes.iter_mut().filter(open).collect();
     let models: Vec<(Model, Vec<f64>)> = open
         .iter()
         .map(|probe| {

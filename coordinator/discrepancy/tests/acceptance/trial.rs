@@ -67,6 +67,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
                 .map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 })
                 .collect(),
         ),
+        usual: Refinement::default(),
         finer: Refinement {
             cylinder_length_m: Some(0.025),
             ..Refinement::default()

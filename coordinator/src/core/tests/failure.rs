@@ -1,5 +1,8 @@
 //! Attempts that fail: tried again, given up, recorded or not.
-use super::*;
+use super::{
+    simulated::{Cluster, Generations, Setting},
+    *,
+};
 
 #[test]
 fn a_job_that_crashes_twice_is_given_up_and_recorded() {
@@ -89,4 +92,32 @@ fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
     assert_eq!(scene.cancelled, []);
     scene.wait(4, &[1]);
     assert_eq!(scene.cancelled, [(WorkerId(1), attempt)]);
+}
+
+/// Jobs that kill whoever computes them, on clusters of all kinds: each costs four workers at most
+/// and no other job fails.
+#[test]
+fn jobs_that_kill_their_workers_are_found_whatever_else_those_held() {
+    const KILLERS: &[u64] = &[3, 11, 12];
+    for seed in 1..=60 {
+        let setting = Setting {
+            seed,
+            slots: 1 + usize::try_from(seed % 3).unwrap(),
+            delay: Duration::from_millis(if seed % 2 == 0 { 2 } else { 700 }),
+            killers: KILLERS,
+            ..Setting::even(1 + seed % 6)
+        };
+        let mut cluster = Cluster::new(setting);
+        cluster.run(&mut Generations::new(80, 1), Duration::from_hours(1));
+        for (job, outcome) in &cluster.results {
+            let expected = if KILLERS.contains(job) {
+                Outcome::Failed(Failure::Lost { workers: 4 })
+            } else {
+                Outcome::Nothing(vec![1])
+            };
+            assert_eq!(*outcome, expected, "job {job}, seed {seed}");
+        }
+        let lost = cluster.core.snapshot(cluster.now).lost;
+        assert!((4..=12).contains(&lost), "seed {seed}: {lost} workers");
+    }
 }

@@ -131,3 +131,30 @@ fn people_are_told_once_that_nobody_is_there() {
         }]
     );
 }
+
+/// Found as a coordinator that grew by a hundred megabytes: workers were faster than the disk.
+#[test]
+fn a_disk_that_falls_behind_holds_up_the_workers_and_does_not_fill_the_memory() {
+    let mut scene = Scene::new();
+    scene.join(1, 64);
+    let limit = scene.core.options.policy.unstored;
+    let jobs = 3 * limit as u64;
+    scene.submit(0..jobs);
+    let mut finished = 0;
+    loop {
+        let given = scene.given();
+        if given.is_empty() {
+            break;
+        }
+        for (to, attempt) in given {
+            scene.finish(to, attempt);
+            finished += 1;
+        }
+    }
+    // what was out when the limit was reached still comes in
+    assert!((limit..limit + 128).contains(&finished), "{finished}");
+    assert_eq!(scene.core.unstored(), finished);
+    scene.stored();
+    assert!(scene.given().len() >= 64, "it goes on");
+    assert_eq!(scene.core.unstored(), 0);
+}

@@ -60,7 +60,7 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
         });
     }
     assert!(scene.notices().contains(&&Notice::Quarantined {
-        job: JobId(0),
+        jobs: vec![JobId(0)],
         workers: 2
     }));
     scene.submit(1..9);
@@ -85,27 +85,64 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     );
 }
 
+/// Under load a worker may die of a job that, as far as is known, only waited there: the results of
+/// those before it died with it. Found as a job that killed all workers and was never given up.
 #[test]
-fn what_waited_on_a_lost_worker_is_not_blamed() {
+fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
     let mut scene = Scene::new();
     scene.submit(0..2);
-    for worker in 1..=4 {
+    for worker in 1..=2 {
         scene.join(worker, 1);
-        assert_eq!(
-            scene.given().len(),
-            2 - usize::from(worker > 2),
-            "worker {worker}"
-        );
+        assert_eq!(scene.given().len(), 2, "worker {worker}");
         scene.tell(Input::Gone {
             worker: WorkerId(worker),
         });
     }
-    // the job in front was lost four times, the one behind it never
+    let quarantined = Notice::Quarantined {
+        jobs: vec![JobId(0), JobId(1)],
+        workers: 2,
+    };
+    assert!(scene.notices().contains(&&quarantined));
+    for worker in 3..=4 {
+        scene.join(worker, 1);
+        let given = scene.given();
+        assert_eq!(given.len(), 1, "alone: {given:?}");
+        assert_eq!(given[0].1.job, JobId(0));
+        scene.tell(Input::Gone {
+            worker: WorkerId(worker),
+        });
+    }
     assert_eq!(
         scene.delivered,
         [(0, Outcome::Failed(Failure::Lost { workers: 4 }))]
     );
-    assert!(scene.core.jobs[&JobId(1)].failures.losses <= 1);
+    scene.join(5, 1);
+    let (_, innocent) = scene.given()[0];
+    scene.finish(5, innocent);
+    assert_eq!(scene.delivered[1], (1, Outcome::Nothing(vec![1])));
+}
+
+/// A job that an idle worker takes over may have been begun by the one it was taken from, and may be
+/// what that one dies of.
+#[test]
+fn a_job_that_was_taken_from_a_worker_may_still_be_what_it_dies_of() {
+    let lost = |seconds| {
+        let mut scene = Scene::new();
+        scene.join(1, 1);
+        scene.submit(0..2);
+        let held = scene.given();
+        scene.now += Duration::from_millis(60);
+        scene.join(2, 1);
+        let taken = scene.given()[0].1.job;
+        assert_eq!((held.len(), taken), (2, JobId(1)));
+        scene.wait(seconds, &[1, 2]);
+        scene.tell(Input::Gone {
+            worker: WorkerId(1),
+        });
+        scene.core.jobs[&taken].failures.losses
+    };
+    assert_eq!(lost(0), 1, "it may not have heard yet that it is to let go");
+    assert_eq!(lost(3), 0, "it has let go");
 }
 
 /// A worker that leaves in good order is not counted as lost, even if its connection ends next.

@@ -3,13 +3,14 @@
 //! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes
 //! a fraction of a second and is the same each time.
 mod source;
+mod worker;
 
 pub(super) use source::{Generations, Search, Source};
 
 use super::*;
 use protocol::event::Event;
 use search::random::{Phase, Streams};
-use std::collections::VecDeque;
+use worker::Worker;
 
 /// What happens to workers.
 #[derive(Clone, Copy, Debug)]
@@ -32,57 +33,6 @@ enum What {
     Fault(u64, Fault),
 }
 
-/// An attempt in a slot.
-struct Running {
-    attempt: Attempt,
-    work: ContentHash,
-    begun: Duration,
-}
-
-struct Worker {
-    /// Place that it fills; its successor fills it too.
-    place: u64,
-    slots: usize,
-    slowness: f64,
-    running: Vec<Running>,
-    waiting: VecDeque<Order>,
-    outbox: BTreeMap<Attempt, Done>,
-    settled: BTreeSet<Attempt>,
-    frozen: bool,
-    held_back: Vec<What>,
-}
-
-impl Worker {
-    fn take_running(&mut self, attempt: Attempt) -> Option<Running> {
-        let mut running = self.running.iter();
-        let at = running.position(|running| running.attempt == attempt)?;
-        Some(self.running.remove(at))
-    }
-
-    /// Stops an attempt; how long it was computed for nothing.
-    fn cancel(&mut self, attempt: Attempt, now: Duration) -> Duration {
-        self.settled.insert(attempt);
-        self.outbox.remove(&attempt);
-        self.waiting.retain(|order| order.attempt != attempt);
-        let running = self.take_running(attempt);
-        running.map_or(Duration::ZERO, |running| now.saturating_sub(running.begun))
-    }
-
-    /// The result of an attempt that is still wanted.
-    fn finish(&mut self, attempt: Attempt, now: Duration) -> Option<Done> {
-        let running = self.take_running(attempt)?;
-        let wall = now.saturating_sub(running.begun);
-        let done = Done {
-            attempt,
-            work: running.work,
-            wall_us: u64::try_from(wall.as_micros()).expect("short"),
-            outcome: Outcome::Nothing(vec![1]),
-        };
-        self.outbox.insert(attempt, done.clone());
-        Some(done)
-    }
-}
-
 /// What a cluster is like.
 #[derive(Clone, Copy)]
 pub(super) struct Setting {
@@ -95,6 +45,8 @@ pub(super) struct Setting {
     pub(super) slow_one_in: u64,
     /// Longest delay of a message.
     pub(super) delay: Duration,
+    /// Jobs that take their worker with them as soon as they are begun.
+    pub(super) killers: &'static [u64],
 }
 
 impl Setting {
@@ -106,6 +58,7 @@ impl Setting {
             spread: 0.3,
             slow_one_in: 0,
             delay: Duration::from_millis(2),
+            killers: &[],
         }
     }
 }
@@ -186,21 +139,9 @@ impl Cluster {
     fn start(&mut self, place: u64) {
         let slow = self.setting.slow_one_in;
         let id = WorkerId(place + 1000 * self.sequence + 1);
-        let worker = Worker {
-            place,
-            slots: self.setting.slots,
-            slowness: if slow > 0 && place.is_multiple_of(slow) {
-                2.0
-            } else {
-                1.0
-            },
-            running: Vec::new(),
-            waiting: VecDeque::new(),
-            outbox: BTreeMap::new(),
-            settled: BTreeSet::new(),
-            frozen: false,
-            held_back: Vec::new(),
-        };
+        let is_slow = slow > 0 && place.is_multiple_of(slow);
+        let slowness = if is_slow { 2.0 } else { 1.0 };
+        let worker = Worker::new(place, self.setting.slots, slowness);
         self.workers.insert(id, worker);
         let mut announcement = announcement("m");
         announcement.slots = u32::try_from(self.setting.slots).expect("few");
@@ -284,6 +225,9 @@ impl Cluster {
             }
             Fault::Kill => {
                 let dead = self.workers.remove(&id).expect("just found");
+                // what it said last dies with it
+                self.events
+                    .retain(|_, what| !matches!(what, What::Up(from, _) if *from == id));
                 for running in &dead.running {
                     self.computed += self.now.saturating_sub(running.begun);
                 }
@@ -299,28 +243,11 @@ impl Cluster {
             return;
         };
         match what {
-            What::Down(_, ToWorker::Run(order)) => {
-                let attempt = order.attempt;
-                let known = worker.settled.contains(&attempt)
-                    || worker
-                        .running
-                        .iter()
-                        .any(|running| running.attempt == attempt)
-                    || worker.waiting.iter().any(|order| order.attempt == attempt)
-                    || worker.outbox.contains_key(&attempt);
-                if !known {
-                    worker.waiting.push_back(*order);
-                }
-            }
+            What::Down(_, ToWorker::Run(order)) => worker.take(*order),
             What::Down(_, ToWorker::Cancel(attempt)) => {
                 self.computed += worker.cancel(attempt, now);
             }
-            What::Down(_, ToWorker::Stored(attempts)) => {
-                for attempt in attempts {
-                    worker.outbox.remove(&attempt);
-                    worker.settled.insert(attempt);
-                }
-            }
+            What::Down(_, ToWorker::Stored(attempts)) => worker.settle(attempts),
             What::End(_, attempt) => {
                 if let Some(done) = worker.finish(attempt, now) {
                     self.computed += Duration::from_micros(done.wall_us);
@@ -328,18 +255,7 @@ impl Cluster {
                 }
             }
             What::Beat(_) => {
-                let beat = Beat {
-                    number: 0,
-                    case: Some(CASE),
-                    proof: Some(PROOF),
-                    running: worker
-                        .running
-                        .iter()
-                        .map(|running| running.attempt)
-                        .collect(),
-                    waiting: worker.waiting.iter().map(|order| order.attempt).collect(),
-                    finished: worker.outbox.keys().copied().collect(),
-                };
+                let beat = worker.beat();
                 let again: Vec<Done> = worker.outbox.values().cloned().collect();
                 self.send(What::Up(id, FromWorker::Beat(beat)));
                 for done in again {
@@ -360,20 +276,14 @@ impl Cluster {
     fn fill(&mut self, id: WorkerId) {
         let now = self.now;
         while let Some(worker) = self.workers.get_mut(&id) {
-            if worker.running.len() >= worker.slots {
-                return;
-            }
-            let Some(order) = worker.waiting.pop_front() else {
+            let Some(attempt) = worker.begin(now) else {
                 return;
             };
-            let attempt = order.attempt;
-            worker.running.push(Running {
-                attempt,
-                work: work_hash(&order.job),
-                begun: now,
-            });
-            let slowness = worker.slowness;
+            let (slowness, place) = (worker.slowness, worker.place);
             self.begun += 1;
+            if self.setting.killers.contains(&attempt.job.0) {
+                self.at(Duration::ZERO, What::Fault(place, Fault::Kill));
+            }
             let time = self.time_of(attempt.job).mul_f64(slowness);
             self.at(time, What::End(id, attempt));
         }

@@ -13,7 +13,7 @@ pub use gap::gap;
 pub use head::{head_modes, head_statics};
 pub use single::{balance, genes, simulation};
 pub use work::work_precision;
-pub use worker::{slot_time, workers};
+pub use worker::{hosts, jobs, slot_time, workers};
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};

@@ -1,8 +1,11 @@
 //! Who computed, and how the slots spent their time.
 use super::{Row, Table};
-use crate::report::{
-    data::WorkerUse,
-    number::{NONE, count, duration, percent},
+use crate::{
+    account::RunAccount,
+    report::{
+        data::WorkerUse,
+        number::{NONE, count, duration, percent},
+    },
 };
 use protocol::event::Spent;
 
@@ -72,5 +75,64 @@ pub fn slot_time(spent: &Spent) -> Table {
             "Slots were connected for {} in all.",
             duration(spent.connected_us as f64 / 1e6)
         )],
+    }
+}
+
+/// What the machines did.
+pub fn hosts(account: &RunAccount) -> Table {
+    let rows = account.hosts().into_iter().map(|(host, used)| {
+        let share = used.spent.useful_us as f64 / used.spent.connected_us.max(1) as f64;
+        Row::new(
+            host,
+            [
+                count(used.workers),
+                used.slots.to_string(),
+                count(used.done),
+                count(used.failed),
+                duration(used.spent.useful_us as f64 / 1e6),
+                percent(share),
+            ],
+        )
+    });
+    Table {
+        title: "Machines".to_owned(),
+        head: [
+            "machine", "workers", "slots", "results", "failed", "useful", "share",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        notes: Vec::new(),
+    }
+}
+
+/// How long jobs took, kind by kind.
+pub fn jobs(account: &RunAccount) -> Table {
+    let rows = account.jobs.iter().map(|(kind, used)| {
+        Row::new(
+            *kind,
+            [
+                count(used.results),
+                count(used.machine_failed),
+                duration(used.median_s),
+                duration(used.usual_s),
+                duration(used.longest_s),
+            ],
+        )
+    });
+    Table {
+        title: "Jobs".to_owned(),
+        head: [
+            "kind",
+            "results",
+            "machine failed",
+            "median",
+            "95 %",
+            "longest",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: rows.collect(),
+        notes: Vec::new(),
     }
 }

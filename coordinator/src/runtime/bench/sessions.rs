@@ -1,11 +1,15 @@
-//! Workers that are only sessions: many of them on one thread, over the memory link.
+//! Workers that are only sessions: many of them on one thread over the memory link, or in a process
+//! of their own over the bus.
 //!
 //! They speak the protocol as real ones do (announcement, proof, heartbeat, results) and answer a
-//! job that does nothing at once. They repeat nothing, because the link they use loses nothing.
+//! job that does nothing at once. They repeat nothing: the memory link loses nothing, and over the bus
+//! what is not answered in time is offered again.
 use crate::core::work_hash;
 use link::{
-    Blob, WorkerEnd,
-    memory::{Faults, Hub, MemoryCoordinator, MemoryWorker},
+    Blob, LinkError, WorkerEnd,
+    locator::Locator,
+    memory::{Faults, Hub, MemoryCoordinator},
+    zenoh::ZenohWorker,
 };
 use protocol::{
     announce::Announcement,
@@ -15,14 +19,29 @@ use protocol::{
     message::{Beat, Done, FromWorker, Order, ToWorker},
     wire::{self, Kind},
 };
-use std::{thread, time::Duration};
-use tokio::{task::JoinSet, time::MissedTickBehavior};
+use std::{
+    env, io,
+    process::{Child, Command, Stdio},
+    sync::Arc,
+    thread,
+    time::Duration,
+};
+use tokio::{
+    sync::Semaphore,
+    task::JoinSet,
+    time::{MissedTickBehavior, sleep},
+};
 
 /// Name of their thread.
 pub(super) const THREAD: &str = "bench-sessions";
 
 /// How often a worker speaks.
 const BEAT: Duration = Duration::from_secs(1);
+
+/// Connections that are opened at a time.
+const OPENING: usize = 32;
+/// Pause before a connection that failed is tried again.
+const AGAIN: Duration = Duration::from_millis(200);
 
 /// Running sessions; they end with the link.
 pub(super) struct Sessions(Option<thread::JoinHandle<()>>);
@@ -66,7 +85,62 @@ impl Drop for Sessions {
     }
 }
 
-async fn serve(mut link: MemoryWorker, id: WorkerId) {
+/// A process with sessions over the bus; ended when dropped.
+pub(super) struct Connections(Child);
+
+impl Connections {
+    /// Starts this program again, with so many sessions that dial an address.
+    pub(super) fn start(count: usize, connect: &str) -> io::Result<Self> {
+        let child = Command::new(env::current_exe()?)
+            .args(["bench", "sessions", "--connect", connect])
+            .args(["--sessions", &count.to_string()])
+            .stdin(Stdio::null())
+            .spawn()?;
+        Ok(Self(child))
+    }
+}
+
+impl Drop for Connections {
+    fn drop(&mut self) {
+        // fails only if it has ended by itself
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+/// Dials an address with so many sessions and serves until all have been told to end.
+///
+/// # Errors
+/// The first connection that cannot be opened, and why trying again does not help.
+pub async fn connect(to: &Locator, count: usize) -> Result<(), LinkError> {
+    let opening = Arc::new(Semaphore::new(OPENING));
+    let mut sessions = JoinSet::new();
+    for process in 1..=count as u64 {
+        let (to, opening) = (to.clone(), Arc::clone(&opening));
+        sessions.spawn(async move {
+            let place = opening.acquire().await;
+            let link = loop {
+                match ZenohWorker::open(&to, None, process).await {
+                    Ok(link) => break link,
+                    Err(error) if error.may_pass() => sleep(AGAIN).await,
+                    Err(error) => return Err(error),
+                }
+            };
+            drop(place);
+            serve(link, WorkerId(process)).await;
+            Ok(())
+        });
+    }
+    while let Some(ended) = sessions.join_next().await {
+        match ended {
+            Ok(ended) => ended?,
+            Err(error) => tracing::error!("a session broke down: {error}"),
+        }
+    }
+    Ok(())
+}
+
+async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
     let mut run = RunId::default();
     let mut case = None;
     let mut number = 0;

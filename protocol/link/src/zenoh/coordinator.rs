@@ -14,6 +14,7 @@ use serde_json::{Value, json};
 use std::{
     net::Ipv4Addr,
     sync::{Arc, Mutex, PoisonError},
+    time::Instant,
 };
 use tokio::sync::mpsc;
 use zenoh::{Session, bytes::Encoding, sample::SampleKind};
@@ -180,11 +181,11 @@ async fn subscribe(
                 let worker = names
                     .lock()
                     .unwrap_or_else(PoisonError::into_inner)
-                    .note(worker);
-                offer(
-                    &to,
-                    Heard::Frame(worker, sample.payload().to_bytes().into_owned()),
-                );
+                    .note(worker, Instant::now());
+                if let Some(worker) = worker {
+                    let frame = sample.payload().to_bytes().into_owned();
+                    offer(&to, Heard::Frame(worker, frame));
+                }
             }
         })
         .background()

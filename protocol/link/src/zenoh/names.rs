@@ -1,43 +1,56 @@
 //! Which name on the bus stands behind each worker id, for as many as one certificate may have.
-use protocol::{id::WorkerId, name::WorkerName};
-use std::collections::BTreeMap;
+use crate::gate::CONNECTIONS;
+use protocol::{
+    id::WorkerId,
+    name::{ANYONE, WorkerName},
+};
+use std::{
+    collections::BTreeMap,
+    time::{Duration, Instant},
+};
 
-/// Workers of one certificate that are remembered: beyond it the one that has been silent for
-/// longest is forgotten, so that no peer can fill the memory with names.
-const MOST: usize = 4096;
+/// Workers without a certificate: those of loopback, and of networks that were opened to all.
+const OF_ANYONE: usize = 4096;
+/// A name that was silent for so long makes room for another one of its certificate: longer than it
+/// takes to count as lost, so that nobody works under more names than it may have.
+const SILENT: Duration = Duration::from_secs(10);
+/// How long an owner without room is not looked at again.
+const PAUSE: Duration = Duration::from_millis(100);
 
 /// The names that were heard.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     known: BTreeMap<WorkerId, Known>,
-    /// How many of each owner.
-    owners: BTreeMap<String, usize>,
-    heard: u64,
+    owners: BTreeMap<String, Owner>,
 }
 
 #[derive(Debug)]
 struct Known {
     name: WorkerName,
-    heard: u64,
+    heard: Instant,
+}
+
+#[derive(Debug, Default)]
+struct Owner {
+    names: usize,
+    /// Until when there is no room for another name.
+    full_until: Option<Instant>,
+    told: bool,
 }
 
 impl Names {
-    /// A name was heard; its id.
-    pub(super) fn note(&mut self, name: WorkerName) -> WorkerId {
+    /// A name was heard; its id, or none if its certificate has as many workers as one may have.
+    pub(super) fn note(&mut self, name: WorkerName, now: Instant) -> Option<WorkerId> {
         let id = name.id();
-        self.heard += 1;
-        let heard = self.heard;
         if let Some(known) = self.known.get_mut(&id) {
-            known.heard = heard;
-            return id;
+            known.heard = now;
+            return Some(id);
         }
-        let count = self.owners.entry(name.owner().to_owned()).or_default();
-        *count += 1;
-        if *count > MOST {
-            self.forget_oldest(name.owner());
-        }
-        self.known.insert(id, Known { name, heard });
-        id
+        self.make_room(name.owner(), now).then_some(())?;
+        let owner = self.owners.entry(name.owner().to_owned()).or_default();
+        owner.names += 1;
+        self.known.insert(id, Known { name, heard: now });
+        Some(id)
     }
 
     /// The name behind an id.
@@ -48,21 +61,49 @@ impl Names {
     /// A worker is gone.
     pub(super) fn forget(&mut self, id: WorkerId) {
         if let Some(known) = self.known.remove(&id)
-            && let Some(count) = self.owners.get_mut(known.name.owner())
+            && let Some(owner) = self.owners.get_mut(known.name.owner())
         {
-            *count -= 1;
+            owner.names -= 1;
+            owner.full_until = None;
         }
     }
 
-    fn forget_oldest(&mut self, owner: &str) {
+    /// Whether an owner may have another name; one that has been silent for long gives way to it.
+    fn make_room(&mut self, owner: &str, now: Instant) -> bool {
+        let most = if owner == ANYONE {
+            OF_ANYONE
+        } else {
+            CONNECTIONS
+        };
+        let Some(state) = self.owners.get_mut(owner) else {
+            return true;
+        };
+        if state.names < most {
+            return true;
+        }
+        if state.full_until.is_some_and(|until| now < until) {
+            return false;
+        }
         let of_owner = self
             .known
             .iter()
             .filter(|(_, known)| known.name.owner() == owner);
-        let oldest = of_owner.min_by_key(|(_, known)| known.heard);
-        if let Some(id) = oldest.map(|(id, _)| *id) {
-            self.forget(id);
+        let silent = of_owner
+            .min_by_key(|(_, known)| known.heard)
+            .filter(|(_, known)| now.saturating_duration_since(known.heard) > SILENT)
+            .map(|(id, _)| *id);
+        if let Some(silent) = silent {
+            self.forget(silent);
+            return true;
         }
+        state.full_until = Some(now + PAUSE);
+        if !std::mem::replace(&mut state.told, true) {
+            tracing::warn!(
+                "\"{owner}\" has {most} workers, as many as one certificate may have: further ones \
+                 are not heard"
+            );
+        }
+        false
     }
 }
 
@@ -70,19 +111,46 @@ impl Names {
 mod tests {
     use super::*;
 
+    fn name(owner: &str, process: u64) -> WorkerName {
+        WorkerName::of(owner, process).unwrap()
+    }
+
+    /// However many processes a certificate claims to have, it gets no more numbers than connections,
+    /// those it has go on, and those of others are not touched.
     #[test]
-    fn a_flood_of_names_displaces_only_its_own_silent_ones() {
-        let mut names = Names::default();
-        let steady = names.note(WorkerName::of("steady", 0).unwrap());
-        let talker = WorkerName::of("flood", 0).unwrap();
-        for process in 1..=MOST as u64 * 2 {
-            names.note(WorkerName::of("flood", process).unwrap());
-            names.note(talker.clone());
+    fn a_flood_of_names_gets_no_more_than_its_share_and_takes_nothing_from_others() {
+        let (mut names, begun) = (Names::default(), Instant::now());
+        let at = |ms: u64| begun + Duration::from_millis(ms);
+        let steady = names.note(name("steady", 0), begun).unwrap();
+        let mut admitted = 0;
+        for process in 0..CONNECTIONS as u64 * 3 {
+            admitted += usize::from(names.note(name("flood", process), at(process)).is_some());
         }
-        assert_eq!(names.known.len(), MOST + 1);
-        assert!(names.of(steady).is_some() && names.of(talker.id()).is_some());
-        names.forget(talker.id());
-        assert!(names.of(talker.id()).is_none());
-        assert_eq!(names.owners["flood"], MOST - 1);
+        assert_eq!(admitted, CONNECTIONS);
+        assert_eq!(
+            names.note(name("flood", 0), at(5000)),
+            Some(name("flood", 0).id())
+        );
+        assert_eq!(
+            names.note(name("steady", 1), at(5000)),
+            Some(name("steady", 1).id())
+        );
+        assert!(names.of(steady).is_some());
+        // a name that says no more gives way
+        let late = at(12_000);
+        assert_eq!(
+            names.note(name("flood", 9_999_999), late),
+            Some(name("flood", 9_999_999).id())
+        );
+        assert!(
+            names.of(name("flood", 1).id()).is_none(),
+            "silent for longest"
+        );
+        assert!(names.of(name("flood", 0).id()).is_some());
+        assert_eq!(names.owners["flood"].names, CONNECTIONS);
+        // and so does one that is gone
+        assert_eq!(names.note(name("flood", 7_000_000), begun), None);
+        names.forget(name("flood", 5).id());
+        assert!(names.note(name("flood", 7_000_000), begun).is_some());
     }
 }

@@ -253,6 +253,11 @@ impl Hooks {
         self.profile.highest() + self.sway
     }
 
+    /// Whether readings ask for more than the stress.
+    pub(crate) fn has_readings(&self) -> bool {
+        !self.readings.is_empty()
+    }
+
     /// Reads one sample.
     pub(crate) fn read(&self, at: &Sampled<'_, '_>, stress: &mut [f64; 4]) {
         for reading in &self.readings {

@@ -143,6 +143,8 @@ fn bounds_end_in_a_verdict() {
     let settings = RunSettings {
         samples: SAMPLES,
         budget: 6000,
+        // coarse steps will do for a verdict
+        slow_swing: f64::INFINITY,
         ..RunSettings::default()
     };
     let mut complete = 0;

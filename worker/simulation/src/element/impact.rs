@@ -60,6 +60,31 @@ impl Impact {
         (force, damper * rate)
     }
 
+    /// [`Self::push`] at many places, to the bit: forces and powers.
+    pub fn push_all(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
+        let n = depth.len();
+        #[expect(clippy::float_cmp, reason = "selects the exact special case")]
+        if self.exponent != 1.5 {
+            for i in 0..n {
+                (force[i], lost[i]) = self.push(depth[i], rate[i]);
+            }
+            return;
+        }
+        // without branches: where there is no contact, the penetration counts as zero
+        let (rate, force, lost) = (&rate[..n], &mut force[..n], &mut lost[..n]);
+        for i in 0..n {
+            let inside = if depth[i] > 0.0 { depth[i] } else { 0.0 };
+            let spring = self.stiffness * (inside * inside.sqrt());
+            let u = inside / self.full_damping_penetration;
+            let u = if u < 1.0 { u } else { 1.0 };
+            let damper = self.damping * (u * u * (3.0 - 2.0 * u)) * rate[i];
+            let sum = spring + damper;
+            let torn = -spring * rate[i];
+            force[i] = if sum > 0.0 { sum } else { 0.0 };
+            lost[i] = if sum > 0.0 { damper * rate[i] } else { torn };
+        }
+    }
+
     /// [`Self::push`] with its derivatives.
     #[inline]
     pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {

@@ -106,6 +106,21 @@ impl<const N: usize> Blocks<N> {
         self.bottom[block * self.border + k][column] += value;
     }
 
+    /// Adds to row `row` of `block` in the border's first columns, and to column `row` in its first
+    /// rows.
+    #[inline]
+    pub fn add_border(&mut self, block: usize, row: usize, right: &[f64], bottom: &[f64]) {
+        let reach = right.len().max(bottom.len());
+        self.touches[block] = self.touches[block].max(reach);
+        let of = block * self.border..(block + 1) * self.border;
+        for (column, value) in self.right[of.clone()].iter_mut().zip(right) {
+            column[row] += value;
+        }
+        for (column, value) in self.bottom[of].iter_mut().zip(bottom) {
+            column[row] += value;
+        }
+    }
+
     /// Adds `value` within the border.
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {

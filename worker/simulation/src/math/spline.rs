@@ -29,7 +29,7 @@ pub struct Jet {
 }
 
 /// A place on the grid, found once for all curves.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Place {
     left: usize,
     right: usize,
@@ -98,7 +98,7 @@ impl Splines {
     #[inline]
     pub fn place(&self, x: f64) -> Place {
         let points = self.points();
-        let u = (x - self.start) / self.step;
+        let u = (x - self.start) * self.per_step;
         if self.periodic {
             let n = points as f64;
             let u = u - (u / n).floor() * n;
@@ -153,6 +153,20 @@ impl Splines {
         let [a, b, cubic_a, cubic_b] = place.weights();
         for (value, (&[y0, m0], &[y1, m1])) in values.iter_mut().zip(left.iter().zip(right)) {
             *value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
+        }
+    }
+
+    /// Values and slopes of the first curves at a place.
+    pub fn slopes(&self, place: &Place, values: &mut [f64], slopes: &mut [f64]) {
+        let left = &self.knots[place.left * self.curves..];
+        let right = &self.knots[place.right * self.curves..];
+        let [a, b, cubic_a, cubic_b] = place.weights();
+        let inside = if place.clamped { 0.0 } else { self.per_step };
+        let (bend_a, bend_b) = (1.0 - 3.0 * a * a, 3.0 * b * b - 1.0);
+        let curves = left.iter().zip(right);
+        for ((value, slope), (&[y0, m0], &[y1, m1])) in values.iter_mut().zip(slopes).zip(curves) {
+            *value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
+            *slope = (y1 - y0 + bend_a * m0 + bend_b * m1) * inside;
         }
     }
 

@@ -13,8 +13,11 @@ use nalgebra::{Matrix2, Vector2};
 
 type V2 = Vector2<f64>;
 
+/// Points of a cylinder where its contact is evaluated.
+pub const POINTS: usize = 3;
+
 /// Places along a cylinder in half lengths, and their shares of its coefficients.
-pub const GAUSS: [(f64, f64); 3] = [
+pub const GAUSS: [(f64, f64); POINTS] = [
     (-0.774_596_669_241_483_4, 5.0 / 18.0),
     (0.0, 8.0 / 18.0),
     (0.774_596_669_241_483_4, 5.0 / 18.0),
@@ -61,14 +64,31 @@ pub struct Bearing {
     angle: f64,
 }
 
+/// Whether the angle between two vectors is below 0.06 rad.
+#[inline]
+fn near(a: &V2, b: &V2) -> bool {
+    let (along, across) = (a.dot(b), a.x * b.y - a.y * b.x);
+    across.abs() < 0.06 * along
+}
+
+impl Bearing {
+    /// From the arc's centre to the cylinder's \[m\].
+    pub const fn toward(&self) -> V2 {
+        self.toward
+    }
+
+    /// Arc angle there, in the beam frame \[rad\]; 0 where the surface is a circle.
+    pub const fn angle(&self) -> f64 {
+        self.angle
+    }
+}
+
 /// Angle from `a` to `b` \[rad\], by the arc tangent's series: Gauss points of one cylinder lie
 /// within a few hundredths of a radian, where the first term left out is below 1e-17.
-fn small_angle(a: &V2, b: &V2) -> f64 {
-    let t = (a.x * b.y - a.y * b.x) / a.dot(b);
+#[inline]
+pub(crate) fn small_angle(a: [f64; 2], b: [f64; 2]) -> f64 {
+    let t = (a[0] * b[1] - a[1] * b[0]) / (a[0] * b[0] + a[1] * b[1]);
     let u = t * t;
-    if u > 4e-3 {
-        return atan2(a.x * b.y - a.y * b.x, a.dot(b));
-    }
     t * (1.0
         - u * (1.0 / 3.0
             - u * (0.2 - u * (1.0 / 7.0 - u * (1.0 / 9.0 - u * (1.0 / 11.0 - u / 13.0))))))
@@ -131,7 +151,7 @@ impl<'a> Surface<'a> {
     }
 
     /// Whether it is more than a circle.
-    const fn asks_for_angle(&self) -> bool {
+    pub(crate) const fn asks_for_angle(&self) -> bool {
         self.bend.is_some() || self.profile.is_some()
     }
 
@@ -155,6 +175,34 @@ impl<'a> Surface<'a> {
         })
     }
 
+    /// The same, from the bearing of a neighbour if there is one: a few products in place of an arc
+    /// tangent.
+    #[inline]
+    pub fn bearing_after(&self, before: Option<&Bearing>, g: &V2, half: f64) -> Option<Bearing> {
+        let reach = self.reach + half;
+        let w = g - self.center;
+        if w.norm_squared() >= reach * reach {
+            return None;
+        }
+        let angle = match before {
+            _ if !self.asks_for_angle() => 0.0,
+            Some(before) if near(&before.toward, &w) => self.angle_at(before, &w),
+            _ => self.arc_angle(&w),
+        };
+        Some(Bearing { toward: w, angle })
+    }
+
+    /// Arc angle in the beam frame \[rad\] in a direction near a bearing; 0 where the surface is a
+    /// circle.
+    #[inline]
+    pub fn angle_at(&self, bearing: &Bearing, toward: &V2) -> f64 {
+        if self.asks_for_angle() {
+            bearing.angle + small_angle(bearing.toward.into(), (*toward).into())
+        } else {
+            0.0
+        }
+    }
+
     /// Penetration of the point `g` that moves with `velocity`; none where it lies beyond what any
     /// deflection reaches.
     #[expect(
@@ -172,11 +220,8 @@ impl<'a> Surface<'a> {
         let inverse = 1.0 / distance;
         let normal = w * inverse;
         let tangent = V2::new(-normal.y, normal.x);
-        let mut angle = bearing.angle;
+        let angle = self.angle_at(bearing, &w);
         let (mut bulge, mut rate, mut slope, mut place) = (0.0, 0.0, [0.0; 2], None);
-        if self.asks_for_angle() {
-            angle += small_angle(&bearing.toward, &w);
-        }
         if let Some(bend) = &self.bend {
             let at = bend.shapes.place(angle);
             let (deflected, bulging) = bend.sum.at(bend.shapes, &at);

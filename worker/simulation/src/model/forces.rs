@@ -61,6 +61,27 @@ impl Machine {
         self.hooks.add_forces(at, force);
     }
 
+    /// What presses and pulls on the back head at an instant, without the rest of the loads:
+    /// contact and anchor of the back rope, in `scratch` as [`Self::forces`] leaves them.
+    pub(crate) fn back_head_loads(
+        &self,
+        at: &Instant<'_>,
+        scratch: &mut Scratch,
+        force: &mut [f64],
+    ) {
+        force.fill(0.0);
+        let modal = self.layout.beam() + 1..;
+        let (q, v) = (&at.q[modal.clone()], &at.v[modal]);
+        scratch.deflection.weigh(&self.radial, q, v);
+        let [chain, _] = &self.chains;
+        let [state, _] = &mut scratch.chains;
+        chain.pose(at.q, at.v, state);
+        chain.load_head(&self.joints(0, at), state);
+        let surface = self.surface(0, at.q, at.v, &scratch.deflection);
+        let (blocks, border) = force.split_at_mut(self.layout.beam());
+        chain.add_contact(&surface, &at.ropes.contact, state, blocks, border);
+    }
+
     /// Acceleration of gravity as a vector [m/s2].
     pub(crate) fn gravity(&self) -> V3 {
         V3::new(0.0, -self.description.gravity, 0.0)

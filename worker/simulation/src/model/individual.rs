@@ -65,6 +65,15 @@ impl<'a> Individual<'a> {
         [force.x, force.y]
     }
 
+    /// Fills the loads that the back head's stress asks for; the others remain as they were. `force`
+    /// is room for generalised forces.
+    pub fn load_back_head(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
+        let drive = &self.drive_state(t);
+        let ropes = &self.ropes;
+        let at = Instant { ropes, drive, q, v };
+        self.machine.back_head_loads(&at, &mut self.scratch, force);
+    }
+
     /// Lets laws with a past remember an accepted state.
     pub fn remember(&mut self, state: &State) {
         if !self.machine.hooks.has_axial() {

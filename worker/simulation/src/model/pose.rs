@@ -129,14 +129,13 @@ pub struct PlanePose {
 }
 
 impl PlanePose {
-    /// From the three coordinates and their rates.
+    /// From the three coordinates, their rates, and the direction of the angle.
     #[inline]
-    pub fn new(q: &[f64], v: &[f64]) -> Self {
-        let (s, c) = sin_cos(q[2]);
+    pub fn new(q: &[f64], v: &[f64], axis: V2) -> Self {
         Self {
             p: V2::new(q[0], q[1]),
             v: V2::new(v[0], v[1]),
-            axis: V2::new(c, s),
+            axis,
             angle: q[2],
             rate: v[2],
         }

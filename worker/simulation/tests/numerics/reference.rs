@@ -150,7 +150,7 @@ fn falling_chain_follows_the_reference() {
 fn drum_setup(law: &RopeLaw, pull: f64) -> Setup {
     Setup {
         chain: simulation::model::chain::Chain {
-            contact_points: &[(0.0, 1.0)],
+            contact_points: &[(0.0, 1.0), (0.0, 0.0), (0.0, 0.0)],
             ..chain(60)
         },
         gravity: V3::zeros(),

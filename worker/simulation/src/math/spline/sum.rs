@@ -26,13 +26,14 @@ impl Sum {
         self.knots.resize(points, [0.0; 4]);
         let curves = splines.knots.chunks_exact(splines.curves.max(1));
         for (sum, knots) in self.knots.iter_mut().zip(curves) {
-            *sum = [0.0; 4];
-            for ((&[value, bend], weight), rate) in knots.iter().zip(weights).zip(rates) {
-                sum[0] += weight * value;
-                sum[1] += weight * bend;
-                sum[2] += rate * value;
-                sum[3] += rate * bend;
+            let (mut at, mut moving) = ([0.0; 2], [0.0; 2]);
+            for ((knot, weight), rate) in knots.iter().zip(weights).zip(rates) {
+                for k in 0..2 {
+                    at[k] += weight * knot[k];
+                    moving[k] += rate * knot[k];
+                }
             }
+            *sum = [at[0], at[1], moving[0], moving[1]];
         }
     }
 
@@ -59,6 +60,27 @@ impl Sum {
             second: 6.0 * (a * m0 + b * m1) * (per_step * per_step),
         };
         (jet, rate)
+    }
+}
+
+impl Sum {
+    /// The sum under the weights at places, its slopes, and its values under their rates.
+    pub fn heights(&self, splines: &Splines, places: &[Place], sums: [&mut [f64]; 3]) {
+        let [values, slopes, rates] = sums;
+        let sums = values.iter_mut().zip(slopes).zip(rates);
+        for (place, ((value, slope), rate)) in places.iter().zip(sums) {
+            let [y0, m0, dy0, dm0] = self.knots[place.left];
+            let [y1, m1, dy1, dm1] = self.knots[place.right];
+            let [a, b, cubic_a, cubic_b] = place.weights();
+            *value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
+            *rate = a * dy0 + b * dy1 + cubic_a * dm0 + cubic_b * dm1;
+            let first = y1 - y0 + (1.0 - 3.0 * a * a) * m0 + (3.0 * b * b - 1.0) * m1;
+            *slope = if place.clamped {
+                0.0
+            } else {
+                first * splines.per_step
+            };
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Forces of a chain's contact with an arc, on the cylinders and on whoever carries the arc.
+use super::points::{Points, Pressed};
 use super::{Chain, ChainState};
 use crate::element::impact::Impact;
-use crate::math::spline::sum::Spread;
 use crate::model::MAX_MODES;
 use crate::model::contact::{Surface, Touch};
 use crate::model::layout::Motion;
@@ -22,41 +22,29 @@ impl Chain {
         force: &mut [f64],
         border: &mut [f64],
     ) {
-        let width = self.motion.width();
         if let Some(bend) = &surface.bend {
             state.pressure.clear(bend.shapes);
         }
-        let mut contact = Contact {
-            chain: self,
-            surface,
-            law,
-            pressure: &mut state.pressure,
-            beam: 0.0,
-            deepest: 0.0,
-            dissipated: 0.0,
-        };
-        let rows = force[self.range()].chunks_exact_mut(width);
-        let totals = state.contact.iter_mut().zip(rows);
-        match self.motion {
+        state.contact.fill(0.0);
+        let of = self.range();
+        let loads = match self.motion {
             Motion::Plane => {
-                for (pose, (total, force)) in state.plane.iter().zip(totals) {
-                    *total = contact.add(pose, force);
-                }
+                let poses = &state.plane;
+                state.points.evaluate(self, surface, law, poses.iter());
+                self.press(&state.points, poses, &mut state.contact, &mut force[of])
             }
             Motion::Space => {
-                for (pose, (total, force)) in state.poses.iter().zip(totals) {
-                    *total = contact.add(pose, force);
-                }
+                let poses = &state.poses;
+                state.points.evaluate(self, surface, law, poses.iter());
+                self.press(&state.points, poses, &mut state.contact, &mut force[of])
             }
+        };
+        let Pressed { beam, lost, .. } = loads;
+        state.deepest = state.points.deepest();
+        state.dissipated = lost;
+        if surface.bend.is_some() {
+            state.points.spread(&mut state.pressure);
         }
-        let Contact {
-            beam,
-            deepest,
-            dissipated,
-            ..
-        } = contact;
-        state.deepest = deepest;
-        state.dissipated = dissipated;
         if let Some((on_beam, modal)) = border.split_first_mut() {
             *on_beam -= beam;
             if let Some(bend) = &surface.bend {
@@ -68,6 +56,32 @@ impl Chain {
                 }
             }
         }
+    }
+
+    /// Adds the forces of all points to the cylinders' rows; returns what they do to whoever carries
+    /// the arc.
+    fn press<const A: usize>(
+        &self,
+        points: &Points,
+        poses: &[impl InPlane<A>],
+        contact: &mut [f64],
+        force: &mut [f64],
+    ) -> Pressed {
+        let width = self.motion.width();
+        let mut all = Pressed::default();
+        for (k, &j) in points.cylinders().iter().enumerate() {
+            let sum = points.pressed(k);
+            all.lost += sum.lost;
+            all.beam += sum.beam;
+            contact[j] = sum.total;
+            let row = &mut force[j * width..(j + 1) * width];
+            row[0] += sum.push.x;
+            row[1] += sum.push.y;
+            for (k, arm) in poses[j].axis_by().iter().enumerate() {
+                row[width - A + k] += sum.bend.dot(arm);
+            }
+        }
+        all
     }
 
     /// Calls `visit(share, touch)` for every Gauss point inside the arc.
@@ -105,60 +119,5 @@ impl Chain {
                 visit(share, &touch);
             }
         }
-    }
-}
-
-/// One evaluation of a chain's contact.
-struct Contact<'a> {
-    chain: &'a Chain,
-    surface: &'a Surface<'a>,
-    law: &'a Impact,
-    /// Forces on a deflected arc, spread over the knots of its shapes.
-    pressure: &'a mut Spread,
-    /// Moment that the beam takes up \[N m\].
-    beam: f64,
-    deepest: f64,
-    dissipated: f64,
-}
-
-impl Contact<'_> {
-    /// Adds the forces on one cylinder to its rows and on what carries the arc; returns how hard it is pressed
-    /// \[N\].
-    #[inline]
-    fn add<const A: usize>(&mut self, pose: &impl InPlane<A>, force: &mut [f64]) -> f64 {
-        let half = 0.5 * self.chain.pitch;
-        let center = pose.center();
-        let Some(bearing) = self.surface.bearing(&center, half) else {
-            return 0.0;
-        };
-        let angles = force.len() - A;
-        let (velocity, axis, sweep) = (pose.velocity(), pose.axis(), pose.sweep());
-        let mut total = 0.0;
-        for &(place, share) in self.chain.contact_points {
-            let along = place * half;
-            let (g, velocity) = (center + axis * along, velocity + sweep * along);
-            let Some(touch) = self.surface.touch(&bearing, &g, &velocity) else {
-                continue;
-            };
-            self.deepest = self.deepest.max(touch.depth);
-            let (force_here, dissipated) = self.law.push(touch.depth, touch.rate);
-            self.dissipated += share * dissipated;
-            let f = share * force_here;
-            if f == 0.0 {
-                continue;
-            }
-            total += f;
-            let push = touch.by_point * -f;
-            force[0] += push.x;
-            force[1] += push.y;
-            for (k, arm) in pose.axis_by().iter().enumerate() {
-                force[angles + k] += along * push.dot(arm);
-            }
-            self.beam += f * touch.by_beam;
-            if let Some(place) = &touch.place {
-                self.pressure.add(place, f);
-            }
-        }
-        total
     }
 }

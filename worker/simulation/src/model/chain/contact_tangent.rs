@@ -3,43 +3,43 @@
 //! For the force `Q = -f grad d` of one Gauss point, `-dQ = grad d (df)^T + f H dq` with
 //! `df = (f_d + gamma c) grad d + c H q'`: `f_d` and `c` are the law's derivatives by penetration
 //! and rate, `H` the second derivatives of the penetration.
+//!
+//! Seen from a point, the coordinates are those of its cylinder that move it (`x`, `y` and the
+//! angles that turn the axis), then those of the border. With the derivatives `G` of the penetration
+//! and `F` of the force by all of them, a point adds `G F^T` and the force times what bends.
 use super::{Chain, ChainState};
 use crate::element::impact::Impact;
 use crate::linear::Bordered;
 use crate::model::MAX_MODES;
-use crate::model::contact::{Curvature, Surface, Touch};
+use crate::model::contact::{Bearing, Surface};
 use crate::model::pose::InPlane;
 use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
 
-/// Everything about one Gauss point in contact.
-struct Point {
-    touch: Touch,
-    curvature: Curvature,
-    /// Distance from the cylinder's centre along its axis \[m\].
-    along: f64,
-    force: f64,
-    /// Derivative of the force by the penetration's rate.
-    by_rate: f64,
-    /// Derivative of the force by the point and by the border's coordinates.
-    by_place: V2,
-    border: [BorderColumn; MAX_MODES + 1],
-    /// Index of the cylinder's first angle that turns its axis.
-    angles: usize,
+/// Coordinates that move a point of a cylinder: two, and one or two angles.
+const OWN: usize = 4;
+/// Coordinates of the border: the beam angle, then the modes.
+const BORDER: usize = MAX_MODES + 1;
+
+/// One chain's contact while its tangent is added up.
+struct Tangent<'a> {
+    chain: &'a Chain,
+    surface: &'a Surface<'a>,
+    law: &'a Impact,
+    gamma: f64,
+    /// Coordinates of the border that take part.
+    border: usize,
+    corner: [[f64; BORDER]; BORDER],
 }
 
-/// One coordinate of the border: the beam angle, then the modes.
-#[derive(Clone, Copy, Default)]
-struct BorderColumn {
-    /// Derivative of the penetration.
-    gradient: f64,
-    /// Derivative of the force.
-    force_by: f64,
-    /// Mixed second derivative of the penetration with the point.
-    mixed: V2,
-    /// Slope of the mode's shape over the arc; the beam angle has none.
-    slope: f64,
+/// What the points of one cylinder add.
+struct Sums {
+    own: [[f64; OWN]; OWN],
+    /// Rows of the cylinder, columns of the border.
+    right: [[f64; BORDER]; OWN],
+    /// Rows of the border, columns of the cylinder, transposed.
+    bottom: [[f64; BORDER]; OWN],
 }
 
 #[expect(
@@ -56,175 +56,168 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) {
+        let mut tangent = Tangent {
+            chain: self,
+            surface,
+            law,
+            gamma,
+            border: matrix.border().min(surface.modes() + 1),
+            corner: [[0.0; BORDER]; BORDER],
+        };
         for (j, pose) in state.poses.iter().enumerate() {
-            self.add_touching(surface, law, (self.first + j, pose), gamma, matrix);
+            tangent.add_cylinder(self.first + j, pose, matrix);
         }
         for (j, pose) in state.plane.iter().enumerate() {
-            self.add_touching(surface, law, (self.first + j, pose), gamma, matrix);
+            tangent.add_cylinder(self.first + j, pose, matrix);
         }
-    }
-
-    fn add_touching<const A: usize>(
-        &self,
-        surface: &Surface<'_>,
-        law: &Impact,
-        (block, pose): (usize, &impl InPlane<A>),
-        gamma: f64,
-        matrix: &mut Bordered,
-    ) {
-        let half = 0.5 * self.pitch;
-        let modes = surface.modes();
-        let mut shape = [0.0; MAX_MODES];
-        let Some(bearing) = surface.bearing(&pose.center(), half) else {
-            return;
-        };
-        for &(place, share) in self.contact_points {
-            let along = place * half;
-            let g = pose.center() + pose.axis() * along;
-            let velocity = pose.velocity() + pose.sweep() * along;
-            let Some(touch) = surface.touch(&bearing, &g, &velocity) else {
-                continue;
-            };
-            let at = law.force(touch.depth, touch.rate);
-            if at.force == 0.0 {
-                continue;
-            }
-            surface.shapes_at(&touch, &mut shape[..modes]);
-            let by_rate = share * at.by_rate;
-            let stiff = share * at.by_penetration + gamma * by_rate;
-            let mut point = Point {
-                curvature: surface.curvature(&touch),
-                touch,
-                along,
-                force: share * at.force,
-                by_rate,
-                by_place: V2::zeros(),
-                border: [BorderColumn::default(); MAX_MODES + 1],
-                angles: self.motion.width() - A,
-            };
-            point.differentiate(surface, &velocity, stiff, &shape[..modes]);
-            point.add_cylinder(matrix, block, pose);
-            if matrix.border() > 0 {
-                point.add_border(matrix, block, pose, modes);
+        for row in 0..tangent.border {
+            for column in 0..tangent.border {
+                matrix.add_corner(row, column, tangent.corner[row][column]);
             }
         }
     }
 }
 
-impl Point {
-    /// Derivatives of the force by the point, the beam angle and the modes.
-    fn differentiate(&mut self, surface: &Surface<'_>, velocity: &V2, stiff: f64, shape: &[f64]) {
+impl Tangent<'_> {
+    fn add_cylinder<const A: usize>(
+        &mut self,
+        block: usize,
+        pose: &impl InPlane<A>,
+        matrix: &mut Bordered,
+    ) {
+        let half = 0.5 * self.chain.pitch;
+        let Some(bearing) = self.surface.bearing(&pose.center(), half) else {
+            return;
+        };
+        let mut sums = Sums {
+            own: [[0.0; OWN]; OWN],
+            right: [[0.0; BORDER]; OWN],
+            bottom: [[0.0; BORDER]; OWN],
+        };
+        let mut pressed = false;
+        for &(place, share) in self.chain.contact_points {
+            pressed |= self.add_point(&bearing, pose, (place * half, share), &mut sums);
+        }
+        if !pressed {
+            return;
+        }
+        let rows: [usize; OWN] = std::array::from_fn(|k| {
+            if k < 2 {
+                k
+            } else {
+                self.chain.motion.width() - A + k - 2
+            }
+        });
+        for r in 0..2 + A {
+            for c in 0..2 + A {
+                matrix.add_diagonal(block, rows[r], rows[c], sums.own[r][c]);
+            }
+            let of = ..self.border;
+            matrix.add_border(block, rows[r], &sums.right[r][of], &sums.bottom[r][of]);
+        }
+    }
+
+    /// Adds what one point adds, if it is pressed.
+    fn add_point<const A: usize>(
+        &mut self,
+        bearing: &Bearing,
+        pose: &impl InPlane<A>,
+        (along, share): (f64, f64),
+        sums: &mut Sums,
+    ) -> bool {
+        let surface = self.surface;
+        let g = pose.center() + pose.axis() * along;
+        let velocity = pose.velocity() + pose.sweep() * along;
+        let Some(touch) = surface.touch(bearing, &g, &velocity) else {
+            return false;
+        };
+        let at = self.law.force(touch.depth, touch.rate);
+        let force = share * at.force;
+        if force == 0.0 {
+            return false;
+        }
+        let by_rate = share * at.by_rate;
+        let stiff = share * at.by_penetration + self.gamma * by_rate;
+        let curvature = surface.curvature(&touch);
+        let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let beam_rate = surface.beam[1];
-        let (angle_by_point, angle_by_beam) = self.curvature.angle_by;
-        let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
+        let angle_rate = angle_by_point.dot(&velocity) + angle_by_beam * beam_rate;
+
+        // the border: derivatives of penetration and force, and slopes of the shapes over the arc
+        let mut gradient = [0.0; BORDER];
+        let mut force_by = [0.0; BORDER];
+        let mut slope = [0.0; BORDER];
         let mut drift = 0.0;
-        if let (Some(bend), Some(at)) = (&surface.bend, &self.touch.place) {
-            for (k, &shape) in shape.iter().enumerate() {
-                let slope = bend.shapes.jet(at, k).first;
-                drift += bend.modal_rate[k] * slope;
-                self.border[1 + k] = BorderColumn {
-                    gradient: shape,
-                    force_by: shape * stiff + slope * angle_rate * self.by_rate,
-                    mixed: angle_by_point * slope,
-                    slope,
-                };
+        if let (Some(bend), Some(place)) = (&surface.bend, &touch.place) {
+            let modes = 1..self.border;
+            bend.shapes.slopes(
+                place,
+                &mut gradient[modes.clone()],
+                &mut slope[modes.clone()],
+            );
+            for (k, rate) in modes.clone().zip(bend.modal_rate) {
+                drift += rate * slope[k];
+            }
+            for k in modes {
+                force_by[k] = gradient[k] * stiff + slope[k] * (angle_rate * by_rate);
             }
         }
         // rates of the gradient along the motion: H q'
-        let point_rate = self.curvature.point * velocity
-            + self.curvature.mixed * beam_rate
-            + angle_by_point * drift;
-        let beam_gradient_rate = self.curvature.mixed.dot(velocity)
-            + self.curvature.beam * beam_rate
-            + angle_by_beam * drift;
-        self.by_place = self.touch.by_point * stiff + point_rate * self.by_rate;
-        self.border[0] = BorderColumn {
-            gradient: self.touch.by_beam,
-            force_by: self.touch.by_beam * stiff + beam_gradient_rate * self.by_rate,
-            mixed: self.curvature.mixed,
-            slope: 0.0,
-        };
-    }
+        let point_rate =
+            curvature.point * velocity + curvature.mixed * beam_rate + angle_by_point * drift;
+        let beam_gradient_rate =
+            curvature.mixed.dot(&velocity) + curvature.beam * beam_rate + angle_by_beam * drift;
+        gradient[0] = touch.by_beam;
+        force_by[0] = touch.by_beam * stiff + beam_gradient_rate * by_rate;
 
-    /// How the point's velocity turns with the cylinder's angles, times the damping.
-    fn turning<const A: usize>(&self, pose: &impl InPlane<A>) -> [f64; A] {
-        pose.sweep_by()
-            .map(|sweep| self.by_rate * self.along * self.touch.by_point.dot(&sweep))
-    }
-
-    fn arms<const A: usize>(&self, pose: &impl InPlane<A>) -> [V2; A] {
-        pose.axis_by().map(|axis| axis * self.along)
-    }
-
-    fn add_cylinder<const A: usize>(
-        &self,
-        matrix: &mut Bordered,
-        block: usize,
-        pose: &impl InPlane<A>,
-    ) {
-        let angles = self.angles;
-        let mut add = |row, column, value| matrix.add_diagonal(block, row, column, value);
-        let gradient = self.touch.by_point;
-        let core = gradient * self.by_place.transpose() + self.curvature.point * self.force;
-        let (arms, turning) = (self.arms(pose), self.turning(pose));
-        for r in 0..2 {
-            for c in 0..2 {
-                add(r, c, core[(r, c)]);
+        // the cylinder: how its coordinates move the point, derivatives of penetration and force
+        let (arms, sweeps) = (pose.axis_by(), pose.sweep_by());
+        let moved: [V2; OWN] = std::array::from_fn(|k| match k {
+            0 => V2::x(),
+            1 => V2::y(),
+            k => arms.get(k - 2).map_or_else(V2::zeros, |arm| arm * along),
+        });
+        let by_place = touch.by_point * stiff + point_rate * by_rate;
+        let own: [f64; OWN] = moved.map(|moved| touch.by_point.dot(&moved));
+        let own_force: [f64; OWN] = std::array::from_fn(|k| {
+            let turning = k.checked_sub(2).and_then(|a| sweeps.get(a));
+            let turning = turning.map_or(0.0, |sweep| along * touch.by_point.dot(sweep));
+            by_place.dot(&moved[k]) + by_rate * turning
+        });
+        let bends = curvature.point * force;
+        for r in 0..2 + A {
+            let bent = bends * moved[r];
+            for c in 0..2 + A {
+                sums.own[r][c] += own[r] * own_force[c] + bent.dot(&moved[c]);
             }
         }
-        for (a, arm) in arms.iter().enumerate() {
-            let column = core * arm + gradient * turning[a];
-            let row = core.tr_mul(arm);
-            for k in 0..2 {
-                add(k, angles + a, column[k]);
-                add(angles + a, k, row[k]);
-            }
-            for (b, other) in arms.iter().enumerate() {
-                let bend = pose.axis_by_twice(a, b) * self.along;
-                let value = arm.dot(&(core * other))
-                    + arm.dot(&gradient) * turning[b]
-                    + self.force * gradient.dot(&bend);
-                add(angles + a, angles + b, value);
+        for a in 0..A {
+            for b in 0..A {
+                let bend = pose.axis_by_twice(a, b) * along;
+                sums.own[2 + a][2 + b] += force * touch.by_point.dot(&bend);
             }
         }
-    }
-
-    fn add_border<const A: usize>(
-        &self,
-        matrix: &mut Bordered,
-        block: usize,
-        pose: &impl InPlane<A>,
-        modes: usize,
-    ) {
-        let angles = self.angles;
-        let (arms, turning) = (self.arms(pose), self.turning(pose));
-        let (_, angle_by_beam) = self.curvature.angle_by;
-        let border = &self.border[..=modes];
-        for (k, of) in border.iter().enumerate() {
-            let column = self.touch.by_point * of.force_by + of.mixed * self.force;
-            let row = self.by_place * of.gradient + of.mixed * self.force;
-            for r in 0..2 {
-                matrix.add_right(block, r, k, column[r]);
-                matrix.add_bottom(block, k, r, row[r]);
-            }
-            for (a, arm) in arms.iter().enumerate() {
-                matrix.add_right(block, angles + a, k, column.dot(arm));
-                matrix.add_bottom(
-                    block,
-                    k,
-                    angles + a,
-                    row.dot(arm) + of.gradient * turning[a],
-                );
-            }
-            for (m, other) in border.iter().enumerate() {
-                let bend = match (k, m) {
-                    (0, 0) => self.curvature.beam,
-                    (0, _) => angle_by_beam * other.slope,
-                    (_, 0) => angle_by_beam * of.slope,
-                    _ => 0.0,
-                };
-                matrix.add_corner(k, m, of.gradient * other.force_by + bend * self.force);
+        for r in 0..2 + A {
+            let turned = force * angle_by_point.dot(&moved[r]);
+            let (right, bottom) = (&mut sums.right[r], &mut sums.bottom[r]);
+            right[0] += own[r] * force_by[0] + force * curvature.mixed.dot(&moved[r]);
+            bottom[0] += own_force[r] * gradient[0] + force * curvature.mixed.dot(&moved[r]);
+            for k in 1..self.border {
+                right[k] += own[r] * force_by[k] + turned * slope[k];
+                bottom[k] += own_force[r] * gradient[k] + turned * slope[k];
             }
         }
+        for (k, row) in self.corner[..self.border].iter_mut().enumerate() {
+            for (entry, force_by) in row[..self.border].iter_mut().zip(&force_by) {
+                *entry += gradient[k] * force_by;
+            }
+        }
+        self.corner[0][0] += force * curvature.beam;
+        for k in 1..self.border {
+            let bend = force * angle_by_beam * slope[k];
+            self.corner[0][k] += bend;
+            self.corner[k][0] += bend;
+        }
+        true
     }
 }

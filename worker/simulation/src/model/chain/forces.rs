@@ -1,10 +1,12 @@
 //! Forces of weight and joints on the cylinders of a chain.
 use super::{Chain, ChainState, Joints};
 use crate::linear::BLOCK;
+use crate::math::elementary::sin_cos_all;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
+type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
 
 #[expect(
@@ -20,8 +22,17 @@ impl Chain {
         for (pose, (q, v)) in state.poses.iter_mut().zip(cylinders()) {
             *pose = Pose::new(q, v);
         }
-        for (pose, (q, v)) in state.plane.iter_mut().zip(cylinders()) {
-            *pose = PlanePose::new(q, v);
+        if state.plane.is_empty() {
+            return;
+        }
+        let [angles, sines, cosines] = &mut state.turns;
+        for (angle, (q, _)) in angles.iter_mut().zip(cylinders()) {
+            *angle = q[2];
+        }
+        sin_cos_all(angles, sines, cosines);
+        let axes = cosines.iter().zip(&*sines).map(|(&c, &s)| V2::new(c, s));
+        for ((pose, (q, v)), axis) in state.plane.iter_mut().zip(cylinders()).zip(axes) {
+            *pose = PlanePose::new(q, v, axis);
         }
     }
 
@@ -48,6 +59,13 @@ impl Chain {
             force[at + 4] -= c * r3 * spin + across * c * s * r3 * r3;
             force[at + 5] +=
                 c * r2 * spin - along * s * c * r2 * r3 + 2.0 * across * c * s * r2 * r3;
+        }
+    }
+
+    /// The load of the joint at the head alone, into `state`.
+    pub(crate) fn load_head(&self, joints: &Joints<'_>, state: &mut ChainState) {
+        if let Some(([i, j], law)) = self.link(self.count, joints, state) {
+            state.joints[self.count] = law.load(&i, &j);
         }
     }
 

@@ -11,16 +11,18 @@ mod energy;
 mod forces;
 mod inertia;
 mod plane;
+mod points;
 mod tangent;
 
 use crate::effect::{AxialLaws, Memory};
 use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::math::spline::sum::Spread;
-use crate::model::contact::GAUSS;
+use crate::model::contact::{GAUSS, POINTS};
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
+pub use points::Points;
 pub(crate) use tangent::{Column, EndTangent};
 
 /// The blocks that a chain takes among the unknowns, and what its cylinders are.
@@ -39,8 +41,8 @@ pub struct Chain {
     /// Moments of inertia of a cylinder along and across its axis [kg m2].
     pub inertia: [f64; 2],
     /// Where along a cylinder its contact is evaluated, in half lengths, and the shares of its
-    /// coefficients.
-    pub contact_points: &'static [(f64, f64)],
+    /// coefficients; what has no share does not count.
+    pub contact_points: &'static [(f64, f64); POINTS],
 }
 
 /// An end of a chain that is held: the marker on the body that holds it, and the joint's law.
@@ -72,10 +74,14 @@ pub struct ChainState {
     pub poses: Vec<Pose>,
     /// Pose of each cylinder that moves in the plane; empty where they move in space.
     pub plane: Vec<PlanePose>,
+    /// Angles of those \[rad\], their sines and cosines.
+    turns: [Vec<f64>; 3],
     /// Load of each joint, one more than cylinders; zero where an end is free.
     pub joints: Vec<LinkLoad>,
     /// Contact force of each cylinder \[N\].
     pub contact: Vec<f64>,
+    /// Points of contact of the last evaluation.
+    pub points: Points,
     /// Contact forces on a deflected arc, spread over the knots of its shapes.
     pub pressure: Spread,
     /// Deepest penetration \[m\].
@@ -103,9 +109,11 @@ impl ChainState {
         };
         Self {
             poses: vec![Pose::new(&[0.0; 6], &[0.0; 6]); poses],
-            plane: vec![PlanePose::new(&[0.0; 3], &[0.0; 3]); plane],
+            plane: vec![PlanePose::new(&[0.0; 3], &[0.0; 3], Vector2::x()); plane],
+            turns: std::array::from_fn(|_| vec![0.0; plane]),
             joints: vec![none; chain.count + 1],
             contact: vec![0.0; chain.count],
+            points: Points::new(chain),
             pressure: Spread::default(),
             deepest: 0.0,
             dissipated: 0.0,

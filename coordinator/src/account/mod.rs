@@ -2,6 +2,10 @@
 //!
 //! It adds up what the core wrote down (one row per worker and coordinator process) and puts the
 //! causes into words. It decides nothing, and knows neither workers nor sockets.
+mod job;
+
+pub use job::JobUse;
+
 use crate::journal::{self, Damage, JournalError};
 use protocol::{
     event::{Event, Spent, WorkerAccount},
@@ -12,6 +16,21 @@ use std::{collections::BTreeMap, path::Path};
 /// Shares below this are not worth a word \[1\].
 const NOTABLE: f64 = 0.02;
 
+/// What the workers of one machine did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HostUse {
+    /// Worker processes, restarted ones counted again.
+    pub workers: u64,
+    /// Slots of the largest of them.
+    pub slots: u32,
+    /// Results of theirs that were accepted.
+    pub done: u64,
+    /// Attempts that failed there.
+    pub failed: u64,
+    /// Their slot time by use.
+    pub spent: Spent,
+}
+
 /// What a journal says of the use of slot time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct RunAccount {
@@ -19,6 +38,12 @@ pub struct RunAccount {
     pub processes: u32,
     /// Results recorded.
     pub results: u64,
+    /// Time that those processes worked, as far as it was accounted \[s\].
+    pub wall_s: f64,
+    /// Results by kind of job.
+    pub jobs: BTreeMap<&'static str, JobUse>,
+    /// Jobs that were given up, with the reason.
+    pub given_up: Vec<(u64, String)>,
     /// Attempts that failed, on any worker.
     pub failed: u64,
     /// Every worker, added up over the coordinator's processes.
@@ -34,16 +59,23 @@ pub struct RunAccount {
 /// Reads the account of a journal.
 ///
 /// # Errors
-/// [`JournalError::Io`] if it cannot be read.
+/// [`JournalError::Io`] if it cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
     let mut account = RunAccount::default();
     let mut rows: BTreeMap<(WorkerId, u32), WorkerAccount> = BTreeMap::new();
     let mut left: BTreeMap<String, u64> = BTreeMap::new();
+    let mut jobs = job::Jobs::default();
+    let mut lasted: BTreeMap<u32, u64> = BTreeMap::new();
     let report = journal::fold(path, |_, event| match event {
         Event::Opened { .. } => account.processes += 1,
-        Event::Finished(_) => account.results += 1,
+        Event::Finished(finished) => {
+            account.results += 1;
+            jobs.add(&finished);
+        }
         Event::Left { reason, .. } => *left.entry(reason).or_default() += 1,
         Event::Accounted(said) => {
+            let longest = lasted.entry(said.epoch).or_default();
+            *longest = said.at_ms.max(*longest);
             for row in said.workers {
                 // the last word about a worker in a process counts
                 rows.insert((row.worker, said.epoch), row);
@@ -52,6 +84,8 @@ pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
         Event::Begun { .. } | Event::Joined { .. } | Event::Closed | Event::Proved { .. } => {}
     })?;
     account.damage = report.damage;
+    account.wall_s = lasted.values().sum::<u64>() as f64 / 1e3;
+    (account.jobs, account.given_up) = jobs.counted();
     for row in rows.into_values() {
         account.spent.add(&row.spent);
         account.failed += row.failed;
@@ -72,6 +106,20 @@ pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
 }
 
 impl RunAccount {
+    /// By machine.
+    pub fn hosts(&self) -> BTreeMap<&str, HostUse> {
+        let mut hosts: BTreeMap<&str, HostUse> = BTreeMap::new();
+        for row in &self.workers {
+            let host = hosts.entry(&row.host).or_default();
+            host.workers += 1;
+            host.slots = host.slots.max(row.slots);
+            host.done += row.done;
+            host.failed += row.failed;
+            host.spent.add(&row.spent);
+        }
+        hosts
+    }
+
     /// Why slots were not useful, in words, the greatest share first.
     pub fn reasons(&self) -> Vec<String> {
         reasons(&self.spent)
@@ -128,9 +176,24 @@ mod tests {
     use super::*;
     use crate::journal::Journal;
     use protocol::{
-        event::{Account, RunHeader},
-        id::{ContentHash, RunId},
+        event::{Account, Finished, RunHeader},
+        id::{AttemptId, ContentHash, JobId, RunId},
+        job::{Failure, Outcome},
+        message::Attempt,
     };
+
+    fn finished(job: u64, seconds: u64, outcome: Outcome) -> Event {
+        Event::Finished(Box::new(Finished {
+            attempt: Attempt {
+                job: JobId(job),
+                attempt: AttemptId(1),
+            },
+            work: ContentHash::of(b"work"),
+            worker: None,
+            wall_us: seconds * 1_000_000,
+            outcome,
+        }))
+    }
 
     fn row(worker: u64, useful_us: u64, barrier_us: u64) -> WorkerAccount {
         WorkerAccount {
@@ -172,6 +235,14 @@ mod tests {
             for event in [early, late] {
                 journal.append(event).unwrap();
             }
+            let place = u64::from(epoch);
+            for (job, seconds, outcome) in [
+                (place, 2 * place - 1, Outcome::Nothing(vec![1])),
+                (place + 2, 2 * place, Outcome::Nothing(vec![1])),
+                (9, 1, Outcome::Failed(Failure::Lost { workers: 4 })),
+            ] {
+                journal.append(finished(job, seconds, outcome)).unwrap();
+            }
         }
         let account = read(&folder.path().join(journal::FILE)).unwrap();
         assert_eq!((account.processes, account.workers.len()), (2, 2));
@@ -179,6 +250,14 @@ mod tests {
         assert_eq!(account.workers[0].done, 6);
         assert_eq!(account.spent.connected_us, 200);
         assert_eq!(account.failed, 4);
+        assert_eq!((account.results, account.wall_s), (6, 0.002));
+        let hosts = account.hosts();
+        assert_eq!((hosts["host"].workers, hosts["host"].done), (2, 12));
+        let nothing = account.jobs["nothing"];
+        assert_eq!((nothing.results, nothing.machine_failed), (4, 0));
+        assert_eq!((nothing.median_s, nothing.longest_s), (2.0, 4.0));
+        let given_up = (9, "4 workers were lost over it".to_owned());
+        assert_eq!(account.given_up, [given_up.clone(), given_up]);
         let reasons = account.reasons();
         assert_eq!(reasons.len(), 1);
         assert!(reasons[0].starts_with("20 % barrier: "), "{reasons:?}");

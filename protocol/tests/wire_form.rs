@@ -1,0 +1,111 @@
+//! The wire version against the form of everything that travels: neither changes without the other.
+//!
+//! bincode does not describe itself: a field more, or two in another order, and the other end reads
+//! nonsense or, worse, something plausible. `wire_form.txt` holds the form of every message that
+//! belongs to the present version, as read from the types.
+use protocol::{
+    announce::{Place, Role, Sign},
+    case::{
+        Case, GeneName, Integrator, Offset, RopeEnds, Smoothing, StressRecovery, TurnSense,
+        WeightAxes,
+    },
+    event::Event,
+    id::{AttemptId, ContentHash, JobId, RunId},
+    job::{Failure, Job, ModeFamily, Outcome, PhysicsFailure, Reached, Verdict},
+    message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
+    unit::Unit,
+    wire::{self, Kind},
+};
+use serde_reflection::{Samples, Tracer, TracerConfig};
+use std::{fs, path::Path};
+
+/// One line for each type that is part of a message, of a case or of the journal.
+fn form() -> String {
+    let mut tracer = Tracer::new(TracerConfig::default());
+    let samples = Samples::new();
+    /// Each enum is to be asked for by itself: of others the first variant is enough.
+    macro_rules! trace {
+        ($($type:ty)*) => {
+            $(tracer.trace_type::<$type>(&samples).expect("a form");)*
+        };
+    }
+    trace!(ToWorker FromWorker ToSlot FromSlot Event Case);
+    trace!(Job Outcome Failure Verdict PhysicsFailure Reached ModeFamily);
+    trace!(Place Role Sign Unit GeneName Integrator Offset RopeEnds Smoothing StressRecovery);
+    trace!(TurnSense WeightAxes);
+    let registry = tracer.registry().expect("every variant was seen");
+    let mut text = format!("wire version {}\n", wire::VERSION);
+    for (name, form) in registry {
+        let line = format!("{name}: {form:?}\n");
+        text.push_str(&line);
+    }
+    text
+}
+
+#[test]
+fn nothing_that_travels_changes_without_the_wire_version() {
+    let (is, was) = (form(), include_str!("wire_form.txt"));
+    if is == was {
+        return;
+    }
+    let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join("wire_form.txt");
+    fs::write(&kept, &is).unwrap();
+    let changed: Vec<&str> = is
+        .lines()
+        .filter(|line| !was.lines().any(|before| before == *line))
+        .collect();
+    let same_version = is.lines().next() == was.lines().next();
+    assert!(
+        !same_version,
+        "the form of what travels has changed: raise wire::VERSION, then take over {}\n{}",
+        kept.display(),
+        changed.join("\n")
+    );
+    panic!(
+        "a new version: take over {} as tests/wire_form.txt",
+        kept.display()
+    );
+}
+
+/// The header and the encoding of numbers, byte by byte.
+#[test]
+fn a_frame_is_laid_out_as_it_was() {
+    let attempt = Attempt {
+        job: JobId(0x0102),
+        attempt: AttemptId(0x0003_0004),
+    };
+    let beat = Beat {
+        number: 5,
+        case: None,
+        proof: Some(ContentHash([6; 32])),
+        running: vec![attempt],
+        waiting: Vec::new(),
+        finished: Vec::new(),
+    };
+    let message = FromWorker::Beat(beat);
+    let frame = wire::seal(Kind::FromWorker, RunId(0x1122_3344_5566_7788), &message).unwrap();
+    let body: String = [
+        "01000000 0500000000000000 00 01",
+        &"06".repeat(32),
+        "0100000000000000 0201000000000000 04000300",
+        "0000000000000000 0000000000000000",
+    ]
+    .concat();
+    let header = format!("4848 {:02x} 02 8877665544332211 52000000", wire::VERSION);
+    let expected = bytes(&header);
+    assert_eq!(frame[..expected.len()], expected);
+    assert_eq!(frame[16..20], crc32fast::hash(&frame[20..]).to_le_bytes());
+    assert_eq!(frame[20..], bytes(&body));
+}
+
+/// Bytes from hexadecimal digits with spaces.
+fn bytes(text: &str) -> Vec<u8> {
+    let digits: Vec<u8> = text
+        .chars()
+        .filter_map(|digit| u8::try_from(digit.to_digit(16)?).ok())
+        .collect();
+    digits
+        .chunks(2)
+        .map(|pair| pair[0] << 4 | pair[1])
+        .collect()
+}

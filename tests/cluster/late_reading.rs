@@ -1,0 +1,107 @@
+//! A coordinator that reads late: whoever has spoken is not silent, though nobody listened yet.
+use coordinator::runtime::Dispatch;
+use link::{CoordinatorEnd, Heard};
+use protocol::{
+    announce::Announcement,
+    id::{ContentHash, RunId, WorkerId},
+    key::Lane,
+    message::{Beat, FromWorker},
+    wire::{self, Kind},
+};
+use std::{
+    collections::VecDeque,
+    future::pending,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, Ordering},
+    },
+    thread,
+    time::{Duration, Instant},
+};
+use tests::{empty_case, options};
+
+/// How long one word takes to be read on this busy machine.
+const READING: Duration = Duration::from_millis(2);
+/// Words of the talker in front of the other's: together longer than anyone may be silent.
+const WORDS: u64 = 2400;
+
+/// An end with a pile of words that have arrived.
+struct Pile {
+    heard: VecDeque<Heard>,
+    read: Arc<AtomicBool>,
+}
+
+impl CoordinatorEnd for Pile {
+    fn send(&mut self, _to: WorkerId, _lane: Lane, _frame: Vec<u8>) {}
+
+    async fn receive(&mut self) -> Option<Heard> {
+        let Some(heard) = self.heard.pop_front() else {
+            self.read.store(true, Ordering::Relaxed);
+            return pending().await;
+        };
+        thread::sleep(READING);
+        Some(heard)
+    }
+
+    async fn close(self) {}
+}
+
+fn announcement() -> FromWorker {
+    FromWorker::Announce(Box::new(Announcement {
+        protocol: wire::VERSION,
+        build: format!("{} test", env!("CARGO_PKG_VERSION")),
+        model_digest: "m".to_owned(),
+        host: "here".to_owned(),
+        pid: 1,
+        slots: 1,
+        cores: 1,
+        job_kinds: Vec::new(),
+        effects: Vec::new(),
+    }))
+}
+
+fn beat(number: u64) -> FromWorker {
+    FromWorker::Beat(Beat {
+        number,
+        case: Some(ContentHash::of(&wire::encode(&empty_case()).unwrap())),
+        proof: Some(ContentHash::of(b"proof")),
+        ..Beat::default()
+    })
+}
+
+/// Found on a machine with thirty times more to run than cores: words lay unread for longer than a
+/// worker may be silent, and those behind them were taken for silence.
+#[tokio::test(flavor = "multi_thread")]
+async fn silence_is_judged_only_after_what_has_arrived_was_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let (talker, other) = (WorkerId(1), WorkerId(2));
+    let read = Arc::new(AtomicBool::new(false));
+    let made = Dispatch::over(&options(folder.path(), None, 0), |run: RunId, _| {
+        let word = |from, message: FromWorker| {
+            let frame = wire::seal(Kind::FromWorker, run, &message).unwrap();
+            Heard::Frame(from, frame)
+        };
+        let mut heard: VecDeque<Heard> = [talker, other]
+            .into_iter()
+            .flat_map(|from| [word(from, announcement()), word(from, beat(0))])
+            .collect();
+        heard.extend((1..WORDS).map(|number| word(talker, beat(number))));
+        heard.push_back(word(other, beat(1)));
+        Pile {
+            heard,
+            read: Arc::clone(&read),
+        }
+    });
+    let dispatch = made.unwrap();
+    let begun = Instant::now();
+    while !read.load(Ordering::Relaxed) {
+        tokio::time::sleep(Duration::from_millis(20)).await;
+    }
+    let took = begun.elapsed();
+    assert!(took > Duration::from_millis(4500), "read in {took:?}");
+    // the state is shown after each look at the clocks
+    tokio::time::sleep(Duration::from_millis(700)).await;
+    let state = dispatch.snapshot();
+    assert_eq!((state.lost, state.workers.len()), (0, 2), "{state:?}");
+    dispatch.close().await.unwrap();
+}

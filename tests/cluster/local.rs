@@ -1,0 +1,92 @@
+//! Local workers that end: started again while the run makes progress, given up with one clear
+//! message when it cannot.
+use std::{
+    fs,
+    io::{BufRead, BufReader, Read},
+    os::unix::fs::PermissionsExt,
+    path::Path,
+    process::{Command, Stdio},
+    time::Duration,
+};
+use tests::process::{Process, worker_program};
+
+const LIMIT: Duration = Duration::from_mins(1);
+
+/// What a run with local workers alone came to.
+struct Ended {
+    status: Option<i32>,
+    lines: Vec<String>,
+    errors: String,
+}
+
+/// Runs jobs of 5 ms on local workers, with something in their environment.
+fn run(folder: &Path, jobs: u64, workers: usize, environment: (&str, &str)) -> Ended {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
+    command
+        .arg(folder.join("run"))
+        .args(["none", &jobs.to_string(), "5", &workers.to_string()])
+        .env("HORSEHEAD_WORKER", worker_program())
+        .env(environment.0, environment.1)
+        .stderr(Stdio::piped());
+    let mut process = Process::start(command);
+    let mut errors = process.errors();
+    let listener = std::thread::spawn(move || {
+        let mut text = String::new();
+        // what is no text is not of ours
+        drop(errors.read_to_string(&mut text));
+        text
+    });
+    let lines = BufReader::new(process.output()).lines();
+    let lines = lines.map_while(Result::ok).collect();
+    Ended {
+        status: process.wait(LIMIT),
+        lines,
+        errors: listener.join().unwrap(),
+    }
+}
+
+#[test]
+fn jobs_that_kill_local_workers_cost_only_themselves() {
+    let folder = tempfile::tempdir().unwrap();
+    let killers = "3:kill-worker,5:kill-worker,7:kill-worker";
+    let ended = run(folder.path(), 12, 2, ("HORSEHEAD_TEST_MISBEHAVE", killers));
+    assert_eq!(ended.status, Some(0), "{}", ended.errors);
+    let mut done: Vec<u64> = ended
+        .lines
+        .iter()
+        .filter_map(|line| line.strip_suffix(" false")?.parse().ok())
+        .collect();
+    done.sort_unstable();
+    assert_eq!(done, (0..12).collect::<Vec<_>>(), "{:?}", ended.lines);
+    for job in [3, 5, 7] {
+        let words = format!("job {job} is given up: 4 workers were lost over it");
+        assert!(ended.errors.contains(&words), "{}", ended.errors);
+    }
+    assert_eq!(ended.errors.matches("is given up").count(), 3);
+}
+
+#[test]
+fn if_every_job_kills_its_worker_the_run_stops_with_one_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let killers: Vec<String> = (0..20).map(|n| format!("{n}:kill-worker")).collect();
+    let killers = killers.join(",");
+    let ended = run(folder.path(), 20, 4, ("HORSEHEAD_TEST_MISBEHAVE", &killers));
+    assert_eq!(ended.status, Some(1), "{}", ended.errors);
+    let words = "all of the first 8 jobs failed and none succeeded; the last one: 4 workers were \
+                 lost over it";
+    assert_eq!(ended.errors.matches(words).count(), 1, "{}", ended.errors);
+}
+
+#[test]
+fn if_no_local_worker_lives_the_run_says_so_instead_of_waiting() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = folder.path().join("worker");
+    fs::write(&program, "#!/bin/sh\nexit 7\n").unwrap();
+    fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+    let program = program.to_str().unwrap();
+    let ended = run(folder.path(), 3, 2, ("HORSEHEAD_WORKER", program));
+    assert_eq!(ended.status, Some(1), "{}", ended.errors);
+    let words = "the local workers end again and again without a result (the last one ended with \
+                 status 7)";
+    assert_eq!(ended.errors.matches(words).count(), 1, "{}", ended.errors);
+}

@@ -1,0 +1,98 @@
+//! Sixty-four worker processes, one of which freezes: a measurement, since it takes a quiet machine.
+//!
+//! ```text
+//! cargo test --workspace --test cluster -- --ignored --nocapture sixty_four
+//! ```
+use super::LIMIT;
+use coordinator::runtime::Dispatch;
+use protocol::{
+    id::JobId,
+    job::{Job, Outcome},
+};
+use rustix::process::Signal;
+use std::time::{Duration, Instant};
+use tests::{
+    options,
+    process::{Process, free_locator, wait_until},
+};
+
+const WORKERS: usize = 64;
+/// Jobs that are asked for ahead: two for each worker, and some to spare.
+const AHEAD: u64 = 3 * WORKERS as u64;
+
+struct Load {
+    dispatch: Dispatch,
+    asked: u64,
+    done: u64,
+}
+
+impl Load {
+    /// Does jobs of a fifth of a second for a while; how many a second.
+    async fn rate(&mut self, time: Duration) -> f64 {
+        let (begun, before) = (Instant::now(), self.done);
+        while begun.elapsed() < time {
+            self.ask(self.done + AHEAD);
+            self.next().await;
+        }
+        (self.done - before) as f64 / begun.elapsed().as_secs_f64()
+    }
+
+    fn ask(&mut self, until: u64) {
+        for n in self.asked..until {
+            let job = Job::Nothing {
+                payload: vec![1; 4000],
+                reply_bytes: 10_000,
+                delay_ms: 200,
+            };
+            self.dispatch.submit(JobId(n), job).unwrap();
+        }
+        self.asked = self.asked.max(until);
+    }
+
+    async fn next(&mut self) {
+        let completed = tokio::time::timeout(LIMIT, self.dispatch.next()).await;
+        let outcome = completed.unwrap().unwrap().outcome;
+        assert!(matches!(outcome, Outcome::Nothing(_)), "{outcome:?}");
+        self.done += 1;
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "a measurement: needs a machine of its own for a minute"]
+async fn one_frozen_worker_of_sixty_four_costs_the_others_at_most_a_tenth() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
+        .await
+        .unwrap();
+    let workers: Vec<Process> = (0..WORKERS)
+        .map(|_| Process::worker(&locator, &["--slots", "1"]))
+        .collect();
+    wait_until("all are there", LIMIT, || {
+        dispatch.snapshot().workers.len() == WORKERS
+    });
+    let mut load = Load {
+        dispatch,
+        asked: 0,
+        done: 0,
+    };
+    load.rate(Duration::from_secs(5)).await;
+    let before = load.rate(Duration::from_secs(10)).await;
+    workers[0].signal(Signal::STOP);
+    let frozen = load.rate(Duration::from_secs(10)).await;
+    workers[0].signal(Signal::CONT);
+    while load.done < load.asked {
+        load.next().await;
+    }
+    let last = load.dispatch.close().await.unwrap().last;
+    let share = (frozen / (WORKERS as f64 - 1.0)) / (before / WORKERS as f64);
+    eprintln!(
+        "{before:.0} jobs a second on {WORKERS} workers, {frozen:.0} with one frozen: the others do \
+         {:.1} % of what they did; {} lost, {} done",
+        100.0 * share,
+        last.lost,
+        last.done
+    );
+    assert!(share >= 0.9, "{share}");
+    assert_eq!((last.failed, last.done as u64), (0, load.asked));
+}

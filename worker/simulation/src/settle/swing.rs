@@ -1,0 +1,30 @@
+//! How fast the beam swings on its ropes: what steps in time must resolve.
+use crate::model::Individual;
+use crate::system::{Equations, System};
+
+/// Rate of the beam's swing on ropes, contact and head about an equilibrium at time 0 [rad/s].
+///
+/// The Rayleigh quotient of the machine's deflection under the beam's own inertia: one factorisation
+/// and one solution. It lies above the lowest mode, which is the pendulum of rod and rope, and follows
+/// what the load does excite, axial and contact stiffness in series.
+///
+/// `None` where the tangent is singular or the quotient is no positive number.
+pub fn swing_rate(system: &mut System<Individual<'_>>, q: &[f64]) -> Option<f64> {
+    let still = vec![0.0; q.len()];
+    let mut deflection = vec![0.0; q.len()];
+    system.forces(0.0, q, &still, &mut deflection);
+    system.factorize_static(0.0, (q, &still), 0.0).ok()?;
+    let mut unit = still.clone();
+    unit[system.equations.machine.layout.beam()] = -1.0;
+    deflection.fill(0.0);
+    system.equations.subtract_inertia(q, &unit, &mut deflection);
+    let inertia = deflection.clone();
+    system.solve(&mut deflection);
+    let mut momentum = still;
+    system
+        .equations
+        .subtract_inertia(q, &deflection, &mut momentum);
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let square = -dot(&inertia, &deflection) / dot(&momentum, &deflection);
+    (square > 0.0 && square.is_finite()).then(|| square.sqrt())
+}
