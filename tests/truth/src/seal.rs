@@ -127,6 +127,7 @@ mod tests {
         assert_ne!(other.save(&path).unwrap(), committed);
         assert_ne!(other.name(), name);
         fs::write(&path, "{}").unwrap();
-        assert!(Sealed::load(&path).is_err());
+        let refused = Sealed::load(&path).unwrap_err().to_string();
+        assert!(refused.contains("holds no answers"), "{refused}");
     }
 }

@@ -273,7 +273,7 @@ mod tests {
     fn a_pound_holds_the_load_and_then_drops_it() {
         let mut d = simulation::reference::description();
         d.card = (0..720)
-            .map(|i| if i < 360 { 70e3 } else { 40e3 })
+            .map(|i| if i < 400 { 70e3 } else { 40e3 })
             .collect();
         let pound = Pound {
             held: 1.0,
