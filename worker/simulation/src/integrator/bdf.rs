@@ -8,7 +8,8 @@
 //! Orders above 2 are no longer A-stable: modes inside the instability wedge along the imaginary
 //! axis grow until the error test cuts the step down to where they are resolved. The head's modes
 //! (0.5 % damping) and the ropes' axial modes lie in it, so that higher orders cost more steps, not
-//! fewer; measured counts stand in the README. The default cap is therefore 2.
+//! fewer: 434 with orders up to 2, 77,911 up to 4 on the shipped unit (this crate's README). The default
+//! cap is therefore 2.
 use super::State;
 use super::newton::{Newton, NotConverged, Stage};
 use super::step_control::StepControl;

@@ -163,16 +163,7 @@ impl<'a> Surface<'a> {
     /// The bearing of a cylinder of half length `half` centred at `g`, if it may touch at all.
     #[inline]
     pub fn bearing(&self, g: &V2, half: f64) -> Option<Bearing> {
-        let reach = self.reach + half;
-        let w = g - self.center;
-        (w.norm_squared() < reach * reach).then(|| Bearing {
-            toward: w,
-            angle: if self.asks_for_angle() {
-                self.arc_angle(&w)
-            } else {
-                0.0
-            },
-        })
+        self.bearing_after(None, g, half)
     }
 
     /// The same, from the bearing of a neighbour if there is one: a few products in place of an arc

@@ -160,15 +160,15 @@ fn assert_statics(machine: &Machine, count: usize) {
 }
 
 /// Whole runs end within their budget; those that fail do so early.
-fn assert_runs(machine: &Machine, count: usize, decades: f64) -> BTreeMap<String, usize> {
+fn assert_runs(machine: &Machine, count: usize, decades: f64) -> BTreeMap<String, Vec<u64>> {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let settings = RunSettings {
         samples: 72,
-        longest_step: 0.03,
+        longest_step: 0.06,
         ..RunSettings::default()
     };
-    let mut verdicts: BTreeMap<String, usize> = BTreeMap::new();
-    let (mut complete, mut failed) = (vec![0], vec![0]);
+    let mut verdicts: BTreeMap<String, Vec<u64>> = BTreeMap::new();
+    let mut failed = vec![0];
     for point in hypercube(count, &mut random) {
         let law = individual(&point, decades);
         let mut recorder = Recorder::gauges_only();
@@ -176,20 +176,19 @@ fn assert_runs(machine: &Machine, count: usize, decades: f64) -> BTreeMap<String
         let spent = result.statistics.newton_iterations;
         // a step in hand is finished
         assert!(spent <= settings.budget + 100, "{spent}");
-        *verdicts.entry(named(&result)).or_default() += 1;
+        verdicts.entry(named(&result)).or_default().push(spent);
         if result.verdict == Verdict::Complete {
             assert_eq!(recorder.curves.gauge[0].len(), settings.samples);
-            complete.push(spent);
         } else {
             failed.push(spent);
         }
     }
-    println!("{count} individuals within {decades} decades: {verdicts:?}");
-    println!(
-        "iterations, 50 90 99 100 %: complete {}; failed {}",
-        quantiles(complete),
-        quantiles(failed.clone())
-    );
+    println!("{count} individuals within {decades} decades; iterations, 50 90 99 100 %:");
+    for (verdict, spent) in &verdicts {
+        let quantiles = quantiles(spent.clone());
+        println!("{verdict:<32} {:>5} times  {quantiles}", spent.len());
+    }
+    println!("all that failed {}", quantiles(failed.clone()));
     failed.sort_unstable();
     assert!(
         failed[failed.len() / 2] <= 1_000,
@@ -205,14 +204,14 @@ fn statics_depend_on_neither_start_nor_damping() {
 
 #[test]
 fn every_individual_ends_within_its_budget() {
-    let verdicts = assert_runs(&machine(false), 30, 4.0);
+    let verdicts = assert_runs(&machine(false), 40, 4.0);
     assert!(verdicts.len() > 2, "{verdicts:?}");
 }
 
 #[test]
 fn close_to_the_recommended_values_nearly_all_complete() {
     let verdicts = assert_runs(&machine(false), 12, 1.0);
-    assert!(verdicts["complete"] >= 11, "{verdicts:?}");
+    assert!(verdicts["complete"].len() >= 11, "{verdicts:?}");
 }
 
 /// The whole thousand on the real unit's discretisation:

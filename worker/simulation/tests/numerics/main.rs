@@ -21,6 +21,7 @@ mod plane;
 mod reference;
 mod rope;
 mod statics;
+mod swing;
 mod tangent;
 mod vibration;
 mod work;

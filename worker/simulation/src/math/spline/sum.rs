@@ -61,25 +61,16 @@ impl Sum {
         };
         (jet, rate)
     }
-}
 
-impl Sum {
     /// The sum under the weights at places, its slopes, and its values under their rates.
     pub fn heights(&self, splines: &Splines, places: &[Place], sums: [&mut [f64]; 3]) {
         let [values, slopes, rates] = sums;
         let sums = values.iter_mut().zip(slopes).zip(rates);
         for (place, ((value, slope), rate)) in places.iter().zip(sums) {
-            let [y0, m0, dy0, dm0] = self.knots[place.left];
-            let [y1, m1, dy1, dm1] = self.knots[place.right];
-            let [a, b, cubic_a, cubic_b] = place.weights();
-            *value = a * y0 + b * y1 + cubic_a * m0 + cubic_b * m1;
-            *rate = a * dy0 + b * dy1 + cubic_a * dm0 + cubic_b * dm1;
-            let first = y1 - y0 + (1.0 - 3.0 * a * a) * m0 + (3.0 * b * b - 1.0) * m1;
-            *slope = if place.clamped {
-                0.0
-            } else {
-                first * splines.per_step
-            };
+            let (jet, rising) = self.at(splines, place);
+            *value = jet.value;
+            *slope = jet.first;
+            *rate = rising;
         }
     }
 }

@@ -8,10 +8,10 @@
 //! angles that turn the axis), then those of the border. With the derivatives `G` of the penetration
 //! and `F` of the force by all of them, a point adds `G F^T` and the force times what bends.
 use super::{Chain, ChainState};
-use crate::element::impact::Impact;
+use crate::element::impact::{Impact, ImpactForce};
 use crate::linear::Bordered;
 use crate::model::MAX_MODES;
-use crate::model::contact::{Bearing, Surface};
+use crate::model::contact::{Bearing, Curvature, Surface, Touch};
 use crate::model::pose::InPlane;
 use nalgebra::Vector2;
 
@@ -40,6 +40,20 @@ struct Sums {
     right: [[f64; BORDER]; OWN],
     /// Rows of the border, columns of the cylinder, transposed.
     bottom: [[f64; BORDER]; OWN],
+}
+
+/// A point's derivatives.
+struct Derivatives {
+    /// Of the penetration and of the force by the cylinder's coordinates.
+    own: [f64; OWN],
+    own_force: [f64; OWN],
+    /// How those move the point.
+    moved: [V2; OWN],
+    /// Of the penetration and of the force by the border's coordinates.
+    gradient: [f64; BORDER],
+    force_by: [f64; BORDER],
+    /// Slopes of the modes' shapes over the arc; the beam angle has none.
+    slope: [f64; BORDER],
 }
 
 #[expect(
@@ -131,72 +145,99 @@ impl Tangent<'_> {
         let Some(touch) = surface.touch(bearing, &g, &velocity) else {
             return false;
         };
-        let at = self.law.force(touch.depth, touch.rate);
-        let force = share * at.force;
-        if force == 0.0 {
+        let mut at = self.law.force(touch.depth, touch.rate);
+        if share * at.force == 0.0 {
             return false;
         }
-        let by_rate = share * at.by_rate;
-        let stiff = share * at.by_penetration + self.gamma * by_rate;
+        at.force *= share;
+        at.by_rate *= share;
+        at.by_penetration *= share;
         let curvature = surface.curvature(&touch);
+        let point = self.derivatives(pose, along, (&velocity, &touch, &curvature), &at);
+        add_own::<A>(&point, &curvature, &at, sums);
+        for a in 0..A {
+            for b in 0..A {
+                let bend = pose.axis_by_twice(a, b) * along;
+                sums.own[2 + a][2 + b] += at.force * touch.by_point.dot(&bend);
+            }
+        }
+        self.add_border::<A>(&point, &curvature, at.force, sums);
+        true
+    }
+
+    /// Derivatives of penetration and force by all coordinates.
+    fn derivatives<const A: usize>(
+        &self,
+        pose: &impl InPlane<A>,
+        along: f64,
+        (velocity, touch, curvature): (&V2, &Touch, &Curvature),
+        at: &ImpactForce,
+    ) -> Derivatives {
+        let surface = self.surface;
+        let stiff = at.by_penetration + self.gamma * at.by_rate;
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let beam_rate = surface.beam[1];
-        let angle_rate = angle_by_point.dot(&velocity) + angle_by_beam * beam_rate;
-
-        // the border: derivatives of penetration and force, and slopes of the shapes over the arc
+        let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
         let mut gradient = [0.0; BORDER];
         let mut force_by = [0.0; BORDER];
         let mut slope = [0.0; BORDER];
         let mut drift = 0.0;
         if let (Some(bend), Some(place)) = (&surface.bend, &touch.place) {
             let modes = 1..self.border;
-            bend.shapes.slopes(
-                place,
-                &mut gradient[modes.clone()],
-                &mut slope[modes.clone()],
-            );
+            let (values, slopes) = (&mut gradient[modes.clone()], &mut slope[modes.clone()]);
+            bend.shapes.slopes(place, values, slopes);
             for (k, rate) in modes.clone().zip(bend.modal_rate) {
                 drift += rate * slope[k];
             }
             for k in modes {
-                force_by[k] = gradient[k] * stiff + slope[k] * (angle_rate * by_rate);
+                force_by[k] = gradient[k] * stiff + slope[k] * (angle_rate * at.by_rate);
             }
         }
         // rates of the gradient along the motion: H q'
         let point_rate =
             curvature.point * velocity + curvature.mixed * beam_rate + angle_by_point * drift;
         let beam_gradient_rate =
-            curvature.mixed.dot(&velocity) + curvature.beam * beam_rate + angle_by_beam * drift;
+            curvature.mixed.dot(velocity) + curvature.beam * beam_rate + angle_by_beam * drift;
         gradient[0] = touch.by_beam;
-        force_by[0] = touch.by_beam * stiff + beam_gradient_rate * by_rate;
+        force_by[0] = touch.by_beam * stiff + beam_gradient_rate * at.by_rate;
 
-        // the cylinder: how its coordinates move the point, derivatives of penetration and force
         let (arms, sweeps) = (pose.axis_by(), pose.sweep_by());
         let moved: [V2; OWN] = std::array::from_fn(|k| match k {
             0 => V2::x(),
             1 => V2::y(),
             k => arms.get(k - 2).map_or_else(V2::zeros, |arm| arm * along),
         });
-        let by_place = touch.by_point * stiff + point_rate * by_rate;
-        let own: [f64; OWN] = moved.map(|moved| touch.by_point.dot(&moved));
-        let own_force: [f64; OWN] = std::array::from_fn(|k| {
-            let turning = k.checked_sub(2).and_then(|a| sweeps.get(a));
-            let turning = turning.map_or(0.0, |sweep| along * touch.by_point.dot(sweep));
-            by_place.dot(&moved[k]) + by_rate * turning
-        });
-        let bends = curvature.point * force;
-        for r in 0..2 + A {
-            let bent = bends * moved[r];
-            for c in 0..2 + A {
-                sums.own[r][c] += own[r] * own_force[c] + bent.dot(&moved[c]);
-            }
+        let by_place = touch.by_point * stiff + point_rate * at.by_rate;
+        Derivatives {
+            own: moved.map(|moved| touch.by_point.dot(&moved)),
+            own_force: std::array::from_fn(|k| {
+                let turning = k.checked_sub(2).and_then(|a| sweeps.get(a));
+                let turning = turning.map_or(0.0, |sweep| along * touch.by_point.dot(sweep));
+                by_place.dot(&moved[k]) + at.by_rate * turning
+            }),
+            moved,
+            gradient,
+            force_by,
+            slope,
         }
-        for a in 0..A {
-            for b in 0..A {
-                let bend = pose.axis_by_twice(a, b) * along;
-                sums.own[2 + a][2 + b] += force * touch.by_point.dot(&bend);
-            }
-        }
+    }
+
+    fn add_border<const A: usize>(
+        &mut self,
+        point: &Derivatives,
+        curvature: &Curvature,
+        force: f64,
+        sums: &mut Sums,
+    ) {
+        let (angle_by_point, angle_by_beam) = curvature.angle_by;
+        let Derivatives {
+            own,
+            own_force,
+            moved,
+            gradient,
+            force_by,
+            slope,
+        } = point;
         for r in 0..2 + A {
             let turned = force * angle_by_point.dot(&moved[r]);
             let (right, bottom) = (&mut sums.right[r], &mut sums.bottom[r]);
@@ -208,7 +249,7 @@ impl Tangent<'_> {
             }
         }
         for (k, row) in self.corner[..self.border].iter_mut().enumerate() {
-            for (entry, force_by) in row[..self.border].iter_mut().zip(&force_by) {
+            for (entry, force_by) in row[..self.border].iter_mut().zip(force_by) {
                 *entry += gradient[k] * force_by;
             }
         }
@@ -218,6 +259,21 @@ impl Tangent<'_> {
             self.corner[0][k] += bend;
             self.corner[k][0] += bend;
         }
-        true
+    }
+}
+
+/// Adds to a cylinder's own block, but for the bending of its axis.
+fn add_own<const A: usize>(
+    point: &Derivatives,
+    curvature: &Curvature,
+    at: &ImpactForce,
+    sums: &mut Sums,
+) {
+    let bends = curvature.point * at.force;
+    for r in 0..2 + A {
+        let bent = bends * point.moved[r];
+        for c in 0..2 + A {
+            sums.own[r][c] += point.own[r] * point.own_force[c] + bent.dot(&point.moved[c]);
+        }
     }
 }
