@@ -15,6 +15,7 @@ use std::{
     process::{self, ChildStdin, Command, ExitStatus, Stdio},
     sync::atomic::{AtomicU64, Ordering},
     thread,
+    time::Duration,
 };
 
 /// Environment variable that names the slot process to everything it starts.
@@ -84,6 +85,16 @@ impl Child {
         stream::write(&mut self.input, Kind::ToSlot, &ToSlot::Run(job))
     }
 
+    /// How long it was ready to run and got no processor, since it was started; nothing where the
+    /// system does not say. Jobs are computed by its first thread, which this is about.
+    pub(super) fn waited(&self) -> Duration {
+        let said = fs::read_to_string(format!("/proc/{}/schedstat", self.process.id()));
+        let nanos = said
+            .ok()
+            .and_then(|said| said.split_whitespace().nth(1)?.parse().ok());
+        nanos.map_or(Duration::ZERO, Duration::from_nanos)
+    }
+
     /// Ends it and says how it ended.
     pub(super) fn end(mut self) -> String {
         self.kill();
@@ -97,7 +108,7 @@ impl Child {
     pub(super) fn ended(mut self) -> String {
         for _ in 0..100 {
             match self.process.try_wait() {
-                Ok(None) => thread::sleep(std::time::Duration::from_millis(10)),
+                Ok(None) => thread::sleep(Duration::from_millis(10)),
                 Ok(Some(_)) | Err(_) => break,
             }
         }

@@ -1,4 +1,8 @@
 //! The thread that keeps one slot busy and within its deadlines.
+//!
+//! Time for which the slot's process was ready to run and got no processor does not count: a job
+//! that is overdue on a busy machine would be given up, and the result of a run would depend on what
+//! else the machine does.
 use super::{Freed, SlotOptions, Task, child::Child};
 use protocol::{
     job::{Failure, Outcome},
@@ -12,6 +16,8 @@ use tokio::sync::mpsc::UnboundedSender;
 
 /// How often a keeper shows that it lives.
 const PULSE: Duration = Duration::from_millis(500);
+/// Shortest pause before a job that got no processor is looked at again.
+const LOOK: Duration = Duration::from_millis(20);
 
 #[derive(Debug)]
 pub(super) enum ToKeeper {
@@ -39,6 +45,8 @@ struct Current {
     attempt: Attempt,
     begun: Instant,
     deadline: Duration,
+    /// How long the slot's process had waited for a processor before.
+    waited: Duration,
 }
 
 impl Keeper {
@@ -78,11 +86,19 @@ impl Keeper {
 
     fn patience(&self) -> Duration {
         self.current.map_or(PULSE, |current| {
-            current
-                .deadline
-                .saturating_sub(current.begun.elapsed())
-                .min(PULSE)
+            let left = current.deadline.saturating_sub(current.begun.elapsed());
+            left.clamp(LOOK, PULSE)
         })
+    }
+
+    /// How long a job has been computed, less what its process waited for a processor.
+    fn computed(&self, current: &Current) -> Duration {
+        let elapsed = current.begun.elapsed();
+        if elapsed < current.deadline {
+            return elapsed;
+        }
+        let waited = self.child.as_ref().map_or(Duration::ZERO, Child::waited);
+        elapsed.saturating_sub(waited.saturating_sub(current.waited))
     }
 
     fn begin(&mut self, task: Task) {
@@ -96,6 +112,7 @@ impl Keeper {
             attempt,
             begun: Instant::now(),
             deadline,
+            waited: self.child.as_ref().map_or(Duration::ZERO, Child::waited),
         });
         let started = self.start_if_needed();
         let given = started.and_then(|()| match &mut self.child {
@@ -146,7 +163,7 @@ impl Keeper {
     fn check_deadline(&mut self) {
         let overdue = self
             .current
-            .filter(|current| current.begun.elapsed() >= current.deadline);
+            .filter(|current| self.computed(current) >= current.deadline);
         if let Some(current) = overdue {
             self.child = None;
             let limit_ms = super::millis(current.deadline);
