@@ -47,6 +47,8 @@ struct Current {
     deadline: Duration,
     /// How long the slot's process had waited for a processor before.
     waited: Duration,
+    /// Its processor time when it was last looked at, which begins at the deadline.
+    seen: Option<Duration>,
 }
 
 impl Keeper {
@@ -91,14 +93,21 @@ impl Keeper {
         })
     }
 
-    /// How long a job has been computed, less what its process waited for a processor.
-    fn computed(&self, current: &Current) -> Duration {
+    /// Whether the current job has had its time. A wait that goes on is not counted by the system
+    /// yet, so whoever is ready and got nothing since the last look is left alone.
+    fn is_overdue(&mut self) -> bool {
+        let Some(current) = &mut self.current else {
+            return false;
+        };
         let elapsed = current.begun.elapsed();
         if elapsed < current.deadline {
-            return elapsed;
+            return false;
         }
-        let waited = self.child.as_ref().map_or(Duration::ZERO, Child::waited);
-        elapsed.saturating_sub(waited.saturating_sub(current.waited))
+        let look = self.child.as_ref().map(Child::look).unwrap_or_default();
+        let waited = look.waited.saturating_sub(current.waited);
+        let before = current.seen.replace(look.computed);
+        let waits = look.is_ready && before.is_none_or(|before| before == look.computed);
+        !waits && elapsed.saturating_sub(waited) >= current.deadline
     }
 
     fn begin(&mut self, task: Task) {
@@ -112,7 +121,11 @@ impl Keeper {
             attempt,
             begun: Instant::now(),
             deadline,
-            waited: self.child.as_ref().map_or(Duration::ZERO, Child::waited),
+            waited: self
+                .child
+                .as_ref()
+                .map_or(Duration::ZERO, |it| it.look().waited),
+            seen: None,
         });
         let started = self.start_if_needed();
         let given = started.and_then(|()| match &mut self.child {
@@ -161,9 +174,7 @@ impl Keeper {
     }
 
     fn check_deadline(&mut self) {
-        let overdue = self
-            .current
-            .filter(|current| self.computed(current) >= current.deadline);
+        let overdue = self.is_overdue().then_some(self.current).flatten();
         if let Some(current) = overdue {
             self.child = None;
             let limit_ms = super::millis(current.deadline);
