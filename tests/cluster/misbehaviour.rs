@@ -3,12 +3,15 @@
 use super::{OWN_SLOTS, collect};
 use coordinator::runtime::{Completed, Dispatch, Summary};
 use protocol::{
-    id::JobId,
+    id::{AttemptId, JobId},
     job::{Failure, Outcome},
+    message::Attempt,
 };
 use std::{
     collections::BTreeMap,
     fs,
+    path::Path,
+    process::Command,
     time::{Duration, Instant},
 };
 use tests::{
@@ -83,42 +86,51 @@ async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
     assert_eq!((summary.last.failed, summary.last.lost), (1, 4));
 }
 
-/// Ended at its deadline with everything it started, even what left its process group.
-#[test]
-fn a_job_that_never_returns_leaves_no_descendant() {
-    let _turn = OWN_SLOTS.blocking_lock();
-    let (to, mut freed) = unbounded_channel();
-    // the environment of this process is not ours to change: the slot gets it from a shell
-    let folder = tempfile::tempdir().unwrap();
-    let program = folder.path().join("worker");
+/// A slot whose jobs misbehave, started by way of another program: the environment of this process
+/// is not ours to change, so the slot gets it from a shell.
+fn slot(folder: &Path, behaviour: &str, by: &str) -> SlotOptions {
+    let program = folder.join("worker");
     let worker = tests::process::worker_program();
     let script = format!(
-        "#!/bin/sh\nHORSEHEAD_TEST_MISBEHAVE=1:orphan,2:hang exec {} \"$@\"\n",
+        "#!/bin/sh\nHORSEHEAD_TEST_MISBEHAVE={behaviour} exec {by} {} \"$@\"\n",
         worker.display()
     );
     fs::write(&program, script).unwrap();
     let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
     fs::set_permissions(&program, mode).unwrap();
-    let options = SlotOptions {
+    SlotOptions {
         program,
         memory_mib: 0,
-    };
+    }
+}
+
+fn task(n: u64, deadline: Duration) -> Task {
+    Task {
+        attempt: Attempt {
+            job: JobId(n),
+            attempt: AttemptId(1),
+        },
+        deadline,
+        job: Box::new(job(n, 0)),
+        case: None,
+    }
+}
+
+/// Ended at its deadline with everything it started, even what left its process group.
+#[test]
+fn a_job_that_never_returns_leaves_no_descendant() {
+    let _turn = OWN_SLOTS.blocking_lock();
+    let (to, mut freed) = unbounded_channel();
+    let folder = tempfile::tempdir().unwrap();
+    let options = slot(folder.path(), "1:orphan,2:hang", "");
     let pool = Pool::start(1, &options, &to).unwrap();
     for n in 1..=2 {
+        // the process is there and waits: the time of its start is not what is measured
+        pool.run(0, task(0, LIMIT));
+        assert!(freed.blocking_recv().is_some());
         let deadline = Duration::from_millis(1500);
         let begun = Instant::now();
-        pool.run(
-            0,
-            Task {
-                attempt: protocol::message::Attempt {
-                    job: JobId(n),
-                    attempt: protocol::id::AttemptId(1),
-                },
-                deadline,
-                job: Box::new(job(n, 0)),
-                case: None,
-            },
-        );
+        pool.run(0, task(n, deadline));
         if n == 1 {
             wait_until("the orphan is there", LIMIT, || sleepers() == 1);
         }
@@ -180,4 +192,41 @@ async fn if_every_job_crashes_the_run_stops_with_one_message() {
         "{message}"
     );
     dispatch.close().await.unwrap();
+}
+
+/// Computing takes ten times as long as usual where others have the processor. A job that merely
+/// waits for it must not be given up: the result of a run would depend on the load of its machines.
+#[test]
+fn a_job_that_gets_no_processor_is_not_overdue() {
+    let _turn = OWN_SLOTS.blocking_lock();
+    let busy: Vec<Process> = (0..2)
+        .map(|_| {
+            let mut command = Command::new("taskset");
+            command.args(["-c", "0", "sh", "-c", "while :; do :; done"]);
+            Process::start(command)
+        })
+        .collect();
+    let (to, mut freed) = unbounded_channel();
+    let folder = tempfile::tempdir().unwrap();
+    let options = slot(folder.path(), "2:burn", "taskset -c 0 nice -n 10");
+    let pool = Pool::start(1, &options, &to).unwrap();
+    // its process starts slowly, too
+    pool.run(0, task(1, LIMIT));
+    assert!(matches!(
+        freed.blocking_recv().unwrap().outcome,
+        Some(Outcome::Nothing(_))
+    ));
+    let deadline = Duration::from_millis(500);
+    pool.run(0, task(2, deadline));
+    let done = freed.blocking_recv().unwrap();
+    eprintln!("a tenth of a second of computing took {:?}", done.wall);
+    assert!(
+        done.wall > deadline,
+        "it was not short of anything: {done:?}"
+    );
+    assert!(
+        matches!(done.outcome, Some(Outcome::Nothing(_))),
+        "{done:?}"
+    );
+    drop((pool, busy));
 }

@@ -24,6 +24,7 @@ use tokio::{
 use tracing_subscriber::EnvFilter;
 use worker::{
     cli::Cli,
+    handler,
     session::{self, Ending, SessionOptions},
     slot,
 };
@@ -66,6 +67,12 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
     if cli.embedded {
         set_parent_process_death_signal(Some(Signal::KILL))?;
     }
+    // is ready when the coordinator answers; should there be no thread for it, it is computed then
+    drop(
+        thread::Builder::new()
+            .name("digest".to_owned())
+            .spawn(handler::model_digest),
+    );
     let cores = || thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let options = SessionOptions {
         id: draw_id(),

@@ -117,7 +117,7 @@ fn announcement(slots: usize) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
         build: format!("{} {profile}", env!("CARGO_PKG_VERSION")),
-        model_digest: handler::model_digest(),
+        model_digest: handler::model_digest().to_owned(),
         host: rustix::system::uname()
             .nodename()
             .to_string_lossy()

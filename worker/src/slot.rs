@@ -16,6 +16,9 @@ use std::{
     thread,
 };
 
+/// Name of the thread that reads jobs.
+pub(crate) const INPUT: &str = "slot-input";
+
 /// Serves until the input ends, in at most so much address space (MiB; 0 for no limit): a job that
 /// wants more aborts this process and nothing else.
 ///
@@ -33,7 +36,7 @@ pub fn serve(memory_mib: u64) -> io::Result<()> {
     }
     let (to, messages) = mpsc::channel();
     thread::Builder::new()
-        .name("slot-input".to_owned())
+        .name(INPUT.to_owned())
         .spawn(move || listen(&to))?;
     let mut out = io::stdout().lock();
     stream::write(&mut out, Kind::FromSlot, &FromSlot::Ready)?;

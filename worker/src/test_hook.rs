@@ -56,6 +56,13 @@ fn misbehave(behaviour: &str) {
                 std::hint::black_box(&held);
             }
         }
+        // computes for a tenth of a second, as a thread that has the processor for itself would
+        "burn" => {
+            let until = computed().saturating_add(Duration::from_millis(100));
+            while computed() < until {
+                std::hint::spin_loop();
+            }
+        }
         // a process that leaves the slot's group and session, then an endless job
         "orphan" => {
             let started = Command::new("setsid").args(["sleep", "1000"]).spawn();
@@ -73,4 +80,15 @@ fn misbehave(behaviour: &str) {
         }
         other => tracing::error!("{MISBEHAVE} has no behaviour {other}"),
     }
+}
+
+/// Processor time of this thread.
+fn computed() -> Duration {
+    let said = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
+    let nanos = said
+        .split_whitespace()
+        .next()
+        .and_then(|word| word.parse().ok());
+    // where the system does not say, nothing is burnt
+    nanos.map_or(Duration::MAX, Duration::from_nanos)
 }

@@ -43,14 +43,18 @@ Examples:
         output: OutputChoice,
     },
     Integrators(integrators::Arguments),
-    /// Be many workers that are only sessions
-    #[command(hide = true)]
+    /// Be many workers that are only sessions, for `bench dispatch --connections`.
+    #[command(hide = true, after_help = format!("\
+Example:
+  horsehead bench sessions tcp/127.0.0.1:7447 64
+
+{EXIT_CODES}"))]
     Sessions {
-        /// Whom to dial
-        #[arg(long, value_parser = Locator::parse)]
+        /// Address to dial.
+        #[arg(value_name = "LOCATOR", value_parser = Locator::parse)]
         connect: Locator,
-        /// How many
-        #[arg(long)]
+        /// How many.
+        #[arg(value_name = "N")]
         sessions: usize,
     },
 }

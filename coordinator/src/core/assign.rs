@@ -13,7 +13,10 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// A worker has this much more time than the deadline it enforces itself.
+/// A worker has this many times the deadline that it enforces itself, since it does not count the
+/// time for which a job got no processor.
+const PATIENCE: u32 = 8;
+/// And this much more.
 const GRACE: Duration = Duration::from_secs(10);
 
 /// Gives queued jobs, lowest id first, to the least loaded workers.
@@ -148,7 +151,7 @@ pub(super) fn check_overdue(core: &mut Core, now: Duration) {
     for (worker, member) in &core.members {
         for lease in &member.leases {
             let since = lease.running.map(|running| now.saturating_sub(running));
-            if since.is_some_and(|since| since > lease.deadline + GRACE) {
+            if since.is_some_and(|since| since > lease.deadline.saturating_mul(PATIENCE) + GRACE) {
                 overdue.push((*worker, lease.attempt, lease.deadline));
             }
         }

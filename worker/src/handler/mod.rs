@@ -13,7 +13,7 @@ use protocol::{
     job::{Failure, Job, Outcome},
 };
 use simulation::model::Machine;
-use std::borrow::Cow;
+use std::{borrow::Cow, sync::OnceLock};
 
 /// Everything that jobs on one case share, built once.
 #[derive(Debug)]
@@ -89,8 +89,13 @@ pub fn nothing(job: &Job) -> Outcome {
 
 /// Names the numerics of this build by the bits of two reference runs, without effects and with all of
 /// them, and by the catalogue's units and bounds: equal digests promise equal results. Takes as long
-/// as those runs, some tenths of a second.
-pub fn model_digest() -> String {
+/// as those runs, some tenths of a second, the first time in a process.
+pub fn model_digest() -> &'static str {
+    static DIGEST: OnceLock<String> = OnceLock::new();
+    DIGEST.get_or_init(computed_digest)
+}
+
+fn computed_digest() -> String {
     let mut bytes = Vec::new();
     let plain = simulation::reference::bits();
     for (bits, statistics) in [plain, simulation::reference::bits_with_effects()] {

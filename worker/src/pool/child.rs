@@ -1,6 +1,6 @@
 //! The process of one slot, seen from its worker.
 use super::{CaseBytes, SlotOptions};
-use crate::stream;
+use crate::{slot, stream};
 use protocol::{
     id::ContentHash,
     job::Job,
@@ -15,6 +15,7 @@ use std::{
     process::{self, ChildStdin, Command, ExitStatus, Stdio},
     sync::atomic::{AtomicU64, Ordering},
     thread,
+    time::Duration,
 };
 
 /// Environment variable that names the slot process to everything it starts.
@@ -22,6 +23,17 @@ const MARK: &str = "HORSEHEAD_SLOT_PROCESS";
 
 /// Numbers the slot processes of this worker.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
+
+/// Processor time of a process since it was started; all zero where the system does not say.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Look {
+    /// How long it had a processor.
+    pub(super) computed: Duration,
+    /// How long it was ready and had none, but for a wait that goes on now.
+    pub(super) waited: Duration,
+    /// Whether it computes or waits for a processor now.
+    pub(super) is_ready: bool,
+}
 
 /// A running slot process; ended with everything it started when dropped.
 #[derive(Debug)]
@@ -84,6 +96,34 @@ impl Child {
         stream::write(&mut self.input, Kind::ToSlot, &ToSlot::Run(job))
     }
 
+    /// What the system says of the processor time of its two threads that take turns: the one that
+    /// takes jobs in and the one that computes them. Others, which a job might start, do not count:
+    /// many that wait at once would make time stand still.
+    pub(super) fn look(&self) -> Look {
+        let process = self.process.id().to_string();
+        let threads = fs::read_dir(format!("/proc/{process}/task"));
+        let mut look = Look::default();
+        for thread in threads.into_iter().flatten().flatten() {
+            let read = |name| fs::read_to_string(thread.path().join(name)).unwrap_or_default();
+            let is_first = thread.file_name().to_str() == Some(&process);
+            if !is_first && read("comm").trim_end() != slot::INPUT {
+                continue;
+            }
+            let (times, state) = (read("schedstat"), read("stat"));
+            let mut times = times.split_whitespace().map(|word| {
+                let nanos = word.parse().unwrap_or(0);
+                Duration::from_nanos(nanos)
+            });
+            look.computed += times.next().unwrap_or_default();
+            look.waited += times.next().unwrap_or_default();
+            // behind the name, which is in parentheses and may hold anything
+            look.is_ready |= state
+                .rsplit_once(')')
+                .is_some_and(|(_, rest)| rest.trim_start().starts_with('R'));
+        }
+        look
+    }
+
     /// Ends it and says how it ended.
     pub(super) fn end(mut self) -> String {
         self.kill();
@@ -97,7 +137,7 @@ impl Child {
     pub(super) fn ended(mut self) -> String {
         for _ in 0..100 {
             match self.process.try_wait() {
-                Ok(None) => thread::sleep(std::time::Duration::from_millis(10)),
+                Ok(None) => thread::sleep(Duration::from_millis(10)),
                 Ok(Some(_)) | Err(_) => break,
             }
         }

@@ -1,4 +1,8 @@
 //! The thread that keeps one slot busy and within its deadlines.
+//!
+//! Time for which the slot's process was ready to run and got no processor does not count: a job
+//! that is overdue on a busy machine would be given up, and the result of a run would depend on what
+//! else the machine does.
 use super::{Freed, SlotOptions, Task, child::Child};
 use protocol::{
     job::{Failure, Outcome},
@@ -12,6 +16,8 @@ use tokio::sync::mpsc::UnboundedSender;
 
 /// How often a keeper shows that it lives.
 const PULSE: Duration = Duration::from_millis(500);
+/// Shortest pause before a job that got no processor is looked at again.
+const LOOK: Duration = Duration::from_millis(20);
 
 #[derive(Debug)]
 pub(super) enum ToKeeper {
@@ -39,6 +45,10 @@ struct Current {
     attempt: Attempt,
     begun: Instant,
     deadline: Duration,
+    /// How long the slot's process had waited for a processor before.
+    waited: Duration,
+    /// Its processor time when it was last looked at, which begins at the deadline.
+    seen: Option<Duration>,
 }
 
 impl Keeper {
@@ -78,11 +88,26 @@ impl Keeper {
 
     fn patience(&self) -> Duration {
         self.current.map_or(PULSE, |current| {
-            current
-                .deadline
-                .saturating_sub(current.begun.elapsed())
-                .min(PULSE)
+            let left = current.deadline.saturating_sub(current.begun.elapsed());
+            left.clamp(LOOK, PULSE)
         })
+    }
+
+    /// Whether the current job has had its time. A wait that goes on is not counted by the system
+    /// yet, so whoever is ready and got nothing since the last look is left alone.
+    fn is_overdue(&mut self) -> bool {
+        let Some(current) = &mut self.current else {
+            return false;
+        };
+        let elapsed = current.begun.elapsed();
+        if elapsed < current.deadline {
+            return false;
+        }
+        let look = self.child.as_ref().map(Child::look).unwrap_or_default();
+        let waited = look.waited.saturating_sub(current.waited);
+        let before = current.seen.replace(look.computed);
+        let waits = look.is_ready && before.is_none_or(|before| before == look.computed);
+        !waits && elapsed.saturating_sub(waited) >= current.deadline
     }
 
     fn begin(&mut self, task: Task) {
@@ -96,6 +121,11 @@ impl Keeper {
             attempt,
             begun: Instant::now(),
             deadline,
+            waited: self
+                .child
+                .as_ref()
+                .map_or(Duration::ZERO, |it| it.look().waited),
+            seen: None,
         });
         let started = self.start_if_needed();
         let given = started.and_then(|()| match &mut self.child {
@@ -144,9 +174,7 @@ impl Keeper {
     }
 
     fn check_deadline(&mut self) {
-        let overdue = self
-            .current
-            .filter(|current| current.begun.elapsed() >= current.deadline);
+        let overdue = self.is_overdue().then_some(self.current).flatten();
         if let Some(current) = overdue {
             self.child = None;
             let limit_ms = super::millis(current.deadline);

@@ -88,7 +88,8 @@ fn a_worker_that_does_not_end_an_overdue_job_loses_it() {
     scene.join(1, 1);
     scene.submit(0..1);
     let (_, attempt) = scene.given()[0];
-    scene.wait(129, &[1]);
+    // eight times two minutes, and ten seconds
+    scene.wait(969, &[1]);
     assert_eq!(scene.cancelled, []);
     scene.wait(4, &[1]);
     assert_eq!(scene.cancelled, [(WorkerId(1), attempt)]);

@@ -92,8 +92,7 @@ impl Connections {
     /// Starts this program again, with so many sessions that dial an address.
     pub(super) fn start(count: usize, connect: &str) -> io::Result<Self> {
         let child = Command::new(env::current_exe()?)
-            .args(["bench", "sessions", "--connect", connect])
-            .args(["--sessions", &count.to_string()])
+            .args(["bench", "sessions", connect, &count.to_string()])
             .stdin(Stdio::null())
             .spawn()?;
         Ok(Self(child))
