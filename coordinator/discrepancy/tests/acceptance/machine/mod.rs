@@ -15,7 +15,7 @@ pub(crate) use at_once::AtOnce;
 use crate::case::{ORDERS, SAMPLES, SPEED, card, grid};
 use drive::{Drive, Warp, drive};
 use lags::{Genes, Lags, solve};
-use nalgebra::Complex;
+use nalgebra::{Complex, Vector3};
 use protocol::announce::EffectDescriptor;
 use protocol::job::{Counters, Observation, ObserveSpec, PhysicsFailure, Reached, Verdict};
 use turn::Turn;
