@@ -1,5 +1,5 @@
 //! Peers that connect and then say nothing, as many as the machine allows.
-use super::{LIMIT, MEASURING, rate};
+use super::{LIMIT, MEASURING, processor_us, rate};
 use coordinator::runtime::{Dispatch, DispatchOptions};
 use std::{
     collections::BTreeMap,
@@ -105,7 +105,10 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
     });
     let mut results = BTreeMap::new();
     let time = Duration::from_secs(4);
+    let cost = |spent_us: u64, jobs: usize| spent_us as f64 / jobs as f64;
+    let at_first = processor_us();
     let before = rate(&mut dispatch, &mut results, time).await;
+    let cost_before = cost(processor_us() - at_first, results.len());
     let address: std::net::SocketAddr = locator.trim_start_matches("tcp/").parse().unwrap();
     let begun = Instant::now();
     let mut idle = Vec::new();
@@ -117,7 +120,9 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
         }
     }
     let opened = begun.elapsed();
+    let (at_first, done) = (processor_us(), results.len());
     let meanwhile = rate(&mut dispatch, &mut results, time).await;
+    let cost_meanwhile = cost(processor_us() - at_first, results.len() - done);
     // and somebody else still gets in
     let late = Instant::now();
     let second = Process::worker(&locator, &["--slots", "2"]);
@@ -126,7 +131,8 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
     });
     eprintln!(
         "jobs a second: {before:.0} before, {meanwhile:.0} beside {} silent connections (opened in \
-         {opened:?}); another worker joined after {:?}",
+         {opened:?}); processor time of the coordinator for each {cost_before:.0} us before, \
+         {cost_meanwhile:.0} us meanwhile; another worker joined after {:?}",
         idle.len(),
         late.elapsed()
     );

@@ -194,7 +194,7 @@ impl<L: CoordinatorEnd> Engine<L> {
     fn local(&mut self, event: LocalEvent) {
         match event {
             LocalEvent::Ended { how } => {
-                tracing::warn!("a local worker {how}; it is started again")
+                tracing::warn!("a local worker {how}; it is started again");
             }
             LocalEvent::GivenUp { how } => {
                 tracing::warn!("a local worker {how}, too often by now; it is not started again");
