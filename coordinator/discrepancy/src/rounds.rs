@@ -15,6 +15,8 @@ use crate::stage::{again, pair, refit, suspect};
 use protocol::announce::EffectDescriptor;
 use search::least_squares;
 
+/// Rounds in which the valley is looked for.
+const LOOKS: usize = 2;
 /// Suspects that are refitted in any case.
 const RIVALS: usize = 3;
 
@@ -65,8 +67,8 @@ pub(crate) async fn rounds<L: Laboratory>(
             .cloned()
             .collect();
         let mut round = examine(lab, base, &current, (&open, &generic), settings).await?;
-        // the valley does not move far once it is found
-        if !in_valley {
+        // the valley does not move far once it is found; a second effect may hide it from the first
+        if !in_valley && number < LOOKS {
             in_valley = again::look(lab, base, (&current, &mut round), settings).await?;
         }
         if number == 0 {

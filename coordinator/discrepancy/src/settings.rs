@@ -45,7 +45,7 @@ impl Default for Settings {
             orders: 120,
             alpha: 0.01,
             adequacy: 1e-3,
-            valley: 2.0,
+            valley: 3.0,
             suspects: 8,
             gain: 3.0,
             practical: 0.05,
