@@ -79,6 +79,18 @@ fn energy_ledger_closes_over_one_revolution() {
     }
 }
 
+/// A method with steps as stated, whatever the swing, and all the work it wants.
+fn stated(case: &Case, method: Method, tolerance: f64, longest_step: f64) -> RunSettings {
+    RunSettings {
+        method,
+        tolerance,
+        longest_step,
+        slow_swing: f64::INFINITY,
+        budget: u64::MAX,
+        ..worker::convert::run_settings(case)
+    }
+}
+
 /// At a setting that resolves the ropes' own modes the ledger closes to 1e-4 of the crank's work with
 /// every method, and what Newton's method left of it goes with the tolerance (measured, recommended
 /// and optimised: 1e-6 to 2e-4 at a tolerance of 1, 1e-8 to 6e-6 at 0.1). The Rosenbrock method has no
@@ -98,14 +110,7 @@ fn energy_ledger_tightens_with_step_and_tolerance() {
             };
             let [loose, tight] = [(1.0, steps[0]), (0.1, steps[1])].map(|setting| {
                 let (tolerance, longest_step) = setting;
-                let settings = RunSettings {
-                    method,
-                    tolerance,
-                    longest_step,
-                    slow_swing: f64::INFINITY,
-                    budget: u64::MAX,
-                    ..worker::convert::run_settings(&case)
-                };
+                let settings = stated(&case, method, tolerance, longest_step);
                 let (result, _) = run(&machine, &law, &settings);
                 let work = result.work;
                 let gained = work.input - work.output - work.dissipated;
@@ -199,14 +204,7 @@ fn gauges_do_not_depend_on_the_method() {
     for (name, genes) in individuals(&case).into_iter().skip(1) {
         let law = worker::convert::rope_law(&case, &genes).unwrap();
         let with = |method, tolerance, longest_step| {
-            let settings = RunSettings {
-                method,
-                tolerance,
-                longest_step,
-                slow_swing: f64::INFINITY,
-                budget: u64::MAX,
-                ..worker::convert::run_settings(&case)
-            };
+            let settings = stated(&case, method, tolerance, longest_step);
             let (result, recorder) = run(&machine, &law, &settings);
             assert_eq!(result.verdict, Verdict::Complete);
             (result, recorder.curves)

@@ -16,6 +16,7 @@ use std::{
     sync::{Arc, Mutex},
     time::Duration,
 };
+use tempfile::TempDir;
 use tests::{
     keys::{make, raw_session},
     process::free_quic_locator,
@@ -33,6 +34,38 @@ async fn coordinator(locator: &str, keys: &Path) -> ZenohCoordinator {
         blob: Blob::new(vec![7; 1000]),
     };
     ZenohCoordinator::open(options).await.unwrap()
+}
+
+/// A coordinator, and two raw sessions with certificates and names of their own.
+struct Pair {
+    /// Keys of all three, there as long as they are.
+    folder: TempDir,
+    end: ZenohCoordinator,
+    one: Session,
+    two: Session,
+    mine: WorkerName,
+    theirs: WorkerName,
+}
+
+async fn two_workers() -> Pair {
+    let folder = tempfile::tempdir().unwrap();
+    let keys = folder.path().join("keys");
+    make(&keys, &[]);
+    let locator = free_quic_locator();
+    let end = coordinator(&locator, &keys).await;
+    let session = async |name| {
+        raw_session(&locator, &keys.join(name), true, 5000)
+            .await
+            .unwrap()
+    };
+    Pair {
+        folder,
+        end,
+        one: session("worker-01").await,
+        two: session("worker-02").await,
+        mine: WorkerName::of("worker-01", 1).unwrap(),
+        theirs: WorkerName::of("worker-02", 2).unwrap(),
+    }
 }
 
 async fn put(session: &Session, key: String, payload: &str) {
@@ -79,19 +112,14 @@ async fn heard_until(end: &mut ZenohCoordinator, last: &[u8]) -> Vec<Heard> {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_certificate_speaks_for_nobody_else() {
-    let folder = tempfile::tempdir().unwrap();
-    let keys = folder.path().join("keys");
-    make(&keys, &[]);
-    let locator = free_quic_locator();
-    let mut end = coordinator(&locator, &keys).await;
-    let one = raw_session(&locator, &keys.join("worker-01"), true, 5000)
-        .await
-        .unwrap();
-    let two = raw_session(&locator, &keys.join("worker-02"), true, 5000)
-        .await
-        .unwrap();
-    let mine = WorkerName::of("worker-01", 1).unwrap();
-    let theirs = WorkerName::of("worker-02", 2).unwrap();
+    let Pair {
+        folder: _folder,
+        mut end,
+        one,
+        two,
+        mine,
+        theirs,
+    } = two_workers().await;
     arrive(&mut end, &one, &mine).await;
     arrive(&mut end, &two, &theirs).await;
     // the presence of the other one, shown and taken away, would be heard as its loss
@@ -138,19 +166,14 @@ fn listen(session: &Session, pattern: String) -> Arc<Mutex<Vec<Vec<u8>>>> {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn a_certificate_overhears_nobody_else() {
-    let folder = tempfile::tempdir().unwrap();
-    let keys = folder.path().join("keys");
-    make(&keys, &[]);
-    let locator = free_quic_locator();
-    let mut end = coordinator(&locator, &keys).await;
-    let one = raw_session(&locator, &keys.join("worker-01"), true, 5000)
-        .await
-        .unwrap();
-    let two = raw_session(&locator, &keys.join("worker-02"), true, 5000)
-        .await
-        .unwrap();
-    let mine = WorkerName::of("worker-01", 1).unwrap();
-    let theirs = WorkerName::of("worker-02", 2).unwrap();
+    let Pair {
+        folder: _folder,
+        mut end,
+        one,
+        two,
+        mine,
+        theirs,
+    } = two_workers().await;
     let spied: Vec<_> = [
         "horsehead/**".to_owned(),
         "**".to_owned(),

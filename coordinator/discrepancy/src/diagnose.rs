@@ -187,7 +187,7 @@ async fn finish<L: Laboratory>(
 
 impl Diagnosis {
     /// Nothing but a reason.
-    pub(crate) fn unresolved(reason: &str) -> Self {
+    pub fn unresolved(reason: &str) -> Self {
         Self {
             verdict: Verdict::Unresolved,
             reason: Some(reason.to_owned()),

@@ -45,20 +45,8 @@ fn estimate(id: &str) -> Estimate {
 fn bare(verdict: Verdict) -> Diagnosis {
     Diagnosis {
         verdict,
-        reason: Some("because".to_owned()),
-        effects: Vec::new(),
-        rounds: Vec::new(),
-        whereabouts: None,
-        preflight: None,
-        limits: Vec::new(),
-        classes: Vec::new(),
-        before: None,
-        after: None,
-        rows: Vec::new(),
-        rival: None,
-        generic: None,
         assumed_noise: true,
-        notes: Vec::new(),
+        ..Diagnosis::unresolved("because")
     }
 }
 

@@ -1,8 +1,7 @@
 //! `horsehead bench integrators`: accuracy against work, by method of integration.
 use super::{
-    CaseChoice, EXIT_CODES, Output, OutputChoice, bus, condition, interrupt, output,
-    problem::Usage,
-    simulate::{check_out, individual},
+    CaseChoice, EXIT_CODES, IndividualChoice, Output, OutputChoice, bus, interrupt, output,
+    problem::Usage, simulate::check_out,
 };
 use crate::{
     report::{self, table, words},
@@ -30,17 +29,8 @@ Runs one after the other on one worker, so that wall times do not disturb each o
 pub(super) struct Arguments {
     #[command(flatten)]
     choice: CaseChoice,
-    /// Parameters: `recommended`, or a gene file such as a run's `calibrated.toml`.
-    #[arg(
-        long,
-        value_name = "recommended|FILE",
-        default_value = "recommended",
-        env = "HORSEHEAD_GENES"
-    )]
-    genes: String,
-    /// Working condition; that of the case's objective by default.
-    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
-    condition: Option<String>,
+    #[command(flatten)]
+    individual: IndividualChoice,
     /// Methods, as written in case files; all by default.
     #[arg(
         long,
@@ -64,8 +54,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let loaded = arguments.choice.load()?;
     let case = &loaded.case;
     let plan = WorkPlan {
-        condition: condition(case, arguments.condition.as_deref())?,
-        genes: individual(case, &arguments.genes)?,
+        condition: arguments.individual.condition(case)?,
+        genes: arguments.individual.genes(case)?,
         methods: methods(&arguments.methods)?,
         levels: arguments.levels,
     };

@@ -101,6 +101,37 @@ struct CaseChoice {
     measured: Option<PathBuf>,
 }
 
+/// Which parameters are simulated, and under which condition.
+#[derive(Clone, Debug, Args)]
+struct IndividualChoice {
+    /// Parameters: `recommended`, or a gene file such as a run's `calibrated.toml`.
+    #[arg(
+        long,
+        value_name = "recommended|FILE",
+        default_value = "recommended",
+        env = "HORSEHEAD_GENES"
+    )]
+    genes: String,
+    /// Working condition; that of the case's objective by default.
+    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
+    condition: Option<String>,
+}
+
+impl IndividualChoice {
+    /// Its genes in the case's order.
+    fn genes(&self, case: &protocol::case::Case) -> anyhow::Result<Vec<f64>> {
+        Ok(match self.genes.as_str() {
+            "recommended" => case.recommended(),
+            file => crate::case::read_genes(Path::new(file), case)?,
+        })
+    }
+
+    /// Position of its condition in the case.
+    fn condition(&self, case: &protocol::case::Case) -> Result<usize, Usage> {
+        condition(case, self.condition.as_deref())
+    }
+}
+
 /// How workers on other machines may join; not at all by default.
 #[derive(Clone, Debug, Default, Args)]
 struct Door {

@@ -1,6 +1,6 @@
 //! `horsehead simulate`: one run of the machine.
 use super::{
-    CaseChoice, Door, EXIT_CODES, OutputChoice, bus, condition, interrupt, json, output,
+    CaseChoice, Door, EXIT_CODES, IndividualChoice, OutputChoice, bus, interrupt, json, output,
     problem::Usage,
     run_folder::{RunFolder, command_line},
 };
@@ -25,17 +25,8 @@ Examples:
 pub(super) struct Arguments {
     #[command(flatten)]
     choice: CaseChoice,
-    /// Parameters: `recommended`, or a gene file such as a run's `calibrated.toml`.
-    #[arg(
-        long,
-        value_name = "recommended|FILE",
-        default_value = "recommended",
-        env = "HORSEHEAD_GENES"
-    )]
-    genes: String,
-    /// Working condition; that of the case's objective by default.
-    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
-    condition: Option<String>,
+    #[command(flatten)]
+    individual: IndividualChoice,
     /// Folder for the report, the figures and the curves; none are written without.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
     out: Option<PathBuf>,
@@ -47,8 +38,8 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let loaded = arguments.choice.load()?;
     let case = &loaded.case;
-    let condition = condition(case, arguments.condition.as_deref())?;
-    let genes = individual(case, &arguments.genes)?;
+    let condition = arguments.individual.condition(case)?;
+    let genes = arguments.individual.genes(case)?;
     if let Some(folder) = &arguments.out {
         check_out(folder)?;
     }
@@ -60,7 +51,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let wanted = Wanted {
         condition,
-        individuals: vec![(arguments.genes.clone(), genes)],
+        individuals: vec![(arguments.individual.genes.clone(), genes)],
         motion_step_deg,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
@@ -84,7 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             synthetic: loaded.synthetic,
         },
         condition,
-        genes_name: arguments.genes.clone(),
+        genes_name: arguments.individual.genes.clone(),
         genes: curves.genes.clone(),
         evaluation: curves.evaluation.clone(),
         simulation: curves.simulation.clone(),
@@ -103,14 +94,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let object = json::simulation((case, condition), &curves);
     let tables = || table::text(&table::simulation(&run), output::styled());
     output::print(arguments.output.output, tables, &object)
-}
-
-/// Gene values by what was typed: `recommended`, or a gene file.
-pub(super) fn individual(case: &Case, typed: &str) -> anyhow::Result<Vec<f64>> {
-    Ok(match typed {
-        "recommended" => case.recommended(),
-        file => crate::case::read_genes(Path::new(file), case)?,
-    })
 }
 
 /// Refuses a folder that cannot be written, before anything is simulated for it.

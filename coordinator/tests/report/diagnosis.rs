@@ -1,12 +1,11 @@
 //! The report of a diagnosis, for every verdict: complete, well-formed, honest.
 use crate::suspicion::{self, Made};
-use crate::{check_page, words};
+use crate::{check_page, names, words};
 use coordinator::case::CaseEffect;
 use coordinator::report::diagnosis;
 use discrepancy::verdict::Verdict;
 use protocol::unit::EFFECT_UNITS;
 use roxmltree::Document;
-use std::collections::BTreeSet;
 use std::path::Path;
 
 const ALL: [Verdict; 5] = [
@@ -158,11 +157,7 @@ fn the_folder_holds_the_figures_and_the_data_behind_them() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnosis");
     let made = suspicion::diagnosis(Verdict::Named);
     let written = diagnosis::write(&folder, &made.subject()).unwrap();
-    let names: BTreeSet<String> = written
-        .iter()
-        .filter_map(|path| Some(path.strip_prefix(&folder).ok()?.display().to_string()))
-        .collect();
-    assert_eq!(names.len(), written.len(), "a file is written twice");
+    let names = names(&folder, &written);
     for name in [
         "report.html",
         "tables.txt",

@@ -10,7 +10,7 @@ use coordinator::report::{
 use protocol::job::{PhysicsFailure, Reached, Verdict};
 use roxmltree::{Document, ParsingOptions};
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Elements that HTML leaves open.
 const VOID: [&str; 3] = ["meta", "input", "br"];
@@ -129,16 +129,22 @@ fn with_failed_recommended(points: usize) -> Calibration {
     calibration
 }
 
+/// What was written below a folder, each file once.
+fn names(folder: &Path, written: &[PathBuf]) -> BTreeSet<String> {
+    let names: BTreeSet<String> = written
+        .iter()
+        .filter_map(|path| Some(path.strip_prefix(folder).ok()?.display().to_string()))
+        .collect();
+    assert_eq!(names.len(), written.len(), "a file is written twice");
+    names
+}
+
 #[test]
 fn a_calibration_is_written_with_its_data() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("calibration");
     let calibration = sample::calibration(4880);
     let written = write_calibration(&folder, &calibration).unwrap();
-    let names: BTreeSet<_> = written
-        .iter()
-        .filter_map(|path| Some(path.strip_prefix(&folder).ok()?.display().to_string()))
-        .collect();
-    assert_eq!(names.len(), written.len(), "a file is written twice");
+    let names = names(&folder, &written);
     for name in [
         "report.html",
         "curves.csv",

@@ -438,21 +438,8 @@ pub(crate) fn stopped(reason: &str) -> Made {
     made.records = vec![record(0, 1)];
     made.diagnosed = Diagnosed {
         diagnosis: Diagnosis {
-            verdict: Verdict::Unresolved,
-            reason: Some(reason.to_owned()),
-            effects: Vec::new(),
-            rounds: Vec::new(),
-            whereabouts: None,
-            preflight: None,
-            limits: Vec::new(),
-            classes: Vec::new(),
-            before: None,
-            after: None,
-            rows: Vec::new(),
-            rival: None,
-            generic: None,
             assumed_noise: true,
-            notes: Vec::new(),
+            ..Diagnosis::unresolved(reason)
         },
         accounts: Vec::new(),
     };

@@ -190,12 +190,7 @@ impl Strategy for Conductor {
     }
 
     fn best(&self) -> Option<Best> {
-        self.archive.best().map(|best| Best {
-            id: best.id,
-            genes: best.genes.clone(),
-            fitness: best.told.fitness,
-            complete: best.told.survived(),
-        })
+        self.archive.best().map(Best::from)
     }
 
     fn archive(&self) -> &Archive {

@@ -172,6 +172,17 @@ pub struct Best {
     pub complete: bool,
 }
 
+impl From<&Evaluated> for Best {
+    fn from(found: &Evaluated) -> Self {
+        Self {
+            id: found.id,
+            genes: found.genes.clone(),
+            fitness: found.told.fitness,
+            complete: found.told.survived(),
+        }
+    }
+}
+
 /// One batch-wise part of a strategy. It sees results only as whole batches, in the order of its
 /// own plan.
 pub trait Piece {

@@ -1,20 +1,13 @@
 //! Crank angle x channel: where in the revolution the residual is no noise.
-use super::canvas::{Canvas, Lettering, Pen, render};
+use super::canvas::{Canvas, Pen, render};
 use super::panel::{CRANK_TITLE, Panel};
+use super::rows;
 use super::scale::Scale;
-use super::{ChartError, Figure, GREY, INK, WIDTH};
+use super::{ChartError, Figure, INK, WIDTH};
 use crate::report::color;
 use crate::report::number::{fixed, range};
 use discrepancy::locate::angle::{AngleMap, BINS, WIDTHS, Window};
-use plotters::style::text_anchor::{HPos, VPos};
 
-const LEFT: f64 = 104.0;
-const RIGHT: f64 = 20.0;
-const TOP: f64 = 40.0;
-const ROW: f64 = 30.0;
-const FOOT: f64 = 46.0;
-/// By how much cells overlap [px]: no seams between them.
-const OVERLAP: f64 = 0.5;
 /// The colour scale ends here at the earliest (standard deviations): noise stays pale.
 const LEAST: f64 = 5.0;
 
@@ -28,18 +21,21 @@ pub fn angle_map(map: &AngleMap, channels: &[String]) -> Result<Option<Figure>, 
     }
     let end =
         range(map.strength.iter().flatten().map(|s| s.abs())).map_or(LEAST, |(_, s)| s.max(LEAST));
-    let height = TOP + ROW * channels.len() as f64 + FOOT;
+    let height = rows::height(channels.len());
     let title = "Residual over its uncertainty, by crank angle and channel";
     let svg = render((WIDTH, height), title, |canvas| {
-        let panel = panel(channels.len());
-        key(canvas, end)?;
+        let panel = rows::panel(channels.len(), Scale::crank());
+        let high = format!("simulated too high  −{}", fixed(end, 0));
+        let low = format!("+{}  too low", fixed(end, 0));
+        let signed = |share| color::signed(2.0 * share - 1.0);
+        rows::key(canvas, signed, (&high, &low, 120.0))?;
         for (row, strengths) in map.strength.iter().enumerate() {
             cells(canvas, &panel, (row, strengths), end)?;
         }
         for window in &map.windows {
             outline(canvas, &panel, window)?;
         }
-        names(canvas, &panel, channels)?;
+        rows::names(canvas, &panel, channels)?;
         panel.lower_axis(canvas, true, CRANK_TITLE)
     })?;
     Ok(Some(Figure {
@@ -52,18 +48,6 @@ pub fn angle_map(map: &AngleMap, channels: &[String]) -> Result<Option<Figure>, 
         ),
         svg,
     }))
-}
-
-/// The frame of a map of this many channels.
-fn panel(channels: usize) -> Panel {
-    Panel {
-        left: LEFT,
-        top: TOP,
-        width: WIDTH - LEFT - RIGHT,
-        height: ROW * channels as f64,
-        x: Scale::crank(),
-        y: Scale::between(channels as f64, 0.0, 1.0),
-    }
 }
 
 /// One channel: a cell per bin, at the centre of the window that begins there.
@@ -81,7 +65,7 @@ fn cells(
         let to = panel.at_x((centre + 1) as f64 * bin_deg);
         canvas.rectangle(
             (from, top),
-            ((to + OVERLAP).min(panel.right()), bottom),
+            ((to + rows::OVERLAP).min(panel.right()), bottom),
             color::signed(strength / end),
         )?;
     }
@@ -116,35 +100,4 @@ fn outline(canvas: &Canvas<'_>, panel: &Panel, window: &Window) -> Result<(), Ch
         }
     }
     Ok(())
-}
-
-/// Names of the rows.
-fn names(canvas: &Canvas<'_>, panel: &Panel, channels: &[String]) -> Result<(), ChartError> {
-    let lettering = Lettering::new(11.0, INK).at(HPos::Right, VPos::Center);
-    for (row, name) in channels.iter().enumerate() {
-        canvas.text((LEFT - 10.0, panel.at_y(row as f64 + 0.5)), name, lettering)?;
-    }
-    Ok(())
-}
-
-/// The colour scale above the map.
-fn key(canvas: &Canvas<'_>, end: f64) -> Result<(), ChartError> {
-    const BAR: f64 = 180.0;
-    const STEPS: usize = 60;
-    let y = 15.0;
-    let left = WIDTH - RIGHT - BAR - 120.0;
-    for step in 0..STEPS {
-        let share = (step as f64 + 0.5) / STEPS as f64;
-        let x = left + BAR * step as f64 / STEPS as f64;
-        canvas.rectangle(
-            (x, y - 5.0),
-            (x + BAR / STEPS as f64 + OVERLAP, y + 5.0),
-            color::signed(2.0 * share - 1.0),
-        )?;
-    }
-    let text = Lettering::new(10.5, GREY);
-    let before = format!("simulated too high  −{}", fixed(end, 0));
-    canvas.text((left - 8.0, y), &before, text.at(HPos::Right, VPos::Center))?;
-    let behind = format!("+{}  too low", fixed(end, 0));
-    canvas.text((left + BAR + 8.0, y), &behind, text)
 }

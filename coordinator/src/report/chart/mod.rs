@@ -14,6 +14,7 @@ mod order_map;
 mod overlay;
 mod panel;
 mod revolution;
+mod rows;
 mod scale;
 mod strip;
 mod work;

@@ -112,10 +112,8 @@ impl Effect for Packing {
         let force = side
             .iter()
             .map(|side| -self.force * (side + self.uneven * side.abs()));
-        hooks.add_force(Arc::new(Scheduled {
-            coordinate: machine.layout.suspension(),
-            force: Splines::periodic(0.0, TAU / NODES as f64, &[force.collect()]),
-        }));
+        let coordinate = machine.layout.suspension();
+        hooks.add_force(Arc::new(Scheduled::new(coordinate, force.collect())));
     }
 }
 
@@ -148,10 +146,8 @@ impl Effect for Winding {
             let pull = (1.0 - self.constant) * tension[i] + self.constant * mean;
             self.loss * pull * arm[i] * side[i]
         });
-        hooks.add_force(Arc::new(Scheduled {
-            coordinate: machine.layout.beam(),
-            force: Splines::periodic(0.0, TAU / NODES as f64, &[moment.collect()]),
-        }));
+        let coordinate = machine.layout.beam();
+        hooks.add_force(Arc::new(Scheduled::new(coordinate, moment.collect())));
     }
 }
 
@@ -160,8 +156,18 @@ impl Law for Winding {}
 /// A force that is known over the turn.
 #[derive(Clone, Debug)]
 pub(super) struct Scheduled {
-    pub(super) coordinate: usize,
-    pub(super) force: Splines,
+    coordinate: usize,
+    force: Splines,
+}
+
+impl Scheduled {
+    /// Of a force at even places of the turn, as [`curve`] gives it.
+    pub(super) fn new(coordinate: usize, force: Vec<f64>) -> Self {
+        Self {
+            coordinate,
+            force: Splines::periodic(0.0, TAU / force.len() as f64, &[force]),
+        }
+    }
 }
 
 impl LineForce for Scheduled {

@@ -4,10 +4,9 @@ use super::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{cos, exp, sqrt};
 use simulation::drive::DriveState;
-use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce};
-use simulation::math::spline::Splines;
+use simulation::effect::{Along, Cycle, Dashpot, Effect, Hooks, LineForce};
 use simulation::model::Machine;
-use simulation::model::description::Description;
+use simulation::model::description::{AddedMode, Description};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -108,10 +107,7 @@ impl Effect for Crosshead {
     fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
         let moment = self.force * machine.description.rod.length;
         let moment = curve(|turn| moment * cos(self.order * turn + self.phase));
-        hooks.add_force(Arc::new(Scheduled {
-            coordinate: machine.layout.rod(),
-            force: Splines::periodic(0.0, TAU / moment.len() as f64, &[moment]),
-        }));
+        hooks.add_force(Arc::new(Scheduled::new(machine.layout.rod(), moment)));
     }
 }
 
@@ -141,10 +137,7 @@ impl Effect for Gust {
             let u = away / self.width.to_radians();
             self.moment * exp(-u * u)
         });
-        hooks.add_force(Arc::new(Scheduled {
-            coordinate: machine.layout.beam(),
-            force: Splines::periodic(0.0, TAU / moment.len() as f64, &[moment]),
-        }));
+        hooks.add_force(Arc::new(Scheduled::new(machine.layout.beam(), moment)));
     }
 }
 
@@ -170,26 +163,22 @@ struct Ballast {
 impl Effect for Ballast {
     fn describe(&self, d: &mut Description, modes: &mut usize) {
         let head = &mut d.head;
-        head.frequencies.truncate(*modes);
-        head.radial.truncate(*modes);
-        head.tangential.truncate(*modes);
-        head.gauge_stress.truncate(*modes);
-        head.participation.truncate(*modes);
+        head.keep(*modes);
         let stations = head.radial.first().map_or(2, Vec::len);
-        head.frequencies.push(TAU * self.frequency);
-        head.radial.push(vec![0.0; stations]);
-        head.tangential.push(vec![0.0; stations]);
-        head.gauge_stress.push([0.0; 4]);
-        head.participation
-            .push([0.0, 0.0, sqrt(self.mass) * self.arm]);
+        head.add(AddedMode {
+            frequency: TAU * self.frequency,
+            radial: vec![0.0; stations],
+            tangential: vec![0.0; stations],
+            participation: [0.0, 0.0, sqrt(self.mass) * self.arm],
+        });
         *modes += 1;
     }
 
     fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
         let d = &machine.description;
         let mode = machine.layout.modes - 1;
-        hooks.add_force(Arc::new(Slosh {
-            mode: machine.layout.mode(mode),
+        hooks.add_force(Arc::new(Dashpot {
+            coordinate: machine.layout.mode(mode),
             damping: 2.0 * (SLOSH - d.head.damping_ratio) * d.head.frequencies[mode],
         }));
     }
@@ -199,26 +188,6 @@ impl Law for Ballast {}
 
 /// Damping ratio of the swinging ballast.
 const SLOSH: f64 = 0.08;
-
-#[derive(Clone, Copy, Debug)]
-struct Slosh {
-    mode: usize,
-    damping: f64,
-}
-
-impl LineForce for Slosh {
-    fn coordinate(&self) -> usize {
-        self.mode
-    }
-
-    fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
-        Along {
-            other: -self.damping * rate,
-            by_rate: -self.damping,
-            ..Along::default()
-        }
-    }
-}
 
 #[cfg(test)]
 mod tests {

@@ -5,9 +5,9 @@
 use super::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{cos, sin, sqrt};
-use simulation::effect::{Along, Cycle, Effect, Force, Hooks, LineForce};
+use simulation::effect::{Cycle, Dashpot, Effect, Force, Hooks};
 use simulation::linear::Bordered;
-use simulation::model::description::Description;
+use simulation::model::description::{AddedMode, Description};
 use simulation::model::{Instant, Machine};
 use std::sync::Arc;
 
@@ -35,11 +35,7 @@ impl Sinking {
 impl Effect for Sinking {
     fn describe(&self, d: &mut Description, modes: &mut usize) {
         let head = &mut d.head;
-        head.frequencies.truncate(*modes);
-        head.radial.truncate(*modes);
-        head.tangential.truncate(*modes);
-        head.gauge_stress.truncate(*modes);
-        head.participation.truncate(*modes);
+        head.keep(*modes);
         let stations = head.radial.first().map_or(2, Vec::len);
         let root = sqrt(self.mass);
         let angle = |i: usize| head.start + head.step * i as f64;
@@ -48,12 +44,13 @@ impl Effect for Sinking {
                 .map(|i| part(angle(i)) / root)
                 .collect::<Vec<f64>>()
         });
-        head.frequencies.push(self.frequency());
-        head.radial.push(radial);
-        head.tangential.push(tangential);
-        head.gauge_stress.push([0.0; 4]);
         let offset = d.beam_gravity_moment / d.gravity / root;
-        head.participation.push([0.0, root, offset]);
+        head.add(AddedMode {
+            frequency: self.frequency(),
+            radial,
+            tangential,
+            participation: [0.0, root, offset],
+        });
         *modes += 1;
     }
 
@@ -72,7 +69,7 @@ impl Effect for Sinking {
             beam: machine.layout.beam(),
         }));
         hooks.add_force(Arc::new(Dashpot {
-            mode,
+            coordinate: mode,
             // beside what every mode of the head has
             damping: 2.0 * (self.damping - d.head.damping_ratio) * self.frequency(),
         }));
@@ -80,26 +77,6 @@ impl Effect for Sinking {
 }
 
 impl Law for Sinking {}
-
-#[derive(Clone, Copy, Debug)]
-struct Dashpot {
-    mode: usize,
-    damping: f64,
-}
-
-impl LineForce for Dashpot {
-    fn coordinate(&self) -> usize {
-        self.mode
-    }
-
-    fn along(&self, _: &simulation::drive::DriveState, _: f64, rate: f64) -> Along {
-        Along {
-            other: -self.damping * rate,
-            by_rate: -self.damping,
-            ..Along::default()
-        }
-    }
-}
 
 /// Potential `P y cos(theta) / sqrt(m)` of the load on a pivot that is `y / sqrt(m)` out of its place
 /// across the beam.

@@ -23,6 +23,29 @@ pub struct Along {
     pub by_rate: f64,
 }
 
+/// Viscous damping of one coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct Dashpot {
+    /// Which.
+    pub coordinate: usize,
+    /// Force per rate.
+    pub damping: f64,
+}
+
+impl LineForce for Dashpot {
+    fn coordinate(&self) -> usize {
+        self.coordinate
+    }
+
+    fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
+        Along {
+            other: -self.damping * rate,
+            by_rate: -self.damping,
+            ..Along::default()
+        }
+    }
+}
+
 /// A law of one coordinate and its rate.
 pub trait LineForce: Debug + Send + Sync {
     /// Which coordinate.

@@ -54,7 +54,7 @@ mod tests;
 pub use cycle::Cycle;
 pub use descriptor::{Descriptor, Parameter, Place, Role, Unit};
 pub use hooks::{Axial, AxialLaws, Force, Hooks, Memory, Reading, Sampled, Strain};
-pub use line::{Along, LineForce};
+pub use line::{Along, Dashpot, LineForce};
 pub use profile::{Hollow, Profile};
 pub use selection::{Asked, Refused, Selection};
 

@@ -5,11 +5,10 @@
 //! side is not modelled twice: its pull, the load with the carrier's weight, hangs on the pivot as a
 //! given force. The post is equally stiff along and across; `mass` moves with the pivot.
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
-use super::{Along, Cycle, Effect, Force, Hooks, LineForce};
-use crate::drive::DriveState;
+use super::{Cycle, Dashpot, Effect, Force, Hooks};
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
-use crate::model::description::Description;
+use crate::model::description::{AddedMode, Description};
 use crate::model::{Instant, MAX_MODES, Machine};
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -61,11 +60,7 @@ impl Effect for Post {
     fn describe(&self, d: &mut Description, modes: &mut usize) {
         let head = &mut d.head;
         *modes = (*modes).min(MAX_MODES - 2);
-        head.frequencies.truncate(*modes);
-        head.radial.truncate(*modes);
-        head.tangential.truncate(*modes);
-        head.gauge_stress.truncate(*modes);
-        head.participation.truncate(*modes);
+        head.keep(*modes);
         let stations = head.radial.first().map_or(27, Vec::len);
         let root = self.mass.sqrt();
         let at = |i: usize| sin_cos(head.start + head.step * i as f64);
@@ -83,11 +78,12 @@ impl Effect for Post {
         let offset = d.beam_gravity_moment / d.gravity / root;
         let couplings = [[root, 0.0, 0.0], [0.0, root, offset]];
         for ([radial, tangential], coupling) in shapes.into_iter().zip(couplings) {
-            head.frequencies.push(self.frequency());
-            head.radial.push(radial);
-            head.tangential.push(tangential);
-            head.gauge_stress.push([0.0; 4]);
-            head.participation.push(coupling);
+            head.add(AddedMode {
+                frequency: self.frequency(),
+                radial,
+                tangential,
+                participation: coupling,
+            });
         }
         *modes += 2;
     }
@@ -104,32 +100,12 @@ impl Effect for Post {
             across,
             beam: layout.beam(),
         }));
-        for index in [along, across] {
+        for coordinate in [along, across] {
             hooks.forces.push(Arc::new(Dashpot {
-                index,
+                coordinate,
                 // beside what every mode of the head has
                 damping: 2.0 * (self.damping - d.head.damping_ratio) * self.frequency(),
             }));
-        }
-    }
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Dashpot {
-    index: usize,
-    damping: f64,
-}
-
-impl LineForce for Dashpot {
-    fn coordinate(&self) -> usize {
-        self.index
-    }
-
-    fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
-        Along {
-            other: -self.damping * rate,
-            by_rate: -self.damping,
-            ..Along::default()
         }
     }
 }

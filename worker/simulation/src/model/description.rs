@@ -130,6 +130,39 @@ pub struct Head {
     pub tangential_influence: Vec<Vec<f64>>,
 }
 
+/// A further mode of the head.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AddedMode {
+    /// Angular frequency [rad/s].
+    pub frequency: f64,
+    /// Outward radial shape [kg^-1/2]; s.
+    pub radial: Vec<f64>,
+    /// Tangential shape, towards growing angle; s.
+    pub tangential: Vec<f64>,
+    /// Coupling with base acceleration in x, y and about the pivot.
+    pub participation: [f64; 3],
+}
+
+impl Head {
+    /// Keeps the lowest modes.
+    pub fn keep(&mut self, modes: usize) {
+        self.frequencies.truncate(modes);
+        self.radial.truncate(modes);
+        self.tangential.truncate(modes);
+        self.gauge_stress.truncate(modes);
+        self.participation.truncate(modes);
+    }
+
+    /// Adds a mode behind the others; it is none of the head's own and strains no gauge.
+    pub fn add(&mut self, mode: AddedMode) {
+        self.frequencies.push(mode.frequency);
+        self.radial.push(mode.radial);
+        self.tangential.push(mode.tangential);
+        self.gauge_stress.push([0.0; 4]);
+        self.participation.push(mode.participation);
+    }
+}
+
 /// How gauge stress follows from modal coordinates and forces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum StressRecovery {
