@@ -13,6 +13,7 @@ use crate::stage::establish::{Base, establish};
 use crate::stage::preflight::Preflight;
 use crate::stage::show::Row;
 use crate::stage::whereabouts::Where;
+pub use crate::stage::worth::LookAlikes;
 use crate::stage::{show, whereabouts};
 use crate::verdict::{Findings, Verdict, verdict};
 use protocol::announce::EffectDescriptor;
@@ -57,8 +58,8 @@ pub struct Diagnosis {
     pub preflight: Option<Preflight>,
     /// Detection limits of all effects.
     pub limits: Vec<Limit>,
-    /// Effects that this record cannot tell apart at their usual sizes.
-    pub classes: Vec<Vec<String>>,
+    /// Effects that this record cannot tell apart, and what would.
+    pub look_alikes: Vec<LookAlikes>,
     /// The recalibrated model without effects.
     pub before: Option<Fit>,
     /// The model of the answer.
@@ -196,7 +197,7 @@ impl Diagnosis {
             whereabouts: None,
             preflight: None,
             limits: Vec::new(),
-            classes: Vec::new(),
+            look_alikes: Vec::new(),
             before: None,
             after: None,
             rows: Vec::new(),

@@ -1,4 +1,4 @@
-//! Numbers of the answer: sizes with intervals, detection limits, and what cannot be told apart.
+//! Numbers of the answer: sizes with intervals, and detection limits.
 use crate::bench::Fit;
 use crate::evidence::misfit;
 use crate::isolability::{self, Hurdle};
@@ -9,7 +9,6 @@ use crate::settings::Settings;
 use crate::stage::establish::Base;
 use crate::stage::refit::Refitted;
 use crate::tangent::Tangent;
-use nalgebra::DMatrix;
 use protocol::announce::Sign;
 
 /// An effect of the answer.
@@ -44,22 +43,15 @@ pub struct Limit {
 /// that the variance of a low order has from a handful of cycles.
 const QUANTILE: f64 = 2.262;
 
-/// Detection limits and classes of effects, before any verdict.
-pub(crate) fn outlook(
-    round: &Round,
-    fit: &Fit,
-    base: &Base,
-    settings: &Settings,
-) -> (Vec<Limit>, Vec<Vec<String>>) {
+/// Detection limits of all effects, before any verdict.
+pub(crate) fn limits(round: &Round, fit: &Fit, base: &Base, settings: &Settings) -> Vec<Limit> {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
     let phi = misfit(fit.chi_squared(), base.bench.metric.len());
     let mut limits = Vec::new();
-    let mut known: Vec<(String, DMatrix<f64>)> = Vec::new();
     for suspect in &round.suspects {
         if suspect.signature.ncols() == 0 {
             continue;
         }
-        known.push((suspect.effect.id.clone(), suspect.signature.clone()));
         let tests = suspect.tries * round.suspects.len();
         let hurdle = Hurdle {
             p_value: single(settings.alpha, tests),
@@ -80,11 +72,7 @@ pub(crate) fn outlook(
             });
         }
     }
-    let signatures: Vec<DMatrix<f64>> = known.iter().map(|(_, g)| g.clone()).collect();
-    let distances = isolability::distances(&signatures, &tangent);
-    let classes = isolability::classes(&distances);
-    let name = |members: Vec<usize>| members.into_iter().map(|i| known[i].0.clone()).collect();
-    (limits, classes.into_iter().map(name).collect())
+    limits
 }
 
 /// The added effects with their sizes, then the other members of their sets.

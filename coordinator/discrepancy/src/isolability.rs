@@ -1,14 +1,13 @@
 //! What this record could tell apart, before any verdict: detection limits of single effects, and
 //! how far two effects lie apart once recalibration has taken its share.
 //!
-//! `D_jk^2 = lambda_min(G~_j^T (I - P_G~k) G~_j)` with projected signatures per physical size: two
-//! effects of size eta are told apart where `eta^2 D^2 > 11`. (Eriksson, Frisk, Krysander: distinguishability;
-//! Doehler, Mevel, Zhang: min-max test.)
+//! `D_jk^2 = g~_j^T (I - P_G~k) g~_j` with projected signatures: two effects are told apart where
+//! `D^2 > 11`. (Eriksson, Frisk, Krysander: distinguishability; Doehler, Mevel, Zhang: min-max test.)
 use crate::tangent::Tangent;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
 
-/// An effect of size 1 is told apart from another where `D^2` exceeds this.
+/// An effect is told apart from another where `D^2` exceeds this.
 pub const APART: f64 = 11.0;
 
 /// What an effect has to overcome to be seen.
@@ -76,8 +75,9 @@ pub fn likeness(a: &DMatrix<f64>, b: &DMatrix<f64>, tangent: &Tangent) -> f64 {
     }
 }
 
-/// `D_jk^2` for every pair: row j, column k: how much of effect j per unit size no amount of
-/// effect k, and no recalibration, explains.
+/// `D_jk^2` for every pair: row j, column k: how much of effect j no amount of effect k, and no
+/// recalibration, explains; of an effect with several sizes the one that shows least. Sizes are the
+/// signatures' own.
 pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64> {
     let projected: Vec<DMatrix<f64>> = signatures
         .iter()
@@ -86,35 +86,31 @@ pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64>
     let bases: Vec<DMatrix<f64>> = projected.iter().map(orthonormal).collect();
     DMatrix::from_fn(signatures.len(), signatures.len(), |j, k| {
         let left = &projected[j] - &bases[k] * bases[k].tr_mul(&projected[j]);
-        left.tr_mul(&left).symmetric_eigenvalues().min().max(0.0)
+        let each = left.column_iter().map(|column| column.norm_squared());
+        each.fold(f64::INFINITY, f64::min)
     })
 }
 
-/// Effects grouped such that members of one group cannot be told apart at size 1; singletons are
-/// isolable.
-pub fn classes(distances: &DMatrix<f64>) -> Vec<Vec<usize>> {
-    let n = distances.nrows();
-    let mut group: Vec<usize> = (0..n).collect();
-    for j in 0..n {
-        for k in 0..j {
-            if distances[(j, k)].min(distances[(k, j)]) < APART {
-                let (from, to) = (group[j].max(group[k]), group[j].min(group[k]));
-                for g in &mut group {
-                    if *g == from {
-                        *g = to;
-                    }
-                }
-            }
-        }
-    }
-    let mut classes: Vec<Vec<usize>> = Vec::new();
-    for first in 0..n {
-        let members: Vec<usize> = (0..n).filter(|&i| group[i] == first).collect();
-        if !members.is_empty() {
-            classes.push(members);
-        }
-    }
-    classes
+/// Two effects, by their place in a list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// The two, in the list's order.
+    pub members: [usize; 2],
+    /// The smaller of their two distances, over what it takes to tell them apart at this misfit.
+    pub apart: f64,
+}
+
+/// How far all pairs are apart at the signatures' sizes under a misfit, in the list's order.
+pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, phi: f64) -> Vec<Pair> {
+    let distances = distances(signatures, tangent);
+    let n = signatures.len();
+    let of = |j: usize, k: usize| Pair {
+        members: [j, k],
+        apart: distances[(j, k)].min(distances[(k, j)]) / (APART * phi * phi),
+    };
+    (0..n)
+        .flat_map(|j| (j + 1..n).map(move |k| of(j, k)))
+        .collect()
 }
 
 /// Orthonormal basis of the columns' span.
@@ -145,6 +141,10 @@ mod tests {
         Tangent::new(&at, &[])
     }
 
+    fn c_of(third: f64) -> DVector<f64> {
+        DVector::from_column_slice(&[0.0, 0.0, third])
+    }
+
     fn column(values: &[f64]) -> DMatrix<f64> {
         DMatrix::from_column_slice(values.len(), 1, values)
     }
@@ -160,16 +160,26 @@ mod tests {
         assert!((d[(0, 1)] - (30.0 * sine).powi(2)).abs() < 1e-9);
         assert!((d[(1, 0)] - 16.0).abs() < 1e-9);
         assert!((d[(2, 0)] - 25.0).abs() < 1e-9);
-        assert_eq!(classes(&d), vec![vec![0], vec![1], vec![2]]);
-        let near = distances(
+        let near = pairs(
             &[
                 column(&[30.0, 0.0, 0.0]),
                 column(&[30.0, 3.0, 0.0]),
                 column(&[0.0, 0.0, 9.0]),
             ],
             &tangent,
+            1.0,
         );
-        assert_eq!(classes(&near), vec![vec![0, 1], vec![2]]);
+        let alike: Vec<[usize; 2]> = near
+            .iter()
+            .filter(|pair| pair.apart < 1.0)
+            .map(|pair| pair.members)
+            .collect();
+        assert_eq!(alike, vec![[0, 1]]);
+        // a size that hides behind the other effect is the one that counts
+        let two =
+            DMatrix::from_columns(&[c_of(9.0), c_of(0.0) + column(&[3.0, 0.0, 0.0]).column(0)]);
+        let d = distances(&[two, column(&[1.0, 0.0, 0.0])], &tangent);
+        assert!(d[(0, 1)] < 1e-9);
     }
 
     /// One size whose estimate has deviation 1: found in nine of ten records where

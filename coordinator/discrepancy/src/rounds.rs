@@ -2,7 +2,7 @@
 //! believe the best or stop; at the end, take back what is not needed any more.
 use crate::bench::Fit;
 use crate::diagnose::{Diagnosis, Inputs};
-use crate::estimate::outlook;
+use crate::estimate::limits;
 use crate::evidence::{ambiguity_set, log_evidence, misfit};
 use crate::laboratory::{Laboratory, Stage};
 use crate::score::{chi_squared_tail, family_wise};
@@ -11,7 +11,7 @@ use crate::stage::challenge::{Challenger, Named, challenge};
 use crate::stage::establish::Base;
 use crate::stage::refit::Refitted;
 use crate::stage::suspect::Suspect;
-use crate::stage::{again, pair, refit, suspect};
+use crate::stage::{again, pair, refit, suspect, worth};
 use protocol::announce::EffectDescriptor;
 use search::least_squares;
 
@@ -72,7 +72,10 @@ pub(crate) async fn rounds<L: Laboratory>(
             in_valley = again::look(lab, base, (&current, &mut round), settings).await?;
         }
         if number == 0 {
-            (diagnosis.limits, diagnosis.classes) = outlook(&round, &current, base, settings);
+            diagnosis.limits = limits(&round, &current, base, settings);
+            let others = inputs.records.iter().skip(1);
+            let about = (&round, diagnosis.limits.as_slice());
+            diagnosis.look_alikes = worth::weigh(lab, base, &current, about, others).await?;
         }
         let next = match contested(lab, base, &current, &round, settings).await? {
             Some(challenger) => {

@@ -25,8 +25,10 @@ pub(super) struct DiagnoseOutput {
     #[serde(rename = "where")]
     whereabouts: Option<WhereOutput>,
     detection_limits: Vec<LimitOutput>,
-    /// Effects that this record cannot tell apart at their usual sizes.
-    inseparable: Vec<Vec<String>>,
+    /// Pairs that this record cannot tell apart at three times their detection limits.
+    inseparable: Vec<[String; 2]>,
+    /// What would part those pairs, in their order.
+    data_worth: Vec<WorthOutput>,
     gap: GapOutput,
     rival: Option<RivalOutput>,
     assumed_noise: bool,
@@ -45,6 +47,14 @@ struct EffectOutput {
     parameters: BTreeMap<String, ParameterOutput>,
     p_value: f64,
     ln_evidence: f64,
+}
+
+/// How many times as many cycles would part two effects.
+#[derive(Debug, Serialize)]
+struct WorthOutput {
+    effects: [String; 2],
+    cycles: f64,
+    cycles_with_other_conditions: Option<f64>,
 }
 
 #[derive(Debug, Serialize)]
@@ -209,10 +219,18 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             })
             .collect(),
         inseparable: diagnosis
-            .classes
+            .look_alikes
             .iter()
-            .filter(|class| class.len() > 1)
-            .cloned()
+            .map(|pair| pair.effects.clone())
+            .collect(),
+        data_worth: diagnosis
+            .look_alikes
+            .iter()
+            .map(|pair| WorthOutput {
+                effects: pair.effects.clone(),
+                cycles: pair.cycles,
+                cycles_with_other_conditions: pair.cycles_with_others,
+            })
             .collect(),
         gap: gap(&diagnosis.rows, calibrated),
         rival: diagnosis.rival.as_ref().map(|(id, rows)| RivalOutput {

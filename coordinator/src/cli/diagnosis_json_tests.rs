@@ -2,7 +2,7 @@
 use super::*;
 use crate::report::Provenance;
 use crate::study::Diagnosed;
-use discrepancy::diagnose::{Limit, Round};
+use discrepancy::diagnose::{Limit, LookAlikes, Round};
 use discrepancy::locate::{angle, joint, order};
 use discrepancy::record::{Record, Source, Stated};
 use discrepancy::show::Closed;
@@ -95,10 +95,11 @@ fn full(verdict: Verdict) -> Diagnosis {
             unit: "1".to_owned(),
             size: f64::INFINITY,
         }],
-        classes: vec![
-            vec!["gauge_drift".to_owned(), "gauge_gain".to_owned()],
-            vec!["rope_toe".to_owned()],
-        ],
+        look_alikes: vec![LookAlikes {
+            effects: ["gauge_drift".to_owned(), "gauge_gain".to_owned()],
+            cycles: 2.5,
+            cycles_with_others: None,
+        }],
         rows: rows.clone(),
         rival: Some(("rope_toe".to_owned(), rows)),
         assumed_noise: false,
@@ -172,7 +173,13 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
 fn a_diagnosis_that_stopped_has_empty_lists_and_nulls() {
     let said = printed(bare(Verdict::Unresolved));
     assert_eq!(said["reason"], "because");
-    for list in ["effects", "rounds", "detection_limits", "inseparable"] {
+    for list in [
+        "effects",
+        "rounds",
+        "detection_limits",
+        "inseparable",
+        "data_worth",
+    ] {
         assert_eq!(said[list], Value::Array(Vec::new()), "{list}");
     }
     assert!(said["where"].is_null() && said["rival"].is_null());
@@ -215,11 +222,11 @@ fn effects_gaps_and_limits_are_as_documented() {
     // infinities are null: JSON has none
     assert!(said["detection_limits"][0]["size"].is_null());
     assert!(said["where"]["joints"][0]["ln_bayes"].is_null());
-    // groups of one tell nothing
-    assert_eq!(
-        said["inseparable"],
-        serde_json::json!([["gauge_drift", "gauge_gain"]])
-    );
+    let pair = serde_json::json!(["gauge_drift", "gauge_gain"]);
+    assert_eq!(said["inseparable"][0], pair);
+    assert_eq!(said["data_worth"][0]["effects"], pair);
+    assert_eq!(said["data_worth"][0]["cycles"], 2.5);
+    assert!(said["data_worth"][0]["cycles_with_other_conditions"].is_null());
     assert_eq!(said["stages"][0]["simulations"], 40);
     assert_eq!(said["stages"][0]["wall_s"], 1.5);
 }

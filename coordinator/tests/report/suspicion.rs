@@ -4,7 +4,7 @@ use coordinator::report::Provenance;
 use coordinator::report::diagnosis::Subject;
 use coordinator::study::{Account, Diagnosed};
 use discrepancy::bench::Fit;
-use discrepancy::diagnose::{Diagnosis, Estimate, Limit, Round};
+use discrepancy::diagnose::{Diagnosis, Estimate, Limit, LookAlikes, Round};
 use discrepancy::laboratory::Stage;
 use discrepancy::locate::{angle, joint, order};
 use discrepancy::model::Model;
@@ -233,6 +233,7 @@ fn suspect(effect: &EffectDescriptor, statistic: f64, p_value: f64, absorbed: f6
         }),
         start: vec![0.0; effect.parameters.len()],
         signature: DMatrix::zeros(ENTRIES, usize::from(able)),
+        taken: vec![vec![0.0; effect.parameters.len()]; usize::from(able)],
         tries: 3,
     }
 }
@@ -411,7 +412,11 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         whereabouts: Some(whereabouts()),
         preflight: Some(preflight()),
         limits: limits(&library),
-        classes: vec![vec!["pin_clearance".to_owned(), "gauge_drift".to_owned()]],
+        look_alikes: vec![LookAlikes {
+            effects: ["pin_clearance".to_owned(), "gauge_drift".to_owned()],
+            cycles: 2.4,
+            cycles_with_others: Some(0.6),
+        }],
         before: Some(before),
         after: Some(after),
         rows: rows(&records, if added { 0.1 } else { 1.0 }),

@@ -21,12 +21,31 @@ const SHARE: f64 = 0.3;
 /// The same, from which a suspect is refitted from the deepest valley.
 const WORTH: f64 = 0.1;
 
-/// Looks again if the best refit of a round leaves much; changes its refits, their order and what is
-/// derived from them. Says whether another valley was found.
+/// Looks in one round: each begins in the valley where the one before ended.
+const DEEPER: usize = 3;
+
+/// Looks again while the best refit of a round leaves much and another valley is found; changes the
+/// round's refits, their order and what is derived from them. Says whether the best of them lies in the
+/// valley now.
 ///
 /// # Errors
 /// Of the laboratory.
 pub(crate) async fn look<L: Laboratory>(
+    lab: &mut L,
+    base: &Base,
+    (current, round): (&Fit, &mut Round),
+    settings: &Settings,
+) -> Result<bool, L::Error> {
+    for _ in 0..DEEPER {
+        if !deeper(lab, base, (current, round), settings).await? {
+            break;
+        }
+    }
+    Ok(round.phi <= settings.valley)
+}
+
+/// One look: whether another valley was found.
+async fn deeper<L: Laboratory>(
     lab: &mut L,
     base: &Base,
     (current, round): (&Fit, &mut Round),

@@ -11,3 +11,4 @@ pub mod show;
 pub mod suspect;
 pub mod valley;
 pub mod whereabouts;
+pub mod worth;

@@ -22,6 +22,8 @@ pub struct Suspect {
     pub start: Vec<f64>,
     /// Whitened change per unit of each size; columns in the order of the sizes.
     pub signature: DMatrix<f64>,
+    /// The effect's scaled parameters with which each column was taken, all other sizes absent.
+    pub taken: Vec<Vec<f64>>,
     /// How many shapes were tried.
     pub tries: usize,
 }
@@ -55,6 +57,15 @@ struct Probe {
     size: usize,
     amount: f64,
     column: Option<DVector<f64>>,
+}
+
+impl Probe {
+    /// The effect's scaled parameters.
+    fn parameters(&self) -> Vec<f64> {
+        let mut own = self.shape.clone();
+        own[self.size] = self.amount;
+        own
+    }
 }
 
 /// Projected change of the curves, in standard deviations, that a signature should make.
@@ -159,9 +170,7 @@ async fn take<L: Laboratory>(
     let models: Vec<(Model, Vec<f64>)> = open
         .iter()
         .map(|probe| {
-            let mut own = probe.shape.clone();
-            own[probe.size] = probe.amount;
-            let x = fit.x().iter().copied().chain(own).collect();
+            let x = fit.x().iter().copied().chain(probe.parameters()).collect();
             (fit.model.with(&effects[probe.effect]), x)
         })
         .collect();
@@ -212,7 +221,7 @@ fn judge(
         .map(|&k| effect.parameters[k].sign == Sign::Positive)
         .collect();
     let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
-    let mut best: Option<(Score, Vec<f64>, DMatrix<f64>)> = None;
+    let mut best: Option<(Score, &[&Probe], DMatrix<f64>)> = None;
     let mut tries = 0;
     for group in own.chunks(sizes.len().max(1)) {
         let columns: Option<Vec<DVector<f64>>> = group.iter().map(|p| p.column.clone()).collect();
@@ -227,14 +236,15 @@ fn judge(
                 || (found.p_value <= other.p_value && found.statistic > other.statistic)
         });
         if better {
-            let shape = group.first().map(|p| p.shape.clone()).unwrap_or_default();
-            best = Some((found, shape, signature));
+            best = Some((found, group, signature));
         }
     }
-    let (score, mut start, signature) = match best {
-        Some((score, shape, signature)) => (Some(score), shape, signature),
-        None => (None, absent(effect), DMatrix::zeros(residual.len(), 0)),
+    let (score, group, signature) = match best {
+        Some((score, group, signature)) => (Some(score), group, signature),
+        None => (None, &own[..0], DMatrix::zeros(residual.len(), 0)),
     };
+    let shape = group.first().map(|probe| probe.shape.clone());
+    let mut start = shape.unwrap_or_else(|| absent(effect));
     if let Some(score) = &score {
         for (&k, size) in sizes.iter().zip(&score.size) {
             let [lower, upper] = bounds(&effect.parameters[k]);
@@ -246,6 +256,7 @@ fn judge(
         score,
         start,
         signature,
+        taken: group.iter().map(|probe| probe.parameters()).collect(),
         tries: tries.max(1),
     }
 }

@@ -14,9 +14,9 @@ use search::least_squares::Settings;
 /// Damping over stiffness of a joint (s): 1 and 4 % of critical at the modes' 6 Hz, between which wire
 /// ropes lie.
 const DAMPING_TIMES: [f64; 2] = [6e-4, 2e-3];
-/// How much harder the contact is on a second set of lines (decades): a soft one can stand in for a
-/// soft rope.
-const HARDER: f64 = 1.5;
+/// How much harder and softer the contact is on further sets of lines (decades): a soft one can stand in
+/// for a soft rope, and of a very hard one no small change shows.
+const CONTACTS: [f64; 2] = [1.5, -1.5];
 /// Where the stiffness is scanned, from its recommended value, and in which steps (decades).
 const FROM: f64 = -0.3;
 const TO: f64 = 1.1;
@@ -86,10 +86,12 @@ fn stations(model: &Model, x: &[f64]) -> Vec<Vec<f64>> {
     let (damping, contact) = (space.position(GeneName::Cb1), space.position(GeneName::Kc));
     let mut bases = vec![x.to_vec()];
     if let Some(contact) = contact {
-        let mut harder = x.to_vec();
-        harder[contact] = space.axes()[contact].trust.clamp(x[contact] + HARDER);
-        if harder[contact] - x[contact] > 0.3 {
-            bases.push(harder);
+        for shift in CONTACTS {
+            let mut other = x.to_vec();
+            other[contact] = space.axes()[contact].trust.clamp(x[contact] + shift);
+            if (other[contact] - x[contact]) * shift.signum() > 0.3 {
+                bases.push(other);
+            }
         }
     }
     let axis = &space.axes()[stiffness];

@@ -1,5 +1,6 @@
 //! What both sides know: the data sheet of the stand-in machine. Its cards, its genes, its grid; no
 //! equation of motion.
+use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::{Gene, GeneName};
 use protocol::unit::Unit;
 use search::space::Space;
@@ -84,4 +85,36 @@ pub(crate) fn space() -> Space {
 /// Crank angles of the grid (rad).
 pub(crate) fn grid() -> impl Iterator<Item = f64> {
     (0..SAMPLES).map(|i| TAU * i as f64 / SAMPLES as f64)
+}
+
+/// A size that may be forty times its usual value.
+pub(crate) fn size(name: &str, unit: &str, typical: f64, sign: Sign) -> ParameterDescriptor {
+    ParameterDescriptor {
+        name: name.to_owned(),
+        unit: unit.to_owned(),
+        role: Role::Size,
+        sign,
+        lower: -40.0 * typical,
+        upper: 40.0 * typical,
+        absent: 0.0,
+        typical,
+        scale: typical,
+    }
+}
+
+/// An effect as a worker announces it.
+pub(crate) fn effect(
+    id: &str,
+    joint: &str,
+    place: Place,
+    parameters: Vec<ParameterDescriptor>,
+) -> EffectDescriptor {
+    EffectDescriptor {
+        id: id.to_owned(),
+        title: id.replace('_', " "),
+        joint: joint.to_owned(),
+        place,
+        generic: false,
+        parameters,
+    }
 }

@@ -23,3 +23,4 @@ mod single;
 mod strata;
 mod trial;
 mod truth;
+mod valley;

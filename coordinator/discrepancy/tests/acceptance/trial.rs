@@ -7,6 +7,7 @@ use discrepancy::record::Source;
 use discrepancy::settings::Settings;
 use protocol::announce::EffectDescriptor;
 use protocol::job::Refinement;
+use std::convert::Infallible;
 use std::pin::pin;
 use std::sync::LazyLock;
 use std::task::{Context, Poll, Waker};
@@ -76,18 +77,18 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         settings: setup.settings.clone(),
     };
     let mut lab = AtOnce::new(&MACHINE, setup.lost_every, &setup.labels);
-    let answer = {
-        let mut future = pin!(diagnose(&mut lab, &inputs));
-        match future
-            .as_mut()
-            .poll(&mut Context::from_waker(Waker::noop()))
-        {
-            Poll::Ready(Ok(diagnosis)) => diagnosis,
-            Poll::Ready(Err(never)) => match never {},
-            Poll::Pending => unreachable!("a laboratory that answers at once never waits"),
-        }
-    };
+    let answer = now(diagnose(&mut lab, &inputs));
     (answer, lab.lost)
+}
+
+/// What comes of work in a laboratory that answers at once.
+pub(crate) fn now<T>(work: impl Future<Output = Result<T, Infallible>>) -> T {
+    let mut work = pin!(work);
+    match work.as_mut().poll(&mut Context::from_waker(Waker::noop())) {
+        Poll::Ready(Ok(done)) => done,
+        Poll::Ready(Err(never)) => match never {},
+        Poll::Pending => unreachable!("a laboratory that answers at once never waits"),
+    }
 }
 
 /// Diagnoses with the usual setup.

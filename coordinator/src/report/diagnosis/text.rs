@@ -43,6 +43,7 @@ pub fn text(subject: &Subject<'_>) -> String {
         .chain(tables::sizes(subject))
         .chain(suspects)
         .chain(diagnosis.rounds.first().and_then(tables::generics))
+        .chain(tables::look_alikes(subject))
         .chain(tables::limits(subject))
         .chain(tables::numerics(subject))
         .chain(tables::genes(subject))

@@ -3,7 +3,7 @@
 //! Under a prescribed crank that shows only where the motor slips: this effect is the difference that
 //! the counterweight makes to the ripple of the crank's speed, with a slip of its own, so that it
 //! can be told apart from the ripple itself.
-use super::crank_speed_ripple::warp;
+use super::crank_speed_ripple::{RATED, warp};
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks};
 use crate::model::Machine;
@@ -21,13 +21,12 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
         Parameter::size("phase", Unit::Degree, 5.0, [-45.0, 45.0]),
         Parameter::size("moment", Unit::NewtonMetre, 5000.0, [-5e4, 5e4]),
         Parameter::shape("slip", Unit::One, 0.0267, [1e-3, 0.12]),
-        Parameter::shape("rated_torque", Unit::NewtonMetre, 35.3e3, [5e3, 2e5]),
     ]),
     build: Build::Named(|v| {
         Box::new(Counterweight {
             phase: v[0],
             moment: v[1],
-            slope: v[2] / v[3],
+            slope: v[2] / RATED,
         })
     }),
 };

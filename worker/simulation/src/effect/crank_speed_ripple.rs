@@ -17,30 +17,24 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     joint: "crank",
     place: Place::Drive,
     generic: false,
-    parameters: Cow::Borrowed(&[
-        Parameter::size("slip", Unit::One, 0.0267, [0.0, 0.12]),
-        Parameter::shape("rated_torque", Unit::NewtonMetre, 35.3e3, [5e3, 2e5]),
-    ]),
-    build: Build::Named(|v| {
-        Box::new(Ripple {
-            slip: v[0],
-            rated: v[1],
-        })
-    }),
+    parameters: Cow::Borrowed(&[Parameter::size("slip", Unit::One, 0.0267, [0.0, 0.12])]),
+    build: Build::Named(|v| Box::new(Ripple { slip: v[0] })),
 };
+
+/// Torque at the crank at which slip is stated [N m]: 242 N m of the motor, 28 and 5.21 times. Only the
+/// ratio of both acts, so a record knows no torque of its own.
+pub(super) const RATED: f64 = 35.3e3;
 
 #[derive(Clone, Copy, Debug)]
 struct Ripple {
-    /// Slip at rated torque \[1\].
+    /// Slip at [`RATED`] torque \[1\].
     slip: f64,
-    /// Rated torque of the motor at the crank [N m].
-    rated: f64,
 }
 
 impl Effect for Ripple {
     fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
         let crank = &machine.description.crank;
-        let slope = self.slip / self.rated;
+        let slope = self.slip / RATED;
         let torque =
             |turn| cycle.torque(turn, crank.counterweight_phase, crank.counterweight_moment);
         hooks.warps.push(warp(|turn| slope * torque(turn)));

@@ -1,4 +1,5 @@
 //! What the stand-in machine announces: its effects, and the forces without a cause.
+use crate::case::{effect, size};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 
 /// Joints at which a force without a cause may act.
@@ -7,20 +8,6 @@ pub(crate) const JOINTS: [&str; 4] = ["rod", "beam", "head", "crank"];
 pub(crate) const FORMS: [&str; 6] = ["const", "sgn_v", "v", "v2", "d2", "d3"];
 /// Highest harmonic of such a force.
 pub(crate) const HARMONICS: u32 = 5;
-
-fn size(name: &str, unit: &str, typical: f64, sign: Sign) -> ParameterDescriptor {
-    ParameterDescriptor {
-        name: name.to_owned(),
-        unit: unit.to_owned(),
-        role: Role::Size,
-        sign,
-        lower: -40.0 * typical,
-        upper: 40.0 * typical,
-        absent: 0.0,
-        typical,
-        scale: typical,
-    }
-}
 
 fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> ParameterDescriptor {
     ParameterDescriptor {
@@ -33,22 +20,6 @@ fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> P
         absent: typical,
         typical,
         scale,
-    }
-}
-
-fn effect(
-    id: &str,
-    joint: &str,
-    place: Place,
-    parameters: Vec<ParameterDescriptor>,
-) -> EffectDescriptor {
-    EffectDescriptor {
-        id: id.to_owned(),
-        title: id.replace('_', " "),
-        joint: joint.to_owned(),
-        place,
-        generic: false,
-        parameters,
     }
 }
 

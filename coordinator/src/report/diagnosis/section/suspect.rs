@@ -13,7 +13,6 @@ pub(super) const SECTION: Section = Section {
 fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
     let diagnosis = &subject.diagnosed.diagnosis;
     let first = diagnosis.rounds.first()?;
-    let classes: Vec<&Vec<String>> = diagnosis.classes.iter().filter(|c| c.len() > 1).collect();
     Some(html! {
         p {
             "Each effect of the library was switched on at the recalibrated point, its signature \
@@ -28,15 +27,7 @@ fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
         @if let Some(id) = &diagnosis.generic {
             p { "The widest margin has " (words::generic(subject, id)) ": no name comes near it." }
         }
-        @if !classes.is_empty() {
-            h3 { "What this record cannot tell apart" }
-            p {
-                "At their usual sizes, whatever the verdict. Each member of a group resembles at least \
-                 one other so much that this record would not part the two; the members of a long group \
-                 form a chain, and its ends may well be told apart."
-            }
-            ul { @for class in classes { li { (class.join(", ")) } } }
-        }
+        @if let Some(pairs) = tables::look_alikes(subject) { (markup(&pairs)) }
         @if let Some(limits) = tables::limits(subject) {
             details {
                 summary { "Detection limits of all effects" }

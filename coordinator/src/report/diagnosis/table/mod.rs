@@ -7,7 +7,7 @@ mod suspicion;
 pub(super) use answer::{genes, sizes};
 pub(super) use ground::{numerics, stages};
 pub(super) use proof::{gaps, paper};
-pub(super) use suspicion::{generics, limits, suspects};
+pub(super) use suspicion::{generics, limits, look_alikes, suspects};
 
 use crate::report::table::{Label, Row, Table};
 

@@ -89,6 +89,48 @@ pub(in crate::report::diagnosis) fn generics(round: &Round) -> Option<Table> {
     })
 }
 
+/// Effects that this record cannot tell apart, and what would.
+pub(in crate::report::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option<Table> {
+    /// More cycles than this many times those that there are nobody records.
+    const MOST: f64 = 30.0;
+    let times = |cycles: f64| {
+        if cycles <= 1.0 {
+            "told apart".to_owned()
+        } else if cycles <= MOST {
+            format!("{}\u{a0}× the cycles", figure(cycles))
+        } else {
+            "not by cycles".to_owned()
+        }
+    };
+    let pairs = &subject.diagnosed.diagnosis.look_alikes;
+    let rows: Vec<Row> = pairs
+        .iter()
+        .map(|pair| {
+            let others = pair.cycles_with_others;
+            row(
+                pair.effects.join(", "),
+                [
+                    times(pair.cycles),
+                    others.map_or_else(|| NONE.to_owned(), times),
+                ],
+            )
+        })
+        .collect();
+    (!rows.is_empty()).then(|| {
+        let mut made = table(
+            "What this record cannot tell apart, and what would",
+            ["", "more of the same", "with the other conditions' records"],
+            rows,
+        );
+        made.notes = vec![
+            "Whatever the verdict, at three times the sizes from which the effects are seen at all; \
+             the likest first. All pairs that are not listed are told apart."
+                .to_owned(),
+        ];
+        made
+    })
+}
+
 /// From which size on each effect would have been seen.
 pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
     let limits = &subject.diagnosed.diagnosis.limits;

@@ -1,0 +1,252 @@
+//! Ways into the valley of the rope's stiffness: a machine whose rope rings sixty and eighty times a
+//! turn, so that a stiffness a few hundredths of a decade off is a wave of the wrong phase, and a
+//! clock a degree off moves the valley away.
+//!
+//! Each test also goes without the look: what it asserts is that the look is needed, and enough.
+use crate::case;
+use crate::trial::now;
+use discrepancy::bench::{Bench, Fit};
+use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
+use discrepancy::laboratory::{Laboratory, Stage};
+use discrepancy::metric::Metric;
+use discrepancy::model::Model;
+use discrepancy::noise::Noise;
+use discrepancy::record::{Curves, Record, Source, Stated};
+use discrepancy::settings::Settings;
+use discrepancy::spectrum::Orders;
+use discrepancy::stage::valley;
+use discrepancy::verdict::Verdict;
+use nalgebra::Complex;
+use protocol::announce::{EffectDescriptor, Place, Sign};
+use protocol::case::{Gene, GeneName};
+use protocol::job::{Counters, Observation, ObserveSpec, Refinement, Verdict as Ended};
+use protocol::unit::Unit;
+use search::least_squares;
+use search::random::{Phase, Streams};
+use search::space::Space;
+use std::convert::Infallible;
+use std::f64::consts::TAU;
+
+const SAMPLES: usize = 360;
+const ORDERS: usize = 120;
+/// Turns of the crank per second.
+const TURNS: f64 = 5.0 / 60.0;
+/// Orders of the two modes at the recommended stiffness, and their shares in each gauge.
+const MODES: [f64; 2] = [57.0, 76.0];
+const SHARES: [[f64; 4]; 2] = [[0.09, 0.05, -0.06, 0.04], [-0.05, 0.06, 0.04, -0.07]];
+const STATIC: [f64; 4] = [0.5, -0.35, 0.45, 0.3];
+/// Stress that turns with the crank, whatever the load.
+const WEIGHT: [f64; 4] = [2.0, 1.5, -1.0, 2.5];
+/// Stiffness of the contact's share of the rope's compliance, over the contact's gene.
+const CONTACT: f64 = 80.0;
+/// Noise of a sample (MPa).
+const NOISE: f64 = 0.05;
+
+/// Genes in decades, clock of the load card (deg).
+#[derive(Clone, Copy)]
+struct Ringing {
+    stiffness: f64,
+    damping: f64,
+    clock: f64,
+}
+
+fn space() -> Space {
+    let gene = |(name, unit, recommended): (GeneName, Unit, f64)| Gene {
+        name,
+        unit,
+        recommended,
+        lower: 0.01 * recommended,
+        upper: 100.0 * recommended,
+    };
+    let genes = [
+        (GeneName::Kb1, Unit::NewtonPerMetre, 5e8),
+        (GeneName::Cb1, Unit::NewtonSecondPerMetre, 4e5),
+        (GeneName::Kc, Unit::NewtonPerMetreToThreeHalves, 3e8),
+    ];
+    Space::new(&genes.map(gene)).expect("positive and ordered")
+}
+
+fn library() -> Vec<EffectDescriptor> {
+    let effect = |id: &str, unit: &str, typical: f64| {
+        let parameters = vec![case::size("size", unit, typical, Sign::Either)];
+        case::effect(id, "load_card", Place::Load, parameters)
+    };
+    vec![
+        effect("card_time_shift", "deg", 0.2),
+        effect("load_cell_lag", "rad", 0.005),
+        effect("load_cell_gain", "1", 0.02),
+    ]
+}
+
+/// The gauges of a turn: static answer, two modes, weight.
+fn gauges(genes: [f64; 3], clock: f64, lag: f64, gain: f64) -> Curves {
+    let [rope, loss, contact] = genes;
+    let stiffness = 1.0 / (1.0 / rope + 1.0 / (CONTACT * contact));
+    // the contact is in the way of the second mode only
+    let softer = [
+        (rope / 5e8).sqrt(),
+        (stiffness / (1.0 / (1.0 / 5e8 + 1.0 / (CONTACT * 3e8)))).sqrt(),
+    ];
+    let mut curves: Curves = (0..4)
+        .map(|c| (0..SAMPLES).map(|i| WEIGHT[c] * turn(1, i).re).collect())
+        .collect();
+    for order in 1..=ORDERS {
+        let h = order as f64;
+        // amplitude and phase of a rough card
+        let phase = (2.4 * h * h).rem_euclid(TAU) - h * clock.to_radians();
+        let load = Complex::from_polar(25.0 / h.powf(1.2) * (1.0 + gain), phase)
+            * Complex::new(1.0, h * lag);
+        let mode = |k: usize| {
+            let n = MODES[k] * softer[k];
+            let damping = 0.5 * loss / rope * TAU * TURNS * n;
+            let r = h / n;
+            Complex::from(1.0) / Complex::new(1.0 - r * r, 2.0 * damping * r)
+        };
+        let modes = [mode(0), mode(1)];
+        for (c, curve) in curves.iter_mut().enumerate() {
+            let share = modes[0] * SHARES[0][c] + modes[1] * SHARES[1][c];
+            let answer = load * (share + STATIC[c]);
+            for (i, y) in curve.iter_mut().enumerate() {
+                *y += (answer * turn(order, i)).re;
+            }
+        }
+    }
+    curves
+}
+
+/// `exp(i order phi)` at a sample.
+fn turn(order: usize, sample: usize) -> Complex<f64> {
+    let angle = TAU * (order * sample % SAMPLES) as f64 / SAMPLES as f64;
+    Complex::from_polar(1.0, angle)
+}
+
+struct Ropes;
+
+impl Laboratory for Ropes {
+    type Error = Infallible;
+
+    async fn observe(
+        &mut self,
+        _: Stage,
+        batch: Vec<ObserveSpec>,
+    ) -> Result<Vec<Option<Observation>>, Infallible> {
+        Ok(batch.iter().map(|spec| Some(observed(spec))).collect())
+    }
+}
+
+fn observed(spec: &ObserveSpec) -> Observation {
+    let amount = |id: &str| {
+        let given = spec.effects.iter().find(|e| e.id == id);
+        given.map_or(0.0, |e| e.parameters[0].1)
+    };
+    let genes = [spec.genes[0], spec.genes[1], spec.genes[2]];
+    let (clock, lag) = (amount("card_time_shift"), amount("load_cell_lag"));
+    let mut curves = gauges(genes, clock, lag, amount("load_cell_gain")).into_iter();
+    Observation {
+        verdict: Ended::Complete,
+        counters: Counters::default(),
+        gauge_mpa: std::array::from_fn(|_| curves.next().unwrap_or_default()),
+        suspension_m: Vec::new(),
+        crank_torque_n_m: Vec::new(),
+    }
+}
+
+fn record(truth: Ringing) -> Record {
+    let space = space();
+    let genes = space.values(&[truth.stiffness, truth.damping, 0.1]);
+    let clean = gauges([genes[0], genes[1], genes[2]], truth.clock, 0.0, 0.0);
+    let mut stream = Streams::new(5, 3).at(0, Phase::Initial, 0);
+    let mut noisy = || -> Curves {
+        let mut noise = |y: &f64| y + NOISE * stream.normal();
+        clean
+            .iter()
+            .map(|c| c.iter().map(&mut noise).collect())
+            .collect()
+    };
+    Record {
+        condition: 0,
+        channels: (1..=4).map(Source::Gauge).collect(),
+        cycles: (0..8).map(|_| noisy()).collect(),
+        stated: Stated::default(),
+    }
+}
+
+/// A diagnosis with looks for another valley from that misfit on.
+fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
+    let inputs = Inputs {
+        space: space(),
+        records: vec![record(truth)],
+        library: library(),
+        start: None,
+        usual: Refinement::default(),
+        finer: Refinement::default(),
+        seed: 1,
+        settings: Settings {
+            draws: 20,
+            valley,
+            ..Settings::default()
+        },
+    };
+    now(diagnose(&mut Ropes, &inputs))
+}
+
+/// Chi-squared of the answer's model over its noise, and the stiffness that it has (decades).
+fn end(diagnosis: &Diagnosis) -> (f64, f64) {
+    let fit = diagnosis.after.as_ref().expect("a model");
+    let n = fit.search.best().residual.len();
+    (fit.chi_squared() / n as f64, fit.x()[0])
+}
+
+/// From beside the valley the way leads into it; from inside there is none that is better.
+#[test]
+fn a_fit_outside_the_valley_finds_its_way_into_it() {
+    let truth = Ringing {
+        stiffness: 0.14,
+        damping: 0.2,
+        clock: 0.0,
+    };
+    let record = record(truth);
+    let orders = Orders::new(SAMPLES, ORDERS);
+    let noise = Noise::estimate(&record, &orders, &[]);
+    let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
+    let bench = Bench::new(record, metric, Refinement::default());
+    let model = Model::plain(space());
+    let left = |fit: &Fit| fit.chi_squared() / bench.metric.len() as f64;
+    let fitted = |start: [f64; 3], iterations: u32| {
+        let how = least_squares::Settings {
+            iterations,
+            ..least_squares::Settings::default()
+        };
+        let starts = vec![(model.clone(), start.to_vec())];
+        let fits = now(bench.fit(&mut Ropes, Stage::Basin, starts, how));
+        fits.into_iter().flatten().next().expect("it simulates")
+    };
+    let outside = fitted([0.6, 0.2, 0.0], 1);
+    assert!(left(&outside) > 9.0, "{}", left(&outside));
+    let found = now(valley::enter(&mut Ropes, (&bench, Stage::Basin), &outside)).expect("a valley");
+    assert!(left(&found) < 1.3, "{}", left(&found));
+    assert!((found.x()[0] - truth.stiffness).abs() < 0.01);
+    let inside = fitted([truth.stiffness, truth.damping, 0.1], 8);
+    assert!(now(valley::enter(&mut Ropes, (&bench, Stage::Basin), &inside)).is_none());
+}
+
+/// A load card a degree and a half late: without that clock there is no valley to calibrate to.
+#[test]
+fn an_effect_that_hides_the_valley_is_named_from_inside_it() {
+    let truth = Ringing {
+        stiffness: 0.14,
+        damping: 0.2,
+        clock: 1.5,
+    };
+    let (left, _) = end(&diagnosed(truth, f64::INFINITY));
+    assert!(left > 9.0, "{left}: the refits found the valley alone");
+    let answer = diagnosed(truth, Settings::default().valley);
+    let said = crate::trial::line(&answer);
+    let (left, stiffness) = end(&answer);
+    assert_eq!(answer.verdict, Verdict::Named, "{said}");
+    assert_eq!(answer.effects[0].id, "card_time_shift", "{said}");
+    let (_, _, clock, _) = answer.effects[0].parameters[0];
+    assert!((clock / truth.clock - 1.0).abs() < 0.02, "{clock}");
+    assert!(left < 1.3, "{left}: {said}");
+    assert!((stiffness - truth.stiffness).abs() < 0.01, "{stiffness}");
+}
