@@ -2,7 +2,8 @@
 //!
 //! Refits begin where the model without effects was fitted. If that is not the valley of the true
 //! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
-//! look for valleys of their own, all others are refitted from the deepest, and all are judged again.
+//! try where their rivals arrived, then look for valleys of their own; all others are refitted from the
+//! deepest, and all are judged again.
 use crate::bench::Fit;
 use crate::evidence::{log_evidence, misfit};
 use crate::laboratory::{Laboratory, Stage};
@@ -21,7 +22,9 @@ const SHARE: f64 = 0.3;
 /// The same, from which a suspect is refitted from the deepest valley.
 const WORTH: f64 = 0.1;
 
-/// Looks in one round: each begins in the valley where the one before ended.
+/// Share of the misfit of a lost valley from which the genes of rivals are tried.
+const LOOSE: f64 = 0.5;
+/// Looks for valleys in one round: each begins where the one before ended.
 const DEEPER: usize = 3;
 
 /// Looks again while the best refit of a round leaves much and another valley is found; changes the
@@ -36,60 +39,99 @@ pub(crate) async fn look<L: Laboratory>(
     (current, round): (&Fit, &mut Round),
     settings: &Settings,
 ) -> Result<bool, L::Error> {
+    let bench = &base.bench;
+    let mut found = Vec::new();
+    for leader in leaders(round, bench.metric.len(), LOOSE * settings.valley) {
+        let fit = &round.refits[leader].fit;
+        let starts = from_rivals(round, leader, current.model.space.dimension());
+        if let Some(other) = valley::follow(lab, (bench, Stage::Refit), fit, starts).await? {
+            found.push((leader, other));
+        }
+    }
+    settle(lab, base, (current, round), found).await?;
     for _ in 0..DEEPER {
-        if !deeper(lab, base, (current, round), settings).await? {
+        let mut found = Vec::new();
+        for leader in leaders(round, bench.metric.len(), settings.valley) {
+            let fit = &round.refits[leader].fit;
+            if let Some(other) = valley::enter(lab, (bench, Stage::Refit), fit).await? {
+                found.push((leader, other));
+            }
+        }
+        if found.is_empty() {
             break;
         }
+        settle(lab, base, (current, round), found).await?;
     }
     Ok(round.phi <= settings.valley)
 }
 
-/// One look: whether another valley was found.
-async fn deeper<L: Laboratory>(
+/// Places of the likeliest refits that leave more than so much.
+fn leaders(round: &Round, n: usize, left: f64) -> Vec<usize> {
+    let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
+    let best = round.refits.first().map_or(0.0, gain);
+    let likely = |refit: &Refitted| gain(refit) > 0.0 && gain(refit) > SHARE * best;
+    let leads = |refit: &Refitted| likely(refit) && misfit(refit.fit.chi_squared(), n) > left;
+    (0..round.refits.len().min(LEADERS))
+        .filter(|k| leads(&round.refits[*k]))
+        .collect()
+}
+
+/// A suspect's own effect with the genes of each other.
+fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<(Model, Vec<f64>)> {
+    let fit = &round.refits[own].fit;
+    let rivals = round.refits.iter().enumerate().filter(|(k, _)| *k != own);
+    rivals
+        .map(|(_, rival)| (fit.model.clone(), crossed(&rival.fit, fit, genes)))
+        .collect()
+}
+
+/// The genes of one fit with everything else of another.
+fn crossed(genes_of: &Fit, rest_of: &Fit, genes: usize) -> Vec<f64> {
+    let rest = rest_of.x().iter().skip(genes);
+    genes_of
+        .x()
+        .iter()
+        .take(genes)
+        .chain(rest)
+        .copied()
+        .collect()
+}
+
+/// Takes what was found, refits all others that are worth it from the deepest of it, and judges again.
+async fn settle<L: Laboratory>(
     lab: &mut L,
     base: &Base,
     (current, round): (&Fit, &mut Round),
-    settings: &Settings,
-) -> Result<bool, L::Error> {
+    found: Vec<(usize, Fit)>,
+) -> Result<(), L::Error> {
     let bench = &base.bench;
-    let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
-    let Some(best) = round.refits.first().map(gain).filter(|gain| *gain > 0.0) else {
-        return Ok(false);
-    };
-    let stuck = |refit: &Refitted| {
-        misfit(refit.fit.chi_squared(), bench.metric.len()) > settings.valley
-            && gain(refit) > SHARE * best
-    };
-    let leaders: Vec<usize> = (0..round.refits.len().min(LEADERS))
-        .filter(|k| stuck(&round.refits[*k]))
-        .collect();
-    let mut found: Vec<Fit> = Vec::new();
-    for leader in leaders {
-        let fit = &round.refits[leader].fit;
-        if let Some(other) = valley::enter(lab, (bench, Stage::Refit), fit).await? {
-            replace(&mut round.refits[leader], other.clone());
-            found.push(other);
-        }
-    }
     let deepest = found
-        .into_iter()
-        .min_by(|a, b| a.chi_squared().total_cmp(&b.chi_squared()));
+        .iter()
+        .map(|(_, fit)| fit)
+        .min_by(|a, b| a.chi_squared().total_cmp(&b.chi_squared()))
+        .cloned();
     let Some(deepest) = deepest else {
-        return Ok(false);
+        return Ok(());
     };
+    for (leader, fit) in found {
+        replace(&mut round.refits[leader], fit);
+    }
     let genes = current.model.space.dimension();
     let null = round.null_evidence;
+    let gain = |refit: &Refitted| refit.log_evidence - null;
+    let best = round.refits.iter().map(gain).fold(0.0, f64::max);
     let mut again: Vec<&mut Refitted> = round
         .refits
         .iter_mut()
-        .filter(|refit| refit.log_evidence - null > WORTH * best)
+        .filter(|refit| gain(refit) > WORTH * best)
         .collect();
     let starts: Vec<(Model, Vec<f64>)> = again
         .iter()
         .map(|refit| {
-            let own = refit.fit.x().iter().skip(genes);
-            let x = deepest.x().iter().take(genes).chain(own);
-            (refit.fit.model.clone(), x.copied().collect())
+            (
+                refit.fit.model.clone(),
+                crossed(&deepest, &refit.fit, genes),
+            )
         })
         .collect();
     let how = least_squares::Settings {
@@ -103,7 +145,7 @@ async fn deeper<L: Laboratory>(
         }
     }
     round.judge(current, bench.metric.len());
-    Ok(true)
+    Ok(())
 }
 
 /// Takes a fit if it leaves less.

@@ -59,6 +59,20 @@ pub async fn enter<L: Laboratory>(
             starts.push((fit.model.clone(), x.clone()));
         }
     }
+    follow(lab, (bench, stage), fit, starts).await
+}
+
+/// The best of several starts, where it becomes clearly better than a fit of the same model: a few steps of
+/// each, then on with the best.
+///
+/// # Errors
+/// Of the laboratory.
+pub async fn follow<L: Laboratory>(
+    lab: &mut L,
+    (bench, stage): (&Bench, Stage),
+    fit: &Fit,
+    starts: Vec<(Model, Vec<f64>)>,
+) -> Result<Option<Fit>, L::Error> {
     let short = Settings {
         iterations: 3,
         ..Settings::default()

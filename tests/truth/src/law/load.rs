@@ -10,7 +10,7 @@ use simulation::model::description::Description;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// The load comes later than the card says.
+/// The card is late: the load comes earlier than it says.
 pub(super) fn late_card(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
     Arc::new(LateCard { time: size })
 }
@@ -23,10 +23,10 @@ struct LateCard {
 impl Effect for LateCard {
     fn describe(&self, d: &mut Description, _: &mut usize) {
         let n = d.card.len();
-        let behind = self.time * d.crank.speed / TAU * n as f64;
+        let late = self.time * d.crank.speed / TAU * n as f64;
         let card = d.card.clone();
         for (i, load) in d.card.iter_mut().enumerate() {
-            let place = (i as f64 - behind).rem_euclid(n as f64);
+            let place = (i as f64 + late).rem_euclid(n as f64);
             let share = place.fract();
             let at = |offset: usize| card[(whole(place) + offset) % n];
             *load = at(0) * (1.0 - share) + at(1) * share;
@@ -260,7 +260,7 @@ mod tests {
         // by one sample of the table
         let step = TAU / plain.len() as f64 / d.crank.speed;
         LateCard { time: step }.describe(&mut d, &mut 2);
-        assert!((0..plain.len()).all(|i| (d.card[(i + 1) % plain.len()] - plain[i]).abs() < 1e-6));
+        assert!((0..plain.len()).all(|i| (d.card[i] - plain[(i + 1) % plain.len()]).abs() < 1e-6));
         let mut card = wave(24.0, 0.3);
         MovingAverage { window: 14.5 }.deliver(&mut card, 0.5);
         assert!(

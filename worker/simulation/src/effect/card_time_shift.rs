@@ -1,4 +1,5 @@
-//! The load card lies wrongly in time: `F(phi) -> F(phi - w t)`, the motion stays as it is.
+//! The load card is late: the machine feels at `phi` what the card holds at `phi + w t`, the motion stays
+//! as it is.
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::math::spline::Splines;
@@ -7,7 +8,7 @@ use std::borrow::Cow;
 
 pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     id: Cow::Borrowed("card_time_shift"),
-    title: Cow::Borrowed("Load card shifted in time against the crank"),
+    title: Cow::Borrowed("Load card late against the crank"),
     joint: "load_cell",
     place: Place::Load,
     generic: false,
@@ -17,7 +18,7 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
 
 #[derive(Clone, Copy, Debug)]
 struct Shift {
-    /// By how much the load comes later than the card says \[s\].
+    /// By how much the card is later than the load \[s\].
     time: f64,
 }
 
@@ -25,9 +26,9 @@ impl Effect for Shift {
     fn describe(&self, d: &mut Description, _: &mut usize) {
         let step = std::f64::consts::TAU / d.card.len() as f64;
         let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
-        let behind = self.time * d.crank.speed;
+        let late = self.time * d.crank.speed;
         for (i, load) in d.card.iter_mut().enumerate() {
-            *load = card.value(step * i as f64 - behind, 0);
+            *load = card.value(step * i as f64 + late, 0);
         }
     }
 }
