@@ -69,7 +69,7 @@ pub(crate) async fn rounds<L: Laboratory>(
         let mut round = examine(lab, base, &current, (&open, &generic), settings).await?;
         // the valley does not move far once it is found; a second effect may hide it from the first
         if !in_valley && number < LOOKS {
-            in_valley = again::look(lab, base, (&current, &mut round), settings).await?;
+            in_valley = again::look(lab, base, (&current, &mut round), inputs).await?;
         }
         if number == 0 {
             diagnosis.limits = limits(&round, &current, base, settings);

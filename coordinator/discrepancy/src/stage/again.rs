@@ -2,17 +2,17 @@
 //!
 //! Refits begin where the model without effects was fitted. If that is not the valley of the true
 //! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
-//! try where their rivals arrived, then look for valleys of their own; all others are refitted from the
-//! deepest, and all are judged again.
+//! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
+//! whole way from the start; all others are refitted from the deepest, and all are judged again.
 use crate::bench::Fit;
+use crate::diagnose::Inputs;
 use crate::evidence::{log_evidence, misfit};
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::Model;
 use crate::rounds::Round;
-use crate::settings::Settings;
 use crate::stage::establish::Base;
 use crate::stage::refit::Refitted;
-use crate::stage::valley;
+use crate::stage::{basin, valley};
 use search::least_squares;
 
 /// Suspects whose own valley is looked for.
@@ -37,13 +37,14 @@ pub(crate) async fn look<L: Laboratory>(
     lab: &mut L,
     base: &Base,
     (current, round): (&Fit, &mut Round),
-    settings: &Settings,
+    inputs: &Inputs,
 ) -> Result<bool, L::Error> {
-    let bench = &base.bench;
+    let (bench, settings) = (&base.bench, &inputs.settings);
+    let genes = current.model.space.dimension();
     let mut found = Vec::new();
     for leader in leaders(round, bench.metric.len(), LOOSE * settings.valley) {
         let fit = &round.refits[leader].fit;
-        let starts = from_rivals(round, leader, current.model.space.dimension());
+        let starts = from_rivals(round, leader, genes);
         if let Some(other) = valley::follow(lab, (bench, Stage::Refit), fit, starts).await? {
             found.push((leader, other));
         }
@@ -60,6 +61,17 @@ pub(crate) async fn look<L: Laboratory>(
         if found.is_empty() {
             break;
         }
+        settle(lab, base, (current, round), found).await?;
+    }
+    // from the start, with the likeliest effect where it is now
+    if let Some(&leader) = leaders(round, bench.metric.len(), settings.valley).first() {
+        let fit = &round.refits[leader].fit;
+        let (model, rest) = (&fit.model, &fit.x()[genes..]);
+        let way = (bench, Stage::Refit);
+        let starts = basin::enter(lab, way, (model, rest), inputs.seed).await?;
+        let starts = starts.into_iter().map(|x| (model.clone(), x)).collect();
+        let found = valley::follow(lab, way, fit, starts).await?;
+        let found = found.map(|other| (leader, other)).into_iter().collect();
         settle(lab, base, (current, round), found).await?;
     }
     Ok(round.phi <= settings.valley)

@@ -8,20 +8,25 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::model::Model;
 use search::strategy::{Told, preset};
 
-/// Starts for the fit: points of the search's archive, best first, that differ in the scanned gene.
+/// Starts for the fit: points of the search's archive, best first, that differ in the scanned gene. The
+/// genes are searched; `rest` are the parameters of the model's effects, which stay.
 ///
 /// # Errors
 /// Of the laboratory.
 pub async fn enter<L: Laboratory>(
     lab: &mut L,
-    bench: &Bench,
-    model: &Model,
+    (bench, stage): (&Bench, Stage),
+    (model, rest): (&Model, &[f64]),
     seed: u64,
 ) -> Result<Vec<Vec<f64>>, L::Error> {
+    let whole = |mut genes: Vec<f64>| {
+        genes.extend_from_slice(rest);
+        genes
+    };
     let Some(Ok(mut strategy)) =
         preset("quick").map(|preset| (preset.settings)(&model.space).build(&model.space, seed))
     else {
-        return Ok(vec![vec![0.0; model.dimension()]]);
+        return Ok(vec![whole(vec![0.0; model.space.dimension()])]);
     };
     let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
     while strategy.finished().is_none() {
@@ -31,10 +36,10 @@ pub async fn enter<L: Laboratory>(
         }
         let points: Vec<Vec<f64>> = proposals
             .iter()
-            .map(|proposal| model.space.decades(&proposal.genes))
+            .map(|proposal| whole(model.space.decades(&proposal.genes)))
             .collect();
         let points: Vec<(&Model, &[f64])> = points.iter().map(|x| (model, x.as_slice())).collect();
-        let curves = bench.curves(lab, Stage::Basin, &points).await?;
+        let curves = bench.curves(lab, stage, &points).await?;
         for ((proposal, (_, x)), curves) in proposals.iter().zip(&points).zip(curves) {
             let told = curves.map_or(
                 Told {

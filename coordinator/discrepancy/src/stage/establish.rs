@@ -49,7 +49,7 @@ pub(crate) async fn establish<L: Laboratory>(
     let bench = Bench::new(record.clone(), metric, inputs.usual);
     let starts = match &inputs.start {
         Some(start) => vec![start.clone()],
-        None => basin::enter(lab, &bench, model, inputs.seed).await?,
+        None => basin::enter(lab, (&bench, Stage::Basin), (model, &[]), inputs.seed).await?,
     };
     let Some(mut first) = recalibrate::from_starts(lab, &bench, model, starts).await? else {
         return Ok(None);
