@@ -48,7 +48,9 @@ fn effects_far_below_their_limits_are_not_claimed() {
         }
     }
     let all = each * named().len() as u64;
-    say(&format!("0.3 x limit: {quiet} of {all} nothing detected; {loud:#?}"));
+    say(&format!(
+        "0.3 x limit: {quiet} of {all} nothing detected; {loud:#?}"
+    ));
     // the aim is 95 %; what is missed is unresolved, rarely a name
     assert!(f64::from(quiet) >= 0.9 * all as f64, "{loud:#?}");
 }

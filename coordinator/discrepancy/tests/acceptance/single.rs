@@ -65,7 +65,10 @@ fn every_effect_is_named_at_three_times_its_limit() {
         5 * predicted >= 4 * confusions,
         "{predicted} of {confusions}"
     );
-    assert!(covered as f64 >= 0.85 * f64::from(top), "{covered} of {top}");
+    assert!(
+        covered as f64 >= 0.85 * f64::from(top),
+        "{covered} of {top}"
+    );
     assert!(median <= 0.1, "{median}");
 }
 

@@ -151,6 +151,8 @@ pub enum Unit {
     PerSecond,
     /// Mass.
     Kilogram,
+    /// Moment of inertia.
+    KilogramSquareMetre,
     /// Stress.
     Megapascal,
     /// Stress per revolution of the crank.
@@ -179,6 +181,7 @@ impl Unit {
             Self::Hertz => "Hz",
             Self::PerSecond => "1/s",
             Self::Kilogram => "kg",
+            Self::KilogramSquareMetre => "kg.m2",
             Self::Megapascal => "MPa",
             Self::MegapascalPerRevolution => "MPa/rev",
             Self::MegapascalPerMetre => "MPa/m",
@@ -206,6 +209,7 @@ impl Unit {
             | Self::Hertz
             | Self::PerSecond
             | Self::Kilogram
+            | Self::KilogramSquareMetre
             | Self::ModalNewton => value,
         }
     }
