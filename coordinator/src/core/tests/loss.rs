@@ -47,6 +47,45 @@ fn a_coordinator_that_stood_still_blames_nobody() {
     );
 }
 
+/// Found as a run that was stopped with Ctrl-Z: its workers gave up their connections to it, and when
+/// it went on, all were taken for lost and their jobs were done again.
+#[test]
+fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
+    let time = Duration::from_secs(20);
+    // the process stood still, or the machine slept and its clock with it
+    for slept in [false, true] {
+        let mut scene = Scene::new();
+        scene.join(1, 1);
+        scene.join(2, 1);
+        scene.submit(0..2);
+        let given = scene.given();
+        if slept {
+            scene.tell(Input::Slept { time });
+        } else {
+            scene.now += time;
+        }
+        for worker in 1..=2 {
+            scene.tell(Input::Gone {
+                worker: WorkerId(worker),
+            });
+        }
+        let lost = |scene: &Scene| scene.core.snapshot(scene.now).lost;
+        assert_eq!(lost(&scene), 0);
+        // one comes back with its result
+        scene.wait(2, &[]);
+        let (_, attempt) = given.into_iter().find(|(to, _)| *to == 1).unwrap();
+        scene.finish(1, attempt);
+        scene.wait(6, &[1]);
+        assert_eq!(lost(&scene), 1, "the other one never does");
+        assert_eq!(scene.given().len(), 1, "and its job is offered again");
+        // the excuse is over
+        scene.tell(Input::Gone {
+            worker: WorkerId(1),
+        });
+        assert_eq!(lost(&scene), 2);
+    }
+}
+
 /// A job over which workers die runs alone, so that no other job can be blamed or harmed.
 #[test]
 fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
