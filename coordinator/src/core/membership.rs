@@ -159,6 +159,7 @@ pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duratio
         }
     }
     if !suspects.is_empty() {
+        core.suspects.extend(&suspects);
         core.notice(Notice::Quarantined {
             jobs: suspects,
             workers: core.options.policy.suspect,

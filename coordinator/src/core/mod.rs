@@ -78,6 +78,8 @@ pub struct Core {
     refused: BTreeSet<WorkerId>,
     jobs: BTreeMap<JobId, Pending>,
     queue: BTreeSet<JobId>,
+    /// Pending jobs that must run alone.
+    suspects: BTreeSet<JobId>,
     /// Accepted, not yet stored: whom to acknowledge.
     storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
     finished: JobSet,
@@ -127,6 +129,7 @@ impl Core {
             refused: BTreeSet::new(),
             jobs: BTreeMap::new(),
             queue: BTreeSet::new(),
+            suspects: BTreeSet::new(),
             storing: BTreeMap::new(),
             finished,
             early: BTreeMap::new(),

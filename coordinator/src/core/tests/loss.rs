@@ -124,6 +124,40 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
     );
 }
 
+/// Found as a job that waited for a worker of its own until nothing else was left to do.
+#[test]
+fn a_suspect_is_not_kept_waiting_by_jobs_that_keep_coming() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..2);
+    scene.join(3, 1);
+    scene.join(4, 1);
+    scene.submit(2..60);
+    let mut busy: std::collections::VecDeque<_> = scene.given().into();
+    busy.retain(|(to, _)| *to > 2);
+    assert_eq!(busy.len(), 4, "they have all that they may have");
+    for worker in 1..=2 {
+        if worker == 2 {
+            scene.join(2, 1);
+            assert_eq!(scene.given()[0].1.job, JobId(0));
+        }
+        scene.tell(Input::Gone {
+            worker: WorkerId(worker),
+        });
+    }
+    let mut finished = 0;
+    while let Some((to, attempt)) = busy.pop_front() {
+        assert_ne!(attempt.job, JobId(1), "as suspect, and not alone");
+        finished += 1;
+        scene.finish(to, attempt);
+        busy.extend(scene.given());
+        if busy.iter().any(|(_, attempt)| attempt.job == JobId(0)) {
+            break;
+        }
+    }
+    assert!(finished <= 4, "it waited for {finished} others");
+}
+
 /// Under load a worker may die of a job that, as far as is known, only waited there: the results of
 /// those before it died with it. Found as a job that killed all workers and was never given up.
 #[test]
