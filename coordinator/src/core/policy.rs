@@ -36,7 +36,8 @@ pub struct Policy {
     /// If it stood still for so long, workers may have given up their connections to it (default 2 s:
     /// they do after 3 s without a word).
     pub estranged: Duration,
-    /// They may take so long to come back before their silence counts (default 3 s: they try to connect every 2 s).
+    /// They may take so long to come back before their silence counts (default 3 s: they try to
+    /// connect every 2 s).
     pub return_within: Duration,
     /// Jobs may wait so long without any worker before people are told (default 10 s).
     pub lonely: Duration,
