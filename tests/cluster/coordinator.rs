@@ -65,8 +65,8 @@ async fn run() -> Result<(), Box<dyn Error>> {
     let summary = dispatch.close().await?;
     writeln!(
         out,
-        "done repeated {} replayed {}",
-        summary.last.repeated, summary.replayed
+        "done repeated {} replayed {} lost {}",
+        summary.last.repeated, summary.replayed, summary.last.lost
     )?;
     Ok(())
 }

@@ -8,6 +8,7 @@ use std::{
     collections::{BTreeMap, BTreeSet},
     env, fs,
     io::{BufRead, BufReader},
+    ops::RangeFrom,
     path::Path,
     process::Command,
     sync::mpsc,
@@ -89,57 +90,76 @@ fn kill_once(process: &mut Process, random: u64) -> bool {
     !ended_before
 }
 
+/// One run after another, killed `wanted` times altogether, under seeds of its own; how many runs.
+fn kill_runs(wanted: usize, seeds: RangeFrom<u64>) -> usize {
+    let (mut kills, mut runs) = (0, 0);
+    for seed in seeds {
+        if kills == wanted {
+            break;
+        }
+        runs += 1;
+        kills += kill_run(wanted - kills, seed);
+    }
+    runs
+}
+
+/// Kills one run until it comes to its end or has been killed so often, and has it end; how often.
+fn kill_run(most: usize, seed: u64) -> usize {
+    let folder = tempfile::tempdir().unwrap();
+    let trace = folder.path().join("trace");
+    let run_dir = folder.path().join("run");
+    let mut done_before: BTreeSet<u64> = BTreeSet::new();
+    let (mut kills, mut seen) = (0, 0);
+    let mut known = BTreeMap::new();
+    while kills < most {
+        let mut process = coordinator(&run_dir, seed, &trace);
+        let random = draw("kill", kills as u128 + 1000 * u128::from(seed));
+        let killed = kill_once(&mut process, random);
+        let now = recorded(&run_dir);
+        for (job, said) in &known {
+            assert_eq!(now.get(job), Some(said), "kill {kills}: job {job}");
+        }
+        let all = begun(&trace);
+        for job in &all[seen..] {
+            assert!(
+                !done_before.contains(job),
+                "kill {kills}: job {job} was done again"
+            );
+        }
+        seen = all.len();
+        done_before = now.keys().copied().collect();
+        known = now;
+        if !killed {
+            break;
+        }
+        kills += 1;
+    }
+    // uninterrupted to the end, and from beginning to end elsewhere
+    let whole = folder.path().join("whole");
+    for place in [&run_dir, &whole] {
+        let mut process = coordinator(place, seed, &trace);
+        let mut lines = BufReader::new(process.output()).lines();
+        while lines.next().is_some_and(|line| line.is_ok()) {}
+        assert_eq!(process.wait(LIMIT), Some(0));
+    }
+    let log = |place: &Path| fs::read_to_string(place.join("log")).unwrap();
+    assert!(log(&run_dir).lines().count() > 600);
+    assert_eq!(log(&run_dir), log(&whole));
+    let (one, other) = (recorded(&run_dir), recorded(&whole));
+    assert_eq!(one, other, "the same results in both journals");
+    kills
+}
+
 #[test]
 fn killed_a_hundred_times_it_loses_and_repeats_nothing_that_was_recorded() {
     let wanted: usize = env::var("HORSEHEAD_TEST_KILLS")
         .ok()
         .map_or(100, |kills| kills.parse().unwrap());
     let started = Instant::now();
-    let (mut kills, mut runs) = (0, 0);
-    while kills < wanted {
-        runs += 1;
-        let folder = tempfile::tempdir().unwrap();
-        let trace = folder.path().join("trace");
-        let run_dir = folder.path().join("run");
-        let mut done_before: BTreeSet<u64> = BTreeSet::new();
-        let mut seen = 0;
-        let mut known = BTreeMap::new();
-        while kills < wanted {
-            let mut process = coordinator(&run_dir, runs, &trace);
-            let random = draw("kill", kills as u128 + 1000 * u128::from(runs));
-            let killed = kill_once(&mut process, random);
-            let now = recorded(&run_dir);
-            for (job, said) in &known {
-                assert_eq!(now.get(job), Some(said), "kill {kills}: job {job}");
-            }
-            let all = begun(&trace);
-            for job in &all[seen..] {
-                assert!(
-                    !done_before.contains(job),
-                    "kill {kills}: job {job} was done again"
-                );
-            }
-            seen = all.len();
-            done_before = now.keys().copied().collect();
-            known = now;
-            if !killed {
-                break;
-            }
-            kills += 1;
-        }
-        // uninterrupted to the end, and from beginning to end elsewhere
-        let whole = folder.path().join("whole");
-        for place in [&run_dir, &whole] {
-            let mut process = coordinator(place, runs, &trace);
-            let mut lines = BufReader::new(process.output()).lines();
-            while lines.next().is_some_and(|line| line.is_ok()) {}
-            assert_eq!(process.wait(LIMIT), Some(0));
-        }
-        let log = |place: &Path| fs::read_to_string(place.join("log")).unwrap();
-        assert!(log(&run_dir).lines().count() > 600);
-        assert_eq!(log(&run_dir), log(&whole));
-        let (one, other) = (recorded(&run_dir), recorded(&whole));
-        assert_eq!(one, other, "the same results in both journals");
-    }
-    eprintln!("{kills} kills in {runs} runs took {:?}", started.elapsed());
+    // two runs at a time, since most of it is waiting for processes
+    let runs = thread::scope(|scope| {
+        let half = scope.spawn(|| kill_runs(wanted / 2, 1001..));
+        kill_runs(wanted - wanted / 2, 1..) + half.join().unwrap()
+    });
+    eprintln!("{wanted} kills in {runs} runs took {:?}", started.elapsed());
 }

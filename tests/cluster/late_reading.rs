@@ -21,9 +21,9 @@ use std::{
 use tests::{empty_case, options};
 
 /// How long one word takes to be read on this busy machine.
-const READING: Duration = Duration::from_millis(2);
+const READING: Duration = Duration::from_millis(20);
 /// Words of the talker in front of the other's: together longer than anyone may be silent.
-const WORDS: u64 = 2400;
+const WORDS: u64 = 240;
 
 /// An end with a pile of words that have arrived.
 struct Pile {

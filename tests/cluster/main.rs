@@ -14,6 +14,7 @@ mod outage;
 mod resume;
 mod sixty_four;
 mod slots;
+mod wall_clock;
 
 use coordinator::runtime::{Dispatch, DispatchError};
 use protocol::{id::JobId, job::Outcome};

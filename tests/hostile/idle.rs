@@ -3,6 +3,7 @@ use super::{LIMIT, MEASURING, processor_us, rate};
 use coordinator::runtime::{Dispatch, DispatchOptions};
 use std::{
     collections::BTreeMap,
+    io::{ErrorKind, Read},
     net::{TcpStream, UdpSocket},
     process::Command,
     sync::Arc,
@@ -10,7 +11,7 @@ use std::{
 };
 use tests::{
     expect_results,
-    keys::make,
+    keys::{make, raw_session},
     options,
     process::{Process, free_locator, free_quic_locator, wait_until, worker_program},
 };
@@ -90,7 +91,21 @@ async fn handshakes_that_are_never_finished_keep_nobody_out() {
     drop((silent, worker));
 }
 
-/// Connections of a local program that never say a word.
+/// Waits until the other end has closed all connections, and drops them.
+fn wait_until_closed(connections: Vec<TcpStream>) {
+    for mut connection in connections {
+        connection.set_read_timeout(Some(LIMIT)).unwrap();
+        // an end, or a reset where there was no room for it
+        match connection.read(&mut [0]) {
+            Ok(0) => {}
+            Err(error) if error.kind() == ErrorKind::ConnectionReset => {}
+            other => panic!("a silent connection is still open: {other:?}"),
+        }
+    }
+}
+
+/// Connections of a local program that never say a word are closed after four seconds. Each costs
+/// less than one result does, once, and keeps nobody out meanwhile.
 #[tokio::test(flavor = "multi_thread")]
 async fn thousands_of_silent_connections_cost_little_and_no_result() {
     let _alone = MEASURING.lock().await;
@@ -103,43 +118,112 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
     wait_until("the honest worker joins", LIMIT, || {
         dispatch.snapshot().workers.len() == 1
     });
+    let ourselves = rustix::process::getpid();
     let mut results = BTreeMap::new();
-    let time = Duration::from_secs(4);
-    let cost = |spent_us: u64, jobs: usize| spent_us as f64 / jobs as f64;
-    let at_first = processor_us();
+    let time = Duration::from_secs(3);
+    let at_first = processor_us(ourselves);
     let before = rate(&mut dispatch, &mut results, time).await;
-    let cost_before = cost(processor_us() - at_first, results.len());
+    let result_us = (processor_us(ourselves) - at_first) as f64 / results.len() as f64;
+    let at_first = processor_us(ourselves);
+    tokio::time::sleep(time).await;
+    let calm_us_per_s = (processor_us(ourselves) - at_first) as f64 / time.as_secs_f64();
+
     let address: std::net::SocketAddr = locator.trim_start_matches("tcp/").parse().unwrap();
-    let begun = Instant::now();
+    let (begun, at_first) = (Instant::now(), processor_us(ourselves));
     let mut idle = Vec::new();
-    while idle.len() < IDLE && begun.elapsed() < Duration::from_secs(10) {
+    while idle.len() < IDLE && begun.elapsed() < Duration::from_secs(20) {
         match TcpStream::connect_timeout(&address, Duration::from_secs(1)) {
             Ok(connection) => idle.push(connection),
             // as many as the machine allows
             Err(_) => break,
         }
     }
-    let opened = begun.elapsed();
-    let (at_first, done) = (processor_us(), results.len());
-    let meanwhile = rate(&mut dispatch, &mut results, time).await;
-    let cost_meanwhile = cost(processor_us() - at_first, results.len() - done);
-    // and somebody else still gets in
+    let (opened, count) = (begun.elapsed(), idle.len());
+    // somebody else gets in beside them
     let late = Instant::now();
     let second = Process::worker(&locator, &["--slots", "2"]);
     wait_until("another honest worker joins", LIMIT, || {
         dispatch.snapshot().workers.len() == 2
     });
+    let joined = late.elapsed();
+    tokio::task::spawn_blocking(|| wait_until_closed(idle))
+        .await
+        .unwrap();
+    let took = begun.elapsed();
+    let spent_us = (processor_us(ourselves) - at_first) as f64;
+    // dialling them is in it, too: both ends are this process
+    let silent_us = (spent_us - calm_us_per_s * took.as_secs_f64()) / count as f64;
+    let after = rate(&mut dispatch, &mut results, time).await;
     eprintln!(
-        "jobs a second: {before:.0} before, {meanwhile:.0} beside {} silent connections (opened in \
-         {opened:?}); processor time of the coordinator for each {cost_before:.0} us before, \
-         {cost_meanwhile:.0} us meanwhile; another worker joined after {:?}",
-        idle.len(),
-        late.elapsed()
+        "{before:.0} jobs a second at {result_us:.0} us of the coordinator's processor; {count} silent \
+         connections, opened in {opened:.1?} and closed after {took:.1?}: {silent_us:.0} us each, both \
+         ends; another worker joined {joined:.1?} after its start; {after:.0} jobs a second afterwards"
     );
     let jobs = results.len() as u64;
     expect_results(&results, jobs);
     let last = dispatch.close().await.unwrap().last;
     assert_eq!((last.lost, last.failed, last.done as u64), (0, 0, jobs));
-    assert!(idle.len() > 500, "only {} connections", idle.len());
-    drop((idle, honest, second));
+    assert!(count > 500, "only {count} connections");
+    assert!(
+        silent_us < result_us,
+        "{silent_us} us each, a result {result_us} us"
+    );
+    drop((honest, second));
+}
+
+/// A shell allows its programs a thousand open files or fewer; silent peers must not use them up.
+#[test]
+fn silent_connections_beyond_the_files_of_a_shell_keep_nobody_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -Sn 200 && exec \"$0\" \"$@\""]);
+    command.arg(env!("CARGO_BIN_EXE_test-coordinator"));
+    command.arg(folder.path()).args([&locator, "8", "1", "0"]);
+    let mut coordinator = Process::start(command);
+    let address = locator.trim_start_matches("tcp/");
+    wait_until("it listens", LIMIT, || TcpStream::connect(address).is_ok());
+    let silent: Vec<TcpStream> = (0..400)
+        .map(|_| TcpStream::connect(address).unwrap())
+        .collect();
+    let worker = Process::worker(&locator, &["--slots", "1"]);
+    let mut said = String::new();
+    coordinator.output().read_to_string(&mut said).unwrap();
+    assert!(said.contains("done repeated 0 replayed 0 lost 0"), "{said}");
+    assert_eq!(coordinator.wait(LIMIT), Some(0));
+    drop((silent, worker));
+}
+
+/// Real sessions of the bus that neither announce themselves nor say anything: a measurement of what
+/// each costs a coordinator that does nothing else.
+///
+/// ```text
+/// cargo test --workspace --test hostile -- --ignored --nocapture idle_sessions
+/// ```
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "a measurement"]
+async fn idle_sessions_cost_their_keep_alives() {
+    const SESSIONS: usize = 400;
+    const TIME: Duration = Duration::from_secs(10);
+    let _alone = MEASURING.lock().await;
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
+    // one job and nobody to do it
+    command.arg(folder.path()).args([&locator, "1", "0", "0"]);
+    let coordinator = Process::start(command);
+    let per_s = async || {
+        let at_first = processor_us(coordinator.pid());
+        tokio::time::sleep(TIME).await;
+        (processor_us(coordinator.pid()) - at_first) as f64 / TIME.as_secs_f64()
+    };
+    let nowhere = std::path::Path::new("");
+    let mut sessions = vec![raw_session(&locator, nowhere, false, 10_000).await.unwrap()];
+    let alone = per_s().await;
+    while sessions.len() < SESSIONS {
+        sessions.push(raw_session(&locator, nowhere, false, 10_000).await.unwrap());
+    }
+    let beside = per_s().await;
+    let each = (beside - alone) / (SESSIONS - 1) as f64;
+    eprintln!("an idle session costs the coordinator {each:.0} us of processor time a second");
 }

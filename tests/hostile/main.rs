@@ -4,6 +4,7 @@
 //! lost, nothing false is believed, and whoever lies is told in what.
 #![expect(
     clippy::unwrap_used,
+    clippy::panic,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
 mod idle;
@@ -11,6 +12,7 @@ mod words;
 
 use coordinator::runtime::Dispatch;
 use protocol::{id::JobId, job::Outcome};
+use rustix::process::Pid;
 use std::{
     collections::BTreeMap,
     time::{Duration, Instant},
@@ -21,10 +23,11 @@ const LIMIT: Duration = Duration::from_mins(1);
 /// One at a time, so that the numbers mean something.
 static MEASURING: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
 
-/// Processor time of this process, which is the coordinator \[us\].
-fn processor_us() -> u64 {
+/// Processor time of a process: this one, where the coordinator is in it \[us\].
+fn processor_us(of: Pid) -> u64 {
     const TICK_US: u64 = 10_000;
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", of.as_raw_nonzero()));
+    let stat = stat.unwrap_or_default();
     let behind = stat.rsplit_once(')').map_or("", |(_, rest)| rest);
     let ticks = behind.split_whitespace().skip(11).take(2);
     let ticks: u64 = ticks.filter_map(|word| word.parse::<u64>().ok()).sum();

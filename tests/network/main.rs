@@ -6,8 +6,9 @@
     clippy::panic,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
-use rustix::process::Signal;
+use rustix::process::{Pid, Signal};
 use std::{
+    fs,
     io::{BufRead, BufReader, Lines},
     path::{Path, PathBuf},
     process::{ChildStdout, Command},
@@ -25,6 +26,8 @@ const LIMIT: Duration = Duration::from_mins(1);
 /// Where the coordinator listens, and where the bad stretch before it does.
 const PORT: u16 = 7447;
 const BAD_PORT: u16 = 7448;
+/// How long a worker may be silent before it counts as lost \[ms\].
+const SILENCE_MS: u64 = 4000;
 
 /// One at a time: two of them look at the clock.
 static ONE: Mutex<()> = Mutex::new(());
@@ -140,6 +143,22 @@ impl Stage {
     }
 }
 
+/// For how long the threads of a process were ready to run and did not, over how long they ran.
+fn kept_waiting(process: Pid) -> f64 {
+    let threads = fs::read_dir(format!("/proc/{}/task", process.as_raw_nonzero())).unwrap();
+    let (mut ran, mut waited) = (0.0, 0.0);
+    for thread in threads.flatten() {
+        // a thread may end at any time
+        let stat = fs::read_to_string(thread.path().join("schedstat")).unwrap_or_default();
+        let mut words = stat
+            .split_whitespace()
+            .map(|word| word.parse::<f64>().unwrap());
+        ran += words.next().unwrap_or(0.0);
+        waited += words.next().unwrap_or(0.0);
+    }
+    waited / ran
+}
+
 fn alone() -> std::sync::MutexGuard<'static, ()> {
     ONE.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -224,11 +243,12 @@ fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
     drop((cut_off, stays));
 }
 
-/// Four busy programs for every core: slow, but nobody is taken for lost.
+/// Four busy programs for every core: slow, but nobody is taken for lost, for much longer than anyone
+/// may be silent.
 #[test]
 fn nobody_is_taken_for_lost_on_a_busy_machine() {
     let _alone = alone();
-    let Some(mut stage) = Stage::set(600, 20) else {
+    let Some(mut stage) = Stage::set(900, 20) else {
         return;
     };
     let cores = thread::available_parallelism().map_or(1, usize::from);
@@ -240,10 +260,20 @@ fn nobody_is_taken_for_lost_on_a_busy_machine() {
         })
         .collect();
     let workers = ["worker-01", "worker-02"].map(|name| stage.worker(name, PORT, 1));
-    stage.until("both work", |state| state.workers == 2);
+    let both = stage.until("both work", |state| state.workers == 2);
+    let last = stage.until("nearly all is done", |state| state.done > 880);
+    let programs = workers.iter().chain([&stage.coordinator]);
+    let shares: Vec<f64> = programs
+        .map(|program| kept_waiting(program.pid()))
+        .collect();
     let end = stage.end();
-    eprintln!("{end:?}");
-    assert_eq!((end.done, end.lost), (600, 0));
+    eprintln!("{end:?}; time without a processor over time with one: {shares:.1?}");
+    assert_eq!((end.done, end.lost), (900, 0));
+    let together = last.ms - both.ms;
+    assert!(together > 2 * SILENCE_MS, "over after {together} ms");
+    // who has to wait for the processor, though it sleeps most of the time, is on a busy machine
+    let waited = |share: &f64| share.is_nan() || *share > 0.5;
+    assert!(shares.iter().all(waited), "{shares:?}");
     for mut process in busy.into_iter().chain(workers) {
         process.signal(Signal::KILL);
         process.wait(LIMIT);

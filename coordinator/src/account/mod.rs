@@ -174,26 +174,12 @@ pub fn reasons(spent: &Spent) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::Journal;
+    use crate::journal::{Journal, sample::finished};
     use protocol::{
-        event::{Account, Finished, RunHeader},
-        id::{AttemptId, ContentHash, JobId, RunId},
+        event::{Account, RunHeader},
+        id::{ContentHash, RunId},
         job::{Failure, Outcome},
-        message::Attempt,
     };
-
-    fn finished(job: u64, seconds: u64, outcome: Outcome) -> Event {
-        Event::Finished(Box::new(Finished {
-            attempt: Attempt {
-                job: JobId(job),
-                attempt: AttemptId(1),
-            },
-            work: ContentHash::of(b"work"),
-            worker: None,
-            wall_us: seconds * 1_000_000,
-            outcome,
-        }))
-    }
 
     fn row(worker: u64, useful_us: u64, barrier_us: u64) -> WorkerAccount {
         WorkerAccount {
@@ -241,7 +227,9 @@ mod tests {
                 (place + 2, 2 * place, Outcome::Nothing(vec![1])),
                 (9, 1, Outcome::Failed(Failure::Lost { workers: 4 })),
             ] {
-                journal.append(finished(job, seconds, outcome)).unwrap();
+                journal
+                    .append(finished(job, seconds * 1_000_000, outcome))
+                    .unwrap();
             }
         }
         let account = read(&folder.path().join(journal::FILE)).unwrap();

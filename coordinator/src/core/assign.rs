@@ -69,23 +69,17 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
         .map(|(id, _)| *id)
 }
 
-/// While a job waits to run alone, the least loaded worker gets nothing new.
+/// While a job waits to run alone, the least loaded worker that may have it gets nothing new.
 fn reserved(core: &Core) -> Option<WorkerId> {
-    let suspect = core.options.policy.suspect;
-    core.queue
+    let mut suspects = core.suspects.iter().filter_map(|job| core.jobs.get(job));
+    let waiting = suspects.find(|job| job.holders.is_empty())?;
+    let ready = core
+        .members
         .iter()
-        .filter_map(|job| core.jobs.get(job))
-        .any(|job| membership::is_suspect(job.failures, suspect))
-        .then(|| {
-            let ready = core
-                .members
-                .iter()
-                .filter(|(_, member)| member.ready && !member.alone);
-            ready
-                .min_by_key(|(_, member)| member.leases.len())
-                .map(|(id, _)| *id)
-        })
-        .flatten()
+        .filter(|(id, member)| member.ready && !member.alone && !waiting.refused_by.contains(id));
+    ready
+        .min_by_key(|(_, member)| member.leases.len())
+        .map(|(id, _)| *id)
 }
 
 /// Gives a worker a job.

@@ -6,6 +6,7 @@ use protocol::{
     job::{Job, Outcome},
     message::{FromWorker, ToWorker},
 };
+use std::time::Duration;
 
 /// Something that happened.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +42,11 @@ pub enum Input {
     },
     /// Whether the journal can be written; it can at the beginning.
     Writable(bool),
+    /// The machine has slept, and its clock stood still.
+    Slept {
+        /// For how long.
+        time: Duration,
+    },
     /// Time has passed.
     Tick,
     /// The run is over.

@@ -110,6 +110,9 @@ pub(super) fn gone(core: &mut Core, worker: WorkerId, now: Duration) {
     let Some(member) = core.members.get(&worker) else {
         return;
     };
+    if now < core.excused {
+        return;
+    }
     let silent = now.saturating_sub(member.heard);
     let reason = if silent > core.options.policy.silence / 2 {
         silence(silent)
@@ -156,6 +159,7 @@ pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duratio
         }
     }
     if !suspects.is_empty() {
+        core.suspects.extend(&suspects);
         core.notice(Notice::Quarantined {
             jobs: suspects,
             workers: core.options.policy.suspect,
@@ -205,11 +209,11 @@ pub(super) fn row(worker: WorkerId, member: &Member, clocks: &Clocks) -> WorkerA
 }
 
 pub(super) fn check_silence(core: &mut Core, now: Duration) {
-    let silence = core.options.policy.silence;
+    let (silence, excused) = (core.options.policy.silence, core.excused);
     let silent: Vec<WorkerId> = core
         .members
         .iter()
-        .filter(|(_, member)| now.saturating_sub(member.heard) > silence)
+        .filter(|(_, member)| now.saturating_sub(member.heard.max(excused)) > silence)
         .map(|(id, _)| *id)
         .collect();
     for worker in silent {
@@ -231,7 +235,17 @@ pub(super) fn forgive_stall(core: &mut Core, now: Duration) {
             lease.running = lease.running.map(|running| (running + gap).min(now));
         }
     }
-    let ms = u64::try_from(gap.as_millis()).unwrap_or(u64::MAX);
+    excuse(core, gap, now);
+}
+
+/// This process did not answer for a while: workers that gave up their connections to it are not
+/// lost, they come back.
+pub(super) fn excuse(core: &mut Core, time: Duration, now: Duration) {
+    let policy = &core.options.policy;
+    if time >= policy.estranged {
+        core.excused = now + policy.return_within;
+    }
+    let ms = u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
     core.notice(Notice::Stalled { ms });
 }
 

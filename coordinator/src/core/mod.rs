@@ -78,6 +78,8 @@ pub struct Core {
     refused: BTreeSet<WorkerId>,
     jobs: BTreeMap<JobId, Pending>,
     queue: BTreeSet<JobId>,
+    /// Pending jobs that must run alone.
+    suspects: BTreeSet<JobId>,
     /// Accepted, not yet stored: whom to acknowledge.
     storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
     finished: JobSet,
@@ -86,6 +88,8 @@ pub struct Core {
     times: policy::Times,
     counts: Counts,
     last_call: Duration,
+    /// Until when a broken connection is nobody's fault but that of this process, which stood still.
+    excused: Duration,
     lonely_since: Option<Duration>,
     told_lonely: bool,
     /// Effects that all workers must know; none before the first.
@@ -125,12 +129,14 @@ impl Core {
             refused: BTreeSet::new(),
             jobs: BTreeMap::new(),
             queue: BTreeSet::new(),
+            suspects: BTreeSet::new(),
             storing: BTreeMap::new(),
             finished,
             early: BTreeMap::new(),
             times: policy::Times::default(),
             counts: Counts::default(),
             last_call: Duration::ZERO,
+            excused: Duration::ZERO,
             lonely_since: None,
             told_lonely: false,
             effects: None,
@@ -155,6 +161,7 @@ impl Core {
             Input::Stranger { from } => self.send(from, ToWorker::Identify),
             Input::Gone { worker } => membership::gone(self, worker, now),
             Input::Stored { jobs } => result::stored(self, jobs),
+            Input::Slept { time } => membership::excuse(self, time, now),
             Input::Tick => {
                 membership::check_silence(self, now);
                 assign::check_overdue(self, now);

@@ -33,6 +33,12 @@ pub struct Policy {
     pub delivery: Duration,
     /// If the core is not called for so long, it stood still itself (default 1 s).
     pub stall: Duration,
+    /// If it stood still for so long, workers may have given up their connections to it (default 2 s:
+    /// they do after 3 s without a word).
+    pub estranged: Duration,
+    /// They may take so long to come back before their silence counts (default 3 s: they try to
+    /// connect every 2 s).
+    pub return_within: Duration,
     /// Jobs may wait so long without any worker before people are told (default 10 s).
     pub lonely: Duration,
     /// A waiting job may be taken from a busy worker for an idle one after so long (default
@@ -89,6 +95,8 @@ impl Default for Policy {
             reunion: Duration::from_secs(3),
             delivery: Duration::from_millis(500),
             stall: Duration::from_secs(1),
+            estranged: Duration::from_secs(2),
+            return_within: Duration::from_secs(3),
             lonely: Duration::from_secs(10),
             steal_after: Duration::from_millis(50),
             per_slot: 2,

@@ -97,6 +97,7 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
         return;
     };
     core.queue.remove(&job);
+    core.suspects.remove(&job);
     for holder in pending.holders {
         let Some(member) = core.members.get_mut(&holder) else {
             continue;
@@ -206,6 +207,7 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
         Outcome::Failed(Failure::Refused { .. } | Failure::Misconfigured { .. }) => {
             core.jobs.remove(&job);
             core.queue.remove(&job);
+            core.suspects.remove(&job);
             core.out.push(Command::Deliver {
                 id: job,
                 outcome: done.outcome,

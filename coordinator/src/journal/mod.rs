@@ -13,6 +13,8 @@
 mod head;
 mod open;
 mod read;
+#[cfg(test)]
+pub(crate) mod sample;
 mod write;
 
 pub use open::{Begun, Journal};

@@ -1,10 +1,8 @@
 //! A journal under torture.
-use super::*;
+use super::{sample::result, *};
 use protocol::{
-    event::{Event, Finished},
-    id::{AttemptId, ContentHash, JobId, RunId},
-    job::Outcome,
-    message::Attempt,
+    event::Event,
+    id::{ContentHash, JobId, RunId},
 };
 use std::{
     collections::BTreeMap,
@@ -19,19 +17,6 @@ fn header() -> RunHeader {
         case: ContentHash::of(b"case"),
         settings: r#"{"preset":"quick","seed":3}"#.to_owned(),
     }
-}
-
-fn result(job: u64) -> Event {
-    Event::Finished(Box::new(Finished {
-        attempt: Attempt {
-            job: JobId(job),
-            attempt: AttemptId(7),
-        },
-        work: ContentHash::of(&job.to_le_bytes()),
-        worker: None,
-        wall_us: 11 * job,
-        outcome: Outcome::Nothing(job.to_le_bytes().repeat(3)),
-    }))
 }
 
 fn open(folder: &Path) -> Result<(Journal, Begun), JournalError> {

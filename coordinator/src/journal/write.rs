@@ -182,12 +182,7 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::{
-        event::Finished,
-        id::{AttemptId, ContentHash},
-        job::Outcome,
-        message::Attempt,
-    };
+    use crate::journal::sample::result;
     use std::sync::Mutex;
 
     /// A disk with room for so many bytes, that writes as much as fits and then complains.
@@ -239,19 +234,6 @@ mod tests {
         fn is_there(&self) -> bool {
             true
         }
-    }
-
-    fn result(job: u64) -> Event {
-        Event::Finished(Box::new(Finished {
-            attempt: Attempt {
-                job: JobId(job),
-                attempt: AttemptId(1),
-            },
-            work: ContentHash::of(b"work"),
-            worker: None,
-            wall_us: 1,
-            outcome: Outcome::Nothing(vec![3; 50]),
-        }))
     }
 
     /// Writes results 0 to `jobs` onto a disk that is full and misbehaves; `relief` is called at

@@ -2,6 +2,7 @@
 use super::{
     Completed, DispatchError, Parts, Snapshot, Summary,
     local::{LocalEvent, LocalWorkers},
+    sleep::Sleep,
 };
 use crate::{
     core::{Command, Core, Input, work_hash},
@@ -53,6 +54,7 @@ pub(super) struct Engine<L> {
     deliver: Deliver,
     shown: Arc<Mutex<Snapshot>>,
     begun: Instant,
+    sleep: Sleep,
     replayed: u64,
     /// When the snapshot has to be renewed because something happened.
     stale_at: Option<tokio::time::Instant>,
@@ -86,6 +88,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             deliver,
             shown,
             begun,
+            sleep: Sleep::since_now(),
             replayed: 0,
             stale_at: None,
         }
@@ -108,6 +111,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 event = local_event(&mut self.workers) => self.local(event),
                 _ = ticks.tick() => {
                     self.catch_up().await;
+                    self.wake();
                     self.handle(Input::Tick);
                     self.show();
                 }
@@ -130,6 +134,14 @@ impl<L: CoordinatorEnd> Engine<L> {
         }
     }
 
+    /// Tells the core if the machine has slept.
+    fn wake(&mut self) {
+        let time = self.sleep.since_last();
+        if time > TICK {
+            self.handle(Input::Slept { time });
+        }
+    }
+
     fn submit(&mut self, id: JobId, job: Job) {
         match self.journal.recall(id) {
             Ok(None) => self.handle(Input::Submit { id, job }),
@@ -149,7 +161,10 @@ impl<L: CoordinatorEnd> Engine<L> {
 
     fn hear(&mut self, heard: Heard) {
         let (from, frame) = match heard {
-            Heard::Gone(worker) => return self.handle(Input::Gone { worker }),
+            Heard::Gone(worker) => {
+                self.wake();
+                return self.handle(Input::Gone { worker });
+            }
             Heard::Frame(from, frame) => (from, frame),
         };
         match wire::unseal::<FromWorker>(Kind::FromWorker, &frame) {

@@ -7,6 +7,7 @@ mod engine;
 mod error;
 mod local;
 pub mod locate;
+mod sleep;
 
 pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
 pub use bench::{BenchPlan, BenchResult, Crew, bench, connect};
@@ -31,6 +32,7 @@ use protocol::{
     job::{Job, Outcome},
     wire,
 };
+use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{
     collections::BTreeSet,
     net::{TcpListener, UdpSocket},
@@ -42,6 +44,9 @@ use tokio::{
     sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
     task::JoinHandle,
 };
+
+/// Open files beyond which nothing is gained: the link takes no more connections.
+const FILES: u64 = 16 << 10;
 
 /// What a run is opened with.
 #[derive(Clone, Debug)]
@@ -104,6 +109,7 @@ impl Dispatch {
     /// there is no worker program, [`DispatchError::NobodyToAsk`] without any workers.
     pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
         let (listen, local) = addresses(&options)?;
+        allow_connections();
         // a folder that was made for a run that cannot begin would only be in the way
         for locator in &listen {
             admissible(locator, options.insecure)?;
@@ -284,6 +290,23 @@ impl Parts {
             said,
             blob,
         })
+    }
+}
+
+/// Has the system allow as many open connections as it may: a shell gives a process a thousand, which
+/// a few silent peers would use up.
+fn allow_connections() {
+    let Rlimit { current, maximum } = getrlimit(Resource::Nofile);
+    let wanted = maximum.map_or(FILES, |maximum| maximum.min(FILES));
+    if current.is_none_or(|current| current >= wanted) {
+        return;
+    }
+    let limit = Rlimit {
+        current: Some(wanted),
+        maximum,
+    };
+    if let Err(error) = setrlimit(Resource::Nofile, limit) {
+        tracing::debug!(%error, "no more files may be open than before");
     }
 }
 

@@ -32,6 +32,10 @@ const CLOSE: Duration = Duration::from_secs(2);
 /// places of others for so long.
 const ACCEPT_MS: u64 = 4000;
 
+/// Connections that may be waiting for their session: those that never speak must not keep others
+/// out, and each takes little more than its socket.
+const PENDING: usize = 8192;
+
 /// What a session of either end is made of.
 fn common(locators: &[&Locator], tls: &Value) -> Value {
     // no other protocol than those asked for: a peer cannot choose a weaker one
@@ -39,9 +43,11 @@ fn common(locators: &[&Locator], tls: &Value) -> Value {
     json!({
         "scouting": { "multicast": { "enabled": false }, "gossip": { "enabled": false } },
         "adminspace": { "enabled": false },
+        // nobody reads the times of messages, and a wall clock that is wrong has no say here
+        "timestamping": { "enabled": false },
         "transport": {
             "unicast": {
-                "max_sessions": 2000, "accept_pending": 1000, "accept_timeout": ACCEPT_MS,
+                "max_sessions": 2000, "accept_pending": PENDING, "accept_timeout": ACCEPT_MS,
             },
             "link": {
                 "protocols": protocols,

@@ -39,12 +39,54 @@ fn a_coordinator_that_stood_still_blames_nobody() {
             .iter()
             .any(|notice| matches!(notice, Notice::Stalled { .. }))
     );
-    scene.wait(5, &[]);
+    // it may take a moment to come back
+    scene.wait(6, &[]);
+    assert_eq!(scene.core.snapshot(scene.now).lost, 0);
+    scene.wait(2, &[]);
     assert_eq!(
         scene.core.snapshot(scene.now).lost,
         1,
         "silence afterwards still counts"
     );
+}
+
+/// Found as a run that was stopped with Ctrl-Z: its workers gave up their connections to it, and when
+/// it went on, all were taken for lost and their jobs were done again.
+#[test]
+fn connections_that_broke_while_the_coordinator_stood_still_are_no_losses() {
+    let time = Duration::from_secs(20);
+    // the process stood still, or the machine slept and its clock with it
+    for slept in [false, true] {
+        let mut scene = Scene::new();
+        scene.join(1, 1);
+        scene.join(2, 1);
+        scene.submit(0..2);
+        let given = scene.given();
+        if slept {
+            scene.tell(Input::Slept { time });
+        } else {
+            scene.now += time;
+        }
+        for worker in 1..=2 {
+            scene.tell(Input::Gone {
+                worker: WorkerId(worker),
+            });
+        }
+        let lost = |scene: &Scene| scene.core.snapshot(scene.now).lost;
+        assert_eq!(lost(&scene), 0);
+        // one comes back with its result
+        scene.wait(2, &[]);
+        let (_, attempt) = given.into_iter().find(|(to, _)| *to == 1).unwrap();
+        scene.finish(1, attempt);
+        scene.wait(6, &[1]);
+        assert_eq!(lost(&scene), 1, "the other one never does");
+        assert_eq!(scene.given().len(), 1, "and its job is offered again");
+        // the excuse is over
+        scene.tell(Input::Gone {
+            worker: WorkerId(1),
+        });
+        assert_eq!(lost(&scene), 2);
+    }
 }
 
 /// A job over which workers die runs alone, so that no other job can be blamed or harmed.
@@ -83,6 +125,40 @@ fn a_job_that_killed_two_workers_runs_alone_and_two_more_are_the_end() {
         scene.delivered,
         [(0, Outcome::Failed(Failure::Lost { workers: 4 }))]
     );
+}
+
+/// Found as a job that waited for a worker of its own until nothing else was left to do.
+#[test]
+fn a_suspect_is_not_kept_waiting_by_jobs_that_keep_coming() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..2);
+    scene.join(3, 1);
+    scene.join(4, 1);
+    scene.submit(2..60);
+    let mut busy: std::collections::VecDeque<_> = scene.given().into();
+    busy.retain(|(to, _)| *to > 2);
+    assert_eq!(busy.len(), 4, "they have all that they may have");
+    for worker in 1..=2 {
+        if worker == 2 {
+            scene.join(2, 1);
+            assert_eq!(scene.given()[0].1.job, JobId(0));
+        }
+        scene.tell(Input::Gone {
+            worker: WorkerId(worker),
+        });
+    }
+    let mut finished = 0;
+    while let Some((to, attempt)) = busy.pop_front() {
+        assert_ne!(attempt.job, JobId(1), "as suspect, and not alone");
+        finished += 1;
+        scene.finish(to, attempt);
+        busy.extend(scene.given());
+        if busy.iter().any(|(_, attempt)| attempt.job == JobId(0)) {
+            break;
+        }
+    }
+    assert!(finished <= 4, "it waited for {finished} others");
 }
 
 /// Under load a worker may die of a job that, as far as is known, only waited there: the results of

@@ -107,6 +107,13 @@ impl Scene {
                 !self.core.has_finished(*id),
                 "job {id} is pending or finished"
             );
+            let suspect =
+                membership::is_suspect(pending.failures, self.core.options.policy.suspect);
+            assert_eq!(
+                suspect,
+                self.core.suspects.contains(id),
+                "job {id} is a suspect"
+            );
             for holder in &pending.holders {
                 assert!(self.core.members[holder].holds(*id), "{holder} holds {id}");
             }

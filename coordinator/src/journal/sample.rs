@@ -1,0 +1,26 @@
+//! Events for tests of whatever reads or writes journals.
+use protocol::{
+    event::{Event, Finished},
+    id::{AttemptId, ContentHash, JobId},
+    job::Outcome,
+    message::Attempt,
+};
+
+/// A result of a job, whose work is named after it.
+pub(crate) fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
+    Event::Finished(Box::new(Finished {
+        attempt: Attempt {
+            job: JobId(job),
+            attempt: AttemptId(7),
+        },
+        work: ContentHash::of(&job.to_le_bytes()),
+        worker: None,
+        wall_us,
+        outcome,
+    }))
+}
+
+/// A result that differs from those of other jobs.
+pub(crate) fn result(job: u64) -> Event {
+    finished(job, 11 * job, Outcome::Nothing(job.to_le_bytes().repeat(3)))
+}
