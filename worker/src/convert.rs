@@ -158,7 +158,10 @@ fn head(case: &Case) -> Result<Head, Failure> {
 
 /// Influence lines gauge by gauge [Pa/N].
 fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
-    let line = |gauge: usize| rows.iter().map(move |row| row[gauge] * PASCAL_PER_MEGAPASCAL);
+    let line = |gauge: usize| {
+        rows.iter()
+            .map(move |row| row[gauge] * PASCAL_PER_MEGAPASCAL)
+    };
     (0..4).map(|gauge| line(gauge).collect()).collect()
 }
 

@@ -29,7 +29,12 @@ pub fn simulation_digest(simulation: &Simulation) -> String {
         .into_iter()
         .chain(&simulation.gauge_mpa)
         .chain(&simulation.modal)
-        .chain(simulation.tension_difference_n.iter().filter(|curve| !curve.is_empty()));
+        .chain(
+            simulation
+                .tension_difference_n
+                .iter()
+                .filter(|curve| !curve.is_empty()),
+        );
     for curve in curves {
         number(curve.len() as f64);
         curve.iter().copied().for_each(&mut number);

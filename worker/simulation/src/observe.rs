@@ -104,7 +104,11 @@ impl<'a> HeadLoad<'a> {
             machine,
             face,
             back,
-            pull: [c * force.x + s * force.y, c * force.y - s * force.x, force.z],
+            pull: [
+                c * force.x + s * force.y,
+                c * force.y - s * force.x,
+                force.z,
+            ],
             moments: face.beside.map(|_| moments),
         }
     }

@@ -105,7 +105,10 @@ impl<'a> Rim<'a> {
         if total <= 0.0 {
             return Err(self.missing(psi));
         }
-        Ok(Station::new(psi, weights.into_iter().map(|(n, w)| (n, w / total))))
+        Ok(Station::new(
+            psi,
+            weights.into_iter().map(|(n, w)| (n, w / total)),
+        ))
     }
 
     /// The one point of the station at an angle \[rad\] that lies at a height z \[m\].

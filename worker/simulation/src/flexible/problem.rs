@@ -73,7 +73,12 @@ impl<'a> Problem<'a> {
     ) -> Result<(Vec<Mode>, usize), ReductionError> {
         let found = lowest(&self.assembly, &self.factor, request.modes)?;
         let mode = |(value, shape): (&f64, &Vec<f64>)| {
-            self.mode(request, stations, rows, (value.sqrt(), self.unit_mass(shape)))
+            self.mode(
+                request,
+                stations,
+                rows,
+                (value.sqrt(), self.unit_mass(shape)),
+            )
         };
         let modes = found.eigenvalues.iter().zip(&found.shapes).map(mode);
         Ok((modes.collect(), found.steps))

@@ -69,7 +69,9 @@ impl Problem<'_> {
                 tables.gauge_stress.push(gauge_stress);
                 let along = |of: &dyn Fn(&Station) -> f64| stations.iter().map(of).collect();
                 tables.radial.push(along(&|s| s.mean(&field, s.radial)));
-                tables.tangential.push(along(&|s| s.mean(&field, s.tangential)));
+                tables
+                    .tangential
+                    .push(along(&|s| s.mean(&field, s.tangential)));
                 tables.lateral.push(along(&|s| s.mean_along_z(&field)));
             }
         }
@@ -77,12 +79,20 @@ impl Problem<'_> {
         // a newton on the half that is solved has its image on the other
         let stress = |of: &dyn Fn(&[[f64; 3]]) -> f64| -> Vec<f64> {
             let signed = lines.iter().zip(rows);
-            signed.map(|(line, row)| self.sign(row) * of(line)).collect()
+            signed
+                .map(|(line, row)| self.sign(row) * of(line))
+                .collect()
         };
         for s in &stations {
-            tables.normal_influence.push(stress(&|line| -s.mean(line, s.radial)));
-            tables.tangential_influence.push(stress(&|line| s.mean(line, s.tangential)));
-            tables.lateral_influence.push(stress(&|line| s.mean_along_z(line)));
+            tables
+                .normal_influence
+                .push(stress(&|line| -s.mean(line, s.radial)));
+            tables
+                .tangential_influence
+                .push(stress(&|line| s.mean(line, s.tangential)));
+            tables
+                .lateral_influence
+                .push(stress(&|line| s.mean_along_z(line)));
         }
         Ok(tables)
     }

@@ -348,7 +348,10 @@ fn a_pair_of_ropes_strains_the_whole_as_its_tables_say() {
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} {b}");
         close(sway.radial[k][0], here.mean(&mode.field, here.radial));
         close(sway.radial[k][0], -there.mean(&mode.field, here.radial));
-        close(sway.tangential[k][0], here.mean(&mode.field, here.tangential));
+        close(
+            sway.tangential[k][0],
+            here.mean(&mode.field, here.tangential),
+        );
         close(sway.lateral[k][0], here.mean_along_z(&mode.field));
         close(sway.lateral[k][0], there.mean_along_z(&mode.field));
     }
@@ -356,10 +359,7 @@ fn a_pair_of_ropes_strains_the_whole_as_its_tables_say() {
         offset: 0.3,
         modes: 1,
     });
-    assert!(matches!(
-        reduce(&asked),
-        Err(ReductionError::Beside { .. })
-    ));
+    assert!(matches!(reduce(&asked), Err(ReductionError::Beside { .. })));
 }
 
 #[test]

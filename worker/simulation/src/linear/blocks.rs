@@ -423,21 +423,21 @@ mod tests {
     #[test]
     fn solution_reproduces_the_right_hand_side() {
         for touch_from in [[0, 0], [2, 5], [4, 6], [4, 7]] {
-          for lead in [0, 2] {
-            let a = example(lead, &touch_from);
-            let x: Vec<f64> = (0..a.len()).map(|i| 1.0 + 0.37 * (i % 11) as f64).collect();
-            let mut y = vec![0.0; a.len()];
-            a.multiply(&x, &mut y);
-            let mut factors = a.clone();
-            factors.factorize().unwrap();
-            factors.solve(&mut y);
-            let worst = x
-                .iter()
-                .zip(&y)
-                .map(|(a, b)| (a - b).abs())
-                .fold(0.0, f64::max);
-            assert!(worst < 1e-11, "{lead} {touch_from:?}: {worst}");
-          }
+            for lead in [0, 2] {
+                let a = example(lead, &touch_from);
+                let x: Vec<f64> = (0..a.len()).map(|i| 1.0 + 0.37 * (i % 11) as f64).collect();
+                let mut y = vec![0.0; a.len()];
+                a.multiply(&x, &mut y);
+                let mut factors = a.clone();
+                factors.factorize().unwrap();
+                factors.solve(&mut y);
+                let worst = x
+                    .iter()
+                    .zip(&y)
+                    .map(|(a, b)| (a - b).abs())
+                    .fold(0.0, f64::max);
+                assert!(worst < 1e-11, "{lead} {touch_from:?}: {worst}");
+            }
         }
     }
 

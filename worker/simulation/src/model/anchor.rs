@@ -118,10 +118,9 @@ impl Machine {
                 }
                 if let Some(turning) = &turning {
                     let axis = turning.axes[row];
-                    let bent = k.checked_sub(1).map_or_else(
-                        || z.cross(&axis),
-                        |mode| turning.bend(row, mode),
-                    );
+                    let bent = k
+                        .checked_sub(1)
+                        .map_or_else(|| z.cross(&axis), |mode| turning.bend(row, mode));
                     entry += column[1].dot(&axis) + load.torque_i.dot(&bent);
                 }
                 matrix.add_corner(1 + row, k, -entry);
@@ -140,12 +139,7 @@ impl Machine {
         }
     }
 
-    fn turning<'a>(
-        &self,
-        face: &'a Face,
-        chain: usize,
-        at: &Instant<'_>,
-    ) -> Option<Turning<'a>> {
+    fn turning<'a>(&self, face: &'a Face, chain: usize, at: &Instant<'_>) -> Option<Turning<'a>> {
         let turn = self.turn(face, self.arc(chain).anchor, at)?;
         let [t, r] = turn.axes();
         let mut axes = [V3::zeros(); MAX_MODES];

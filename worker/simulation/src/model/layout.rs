@@ -76,12 +76,7 @@ impl Layout {
     /// Block of the first cylinder of a chain: those of the back ropes come first.
     pub const fn first(&self, chain: usize) -> usize {
         if self.twins() {
-            [
-                0,
-                self.back,
-                2 * self.back,
-                2 * self.back + self.front,
-            ][chain]
+            [0, self.back, 2 * self.back, 2 * self.back + self.front][chain]
         } else {
             [1, 2 + self.back][chain]
         }
@@ -132,7 +127,9 @@ impl Layout {
     /// Whether a coordinate is none: it fills up the block of rod or suspension.
     pub fn is_locked(&self, index: usize) -> bool {
         let width = self.motion.width();
-        let base = self.base_blocks().is_some_and(|at| at.contains(&(index / width)));
+        let base = self
+            .base_blocks()
+            .is_some_and(|at| at.contains(&(index / width)));
         base && index < self.beam() && !index.is_multiple_of(width)
     }
 

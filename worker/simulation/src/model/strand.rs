@@ -111,7 +111,10 @@ fn face(d: &Description, layout: &Layout, side: f64) -> Face {
     };
     let grid = |curves: &[Vec<f64>]| Splines::natural(head.start, head.step, curves);
     let radial = grid(&join(&head.radial, sway.map(|(_, s)| &s.radial[..])));
-    let tangential = grid(&join(&head.tangential, sway.map(|(_, s)| &s.tangential[..])));
+    let tangential = grid(&join(
+        &head.tangential,
+        sway.map(|(_, s)| &s.tangential[..]),
+    ));
     let lateral = sway.map(|(twins, s)| (twins.offset, grid(&s.lateral)));
     let shape = |k: usize| {
         let (s, c) = crate::math::elementary::sin_cos(anchor);

@@ -64,7 +64,9 @@ pub(super) fn check(d: &Description, modes: usize) -> Result<(), InvalidDescript
         }
     }
     check_tables(d, modes)?;
-    d.twins.as_ref().map_or(Ok(()), |twins| check_twins(d, twins, modes))
+    d.twins
+        .as_ref()
+        .map_or(Ok(()), |twins| check_twins(d, twins, modes))
 }
 
 /// The head has what its modes and its gauges need.
@@ -143,11 +145,31 @@ fn check_twins(d: &Description, twins: &Twins, modes: usize) -> Result<(), Inval
     let stations = d.head.radial.first().map(Vec::len);
     let stations = stations.or(sway.radial.first().map(Vec::len)).unwrap_or(0);
     let tables = [
-        ("radial shapes out of the plane", &sway.radial, count, stations),
-        ("tangential shapes out of the plane", &sway.tangential, count, stations),
+        (
+            "radial shapes out of the plane",
+            &sway.radial,
+            count,
+            stations,
+        ),
+        (
+            "tangential shapes out of the plane",
+            &sway.tangential,
+            count,
+            stations,
+        ),
         ("lateral shapes", &sway.lateral, count, stations),
-        ("normal influence lines of a pair", &sway.normal_influence, 4, lines),
-        ("tangential influence lines of a pair", &sway.tangential_influence, 4, lines),
+        (
+            "normal influence lines of a pair",
+            &sway.normal_influence,
+            4,
+            lines,
+        ),
+        (
+            "tangential influence lines of a pair",
+            &sway.tangential_influence,
+            4,
+            lines,
+        ),
         ("lateral influence lines", &sway.lateral_influence, 4, lines),
     ];
     for (what, table, rows, entries) in tables {

@@ -51,7 +51,13 @@ pub fn guess(
         };
         let count = machine.chains[chain].count;
         let own = taut.longer(strand.longer / pitches(count));
-        let tip = own.place(machine, chain, center, [anchor + position.beam, leave], &mut q);
+        let tip = own.place(
+            machine,
+            chain,
+            center,
+            [anchor + position.beam, leave],
+            &mut q,
+        );
         if strand.rope == FRONT {
             end += share * tip;
         }
