@@ -210,6 +210,11 @@ fn mesh(read: &case::mesh::Mesh) -> HeadMesh {
 
 /// Reduces on one local worker, without a run folder that outlives the command.
 fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
+    // a worker builds the machine first: not with tables that are yet to come
+    let case = &Case {
+        twin_ropes: None,
+        ..case.clone()
+    };
     let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
     bus::block_on(async {
         let mut stop = interrupt::listen();

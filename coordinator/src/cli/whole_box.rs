@@ -77,7 +77,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         check_out(folder)?;
     }
     let workers = arguments.workers.unwrap_or_else(super::cores).max(1);
-    let points = simulate(case, &plan, workers, arguments.output.output == Output::Table)?;
+    let points = simulate(
+        case,
+        &plan,
+        workers,
+        arguments.output.output == Output::Table,
+    )?;
     if let Some(folder) = &arguments.out {
         let path = report::write_box(folder, case, &points)?;
         output::tell(&format!("wrote {}", path.display()));

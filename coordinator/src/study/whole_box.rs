@@ -132,7 +132,8 @@ pub fn box_classes(points: &[BoxPoint]) -> Vec<BoxClass> {
             Some(verdict) => ended(&point.verdict) == verdict,
             None => point.verdict != Verdict::Complete,
         };
-        class(verdict, points.iter().filter(alike))
+        let alike: Vec<&BoxPoint> = points.iter().filter(alike).collect();
+        class(verdict, &alike)
     };
     let mut classes: Vec<BoxClass> = verdicts.into_iter().map(|v| of(Some(v))).collect();
     // equally common ones stay in the order in which they came first
@@ -158,8 +159,9 @@ fn ended(verdict: &Verdict) -> Verdict {
     }
 }
 
-fn class<'a>(verdict: Option<Verdict>, points: impl Iterator<Item = &'a BoxPoint>) -> BoxClass {
+fn class(verdict: Option<Verdict>, points: &[&BoxPoint]) -> BoxClass {
     let (mut iterations, mut wall_s): (Vec<u64>, Vec<f64>) = points
+        .iter()
         .map(|point| (point.counters.newton_iterations, point.wall_s))
         .unzip();
     iterations.sort_unstable();

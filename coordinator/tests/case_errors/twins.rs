@@ -27,22 +27,37 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "lengths in millimetres",
         |c| twins(c, "offset_m = 0.12\nback_length_difference_m = 1.0"),
-        &["`twin_ropes.back_length_difference_m` = 1 ", "-0.05 to 0.05 m"],
+        &[
+            "`twin_ropes.back_length_difference_m` = 1 ",
+            "-0.05 to 0.05 m",
+        ],
     ),
     (
         "more modes than can be simulated",
         |c| twins(c, "offset_m = 0.12\nmodes = 20"),
-        &["`twin_ropes.modes` = 20", "0 to 18", "24 together with run.modes"],
+        &[
+            "`twin_ropes.modes` = 20",
+            "0 to 18",
+            "24 together with run.modes",
+        ],
     ),
     (
         "more modes than there are",
         |c| twins(c, "offset_m = 0.12\nmodes = 15"),
-        &["the number of modes is 12", "twin_ropes.modes = 15", "head CASE --write"],
+        &[
+            "the number of modes is 12",
+            "twin_ropes.modes = 15",
+            "head CASE --write",
+        ],
     ),
     (
         "tables of another pair",
         |c| twins(c, "offset_m = 0.11"),
-        &["offset_m is 0.12", "twin_ropes.offset_m = 0.11", "head CASE --write"],
+        &[
+            "offset_m is 0.12",
+            "twin_ropes.offset_m = 0.11",
+            "head CASE --write",
+        ],
     ),
     (
         "tables absent",

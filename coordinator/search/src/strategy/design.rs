@@ -11,11 +11,7 @@ pub fn latin_hypercube(intervals: &[Interval], count: usize, seed: u64) -> Vec<V
 }
 
 /// The same from streams of a run.
-pub(super) fn hypercube(
-    intervals: &[Interval],
-    count: usize,
-    streams: Streams,
-) -> Vec<Vec<f64>> {
+pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::with_capacity(intervals.len()); count];
     for (axis, interval) in intervals.iter().enumerate() {
         let mut stream = streams.at(0, Phase::Initial, axis);

@@ -10,10 +10,21 @@ pub fn whole_box(classes: &[BoxClass], points: usize) -> Table {
     let rows = classes.iter().map(|class| {
         let iterations = class.iterations.map(count);
         let times = class.wall_s.map(duration);
-        let cells = std::iter::once(class.runs.to_string()).chain(iterations).chain(times);
+        let cells = std::iter::once(class.runs.to_string())
+            .chain(iterations)
+            .chain(times);
         Row::new(ended(class.verdict), cells)
     });
-    let head = ["", "runs", "iterations", "90 %", "most", "time", "90 %", "most"];
+    let head = [
+        "",
+        "runs",
+        "iterations",
+        "90 %",
+        "most",
+        "time",
+        "90 %",
+        "most",
+    ];
     Table {
         title: format!("How {points} individuals of the box ended"),
         head: head.map(str::to_owned).to_vec(),
