@@ -81,6 +81,7 @@ fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
         stations: &radians(&numbers(&table["arc_deg"])),
         probes: &radians(&PROBES_DEG),
         wrap: None,
+        pair: None,
         modes,
         families,
         fields: false,

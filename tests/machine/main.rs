@@ -1,6 +1,7 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 mod effect;
+mod twins;
 
 use protocol::case::Case;
 use simulation::integrator::method::{CATALOGUE, Method};

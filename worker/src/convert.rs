@@ -2,6 +2,7 @@
 //! names both vocabularies. Degrees become radians and megapascals pascals here.
 pub mod effect;
 mod refinement;
+mod twins;
 
 pub use refinement::refined;
 
@@ -110,6 +111,7 @@ fn description(case: &Case, condition: &Condition) -> Result<Description, Failur
             sense: -1.0,
         },
         head: head(case)?,
+        twins: twins::twins(case)?,
         card: card(condition),
     })
 }
@@ -118,15 +120,6 @@ fn head(case: &Case) -> Result<Head, Failure> {
     let head = &case.modal_head;
     let (start, step) = grid("modal_head.arc_deg", &head.arc_deg)?;
     let (influence_start, influence_step) = grid("influence.psi_deg", &head.influence.psi_deg)?;
-    let curves = |rows: &[[f64; 4]]| -> Vec<Vec<f64>> {
-        (0..4)
-            .map(|gauge| {
-                rows.iter()
-                    .map(|row| row[gauge] * PASCAL_PER_MEGAPASCAL)
-                    .collect()
-            })
-            .collect()
-    };
     let base_stress = head
         .inertia_stress_mpa
         .map(|row| row.map(|s| s * PASCAL_PER_MEGAPASCAL));
@@ -161,6 +154,15 @@ fn head(case: &Case) -> Result<Head, Failure> {
         normal_influence: curves(&head.influence.normal_mpa_per_n),
         tangential_influence: curves(&head.influence.tangential_mpa_per_n),
     })
+}
+
+/// Influence lines gauge by gauge [Pa/N].
+fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
+    let line = |gauge: usize| {
+        rows.iter()
+            .map(move |row| row[gauge] * PASCAL_PER_MEGAPASCAL)
+    };
+    (0..4).map(|gauge| line(gauge).collect()).collect()
 }
 
 /// Start and spacing \[rad\] of a table that must be equally spaced.

@@ -16,6 +16,9 @@ pub struct Summary {
     pub front_rope: (f64, usize),
     /// Frequencies of the head modes that are simulated \[Hz\].
     pub modes_hz: Vec<f64>,
+    /// Two ropes on each head, where there are: distance from the plane \[m\], by how much the back and
+    /// the front rope at -z are longer \[m\], frequencies of the modes out of the plane \[Hz\].
+    pub twin_ropes: Option<(f64, [f64; 2], Vec<f64>)>,
     /// Mass of the meshed head \[kg\].
     pub head_mass_kg: f64,
     /// The unknown numbers.
@@ -83,6 +86,14 @@ pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseE
             .take(case.run.modes)
             .copied()
             .collect(),
+        twin_ropes: case.twin_ropes.as_ref().map(|twins| {
+            let longer = [
+                twins.back_length_difference_m,
+                twins.front_length_difference_m,
+            ];
+            let modes = twins.head.frequencies_hz.iter().take(twins.modes);
+            (twins.offset_m, longer, modes.copied().collect())
+        }),
         head_mass_kg: case.modal_head.mass_kg,
         conditions: conditions(&case, loaded.records),
         objective: (
@@ -185,7 +196,23 @@ impl Summary {
             self.head_mass_kg,
             modes.join(", ")
         )?;
-        writeln!(to, "genes       recommended (lower .. upper)")?;
+        if let Some((offset, [back, front], modes)) = &self.twin_ropes {
+            let modes: Vec<String> = modes.iter().map(|f| format!("{f:.1}")).collect();
+            writeln!(
+                to,
+                "twin ropes  at z = +-{offset:.3} m, those at -z longer by {:.2} mm (back) and {:.2} mm \
+                 (front), modes out of the plane at {} Hz",
+                1e3 * back,
+                1e3 * front,
+                modes.join(", ")
+            )?;
+        }
+        let whose = if self.twin_ropes.is_some() {
+            "; of both ropes of a head together"
+        } else {
+            ""
+        };
+        writeln!(to, "genes       recommended (lower .. upper){whose}")?;
         for gene in &self.genes {
             writeln!(
                 to,
@@ -195,6 +222,12 @@ impl Summary {
                 gene.lower,
                 gene.upper,
                 gene.unit.symbol()
+            )?;
+        }
+        if self.twin_ropes.is_none() {
+            writeln!(
+                to,
+                "  kb4 and cb4 change nothing: one rope in the middle is not twisted, see twin_ropes"
             )?;
         }
         for effect in &self.effects {

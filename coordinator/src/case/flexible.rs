@@ -6,9 +6,10 @@ use super::{
     load::{Overrides, resolve},
     mesh,
     schema::CaseFile,
+    twin,
 };
 use protocol::{
-    case::{Case, ModalHead},
+    case::{Case, ModalHead, TwinRopes},
     job::HeadGauge,
 };
 use std::path::{Path, PathBuf};
@@ -19,7 +20,9 @@ pub(super) struct ReadHead {
     pub(super) provenance: head::Provenance,
     /// With the content hash of its file.
     pub(super) mesh: Option<(mesh::Mesh, String)>,
-    /// The tables were computed from another mesh.
+    /// Two ropes in place of one, with what the head answers to a pair.
+    pub(super) twins: Option<TwinRopes>,
+    /// The tables were computed from another mesh, or do not fit together.
     pub(super) stale: Option<CaseError>,
 }
 
@@ -38,6 +41,7 @@ pub(super) fn read(
         head,
         provenance,
         mesh: None,
+        twins: None,
         stale: None,
     };
     if let Some(name) = &flexible.mesh_file {
@@ -50,6 +54,12 @@ pub(super) fn read(
             mesh::check_mass(&path, &mesh, flexible.density_kg_m3, mass)?;
         }
         read.mesh = Some((mesh, hash));
+    }
+    if let Some(entry) = &file.twin_ropes {
+        let hash = read.mesh.as_ref().map(|(_, hash)| hash.as_str());
+        let pair = twin::read(folder, entry, &read.head, hash)?;
+        read.twins = Some(pair.twins);
+        read.stale = read.stale.or(pair.unfit);
     }
     let available = read.head.frequencies_hz.len();
     if file.run.modes > available {
@@ -81,12 +91,14 @@ pub struct HeadSource {
     pub density_kg_m3: f64,
     /// Where stress is read.
     pub gauges: [HeadGauge; 4],
-    /// Whether the case's tables were computed from another mesh.
+    /// Whether the case's tables are missing or were computed from another mesh.
     pub stale: bool,
     /// The file of the modes.
     pub modes_file: PathBuf,
     /// The file of the influence lines.
     pub influence_file: PathBuf,
+    /// The file of the tables for a pair of ropes, where the case has one.
+    pub twin_file: Option<PathBuf>,
 }
 
 /// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
@@ -94,7 +106,7 @@ pub struct HeadSource {
 /// # Errors
 /// As [`super::load`]; a case without mesh or gauge places.
 pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
-    let (loaded, read, flexible) = resolve(folder, &Overrides::default())?;
+    let (loaded, read, (flexible, twins)) = resolve(folder, &Overrides::default())?;
     let Some((mesh, mesh_blake3)) = read.mesh else {
         return Err(damaged(
             &folder.join("case.toml"),
@@ -119,6 +131,7 @@ pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
         gauges,
         stale: read.stale.is_some(),
         influence_file: folder.join(&flexible.influence_file),
+        twin_file: twins.map(|entry| folder.join(entry.head_file)),
         modes_file,
     };
     Ok((loaded.case, source))

@@ -10,7 +10,7 @@ use super::{
     machine,
     note::Note,
     record::{self, Expected, RecordFacts},
-    schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry, Records},
+    schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry, Records, TwinRopesEntry},
 };
 use discrepancy::record::Record;
 use protocol::case::{Case, Condition, Objective};
@@ -62,11 +62,14 @@ pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, C
     }
 }
 
+/// What the case file says of the flexible head, and of the ropes on it.
+type HeadEntries = (FlexibleHead, Option<TwinRopesEntry>);
+
 /// A case with the head's files; tables of another mesh are no error yet.
 pub(super) fn resolve(
     folder: &Path,
     overrides: &Overrides,
-) -> Result<(Loaded, ReadHead, FlexibleHead), CaseError> {
+) -> Result<(Loaded, ReadHead, HeadEntries), CaseError> {
     if let Some(measured) = overrides.measured.as_deref().filter(|path| !path.is_dir()) {
         return Err(damaged(
             measured,
@@ -115,6 +118,7 @@ pub(super) fn resolve(
         front_head: file.front_head,
         back_head: file.back_head,
         modal_head: read.head.clone(),
+        twin_ropes: read.twins.clone(),
         effects: file.effects.iter().map(CaseEffect::setting).collect(),
         effect_units: file.effects.iter().map(CaseEffect::units).collect(),
         genes,
@@ -131,7 +135,7 @@ pub(super) fn resolve(
         effects: file.effects,
         envelope,
     };
-    Ok((loaded, read, file.flexible_head))
+    Ok((loaded, read, (file.flexible_head, file.twin_ropes)))
 }
 
 /// Where conditions come from.

@@ -4,6 +4,7 @@ use super::{
     error::CaseError,
     geometry::{self, Envelope},
     schema::CaseFile,
+    twin,
 };
 use protocol::case::Smoothing;
 
@@ -11,6 +12,7 @@ use protocol::case::Smoothing;
 pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
     check_ranges(document, case)?;
     check_run(document, case)?;
+    twin::check(document, case)?;
     check_ropes(document, case)
 }
 

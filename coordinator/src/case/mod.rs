@@ -21,6 +21,7 @@ mod note;
 mod record;
 mod schema;
 mod table;
+mod twin;
 
 pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, template};
 pub use effect::{CaseEffect, CaseParameter, Provenance, write_effects};
@@ -33,3 +34,4 @@ pub(crate) use head::GaugePlace;
 pub use load::{Loaded, Overrides, load, load_with_notes};
 pub use note::Note;
 pub use record::{RecordFacts, count_samples};
+pub(crate) use twin::TwinFile;

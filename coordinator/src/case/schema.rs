@@ -29,6 +29,8 @@ pub(super) struct CaseFile {
     pub(super) front_head: FrontHead,
     pub(super) back_head: BackHead,
     pub(super) flexible_head: FlexibleHead,
+    /// Two ropes on each head; one unless stated.
+    pub(super) twin_ropes: Option<TwinRopesEntry>,
     /// What the machine has beside the above; nothing unless stated.
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
@@ -73,6 +75,29 @@ pub(super) struct FlexibleHead {
     /// Poisson's ratio of the mesh \[1\]; steel unless stated.
     #[serde(default = "steel_poisson")]
     pub(super) poisson: f64,
+}
+
+/// Two ropes side by side on each head.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct TwinRopesEntry {
+    /// Distance of either rope from the machine's plane \[m\].
+    pub(super) offset_m: f64,
+    /// By how much the back rope at -z is longer than the one at +z \[m\].
+    #[serde(default)]
+    pub(super) back_length_difference_m: f64,
+    /// The same of the front ropes \[m\].
+    #[serde(default)]
+    pub(super) front_length_difference_m: f64,
+    /// Head modes out of the plane that are simulated.
+    #[serde(default = "six")]
+    pub(super) modes: usize,
+    /// The head's tables for the pair, as JSON.
+    pub(super) head_file: PathBuf,
+}
+
+const fn six() -> usize {
+    6
 }
 
 const fn steel_gpa() -> f64 {

@@ -1,5 +1,5 @@
 //! `horsehead bench`: what the machinery costs without physics, and what accuracy costs with it.
-use super::{EXIT_CODES, Output, OutputChoice, bus, integrators, output};
+use super::{EXIT_CODES, Output, OutputChoice, bus, integrators, output, whole_box};
 use crate::runtime::{self, BenchPlan, Crew};
 use clap::{Args, Subcommand};
 use link::locator::Locator;
@@ -43,6 +43,7 @@ Examples:
         output: OutputChoice,
     },
     Integrators(integrators::Arguments),
+    Box(whole_box::Arguments),
     /// Be many workers that are only sessions, for `bench dispatch --connections`.
     #[command(hide = true, after_help = format!("\
 Example:
@@ -96,6 +97,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             dispatch(plan, of_what, *output)
         }
         What::Integrators(arguments) => integrators::run(arguments),
+        What::Box(arguments) => whole_box::run(arguments),
         What::Sessions { connect, sessions } => {
             bus::block_on(async { Ok(runtime::connect(connect, *sessions).await?) })
         }

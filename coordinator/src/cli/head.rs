@@ -12,7 +12,7 @@ use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 use protocol::{
     case::Case,
-    job::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap},
+    job::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap},
 };
 use std::path::PathBuf;
 
@@ -43,7 +43,8 @@ pub(super) struct Arguments {
     /// Condition whose load stands for the quasi-static turn; that of the objective by default.
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
     condition: Option<String>,
-    /// Replace the case's modes file and influence file.
+    /// Replace the case's modes file and influence file, and of a case with twin ropes the head's
+    /// tables for them.
     #[arg(long, env = "HORSEHEAD_WRITE")]
     write: bool,
     /// Folder for `head.vtu`: all modes, and displacement and stress under the largest tension.
@@ -82,7 +83,7 @@ const MOST_MODES: usize = 40;
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let (case, source) = case::load_head(&arguments.case)?;
     if source.stale {
-        output::tell("note: the case's tables were computed from another mesh");
+        output::tell("note: tables of the case are missing or were computed for something else");
     }
     let modes = arguments
         .modes
@@ -127,7 +128,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let styled = output::styled();
         let modes = table::text(&table::head_modes(&head, &comparison), styled);
         let statics = table::head_statics(&comparison, &name, case.run.modes);
-        format!("{modes}\n{}", table::text(&statics, styled))
+        let pair = head.twin.iter().zip(&case.twin_ropes);
+        let pair = pair.map(|(twin, ropes)| table::head_pair(twin, ropes.offset_m));
+        let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
+        let pair: String = pair.collect();
+        format!("{modes}\n{}{pair}", table::text(&statics, styled))
     };
     output::print(arguments.output.output, tables, &object)
 }
@@ -163,6 +168,10 @@ fn spec(
         probes_deg: Vec::new(),
         modes,
         families,
+        pair: case.twin_ropes.as_ref().map(|twins| RopePair {
+            offset_m: twins.offset_m,
+            modes: twins.modes,
+        }),
         fields: None,
     }
 }
@@ -201,6 +210,11 @@ fn mesh(read: &case::mesh::Mesh) -> HeadMesh {
 
 /// Reduces on one local worker, without a run folder that outlives the command.
 fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
+    // a worker builds the machine first: not with tables that are yet to come
+    let case = &Case {
+        twin_ropes: None,
+        ..case.clone()
+    };
     let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
     bus::block_on(async {
         let mut stop = interrupt::listen();

@@ -1,11 +1,11 @@
 //! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
 use crate::{
-    case::{GaugePlace, HeadSource},
+    case::{GaugePlace, HeadSource, TwinFile},
     report::vtu::{self, Field},
 };
 use anyhow::Context as _;
 use protocol::{
-    case::Case,
+    case::{Case, TwinHead},
     job::{HeadMesh, ModeFamily, ReducedHead},
 };
 use serde::Serialize;
@@ -37,12 +37,13 @@ struct ModesFile<'a> {
     gauges: BTreeMap<String, GaugePlace>,
 }
 
-/// Replaces the modes file and the influence file of a case; returns their paths.
+/// Replaces the tables of a case: modes file, influence file, and that for a pair of ropes where there
+/// is one; returns their paths.
 pub(super) fn write_tables(
     case: &Case,
     source: &HeadSource,
     head: &ReducedHead,
-) -> anyhow::Result<[PathBuf; 2]> {
+) -> anyhow::Result<Vec<PathBuf>> {
     let place = |(number, gauge): (usize, &protocol::job::HeadGauge)| {
         let [x_m, y_m, z_m] = gauge.position_m;
         let place = GaugePlace {
@@ -72,22 +73,50 @@ pub(super) fn write_tables(
     };
     let mut modes = serde_json::to_string(&file)?;
     modes.push('\n');
-    // both are complete before either replaces what was there
-    let both = [
+    let mut all = vec![
         (&source.modes_file, modes),
         (&source.influence_file, influence(head)),
     ];
-    let drafts = both.map(|(path, text)| {
-        let draft = path.with_extension("draft");
-        let written = fs::write(&draft, text);
-        written.with_context(|| format!("cannot write {}", draft.display()))?;
-        anyhow::Ok((draft, path.clone()))
-    });
+    let pair = source.twin_file.as_ref().zip(case.twin_ropes.as_ref());
+    if let (Some((path, ropes)), Some(tables)) = (pair, &head.twin) {
+        let file = twin_file(source, ropes.offset_m, tables);
+        all.push((path, serde_json::to_string(&file)? + "\n"));
+    }
+    // all are complete before any replaces what was there
+    let drafts: Vec<anyhow::Result<(PathBuf, PathBuf)>> = all
+        .into_iter()
+        .map(|(path, text)| {
+            let draft = path.with_extension("draft");
+            let written = fs::write(&draft, text);
+            written.with_context(|| format!("cannot write {}", draft.display()))?;
+            anyhow::Ok((draft, path.clone()))
+        })
+        .collect();
+    let mut written = Vec::new();
     for draft in drafts {
         let (draft, path) = draft?;
         fs::rename(&draft, &path).with_context(|| format!("cannot replace {}", path.display()))?;
+        written.push(path);
     }
-    Ok([source.modes_file.clone(), source.influence_file.clone()])
+    Ok(written)
+}
+
+fn twin_file(source: &HeadSource, offset_m: f64, tables: &TwinHead) -> TwinFile {
+    let tables = tables.clone();
+    TwinFile {
+        mesh_blake3: Some(source.mesh_blake3.clone()),
+        made_by: Some(super::bus::PROGRAM.to_owned()),
+        offset_m,
+        frequencies_hz: tables.frequencies_hz,
+        arc_deg: tables.influence.psi_deg,
+        radial: tables.radial,
+        tangential: tables.tangential,
+        lateral: tables.lateral,
+        gauge_stress_mpa: tables.gauge_stress_mpa,
+        normal_mpa_per_n: tables.influence.normal_mpa_per_n,
+        tangential_mpa_per_n: tables.influence.tangential_mpa_per_n,
+        lateral_mpa_per_n: tables.lateral_mpa_per_n,
+    }
 }
 
 /// The influence lines as CSV.

@@ -35,6 +35,9 @@ pub(super) struct SimulateOutput<'a> {
     pub(super) rope_tension_n: &'a [f64],
     /// Tension of the front rope at the suspension (N).
     pub(super) front_rope_tension_n: &'a [f64],
+    /// By how much of twin ropes the one at +z pulls more (N); absent where there is one rope.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) twin_tension_difference_n: Option<TwinTensionOutput<'a>>,
     /// Beam angle (deg).
     pub(super) beam_deg: &'a [f64],
     /// Suspension height above its lowest design position (m).
@@ -45,6 +48,13 @@ pub(super) struct SimulateOutput<'a> {
     pub(super) energy: Option<EnergyOutput>,
     /// Hash of all result bits.
     pub(super) digest: String,
+}
+
+/// A difference of tensions over the revolution (N).
+#[derive(Debug, Serialize)]
+pub(super) struct TwinTensionOutput<'a> {
+    back: &'a [f64],
+    front: &'a [f64],
 }
 
 /// How a simulation ended.
@@ -147,6 +157,9 @@ pub(super) struct HeadOutput<'a> {
     lanczos_steps: usize,
     mass_kg: f64,
     modes: Vec<HeadModeOutput>,
+    /// Modes out of the plane (Hz); absent where there is one rope.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    twin_modes_hz: Option<&'a [f64]>,
     /// Modes of the case's table that do not move the rope surface (Hz).
     inert_table_modes_hz: &'a [f64],
     /// By gauge number.
@@ -176,7 +189,7 @@ pub(super) struct HeadGaugeOutput {
 pub(super) fn head<'a>(
     (case, condition): (&'a Case, &'a str),
     mesh_blake3: &'a str,
-    head: &ReducedHead,
+    head: &'a ReducedHead,
     comparison: &'a HeadComparison,
 ) -> HeadOutput<'a> {
     let ranges = &comparison.half_ranges;
@@ -197,6 +210,7 @@ pub(super) fn head<'a>(
                 mac: found.table.map(|(_, mac)| mac),
             })
             .collect(),
+        twin_modes_hz: head.twin.as_ref().map(|twin| &twin.frequencies_hz[..]),
         inert_table_modes_hz: &comparison.inert_hz,
         gauges: (0..4)
             .map(|gauge| {
@@ -386,6 +400,7 @@ pub(super) fn simulation<'a>(
     let simulation: &Simulation = &curves.simulation;
     let (counters, energy) = (simulation.counters, simulation.energy);
     let gauges = (1..).zip(&simulation.gauge_mpa);
+    let [back, front] = &simulation.tension_difference_n;
     SimulateOutput {
         case: &case.name,
         condition: case
@@ -410,6 +425,7 @@ pub(super) fn simulation<'a>(
             .collect(),
         rope_tension_n: &simulation.back_rope_tension_n,
         front_rope_tension_n: &simulation.front_rope_tension_n,
+        twin_tension_difference_n: (!back.is_empty()).then_some(TwinTensionOutput { back, front }),
         beam_deg: &simulation.beam_deg,
         suspension_m: &simulation.suspension_m,
         crank_torque_nm: &simulation.crank_torque_n_m,

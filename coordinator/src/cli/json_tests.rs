@@ -46,6 +46,7 @@ fn curves(verdict: Verdict) -> Curves {
             gauge_mpa: [vec![1.0, 2.0], vec![3.0; 2], vec![4.0; 2], vec![5.0; 2]],
             back_rope_tension_n: vec![1e5; 2],
             front_rope_tension_n: vec![9e4; 2],
+            tension_difference_n: [Vec::new(), Vec::new()],
             beam_deg: vec![6.0; 2],
             suspension_m: vec![7.0; 2],
             suspension_velocity_m_s: vec![8.0; 2],

@@ -25,6 +25,7 @@ mod report;
 mod run_folder;
 mod simulate;
 mod verify;
+mod whole_box;
 
 use clap::{
     Args, Parser, Subcommand, ValueEnum,

@@ -5,6 +5,7 @@ use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::event::Spent;
 use std::{
+    cell::Cell,
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
 };
@@ -40,6 +41,47 @@ impl Display {
             last: now,
             generation: None,
             recorded: 0,
+        }
+    }
+
+    /// Takes the bar away.
+    pub(super) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows how many of a number of jobs have ended.
+pub(super) struct Counter {
+    bar: Option<ProgressBar>,
+    all: usize,
+    last: Cell<Option<Instant>>,
+}
+
+impl Counter {
+    /// Silent unless `tell`.
+    pub(super) fn new(all: usize, tell: bool) -> Self {
+        let bar = (tell && io::stderr().is_terminal()).then(|| {
+            let style = ProgressStyle::with_template("{bar:32} {pos}/{len}")
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .progress_chars("=> ");
+            ProgressBar::new(all as u64).with_style(style)
+        });
+        Self {
+            bar,
+            all,
+            last: Cell::new(tell.then(Instant::now)),
+        }
+    }
+
+    /// So many have.
+    pub(super) fn show(&self, ended: usize) {
+        if let Some(bar) = &self.bar {
+            bar.set_position(ended as u64);
+        } else if self.last.get().is_some_and(|last| last.elapsed() > SILENCE) {
+            self.last.set(Some(Instant::now()));
+            output::tell(&format!("{ended} of {}", self.all));
         }
     }
 

@@ -3,9 +3,9 @@
 //! An empty field is a value that does not exist; numbers are written with all their digits.
 use super::data::{ConditionResult, HistoryPoint, Run, SingleRun};
 use super::words::condition_name;
-use crate::study::WorkPrecision;
+use crate::study::{BoxPoint, WorkPrecision};
 use protocol::case::{Case, GaugeRecord};
-use protocol::job::{Simulation, Verdict};
+use protocol::job::{Reached, Simulation, Verdict};
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.
@@ -131,6 +131,48 @@ fn on_grid(record: &GaugeRecord, turn_deg: f64) -> Option<usize> {
         .partition_point(|&known| known < turn_deg - SAME_DEG);
     let known = *record.turn_deg.get(row)?;
     ((known - turn_deg).abs() <= SAME_DEG).then_some(row)
+}
+
+/// Writes individuals of the box of genes: genes in declared units, how each ended, what it cost.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub fn whole_box(to: impl Write, case: &Case, points: &[BoxPoint]) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    let genes = case.genes.iter().map(|gene| gene.name.as_str());
+    let rest = [
+        "verdict",
+        "load_fraction",
+        "time_fraction",
+        "steps",
+        "newton_iterations",
+        "factorizations",
+        "wall_s",
+    ];
+    writer.write_record(std::iter::once("point").chain(genes).chain(rest))?;
+    for (index, point) in points.iter().enumerate() {
+        let (verdict, load, time) = match point.verdict {
+            Verdict::Complete => ("complete", None, None),
+            Verdict::Failed { kind, reached } => match reached {
+                Reached::LoadFraction(share) => (kind.as_str(), Some(share), None),
+                Reached::TimeFraction(share) => (kind.as_str(), None, Some(share)),
+            },
+        };
+        let counters = &point.counters;
+        let mut fields = vec![index.to_string()];
+        fields.extend(point.genes.iter().map(f64::to_string));
+        fields.push(verdict.to_owned());
+        fields.extend([load, time].map(field));
+        fields.extend([
+            counters.steps.to_string(),
+            counters.newton_iterations.to_string(),
+            counters.factorizations.to_string(),
+            point.wall_s.to_string(),
+        ]);
+        writer.write_record(fields)?;
+    }
+    writer.flush()?;
+    Ok(())
 }
 
 /// Writes the evaluation log: one row per individual, genes in declared units.

@@ -19,7 +19,8 @@ pub use data::{
     Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, SingleRun, WorkerUse,
 };
 
-use crate::study::WorkPrecision;
+use crate::study::{BoxPoint, WorkPrecision};
+use protocol::case::Case;
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -135,6 +136,15 @@ pub fn write_work_precision(
             csv::work_precision(file, all)
         })?,
     ])
+}
+
+/// Writes `box.csv` into a folder, which is made if it does not exist: individuals of the box of genes
+/// and how they ended. Returns its path.
+///
+/// # Errors
+/// [`ReportError`] when the file cannot be written.
+pub fn write_box(folder: &Path, case: &Case, points: &[BoxPoint]) -> Result<PathBuf, ReportError> {
+    stream(folder, "box.csv", |file| csv::whole_box(file, case, points))
 }
 
 fn write_figures(folder: &Path, figures: &[chart::Figure]) -> Result<Vec<PathBuf>, ReportError> {

@@ -28,7 +28,13 @@ pub fn simulation_digest(simulation: &Simulation) -> String {
     let curves = single
         .into_iter()
         .chain(&simulation.gauge_mpa)
-        .chain(&simulation.modal);
+        .chain(&simulation.modal)
+        .chain(
+            simulation
+                .tension_difference_n
+                .iter()
+                .filter(|curve| !curve.is_empty()),
+        );
     for curve in curves {
         number(curve.len() as f64);
         curve.iter().copied().for_each(&mut number);

@@ -14,6 +14,7 @@ mod head;
 mod integrators;
 mod log;
 mod progress;
+mod whole_box;
 
 pub use calibrate::{Calibrated, Observe, Stop, calibrate};
 pub use compare::{Compared, Curves, Wanted, compare};
@@ -27,6 +28,7 @@ pub use head::{
 pub use integrators::{FixedPrice, WorkPlan, WorkPoint, WorkPrecision, work_precision};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
+pub use whole_box::{BoxClass, BoxPlan, BoxPoint, box_classes, whole_box};
 
 #[cfg(test)]
 mod tests;

@@ -110,6 +110,7 @@ fn curves(first_gene: f64) -> Simulation {
         ],
         back_rope_tension_n: vec![1e5; 2],
         front_rope_tension_n: vec![9e4; 2],
+        tension_difference_n: [Vec::new(), Vec::new()],
         beam_deg: vec![0.0; 2],
         suspension_m: vec![0.0; 2],
         suspension_velocity_m_s: vec![0.0; 2],

@@ -8,6 +8,7 @@ mod card;
 mod case_file;
 mod record;
 mod spoilt;
+mod twins;
 
 use coordinator::case::{self, Overrides};
 use protocol::case::WeightAxes;
@@ -32,6 +33,11 @@ fn every_fault_of_a_record_is_named() {
 #[test]
 fn every_fault_of_the_back_head_is_named() {
     assert_each_is_named(back_head::FAULTS);
+}
+
+#[test]
+fn every_fault_of_twin_ropes_is_named() {
+    assert_each_is_named(twins::FAULTS);
 }
 
 #[test]

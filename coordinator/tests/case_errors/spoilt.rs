@@ -34,6 +34,7 @@ impl Copy {
             "back_head/back_head.msh",
             "back_head/back_head_modes.json",
             "back_head/back_head_influence.csv",
+            TWINS,
         ] {
             fs::copy(shipped().join(file), folder.path().join(file)).unwrap();
         }
@@ -117,6 +118,7 @@ pub(super) const TOML: &str = "case.toml";
 pub(super) const CARD: &str = "measured/card_5rpm.csv";
 pub(super) const RECORD: &str = "measured/test_5rpm.csv.gz";
 pub(super) const SHEET: &str = "measured/test_5rpm.toml";
+pub(super) const TWINS: &str = "back_head/back_head_twin.json";
 pub(super) const MODES: &str = "back_head/back_head_modes.json";
 pub(super) const INFLUENCE: &str = "back_head/back_head_influence.csv";
 pub(super) const MESH: &str = "back_head/back_head.msh";

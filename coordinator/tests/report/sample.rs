@@ -140,6 +140,7 @@ pub(crate) fn case() -> Case {
             center_y_m: -0.58,
             rope_anchor_deg: 125.0,
         },
+        twin_ropes: None,
         modal_head: ModalHead {
             frequencies_hz: Vec::new(),
             damping_ratio: 0.01,
@@ -292,6 +293,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
         gauge_mpa: [gauge(0), gauge(1), gauge(2), gauge(3)],
         back_rope_tension_n: tension.clone(),
         front_rope_tension_n: load.clone(),
+        tension_difference_n: [Vec::new(), Vec::new()],
         beam_deg: poses
             .iter()
             .map(|pose| pose.beam_rad.to_degrees())

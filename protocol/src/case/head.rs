@@ -57,7 +57,7 @@ pub enum StressRecovery {
 }
 
 /// Static influence lines of the gauges.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Influence {
     /// Stations on the rope arc, ascending \[deg\]; length s.
     pub psi_deg: Vec<f64>,

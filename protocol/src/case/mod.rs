@@ -9,6 +9,7 @@ mod gene;
 mod head;
 mod machine;
 mod objective;
+mod twin;
 
 pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
 pub use effect::{EffectSetting, merged};
@@ -18,6 +19,7 @@ pub use machine::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
 };
 pub use objective::{Objective, Offset};
+pub use twin::{TwinHead, TwinRopes};
 
 use serde::{Deserialize, Serialize};
 
@@ -46,6 +48,8 @@ pub struct Case {
     pub back_head: BackHead,
     /// Modes and influence lines of the back head.
     pub modal_head: ModalHead,
+    /// Two ropes on each head in place of one, if there are.
+    pub twin_ropes: Option<TwinRopes>,
     /// What the machine has beside the above: effects with their numbers.
     pub effects: Vec<EffectSetting>,
     /// Units in which the case states those numbers, effect by effect in the same order; a worker

@@ -2,7 +2,7 @@
 //!
 //! Depends on nothing of the case: mesh, material, gauges and arc travel with the job (about 1 MB
 //! for 14,000 hexahedra).
-use crate::case::Influence;
+use crate::case::{Influence, TwinHead};
 use serde::{Deserialize, Serialize};
 
 /// What to reduce, and to what.
@@ -28,6 +28,8 @@ pub struct ReduceHeadSpec {
     pub modes: usize,
     /// Families of modes, the lowest of all are returned.
     pub families: Vec<ModeFamily>,
+    /// Two ropes on the head, where there are two: their tables are wanted as well.
+    pub pair: Option<RopePair>,
     /// A static load whose field is wanted; with it the whole fields of all modes are returned.
     pub fields: Option<RopeWrap>,
 }
@@ -75,6 +77,15 @@ pub struct RopeWrap {
     pub leaves_deg: f64,
 }
 
+/// Two ropes side by side on the head.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RopePair {
+    /// Distance of either from the plane z = 0 \[m\].
+    pub offset_m: f64,
+    /// Number of antisymmetric modes.
+    pub modes: usize,
+}
+
 /// A reduced head.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReducedHead {
@@ -87,6 +98,8 @@ pub struct ReducedHead {
     pub inertia_stress_mpa: [[f64; 4]; 3],
     /// Outward radial displacement at probe j per inward newton at probe i [m/N]; p x p.
     pub compliance_m_per_n: Vec<Vec<f64>>,
+    /// What two ropes ask for; none unless asked for.
+    pub twin: Option<TwinHead>,
     /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
     /// Its centre \[m\].

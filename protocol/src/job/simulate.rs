@@ -45,10 +45,13 @@ pub struct Simulation {
     pub turn_deg: Vec<f64>,
     /// Stress at gauges 1 to 4 \[MPa\].
     pub gauge_mpa: [Vec<f64>; 4],
-    /// Axial force in the back rope's first joint, at the crossbeam \[N\].
+    /// Axial force in the back rope's first joint, at the crossbeam; of two ropes together \[N\].
     pub back_rope_tension_n: Vec<f64>,
-    /// Axial force in the front rope's joint at the suspension \[N\].
+    /// Axial force in the front rope's joint at the suspension; of two ropes together \[N\].
     pub front_rope_tension_n: Vec<f64>,
+    /// By how much of two ropes the one at +z pulls more, back and front \[N\]; empty where there is
+    /// one.
+    pub tension_difference_n: [Vec<f64>; 2],
     /// Beam angle \[deg\].
     pub beam_deg: Vec<f64>,
     /// Suspension height above its lowest design position \[m\].

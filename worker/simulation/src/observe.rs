@@ -4,6 +4,7 @@ use crate::effect::Sampled;
 use crate::integrator::State;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::ChainState;
+use crate::model::strand::Face;
 use crate::model::{Individual, Instant, Machine, description::StressRecovery};
 use crate::run::Observe;
 use crate::system::System;
@@ -43,42 +44,15 @@ fn mode_acceleration(system: &Individual<'_>, state: &State) -> [f64; 4] {
     let modes = layout.modes;
     let mut stress = [0.0; 4];
     let mut modal_force = [0.0; crate::model::MAX_MODES];
-    let back = &system.scratch.chains[0];
-    for (angle, force) in back.points.forces() {
-        let place = machine.normal_influence.place(angle);
-        let mut unit = [0.0; 4];
-        machine.normal_influence.values(&place, &mut unit);
-        for (stress, unit) in stress.iter_mut().zip(unit) {
-            *stress += force * unit;
-        }
-    }
-    // what the arc's contact does to the modes is at hand
-    back.pressure
-        .gather(&machine.radial, &mut modal_force[..modes]);
-    for modal in &mut modal_force[..modes] {
-        *modal = -*modal;
-    }
-
-    // the rope's end pulls at the anchor; in the beam frame
-    let beam = layout.beam();
-    let (s, c) = sin_cos(state.q[beam]);
-    let load = back.joints[layout.back].force;
-    let pull = [c * load.x + s * load.y, c * load.y - s * load.x];
-    let anchor = machine.description.back_arc.anchor;
-    let (sa, ca) = sin_cos(anchor);
-    let inward = -(pull[0] * ca + pull[1] * sa);
-    let along = pull[1] * ca - pull[0] * sa;
-    let place = machine.normal_influence.place(anchor);
-    let place_t = machine.tangential_influence.place(anchor);
-    for (gauge, stress) in stress.iter_mut().enumerate() {
-        *stress += inward * machine.normal_influence.jet(&place, gauge).value
-            + along * machine.tangential_influence.jet(&place_t, gauge).value;
-    }
-    for (modal, shape) in modal_force.iter_mut().zip(&machine.anchor_shape) {
-        *modal += pull[0] * shape[0] + pull[1] * shape[1];
+    for chain in 0..machine.faces.len() {
+        let load = HeadLoad::new(system, state, chain);
+        load.add_stress(&mut stress);
+        load.add_modal(&mut modal_force[..modes]);
     }
 
     // gravity acts like a base acceleration upwards, seen from the beam
+    let beam = layout.beam();
+    let (s, c) = sin_cos(state.q[beam]);
     let g = machine.description.gravity;
     let base = [g * s, g * c, state.a[beam]];
     let base_stress = [
@@ -104,6 +78,93 @@ fn mode_acceleration(system: &Individual<'_>, state: &State) -> [f64; 4] {
     stress
 }
 
+/// What one back rope does to the head.
+struct HeadLoad<'a> {
+    machine: &'a Machine,
+    face: &'a Face,
+    back: &'a ChainState,
+    /// Force of the rope's end, in the beam frame \[N\].
+    pull: [f64; 3],
+    /// Its moment about the tangent of the arc and about the radius, where it turns the head [N m].
+    moments: Option<[f64; 2]>,
+}
+
+impl<'a> HeadLoad<'a> {
+    fn new(system: &'a Individual<'_>, state: &State, chain: usize) -> Self {
+        let machine = system.machine;
+        let (face, back) = (&machine.faces[chain], &system.scratch.chains[chain]);
+        let beam = state.q[machine.layout.beam()];
+        let (s, c) = sin_cos(beam);
+        let load = &back.joints[machine.layout.back];
+        let force = load.force;
+        let (sa, ca) = sin_cos(machine.description.back_arc.anchor + beam);
+        let torque = load.torque_i;
+        let moments = [torque.y * ca - torque.x * sa, torque.x * ca + torque.y * sa];
+        Self {
+            machine,
+            face,
+            back,
+            pull: [
+                c * force.x + s * force.y,
+                c * force.y - s * force.x,
+                force.z,
+            ],
+            moments: face.beside.map(|_| moments),
+        }
+    }
+
+    /// Adds its static stress: influence lines.
+    fn add_stress(&self, stress: &mut [f64; 4]) {
+        let Self { face, pull, .. } = self;
+        for (angle, force) in self.back.points.forces() {
+            let place = face.normal_influence.place(angle);
+            let mut unit = [0.0; 4];
+            face.normal_influence.values(&place, &mut unit);
+            for (stress, unit) in stress.iter_mut().zip(unit) {
+                *stress += force * unit;
+            }
+        }
+        let anchor = self.machine.description.back_arc.anchor;
+        let (sa, ca) = sin_cos(anchor);
+        let inward = -(pull[0] * ca + pull[1] * sa);
+        let along = pull[1] * ca - pull[0] * sa;
+        let place = face.normal_influence.place(anchor);
+        let place_t = face.tangential_influence.place(anchor);
+        for (gauge, stress) in stress.iter_mut().enumerate() {
+            *stress += inward * face.normal_influence.jet(&place, gauge).value
+                + along * face.tangential_influence.jet(&place_t, gauge).value;
+        }
+        if let (Some(beside), Some(moments)) = (&face.beside, self.moments) {
+            for (gauge, stress) in stress.iter_mut().enumerate() {
+                *stress += pull[2] * beside.lateral[gauge];
+                for (moment, unit) in moments.iter().zip(&beside.turning) {
+                    *stress += moment * unit[gauge];
+                }
+            }
+        }
+    }
+
+    /// Adds what it does to the modes.
+    fn add_modal(&self, modal_force: &mut [f64]) {
+        let Self { face, pull, .. } = self;
+        let mut pressed = [0.0; crate::model::MAX_MODES];
+        let pressed = &mut pressed[..modal_force.len()];
+        // what the arc's contact does to the modes is at hand
+        self.back.pressure.gather(&face.radial, pressed);
+        for (modal, pressed) in modal_force.iter_mut().zip(pressed) {
+            *modal -= *pressed;
+        }
+        for (modal, shape) in modal_force.iter_mut().zip(&face.anchor) {
+            *modal += pull[0] * shape.moves[0] + pull[1] * shape.moves[1];
+            if let Some(moments) = self.moments {
+                *modal += pull[2] * shape.moves[2]
+                    + moments[0] * shape.turns[0]
+                    + moments[1] * shape.turns[1];
+            }
+        }
+    }
+}
+
 /// Net torque that the reducer must give in the sense of rotation, counterweight included [N m].
 pub fn crank_torque(machine: &Machine, drive: &DriveState, pin: &nalgebra::Vector2<f64>) -> f64 {
     let crank = &machine.description.crank;
@@ -120,10 +181,13 @@ pub fn crank_torque(machine: &Machine, drive: &DriveState, pin: &nalgebra::Vecto
 pub struct Curves {
     /// Stress at gauges 1 to 4 \[Pa\].
     pub gauge: [Vec<f64>; 4],
-    /// Tension of the back rope at the crossbeam \[N\].
+    /// Tension of the back rope at the crossbeam, of both where there are two \[N\].
     pub back_tension: Vec<f64>,
-    /// Tension of the front rope at the suspension point \[N\].
+    /// Tension of the front rope at the suspension point, of both where there are two \[N\].
     pub front_tension: Vec<f64>,
+    /// By how much the rope at +z pulls more than the one at -z, back and front \[N\]; empty where
+    /// there is one.
+    pub tension_difference: [Vec<f64>; 2],
     /// Beam angle \[rad\].
     pub beam: Vec<f64>,
     /// Height of the suspension point in W \[m\], its velocity and acceleration.
@@ -149,11 +213,11 @@ pub struct Shape {
     pub beam: f64,
     /// Suspension point \[m\].
     pub suspension: [f64; 2],
-    /// Cylinder centres of both chains from the free end on \[m\].
+    /// Cylinder centres of back and front rope from the free end on, of two ropes those at +z \[m\].
     pub centers: [Vec<[f64; 2]>; 2],
-    /// Tension in the joint before each cylinder \[N\].
+    /// Tension in the joint before each cylinder, of both ropes where there are two \[N\].
     pub tension: [Vec<f64>; 2],
-    /// Contact force on each cylinder \[N\].
+    /// Contact force on each cylinder, of both where there are two \[N\].
     pub contact: [Vec<f64>; 2],
 }
 
@@ -224,10 +288,14 @@ impl Observe for Recorder {
         }
         let layout = machine.layout;
         let c = &mut self.curves;
-        c.back_tension
-            .push(system.scratch.chains[0].joints[0].force.norm());
-        c.front_tension
-            .push(system.scratch.chains[1].joints[0].force.norm());
+        c.back_tension.push(system.base_tensions(0).sum());
+        c.front_tension.push(system.base_tensions(1).sum());
+        if layout.twins() {
+            for (rope, curve) in c.tension_difference.iter_mut().enumerate() {
+                let signed = [1.0, -1.0].into_iter().zip(system.base_tensions(rope));
+                curve.push(signed.map(|(side, tension)| side * tension).sum());
+            }
+        }
         c.beam.push(state.q[layout.beam()]);
         let height = layout.suspension();
         for (curve, value) in
@@ -259,13 +327,30 @@ fn shape(sample: usize, system: &Individual<'_>, drive: &DriveState, state: &Sta
     let (s, c) = sin_cos(state.q[layout.rod()]);
     let length = machine.description.rod.length;
     let [pin, ..] = drive.pin;
-    let centers = [0, 1].map(|chain| {
-        state.q[machine.chains[chain].range()]
+    let centers = [0, 1].map(|rope| {
+        state.q[machine.chain_on(rope).range()]
             .chunks_exact(layout.motion.width())
             .map(|q| [q[0], q[1]])
             .collect()
     });
-    let chains = &system.scratch.chains;
+    // sums over the ropes of a head
+    let summed = |rope: usize, each: &dyn Fn(&ChainState, usize) -> f64| -> Vec<f64> {
+        let all = machine.strands.iter().zip(&system.scratch.chains);
+        let on_head: Vec<&ChainState> = all
+            .filter(|(strand, _)| strand.rope == rope)
+            .map(|(_, state)| state)
+            .collect();
+        (0..machine.chain_on(rope).count)
+            .map(|j| on_head.iter().map(|state| each(state, j)).sum())
+            .collect()
+    };
+    let tension = |state: &ChainState, joint: usize| {
+        if joint == 0 {
+            state.joints[0].force.norm()
+        } else {
+            state.tension(joint)
+        }
+    };
     Shape {
         sample,
         pin: pin.into(),
@@ -273,19 +358,8 @@ fn shape(sample: usize, system: &Individual<'_>, drive: &DriveState, state: &Sta
         beam: state.q[layout.beam()],
         suspension: [machine.suspension_x, state.q[layout.suspension()]],
         centers,
-        tension: [0, 1].map(|chain| {
-            let state: &ChainState = &chains[chain];
-            (0..machine.chains[chain].count)
-                .map(|joint| {
-                    if joint == 0 {
-                        state.joints[0].force.norm()
-                    } else {
-                        state.tension(joint)
-                    }
-                })
-                .collect()
-        }),
-        contact: [0, 1].map(|chain| chains[chain].contact.clone()),
+        tension: [0, 1].map(|rope| summed(rope, &tension)),
+        contact: [0, 1].map(|rope| summed(rope, &|state, j| state.contact[j])),
     }
 }
 

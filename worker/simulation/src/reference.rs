@@ -7,20 +7,43 @@ use crate::effect::{Asked, Parameter, Selection, catalogue};
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
 use crate::model::description::{
-    Arc, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery,
+    Arc, Crank, Description, Head, Rod, Rope, RopeLaw, StressRecovery, Sway, Twins,
 };
 use crate::observe::Recorder;
 use crate::run::{RunSettings, simulate};
 use crate::statistics::Statistics;
 
+/// A made-up curve over the stations of the arc.
+fn wave(k: u32, scale: f64) -> Vec<f64> {
+    (0..27)
+        .map(|i| scale * libm::sin(0.3 + 0.21 * f64::from(k + 1) * f64::from(i)))
+        .collect()
+}
+
+/// The same machine with twin ropes whose lengths differ by so much on the back and on the front head
+/// \[m\], and a head that sways.
+pub fn twins(longer: [f64; 2]) -> Description {
+    Description {
+        twins: Some(Twins {
+            offset: 0.12,
+            longer,
+            sway: Sway {
+                frequencies: vec![290.0, 600.0],
+                radial: vec![wave(0, 0.01), wave(1, 0.02)],
+                tangential: vec![wave(2, 0.01), wave(3, 0.01)],
+                lateral: vec![wave(1, 0.05), wave(0, 0.02)],
+                gauge_stress: vec![[-1e9, 2e9, 3e9, -2e9], [4e9, 5e9, 3e9, 2e9]],
+                normal_influence: vec![wave(3, 80.0); 4],
+                tangential_influence: vec![wave(4, 90.0); 4],
+                lateral_influence: vec![wave(5, 300.0); 4],
+            },
+        }),
+        ..description()
+    }
+}
+
 /// A machine of the real unit's shape with 24 + 38 longer cylinders.
 pub fn description() -> Description {
-    let stations = 27;
-    let wave = |k: u32, scale: f64| -> Vec<f64> {
-        (0..stations)
-            .map(|i| scale * libm::sin(0.3 + 0.21 * f64::from(k + 1) * f64::from(i)))
-            .collect()
-    };
     Description {
         gravity: 9.81,
         beam_inertia: 2.4e4,
@@ -78,6 +101,7 @@ pub fn description() -> Description {
             normal_influence: vec![wave(4, 100.0); 4],
             tangential_influence: vec![wave(5, 200.0); 4],
         },
+        twins: None,
         card: (0..72)
             .map(|i| 57e3 + 15e3 * libm::sin(0.0873 * f64::from(i)))
             .collect(),

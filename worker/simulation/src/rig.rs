@@ -100,6 +100,7 @@ impl End {
                 R: turned(s, c),
             },
             law,
+            pinned: false,
         })
     }
 }
@@ -207,7 +208,7 @@ impl Rig {
 
 impl Equations for Rig {
     fn matrix(&self) -> Bordered {
-        Bordered::space(&[self.setup.chain.count], 0)
+        Bordered::space(&[self.setup.chain.count], [0; 2])
     }
 
     fn forces(&mut self, _t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {

@@ -1,9 +1,11 @@
 //! Reduces the back head of a job: plain data in, plain data out; the case plays no part.
-use protocol::case::Influence;
+use protocol::case::{Influence, TwinHead};
 use protocol::job::{
     Failure, HeadFields, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
 };
-use simulation::flexible::{Family, Gauge, Mesh, Reduction, Request, Steel, Wrap, reduce};
+use simulation::flexible::{
+    Family, Gauge, Mesh, Pair, Reduction, Request, Steel, SwayTables, Wrap, reduce,
+};
 use std::time::Instant;
 
 const MEGAPASCAL_PER_PASCAL: f64 = 1e-6;
@@ -39,6 +41,10 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         stations: &radians(&spec.arc_deg),
         probes: &radians(&spec.probes_deg),
         wrap: spec.fields.map(wrap),
+        pair: spec.pair.map(|pair| Pair {
+            offset: pair.offset_m,
+            modes: pair.modes,
+        }),
         modes: spec.modes,
         families: &families,
         fields: spec.fields.is_some(),
@@ -82,6 +88,14 @@ fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
             format!("is {}; it must be 0 to below 0.5", spec.poisson),
         ));
     }
+    if let Some(pair) = &spec.pair
+        && !(pair.offset_m > 0.0 && pair.offset_m.is_finite())
+    {
+        return Err(misconfigured(
+            "pair.offset_m",
+            format!("is {}; it must be a positive number", pair.offset_m),
+        ));
+    }
     if spec.modes == 0 || spec.families.is_empty() {
         return Err(misconfigured(
             "modes",
@@ -122,8 +136,29 @@ fn four(pascal: &[f64]) -> [f64; 4] {
     four
 }
 
+/// Readings of four gauges, row by row \[MPa\].
+fn table(rows: &[Vec<f64>]) -> Vec<[f64; 4]> {
+    rows.iter().map(|row| four(row)).collect()
+}
+
+fn twin(spec: &ReduceHeadSpec, sway: &SwayTables) -> TwinHead {
+    let hertz = |frequency: &f64| frequency / std::f64::consts::TAU;
+    TwinHead {
+        frequencies_hz: sway.frequencies.iter().map(hertz).collect(),
+        radial: sway.radial.clone(),
+        tangential: sway.tangential.clone(),
+        lateral: sway.lateral.clone(),
+        gauge_stress_mpa: table(&sway.gauge_stress),
+        influence: Influence {
+            psi_deg: spec.arc_deg.clone(),
+            normal_mpa_per_n: table(&sway.normal_influence),
+            tangential_mpa_per_n: table(&sway.tangential_influence),
+        },
+        lateral_mpa_per_n: table(&sway.lateral_influence),
+    }
+}
+
 fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> ReducedHead {
-    let table = |rows: &[Vec<f64>]| rows.iter().map(|row| four(row)).collect();
     let modes = reduction.modes.iter().map(|mode| HeadMode {
         family: match mode.family {
             Family::Symmetric => ModeFamily::Symmetric,
@@ -143,6 +178,7 @@ fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> Reduce
             tangential_mpa_per_n: table(&reduction.tangential_influence),
         },
         inertia_stress_mpa: reduction.inertia_stress.each_ref().map(|row| four(row)),
+        twin: reduction.sway.as_ref().map(|sway| twin(spec, sway)),
         compliance_m_per_n: reduction.compliance.clone(),
         mass_kg: reduction.mass,
         center_of_mass_m: reduction.center_of_mass,

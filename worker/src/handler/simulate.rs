@@ -75,6 +75,7 @@ fn assemble(
         gauge_mpa: [0, 1, 2, 3].map(|g| curves.gauge[g].iter().map(|s| s * 1e-6).collect()),
         back_rope_tension_n: curves.back_tension.clone(),
         front_rope_tension_n: curves.front_tension.clone(),
+        tension_difference_n: curves.tension_difference.clone(),
         beam_deg: degrees(&curves.beam),
         suspension_m: position.iter().map(|y| y - height).collect(),
         suspension_velocity_m_s: velocity.clone(),

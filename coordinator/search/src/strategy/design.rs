@@ -5,12 +5,13 @@ use crate::{
 };
 
 /// A Latin hypercube: along every axis each of the `count` equal parts of its interval holds
-/// exactly one point. Returns `count` points (decades).
-pub(super) fn latin_hypercube(
-    intervals: &[Interval],
-    count: usize,
-    streams: Streams,
-) -> Vec<Vec<f64>> {
+/// exactly one point. Returns `count` points (decades); the same seed gives the same ones.
+pub fn latin_hypercube(intervals: &[Interval], count: usize, seed: u64) -> Vec<Vec<f64>> {
+    hypercube(intervals, count, Streams::new(seed, 0))
+}
+
+/// The same from streams of a run.
+pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) -> Vec<Vec<f64>> {
     let mut points = vec![Vec::with_capacity(intervals.len()); count];
     for (axis, interval) in intervals.iter().enumerate() {
         let mut stream = streams.at(0, Phase::Initial, axis);
@@ -37,7 +38,7 @@ mod tests {
             },
             Interval { from: 0.0, to: 4.0 },
         ];
-        let points = latin_hypercube(&intervals, 25, Streams::new(3, 0));
+        let points = latin_hypercube(&intervals, 25, 3);
         for (axis, interval) in intervals.iter().enumerate() {
             let mut seen = [false; 25];
             for point in &points {

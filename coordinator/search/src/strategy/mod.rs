@@ -15,6 +15,7 @@ pub mod scan;
 
 pub use archive::{Archive, Evaluated};
 pub use conductor::Conductor;
+pub use design::latin_hypercube;
 
 use crate::space::Space;
 use serde::{Deserialize, Serialize};

@@ -100,6 +100,27 @@ pub(super) fn check_hash(
     }
 }
 
+/// The tables of a pair of ropes were computed from this mesh, as far as they say.
+///
+/// # Errors
+/// They name another content.
+pub(super) fn check_twin_hash(
+    path: &Path,
+    hash: Option<&str>,
+    stated: Option<&str>,
+) -> Result<(), CaseError> {
+    match (hash, stated) {
+        (Some(hash), Some(stated)) if stated != hash => Err(contradiction(
+            path,
+            "mesh_blake3",
+            stated,
+            format!("flexible_head.mesh_file has {hash}"),
+            "the tables belong to another mesh: `horsehead head CASE --write` computes them again",
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// The mesh is the steel whose modes the case uses.
 ///
 /// # Errors

@@ -4,6 +4,7 @@ use crate::{
     report::number::{NONE, fixed, percent},
     study::HeadComparison,
 };
+use protocol::case::TwinHead;
 use protocol::job::{ModeFamily, ReducedHead};
 
 /// Modes, one row each, beside the most similar ones of the case's table.
@@ -53,6 +54,41 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
             .to_vec(),
         rows: rows.collect(),
         notes,
+    }
+}
+
+/// Modes that a pair of ropes drives by pulling unequally, one row each: how far they move the rope at
+/// +z on the whole arc, and what the gauges read.
+pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
+    let most = |curve: &[f64]| curve.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let rows = (0..tables.frequencies_hz.len()).map(|k| {
+        let shapes = [&tables.radial, &tables.tangential, &tables.lateral];
+        let moves = shapes.map(|shape| fixed(1e3 * most(&shape[k]), 2));
+        let gauges = tables.gauge_stress_mpa[k].map(|stress| fixed(1e-3 * stress, 2));
+        let hz = fixed(tables.frequencies_hz[k], 2);
+        let cells = std::iter::once(hz).chain(moves).chain(gauges);
+        Row::new(format!("mode {}", k + 1), cells)
+    });
+    let head = [
+        "",
+        "Hz",
+        "radial",
+        "tangential",
+        "lateral",
+        "gauge 1",
+        "gauge 2",
+        "gauge 3",
+        "gauge 4",
+    ];
+    Table {
+        title: format!("Modes out of the plane, ropes at z = ±{offset_m} m"),
+        head: head.map(str::to_owned).to_vec(),
+        rows: rows.collect(),
+        notes: vec![
+            "Largest displacement of the rope at +z (mm) and gauge stress (GPa) per unit modal \
+             coordinate (kg^1/2 m)."
+                .to_owned(),
+        ],
     }
 }
 

@@ -5,13 +5,15 @@ mod compare;
 mod gap;
 mod head;
 mod single;
+mod whole_box;
 mod work;
 mod worker;
 
 pub use compare::{table_3, table_4};
 pub use gap::gap;
-pub use head::{head_modes, head_statics};
+pub use head::{head_modes, head_pair, head_statics};
 pub use single::{balance, genes, simulation};
+pub use whole_box::whole_box;
 pub use work::work_precision;
 pub use worker::{hosts, jobs, slot_time, workers};
 

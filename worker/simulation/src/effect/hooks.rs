@@ -79,8 +79,9 @@ pub struct Strain<'a> {
 pub struct AxialLaws<'a> {
     laws: &'a [Arc<dyn Axial>],
     drive: &'a DriveState,
-    /// Force per strain of the rope \[N\].
+    /// Force per strain of all ropes of a head together \[N\], and what of the laws one rope carries.
     stiffness: f64,
+    share: f64,
     /// Length of rope that a joint stands for \[m\].
     length: f64,
 }
@@ -98,7 +99,13 @@ impl AxialLaws<'_> {
             sum.by_place += one.by_place / self.length;
             sum.by_rate += one.by_rate / self.length;
         }
-        sum
+        Along {
+            spring: sum.spring * self.share,
+            other: sum.other * self.share,
+            energy: sum.energy * self.share,
+            by_place: sum.by_place * self.share,
+            by_rate: sum.by_rate * self.share,
+        }
     }
 
     /// What the one law with a past wants to know at the next step.
@@ -216,12 +223,12 @@ impl Hooks {
         self.forces.iter().map(|one| one.lost(at)).sum()
     }
 
-    /// The laws along a rope, if it has any.
+    /// The laws along a rope, if it has any; `stiffness` of all ropes on its head, `share` of one.
     pub(crate) fn axial<'a>(
         &'a self,
         chain: usize,
         drive: &'a DriveState,
-        stiffness: f64,
+        (stiffness, share): (f64, f64),
         length: f64,
     ) -> Option<AxialLaws<'a>> {
         let laws = &self.axial[chain];
@@ -229,6 +236,7 @@ impl Hooks {
             laws,
             drive,
             stiffness,
+            share,
             length,
         })
     }

@@ -92,7 +92,9 @@ impl Effect for Post {
         let d = &machine.description;
         hooks.sway += self.compliance * self.heaviest(d, cycle);
         let layout = machine.layout;
-        let [along, across] = [layout.modes - 2, layout.modes - 1].map(|k| layout.mode(k));
+        let [along, across] = [2, 1]
+            .map(|k| layout.plane_modes() - k)
+            .map(|k| layout.mode(k));
         hooks.forces.push(Arc::new(FrontPull {
             weight: d.suspension_mass * d.gravity,
             root: self.mass.sqrt(),

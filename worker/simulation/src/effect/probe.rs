@@ -285,7 +285,10 @@ impl Effect for Probe {
                 }),
             ),
             Line::Head => {
-                let Some(shape) = machine.anchor_shape.first() else {
+                let [face, ..] = &machine.faces[..] else {
+                    return;
+                };
+                let Some(shape) = face.anchor.first().map(|shape| shape.moves) else {
                     return;
                 };
                 let w = d.head.frequencies[0];
@@ -299,7 +302,7 @@ impl Effect for Probe {
                     let pressed: f64 = (0..parts)
                         .map(|k| {
                             let share = (f64::from(k) + 0.5) / f64::from(parts);
-                            machine.radial.value(anchor + share * wrapped, 0)
+                            face.radial.value(anchor + share * wrapped, 0)
                         })
                         .sum();
                     let pressed = pressed * wrapped / f64::from(parts);

@@ -3,9 +3,13 @@
 //! `EA` and `T` are those of both ropes together, `L` is the back rope's length. The gauges on one
 //! cheek (1, 2) feel `1 + e`, those on the other (3, 4) `1 - e`. A rope that is slack carries
 //! nothing: `|e| <= 1`.
+//!
+//! Where a description has twin ropes the length is cut off the back rope at +z instead, and everything
+//! follows from the motion.
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks, Reading, Sampled};
 use crate::model::Machine;
+use crate::model::description::Description;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -25,8 +29,16 @@ struct Twins {
 }
 
 impl Effect for Twins {
-    fn install(&self, _: &Machine, _: &Cycle, hooks: &mut Hooks) {
-        hooks.readings.push(Arc::new(*self));
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        if let Some(twins) = &mut d.twins {
+            twins.longer[0] += self.length;
+        }
+    }
+
+    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+        if machine.description.twins.is_none() {
+            hooks.readings.push(Arc::new(*self));
+        }
     }
 }
 
@@ -35,7 +47,7 @@ impl Reading for Twins {
         let rope = &at.individual.machine.description.rope;
         let stiffness = at.individual.ropes.joint.stiffness[0] * rope.pitch;
         let length = rope.back as f64 * rope.pitch;
-        let tension = at.individual.scratch.chains[0].joints[0].force.norm();
+        let tension: f64 = at.individual.base_tensions(0).sum();
         let difference = 0.5 * self.length * stiffness / length;
         let e = if difference.abs() < tension {
             difference / tension

@@ -130,6 +130,18 @@ impl Bushing {
         }
     }
 
+    /// A pin of the same axial coefficients, for markers whose axes are the pin's: equally stiff in
+    /// every direction, free to turn about the axis, held against other turns as the joint holds
+    /// against bending.
+    #[must_use]
+    pub fn pinned(&self) -> Self {
+        Self {
+            rotational_stiffness: [0.0, self.rotational_stiffness[1]],
+            rotational_damping: [0.0, self.rotational_damping[1]],
+            ..self.revolute()
+        }
+    }
+
     fn turns(&self) -> bool {
         let of = self
             .rotational_stiffness

@@ -22,6 +22,16 @@ pub(super) struct Station {
 }
 
 impl Station {
+    fn new(psi: f64, weights: impl Iterator<Item = (usize, f64)>) -> Self {
+        let (s, c) = sin_cos(psi);
+        Self {
+            psi,
+            radial: [c, s],
+            tangential: [-s, c],
+            weights: weights.collect(),
+        }
+    }
+
     /// Mean displacement \[m\] along `direction` in the plane.
     pub(super) fn mean(&self, field: &[[f64; 3]], direction: [f64; 2]) -> f64 {
         let along = |u: &[f64; 3]| u[0] * direction[0] + u[1] * direction[1];
@@ -29,6 +39,12 @@ impl Station {
             .iter()
             .map(|&(node, weight)| weight * along(&field[node]))
             .sum()
+    }
+
+    /// Mean displacement \[m\] along z.
+    pub(super) fn mean_along_z(&self, field: &[[f64; 3]]) -> f64 {
+        let weights = self.weights.iter();
+        weights.map(|&(node, weight)| weight * field[node][2]).sum()
     }
 
     /// A force \[N\] along `direction` over the width, as forces on all nodes.
@@ -75,40 +91,70 @@ impl<'a> Rim<'a> {
     /// # Errors
     /// [`ReductionError::Station`] if the rim does not reach it.
     pub(super) fn station(&self, psi: f64) -> Result<Station, ReductionError> {
-        // an end that a rounding error puts outside is still the end
-        let [from, to] = self.span;
-        let slack = 1e-6;
-        let missing = || ReductionError::Station {
-            psi_deg: psi.to_degrees(),
-            from_deg: from.to_degrees(),
-            to_deg: to.to_degrees(),
-        };
-        if !(from - slack..=to + slack).contains(&psi) {
-            return Err(missing());
-        }
-        let at = psi.clamp(from + 1e-12, to - 1e-12);
+        let at = self.within(psi)?;
         let mut weights = BTreeMap::new();
-        for face in &self.mesh.rim {
-            if let Some([p, q]) = self.cut(face, at) {
-                let length = (p.height - q.height).abs();
-                for point in [p, q] {
-                    for (node, share) in point.nodes {
-                        *weights.entry(node).or_insert(0.0) += 0.5 * length * share;
-                    }
+        for [p, q] in self.cuts(at) {
+            let length = (p.height - q.height).abs();
+            for point in [p, q] {
+                for (node, share) in point.nodes {
+                    *weights.entry(node).or_insert(0.0) += 0.5 * length * share;
                 }
             }
         }
         let total: f64 = weights.values().sum();
         if total <= 0.0 {
-            return Err(missing());
+            return Err(self.missing(psi));
         }
-        let (s, c) = sin_cos(psi);
-        Ok(Station {
+        Ok(Station::new(
             psi,
-            radial: [c, s],
-            tangential: [-s, c],
-            weights: weights.into_iter().map(|(n, w)| (n, w / total)).collect(),
-        })
+            weights.into_iter().map(|(n, w)| (n, w / total)),
+        ))
+    }
+
+    /// The one point of the station at an angle \[rad\] that lies at a height z \[m\].
+    ///
+    /// # Errors
+    /// As [`Self::station`]; [`ReductionError::Beside`] if the rim is not so wide.
+    pub(super) fn station_beside(&self, psi: f64, z: f64) -> Result<Station, ReductionError> {
+        let at = self.within(psi)?;
+        let spans = |[p, q]: &[Crossing; 2]| (p.height <= z) != (q.height <= z);
+        let [p, q] = self.cuts(at).find(spans).ok_or(ReductionError::Beside {
+            psi_deg: psi.to_degrees(),
+            offset: z,
+        })?;
+        let share = (z - p.height) / (q.height - p.height);
+        let mut weights = BTreeMap::new();
+        for (point, share) in [(p, 1.0 - share), (q, share)] {
+            for (node, of_edge) in point.nodes {
+                *weights.entry(node).or_insert(0.0) += share * of_edge;
+            }
+        }
+        Ok(Station::new(psi, weights.into_iter()))
+    }
+
+    /// An angle within the rim; an end that a rounding error puts outside is still the end.
+    fn within(&self, psi: f64) -> Result<f64, ReductionError> {
+        let [from, to] = self.span;
+        let slack = 1e-6;
+        if !(from - slack..=to + slack).contains(&psi) {
+            return Err(self.missing(psi));
+        }
+        Ok(psi.clamp(from + 1e-12, to - 1e-12))
+    }
+
+    fn missing(&self, psi: f64) -> ReductionError {
+        let [from, to] = self.span;
+        ReductionError::Station {
+            psi_deg: psi.to_degrees(),
+            from_deg: from.to_degrees(),
+            to_deg: to.to_degrees(),
+        }
+    }
+
+    /// Where faces are cut by the line at an angle.
+    fn cuts(&self, psi: f64) -> impl Iterator<Item = [Crossing; 2]> + '_ {
+        let faces = self.mesh.rim.iter();
+        faces.filter_map(move |face| self.cut(face, psi))
     }
 
     /// Where a face is cut by the line at an angle: two points on its edges, or nothing.

@@ -56,6 +56,14 @@ pub enum ReductionError {
         /// Where it ends \[deg\].
         to_deg: f64,
     },
+    /// The rope surface is not wide enough for a rope beside the middle.
+    #[error("the rope surface at {psi_deg} deg has nothing {offset} m beside the plane z = 0")]
+    Beside {
+        /// The station \[deg\].
+        psi_deg: f64,
+        /// Distance of the rope from the plane \[m\].
+        offset: f64,
+    },
     /// A gauge is not on the steel.
     #[error("gauge {gauge} lies {distance_mm:.2} mm beside the steel")]
     Gauge {

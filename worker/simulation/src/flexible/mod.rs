@@ -12,6 +12,7 @@ mod hexahedron;
 mod mesh;
 mod problem;
 mod reduction;
+mod sway;
 #[cfg(test)]
 mod tests;
 
@@ -20,3 +21,4 @@ pub use gauge::Gauge;
 pub use hexahedron::Steel;
 pub use mesh::Mesh;
 pub use reduction::{Family, Mode, Reduction, Request, Wrap, reduce};
+pub use sway::{Pair, SwayTables};

@@ -29,8 +29,8 @@ pub(super) struct Problem<'a> {
     half: &'a Half,
     family: Family,
     unknowns: Unknowns,
-    assembly: Assembly,
-    factor: Factor,
+    pub(super) assembly: Assembly,
+    pub(super) factor: Factor,
     /// Consistent mass times the rigid motions, over all nodes of the half.
     inertia: [Vec<[f64; 3]>; 3],
 }
@@ -73,28 +73,36 @@ impl<'a> Problem<'a> {
     ) -> Result<(Vec<Mode>, usize), ReductionError> {
         let found = lowest(&self.assembly, &self.factor, request.modes)?;
         let mode = |(value, shape): (&f64, &Vec<f64>)| {
-            // unit mass of the whole, not of the half
-            let scale = std::f64::consts::FRAC_1_SQRT_2;
-            let mut field = self.unknowns.spread(shape);
-            field.iter_mut().flatten().for_each(|u| *u *= scale);
-            self.mode(request, stations, rows, (value.sqrt(), field))
+            self.mode(
+                request,
+                stations,
+                rows,
+                (value.sqrt(), self.unit_mass(shape)),
+            )
         };
         let modes = found.eigenvalues.iter().zip(&found.shapes).map(mode);
         Ok((modes.collect(), found.steps))
     }
 
-    fn mode(
+    /// A shape of the half as a field of unit mass of the whole.
+    pub(super) fn unit_mass(&self, shape: &[f64]) -> Vec<[f64; 3]> {
+        let scale = std::f64::consts::FRAC_1_SQRT_2;
+        let mut field = self.unknowns.spread(shape);
+        field.iter_mut().flatten().for_each(|u| *u *= scale);
+        field
+    }
+
+    /// A mode's field and readings. It has no sign of its own: the gauge that feels it most reads
+    /// tension.
+    pub(super) fn signed(
         &self,
-        request: &Request<'_>,
-        stations: &[Station],
         rows: &[Row],
-        (frequency, mut field): (f64, Vec<[f64; 3]>),
-    ) -> Mode {
+        mut field: Vec<[f64; 3]>,
+    ) -> (Vec<[f64; 3]>, Vec<f64>) {
         let read = |field: &[[f64; 3]]| -> Vec<f64> {
             rows.iter().map(|row| self.reading(row, field)).collect()
         };
         let mut gauge_stress = read(&field);
-        // a mode has no sign of its own: the gauge that feels it most reads tension
         let most = gauge_stress.iter().fold(0.0_f64, |most, stress| {
             if stress.abs() > most.abs() {
                 *stress
@@ -106,6 +114,17 @@ impl<'a> Problem<'a> {
             field.iter_mut().flatten().for_each(|u| *u = -*u);
             gauge_stress = read(&field);
         }
+        (field, gauge_stress)
+    }
+
+    fn mode(
+        &self,
+        request: &Request<'_>,
+        stations: &[Station],
+        rows: &[Row],
+        (frequency, field): (f64, Vec<[f64; 3]>),
+    ) -> Mode {
+        let (field, gauge_stress) = self.signed(rows, field);
         // both halves together: double, or nothing
         let both = 1.0 + self.family.image()[0];
         let participation = self.inertia.each_ref().map(|inertia| {
@@ -129,10 +148,27 @@ impl<'a> Problem<'a> {
     }
 
     /// Reading of a gauge \[Pa\] under a field of the half.
-    fn reading(&self, (row, image): &Row, field: &[[f64; 3]]) -> f64 {
-        let sign = if *image { self.family.image()[1] } else { 1.0 };
-        let sum: f64 = row.iter().map(|&(n, factor)| factor * field[n][1]).sum();
-        sign * sum
+    fn reading(&self, row: &Row, field: &[[f64; 3]]) -> f64 {
+        let factors = row.0.iter();
+        let sum: f64 = factors.map(|&(n, factor)| factor * field[n][1]).sum();
+        self.sign(row) * sum
+    }
+
+    /// What a gauge reads on the image over what it would read on the half.
+    pub(super) const fn sign(&self, (_, image): &Row) -> f64 {
+        if *image { self.family.image()[1] } else { 1.0 }
+    }
+
+    /// One solve per gauge: readings on the half are products with these.
+    pub(super) fn lines(&self, rows: &[Row]) -> Vec<Vec<[f64; 3]>> {
+        let line = |(row, _): &Row| {
+            let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
+            for &(node, factor) in row {
+                load[node][1] += factor;
+            }
+            self.solve(&load)
+        };
+        rows.iter().map(line).collect()
     }
 
     /// Everything static; the modes are left empty.
@@ -143,17 +179,7 @@ impl<'a> Problem<'a> {
         stations: &[Station],
         rows: &[Row],
     ) -> Result<Reduction, ReductionError> {
-        let count = self.half.mesh.nodes.len();
-        let lines: Vec<Vec<[f64; 3]>> = rows
-            .iter()
-            .map(|(row, _)| {
-                let mut load = vec![[0.0; 3]; count];
-                for &(node, factor) in row {
-                    load[node][1] += factor;
-                }
-                self.solve(&load)
-            })
-            .collect();
+        let lines = self.lines(rows);
         // a newton over the whole width is half a newton on the half
         let stress = |station: &Station, direction: [f64; 2], force: f64| -> Vec<f64> {
             let read = |line: &Vec<[f64; 3]>| 0.5 * force * station.mean(line, direction);
@@ -190,6 +216,7 @@ impl<'a> Problem<'a> {
             compliance: self.compliance(request, rim)?,
             wrap_field,
             wrap_stress,
+            sway: None,
             mass,
             center_of_mass: [total(2, &y) / mass, -total(2, &x) / mass],
             inertia: total(2, &turn),

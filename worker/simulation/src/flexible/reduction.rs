@@ -2,7 +2,7 @@
 //!
 //! Every computation runs on the half z >= 0. A rope over the whole width pulls symmetrically, so
 //! antisymmetric modes move the rim by nothing on the mean and couple to no plane motion; a gauge
-//! feels them. Here is what is asked and answered; [`super::problem`] does the work.
+//! feels them. Two ropes beside each other do drive them ([`super::sway`]). Here is what is asked and answered; [`super::problem`] does the work.
 use super::{
     ReductionError,
     arc::{Rim, Station},
@@ -10,6 +10,7 @@ use super::{
     hexahedron::Steel,
     mesh::{Half, Mesh},
     problem::Problem,
+    sway::{Pair, SwayTables},
 };
 
 /// How a field mirrors in the plane z = 0.
@@ -48,6 +49,8 @@ pub struct Request<'a> {
     pub probes: &'a [f64],
     /// A static load whose displacement and stress are wanted everywhere.
     pub wrap: Option<Wrap>,
+    /// Two ropes beside the plane of symmetry, if that is what there are.
+    pub pair: Option<Pair>,
     /// Number of modes n.
     pub modes: usize,
     /// Families to take them from, the lowest of all.
@@ -104,6 +107,8 @@ pub struct Reduction {
     pub wrap_field: Vec<[f64; 3]>,
     /// Stress at every element's centre under the wrapped rope \[Pa\]: xx, yy, zz, xy, yz, zx.
     pub wrap_stress: Vec<[f64; 6]>,
+    /// What two ropes ask for, where there are two.
+    pub sway: Option<SwayTables>,
     /// Mass \[kg\].
     pub mass: f64,
     /// Centre of mass in the plane \[m\].
@@ -144,6 +149,10 @@ pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
     modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     modes.truncate(request.modes);
     let mut reduction = statics.answer(request, &rim, &stations, &rows)?;
+    if let Some(pair) = &request.pair {
+        let problem = Problem::new(request, &half, Family::Antisymmetric)?;
+        reduction.sway = Some(problem.sway(request, &rim, pair, &rows)?);
+    }
     reduction.modes = modes;
     reduction.lanczos_steps = lanczos_steps;
     Ok(reduction)

@@ -204,6 +204,7 @@ fn request<'a>(mesh: &'a Mesh, gauges: &'a [Gauge], families: &'a [Family]) -> R
         stations: &[],
         probes: &[],
         wrap: None,
+        pair: None,
         modes: 8,
         families,
         fields: true,
@@ -283,6 +284,82 @@ fn influence_lines_are_the_stress_under_each_load() {
             "{direct}"
         );
     }
+}
+
+/// The same for two ropes beside the middle, solved on the whole body: a pair of opposite forces in the
+/// plane of motion, and two equal ones along z. And the shapes are those of the whole body's modes at
+/// the points where the ropes lie.
+#[test]
+fn a_pair_of_ropes_strains_the_whole_as_its_tables_say() {
+    let mesh = mirrored();
+    let gauges = [
+        Gauge {
+            position: [-0.7, 0.12, -0.1],
+            length: 0.02,
+        },
+        Gauge {
+            position: [-0.6, 0.1, 0.05],
+            length: 0.02,
+        },
+    ];
+    let psi = std::f64::consts::PI - 1.2;
+    let stations = [psi];
+    let offset = 0.06;
+    let mut asked = request(&mesh, &gauges, &[Family::Antisymmetric]);
+    asked.stations = &stations;
+    asked.pair = Some(Pair { offset, modes: 3 });
+    let reduction = reduce(&asked).unwrap();
+    let sway = reduction.sway.unwrap();
+
+    let (unknowns, assembly) = problem(&mesh);
+    let factor = Factor::new(&assembly.stiffness).unwrap();
+    let rim = arc::Rim::new(&mesh, [0.0; 2]);
+    let [here, there] = [offset, -offset].map(|z| rim.station_beside(psi, z).unwrap());
+    let along = |[x, y]: [f64; 2]| [x, y, 0.0];
+    for (direction, image, line) in [
+        (along(here.radial).map(|x| -x), -1.0, &sway.normal_influence),
+        (along(here.tangential), -1.0, &sway.tangential_influence),
+        ([0.0, 0.0, 1.0], 1.0, &sway.lateral_influence),
+    ] {
+        let mut force = vec![[0.0; 3]; mesh.nodes.len()];
+        for (station, size) in [(&here, 1.0), (&there, image)] {
+            for &(node, weight) in &station.weights {
+                for (force, direction) in force[node].iter_mut().zip(direction) {
+                    *force += size * weight * direction;
+                }
+            }
+        }
+        let mut answer = unknowns.gather(&force);
+        factor.solve(&mut answer);
+        let field = unknowns.spread(&answer);
+        for (g, gauge) in gauges.iter().enumerate() {
+            let row = gauge.row(&mesh, STEEL.young, g + 1).unwrap();
+            let direct: f64 = row.iter().map(|&(n, f)| f * field[n][1]).sum();
+            assert!(
+                direct.abs() > 0.05 && (line[0][g] / direct - 1.0).abs() < 1e-8,
+                "{direct} {}",
+                line[0][g]
+            );
+        }
+    }
+    for (k, mode) in reduction.modes.iter().take(3).enumerate() {
+        assert!((sway.frequencies[k] / mode.frequency - 1.0).abs() < 1e-12);
+        assert_eq!(sway.gauge_stress[k], mode.gauge_stress);
+        let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} {b}");
+        close(sway.radial[k][0], here.mean(&mode.field, here.radial));
+        close(sway.radial[k][0], -there.mean(&mode.field, here.radial));
+        close(
+            sway.tangential[k][0],
+            here.mean(&mode.field, here.tangential),
+        );
+        close(sway.lateral[k][0], here.mean_along_z(&mode.field));
+        close(sway.lateral[k][0], there.mean_along_z(&mode.field));
+    }
+    asked.pair = Some(Pair {
+        offset: 0.3,
+        modes: 1,
+    });
+    assert!(matches!(reduce(&asked), Err(ReductionError::Beside { .. })));
 }
 
 #[test]

@@ -1,7 +1,10 @@
 //! Block-tridiagonal chains with a common border: storage, factorisation, solution.
 //!
-//! Every chain is eliminated from its free end towards its anchored end, so the border's columns
-//! fill in only from the first block that touches the border on. Cost O(blocks).
+//! Every chain is eliminated from its free end towards its anchored end, so a column of the border
+//! fills in only from the first block that touches it or one behind it on. Cost O(blocks).
+//!
+//! The border has two parts: unknowns of bodies that more than one chain hangs on (the lead), then
+//! those of whatever carries the chains' other ends, which are counted from there.
 use super::block::{Block, Column, invert, product, subtract_product};
 
 /// A pivot vanished: the matrix is singular or holds a value that is not finite.
@@ -15,7 +18,9 @@ pub struct SingularPivot {
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
     chains: Vec<usize>,
+    /// Unknowns of the border, and how many of them come before those that are counted.
     border: usize,
+    lead: usize,
     diagonal: Vec<Block<N>>,
     /// Coupling of block i (row) with block i + 1 (column).
     upper: Vec<Block<N>>,
@@ -29,18 +34,21 @@ pub struct Blocks<const N: usize> {
     corner: Vec<f64>,
     /// Per block, how many of the border's first unknowns it touches.
     touches: Vec<usize>,
-    /// Per chain, the first block that the border fills, and how many of its unknowns do.
-    filled: Vec<(usize, usize)>,
+    /// Per block, how many of them fill it: as many as it or a block before it in its chain touches.
+    filled: Vec<usize>,
     corner_pivots: Vec<usize>,
 }
 
 impl<const N: usize> Blocks<N> {
-    /// An empty matrix for chains of the given numbers of blocks.
-    pub fn new(chains: &[usize], border: usize) -> Self {
+    /// An empty matrix for chains of the given numbers of blocks; `lead` unknowns of the border are
+    /// not counted, `counted` are.
+    pub fn new(chains: &[usize], [lead, counted]: [usize; 2]) -> Self {
         let blocks: usize = chains.iter().sum();
+        let border = lead + counted;
         Self {
             chains: chains.to_vec(),
             border,
+            lead,
             diagonal: vec![Block::zeros(); blocks],
             upper: vec![Block::zeros(); blocks],
             lower: vec![Block::zeros(); blocks],
@@ -48,7 +56,7 @@ impl<const N: usize> Blocks<N> {
             bottom: vec![Column::zeros(); blocks * border],
             corner: vec![0.0; border * border],
             touches: vec![0; blocks],
-            filled: vec![(0, 0); chains.len()],
+            filled: vec![0; blocks],
             corner_pivots: vec![0; border],
         }
     }
@@ -63,9 +71,9 @@ impl<const N: usize> Blocks<N> {
         self.len() == 0
     }
 
-    /// Width of the border.
+    /// Counted unknowns of the border.
     pub const fn border(&self) -> usize {
-        self.border
+        self.border - self.lead
     }
 
     /// Sets every entry to zero.
@@ -92,27 +100,29 @@ impl<const N: usize> Blocks<N> {
         (&mut self.upper[block], &mut self.lower[block])
     }
 
-    /// Adds `value` to row `row` of `block`, column `k` of the border.
+    /// Adds `value` to row `row` of `block`, counted column `k` of the border.
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
+        let k = self.lead + k;
         self.touches[block] = self.touches[block].max(k + 1);
         self.right[block * self.border + k][row] += value;
     }
 
-    /// Adds `value` to row `k` of the border, column `column` of `block`.
+    /// Adds `value` to counted row `k` of the border, column `column` of `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
+        let k = self.lead + k;
         self.touches[block] = self.touches[block].max(k + 1);
         self.bottom[block * self.border + k][column] += value;
     }
 
-    /// Adds to row `row` of `block` in the border's first columns, and to column `row` in its first
-    /// rows.
+    /// Adds to row `row` of `block` in the border's first counted columns, and to column `row` in
+    /// its first counted rows.
     #[inline]
     pub fn add_border(&mut self, block: usize, row: usize, right: &[f64], bottom: &[f64]) {
-        let reach = right.len().max(bottom.len());
+        let reach = self.lead + right.len().max(bottom.len());
         self.touches[block] = self.touches[block].max(reach);
-        let of = block * self.border..(block + 1) * self.border;
+        let of = block * self.border + self.lead..(block + 1) * self.border;
         for (column, value) in self.right[of.clone()].iter_mut().zip(right) {
             column[row] += value;
         }
@@ -121,10 +131,10 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// Adds `value` within the border.
+    /// Adds `value` within the counted border.
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
-        self.corner[column * self.border + row] += value;
+        self.corner[(self.lead + column) * self.border + self.lead + row] += value;
     }
 
     /// Adds `value` at any place of the shape: within a block, between neighbours, in the border.
@@ -135,10 +145,18 @@ impl<const N: usize> Blocks<N> {
         let base = self.diagonal.len() * N;
         let split = |i: usize| (i / N, i % N);
         match (row < base, column < base) {
-            (false, false) => self.add_corner(row - base, column - base, value),
-            (true, false) => self.add_right(split(row).0, split(row).1, column - base, value),
+            (false, false) => {
+                self.corner[(column - base) * self.border + row - base] += value;
+            }
+            (true, false) => {
+                let ((block, row), k) = (split(row), column - base);
+                self.touches[block] = self.touches[block].max(k + 1);
+                self.right[block * self.border + k][row] += value;
+            }
             (false, true) => {
-                self.add_bottom(split(column).0, row - base, split(column).1, value);
+                let ((block, column), k) = (split(column), row - base);
+                self.touches[block] = self.touches[block].max(k + 1);
+                self.bottom[block * self.border + k][column] += value;
             }
             (true, true) => {
                 let ((b, r), (c, k)) = (split(row), split(column));
@@ -191,13 +209,10 @@ impl<const N: usize> Blocks<N> {
         let mut first = 0;
         for chain in 0..self.chains.len() {
             let end = first + self.chains[chain];
-            let touches = &self.touches[first..end];
-            let filled = touches.iter().position(|&k| k > 0);
-            let filled = filled.map_or(end, |b| first + b);
-            let reach = touches.iter().copied().max().unwrap_or(0);
-            self.filled[chain] = (filled, reach);
+            let mut reach = 0;
             for b in first..end {
-                let reach = if b >= filled { reach } else { 0 };
+                reach = reach.max(self.touches[b]);
+                self.filled[b] = reach;
                 self.eliminate(b, b + 1 < end, reach)?;
             }
             first = end;
@@ -284,18 +299,16 @@ impl<const N: usize> Blocks<N> {
         let (blocks, border) = x.split_at_mut(base);
         let (blocks, _) = blocks.as_chunks_mut::<N>();
         let mut first = 0;
-        for (&count, &(filled, reach)) in self.chains.iter().zip(&self.filled) {
+        for &count in &self.chains {
             let end = first + count;
             let mut right = Column::<N>::zeros();
             for b in first..end {
                 let y = product(&self.diagonal[b], &(Column::from(blocks[b]) - right));
                 blocks[b] = y.into();
                 right = product(&self.lower[b], &y);
-                if b >= filled {
-                    let bottom = &self.bottom[b * m..b * m + reach];
-                    for (x, bottom) in border.iter_mut().zip(bottom) {
-                        *x -= bottom.dot(&y);
-                    }
+                let bottom = &self.bottom[b * m..b * m + self.filled[b]];
+                for (x, bottom) in border.iter_mut().zip(bottom) {
+                    *x -= bottom.dot(&y);
                 }
             }
             first = end;
@@ -325,18 +338,16 @@ impl<const N: usize> Blocks<N> {
     fn substitute_back(&self, blocks: &mut [[f64; N]], border: &[f64]) {
         let m = self.border;
         let mut end = self.diagonal.len();
-        for (&count, &(filled, reach)) in self.chains.iter().zip(&self.filled).rev() {
+        for &count in self.chains.iter().rev() {
             let first = end - count;
             let mut next = Column::<N>::zeros();
             for b in (first..end).rev() {
                 let mut y = Column::from(blocks[b]);
                 subtract_product(&self.upper[b], &next, &mut y);
-                if b >= filled {
-                    let right = &self.right[b * m..b * m + reach];
-                    for (x, right) in border.iter().zip(right) {
-                        for i in 0..N {
-                            y[i] -= x * right[i];
-                        }
+                let right = &self.right[b * m..b * m + self.filled[b]];
+                for (x, right) in border.iter().zip(right) {
+                    for i in 0..N {
+                        y[i] -= x * right[i];
                     }
                 }
                 blocks[b] = y.into();
@@ -358,9 +369,9 @@ mod tests {
     use super::*;
 
     /// A well-conditioned matrix with no symmetry and no zeros where the structure allows any.
-    fn example(touch_from: &[usize]) -> Blocks<6> {
+    fn example(lead: usize, touch_from: &[usize]) -> Blocks<6> {
         let chains = [4, 7];
-        let mut a = Blocks::<6>::new(&chains, 3);
+        let mut a = Blocks::<6>::new(&chains, [lead, 3]);
         let mut seed = 1_u64;
         let mut next = || {
             seed = seed
@@ -394,31 +405,45 @@ mod tests {
                 a.add_corner(i, j, next() + if i == j { 5.0 } else { 0.0 });
             }
         }
+        // a body that both chains hang on, in the lead of the border
+        let base = a.len() - 3 - lead;
+        for k in base..base + lead {
+            a.add(k, k, 4.0);
+            a.add(k, a.len() - 1, next());
+            for first in [0, chains[0]] {
+                for i in 6 * first..6 * first + 6 {
+                    a.add(k, i, next());
+                    a.add(i, k, next());
+                }
+            }
+        }
         a
     }
 
     #[test]
     fn solution_reproduces_the_right_hand_side() {
         for touch_from in [[0, 0], [2, 5], [4, 6], [4, 7]] {
-            let a = example(&touch_from);
-            let x: Vec<f64> = (0..a.len()).map(|i| 1.0 + 0.37 * (i % 11) as f64).collect();
-            let mut y = vec![0.0; a.len()];
-            a.multiply(&x, &mut y);
-            let mut factors = a.clone();
-            factors.factorize().unwrap();
-            factors.solve(&mut y);
-            let worst = x
-                .iter()
-                .zip(&y)
-                .map(|(a, b)| (a - b).abs())
-                .fold(0.0, f64::max);
-            assert!(worst < 1e-11, "{touch_from:?}: {worst}");
+            for lead in [0, 2] {
+                let a = example(lead, &touch_from);
+                let x: Vec<f64> = (0..a.len()).map(|i| 1.0 + 0.37 * (i % 11) as f64).collect();
+                let mut y = vec![0.0; a.len()];
+                a.multiply(&x, &mut y);
+                let mut factors = a.clone();
+                factors.factorize().unwrap();
+                factors.solve(&mut y);
+                let worst = x
+                    .iter()
+                    .zip(&y)
+                    .map(|(a, b)| (a - b).abs())
+                    .fold(0.0, f64::max);
+                assert!(worst < 1e-11, "{lead} {touch_from:?}: {worst}");
+            }
         }
     }
 
     #[test]
     fn a_used_matrix_can_be_assembled_again() {
-        let mut used = example(&[0, 2]);
+        let mut used = example(2, &[0, 2]);
         used.factorize().unwrap();
         used.clear();
         let mut zeros = vec![0.0; used.len()];
@@ -428,7 +453,7 @@ mod tests {
 
     #[test]
     fn a_singular_block_is_named() {
-        let mut a = example(&[0, 0]);
+        let mut a = example(0, &[0, 0]);
         a.diagonal_mut(0).set_column(2, &Column::<6>::zeros());
         let (upper, _) = a.coupling_mut(0);
         upper.fill(0.0);

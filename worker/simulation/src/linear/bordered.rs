@@ -21,13 +21,14 @@ macro_rules! either {
 }
 
 impl Bordered {
-    /// An empty matrix of three-wide blocks for chains of the given numbers of blocks.
-    pub fn plane(chains: &[usize], border: usize) -> Self {
+    /// An empty matrix of three-wide blocks for chains of the given numbers of blocks; of the border
+    /// so many unknowns are in the lead, so many counted.
+    pub fn plane(chains: &[usize], border: [usize; 2]) -> Self {
         Self::Plane(Blocks::new(chains, border))
     }
 
-    /// An empty matrix of six-wide blocks for chains of the given numbers of blocks.
-    pub fn space(chains: &[usize], border: usize) -> Self {
+    /// The same of six-wide blocks.
+    pub fn space(chains: &[usize], border: [usize; 2]) -> Self {
         Self::Space(Blocks::new(chains, border))
     }
 
@@ -41,7 +42,7 @@ impl Bordered {
         self.len() == 0
     }
 
-    /// Width of the border.
+    /// Counted unknowns of the border.
     pub const fn border(&self) -> usize {
         either!(self, blocks => blocks.border())
     }
@@ -57,18 +58,6 @@ impl Bordered {
         either!(self, blocks => blocks.diagonal_mut(block)[(row, column)] += value);
     }
 
-    /// Adds `value` to the coupling of `block` (rows) with the next one (columns).
-    #[inline]
-    pub fn add_upper(&mut self, block: usize, row: usize, column: usize, value: f64) {
-        either!(self, blocks => blocks.coupling_mut(block).0[(row, column)] += value);
-    }
-
-    /// Adds `value` to the coupling of the block after `block` (rows) with it (columns).
-    #[inline]
-    pub fn add_lower(&mut self, block: usize, row: usize, column: usize, value: f64) {
-        either!(self, blocks => blocks.coupling_mut(block).1[(row, column)] += value);
-    }
-
     /// Makes every unknown of `block` but the first one its own: `1` on the diagonal.
     pub fn lock_rest(&mut self, block: usize) {
         fn lock<const N: usize>(block: &mut Block<N>) {
@@ -79,26 +68,26 @@ impl Bordered {
         either!(self, blocks => lock(blocks.diagonal_mut(block)));
     }
 
-    /// Adds `value` to row `row` of `block`, column `k` of the border.
+    /// Adds `value` to row `row` of `block`, counted column `k` of the border.
     #[inline]
     pub fn add_right(&mut self, block: usize, row: usize, k: usize, value: f64) {
         either!(self, blocks => blocks.add_right(block, row, k, value));
     }
 
-    /// Adds `value` to row `k` of the border, column `column` of `block`.
+    /// Adds `value` to counted row `k` of the border, column `column` of `block`.
     #[inline]
     pub fn add_bottom(&mut self, block: usize, k: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add_bottom(block, k, column, value));
     }
 
-    /// Adds to row `row` of `block` in the border's first columns, and to column `row` in its first
-    /// rows.
+    /// Adds to row `row` of `block` in the border's first counted columns, and to column `row` in
+    /// its first counted rows.
     #[inline]
     pub fn add_border(&mut self, block: usize, row: usize, right: &[f64], bottom: &[f64]) {
         either!(self, blocks => blocks.add_border(block, row, right, bottom));
     }
 
-    /// Adds `value` within the border.
+    /// Adds `value` within the counted border.
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {
         either!(self, blocks => blocks.add_corner(row, column, value));

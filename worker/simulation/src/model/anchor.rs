@@ -1,9 +1,16 @@
 //! Tangent of the joint that holds a rope on its head: the one joint that couples a cylinder with the
 //! beam angle and the head's modes.
+//!
+//! The end moves by `P = B (a + sum u_k q_k)` and turns by the beam's rotation `B` and by
+//! `R_t(sum t_k q_k) R_r(sum r_k q_k)`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, the axes `d`
+//! of [`Turn::axes`], its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and
+//! `Q = (P x F + tau) . z` on the beam.
+use crate::element::bushing::LinkLoad;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::{Column, EndTangent};
 use crate::model::links::Instant;
+use crate::model::strand::{AnchorShape, Face};
 use crate::model::{MAX_MODES, Machine, pose::Pose};
 use nalgebra::Vector3;
 
@@ -15,8 +22,8 @@ pub(super) struct Anchor<'a> {
     /// Block of the last cylinder.
     pub(super) block: usize,
     pub(super) end: &'a EndTangent,
-    /// Force on the head \[N\].
-    pub(super) force: V3,
+    /// On the head.
+    pub(super) load: &'a LinkLoad,
     /// The last cylinder.
     pub(super) pose: &'a Pose,
 }
@@ -37,36 +44,52 @@ impl Machine {
             chain,
             block,
             end,
-            force: F,
+            load,
             pose,
         } = anchor;
+        let F = load.force;
         let (by_head, by_cylinder) = (&end.by_body, &end.by_cylinder);
         let beam = self.layout.beam();
         let (s, c) = sin_cos(at.q[beam]);
         let rate = at.v[beam];
         let z = V3::z();
-        // deflection of the anchor in W, its modes and its rate
+        // reference point of the anchor in W from the pivot, its modes and its rate in the beam
         let mut shapes = [V3::zeros(); MAX_MODES];
-        let modes = if chain == 0 { self.layout.modes } else { 0 };
+        let face = self.faces.get(chain);
+        let modes = face.map_or(0, |face| face.anchor.len());
         let (mut p, mut deflection_rate) = (V3::zeros(), V3::zeros());
-        for k in 0..modes {
-            let [x, y] = self.anchor_shape[k];
-            shapes[k] = V3::new(c * x - s * y, s * x + c * y, 0.0);
+        for (k, shape) in face.iter().flat_map(|face| face.anchor.iter().enumerate()) {
+            let [x, y, along] = shape.moves;
+            shapes[k] = V3::new(c * x - s * y, s * x + c * y, along);
             p += shapes[k] * at.q[self.layout.mode(k)];
             deflection_rate += shapes[k] * at.v[self.layout.mode(k)];
         }
+        let turning = face.and_then(|face| self.turning(face, chain, at));
+        if turning.is_some() {
+            p = self.anchor_marker(chain, at).p;
+        }
         let zp = z.cross(&p);
         // velocity of the reference point: deflection_rate + rate z x p
-        let by_angle: Column = std::array::from_fn(|r| {
+        let mut by_angle: Column = std::array::from_fn(|r| {
             by_head.p[r] * zp
                 + by_head.v[r] * (z.cross(&deflection_rate) + zp * gamma + z.cross(&zp) * rate)
                 + by_head.a[r] * z
                 + by_head.w[r] * z * gamma
         });
+        if let Some(turning) = &turning {
+            let further = z.cross(&turning.velocity);
+            for (r, by_angle) in by_angle.iter_mut().enumerate() {
+                *by_angle += by_head.w[r] * further;
+            }
+        }
         let by_mode = |k: usize| -> Column {
             std::array::from_fn(|r| {
-                by_head.p[r] * shapes[k]
-                    + by_head.v[r] * (shapes[k] * gamma + z.cross(&shapes[k]) * rate)
+                let moved = by_head.p[r] * shapes[k]
+                    + by_head.v[r] * (shapes[k] * gamma + z.cross(&shapes[k]) * rate);
+                turning.as_ref().map_or(moved, |turning| {
+                    let axis = turning.axes[k];
+                    moved + by_head.a[r] * axis + by_head.w[r] * (axis * gamma + turning.drift(k))
+                })
             })
         };
         let beam_row = |c: &Column| c[1].z + p.x * c[0].y - p.y * c[0].x;
@@ -93,6 +116,13 @@ impl Machine {
                 if k == 0 {
                     entry += F.dot(&z.cross(shape));
                 }
+                if let Some(turning) = &turning {
+                    let axis = turning.axes[row];
+                    let bent = k
+                        .checked_sub(1)
+                        .map_or_else(|| z.cross(&axis), |mode| turning.bend(row, mode));
+                    entry += column[1].dot(&axis) + load.torque_i.dot(&bent);
+                }
                 matrix.add_corner(1 + row, k, -entry);
             }
         }
@@ -100,8 +130,52 @@ impl Machine {
             let column = by_cylinder.column(full);
             matrix.add_bottom(block, 0, k, -beam_row(&column));
             for (row, shape) in shapes[..modes].iter().enumerate() {
-                matrix.add_bottom(block, 1 + row, k, -column[0].dot(shape));
+                let mut entry = column[0].dot(shape);
+                if let Some(turning) = &turning {
+                    entry += column[1].dot(&turning.axes[row]);
+                }
+                matrix.add_bottom(block, 1 + row, k, -entry);
             }
         }
+    }
+
+    fn turning<'a>(&self, face: &'a Face, chain: usize, at: &Instant<'_>) -> Option<Turning<'a>> {
+        let turn = self.turn(face, self.arc(chain).anchor, at)?;
+        let [t, r] = turn.axes();
+        let mut axes = [V3::zeros(); MAX_MODES];
+        for (axis, shape) in axes.iter_mut().zip(&face.anchor) {
+            *axis = t * shape.turns[0] + r * shape.turns[1];
+        }
+        Some(Turning {
+            shapes: &face.anchor,
+            axes,
+            velocity: turn.velocity(),
+            by_tilt: turn.axis_by_tilt(),
+            second_rate: turn.second_rate(),
+        })
+    }
+}
+
+/// How the modes turn a rope's fixed end.
+struct Turning<'a> {
+    shapes: &'a [AnchorShape],
+    /// `W_k`.
+    axes: [V3; MAX_MODES],
+    /// Angular velocity in the beam [rad/s].
+    velocity: V3,
+    /// Derivative of the second axis by the first angle.
+    by_tilt: V3,
+    second_rate: f64,
+}
+
+impl Turning<'_> {
+    /// Derivative of `W_row` by a modal coordinate.
+    fn bend(&self, row: usize, mode: usize) -> V3 {
+        self.by_tilt * (self.shapes[row].turns[1] * self.shapes[mode].turns[0])
+    }
+
+    /// Derivative of the angular velocity by a modal coordinate at constant rates.
+    fn drift(&self, mode: usize) -> V3 {
+        self.by_tilt * (self.second_rate * self.shapes[mode].turns[0])
     }
 }

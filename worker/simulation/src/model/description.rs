@@ -27,6 +27,8 @@ pub struct Description {
     pub back_arc: Arc,
     /// Flexibility of the back head.
     pub head: Head,
+    /// Two ropes on each head in place of one, if there are.
+    pub twins: Option<Twins>,
     /// Load at the suspension point, positive downwards, equally spaced over one turn from bottom
     /// dead centre \[N\].
     pub card: Vec<f64>,
@@ -128,6 +130,40 @@ pub struct Head {
     pub normal_influence: Vec<Vec<f64>>,
     /// Gauge stress per tangential force towards growing angle [Pa/N]; 4 x s'.
     pub tangential_influence: Vec<Vec<f64>>,
+}
+
+/// Two ropes side by side on each head; what a [`Rope`] and a [`RopeLaw`] state is of both together.
+#[derive(Clone, Debug)]
+pub struct Twins {
+    /// Distance of either rope from the machine's plane \[m\].
+    pub offset: f64,
+    /// By how much the rope at -z is longer than the one at +z, on the back and on the front head
+    /// \[m\].
+    pub longer: [f64; 2],
+    /// What the back head does out of its plane.
+    pub sway: Sway,
+}
+
+/// The antisymmetric side of a reduced head: a modes over the stations of [`Head`], at `z = +offset`.
+/// Forces in its influence lines come in pairs.
+#[derive(Clone, Debug)]
+pub struct Sway {
+    /// Angular frequencies [rad/s]; a.
+    pub frequencies: Vec<f64>,
+    /// Outward radial shape, mode by mode [kg^-1/2]; a x s.
+    pub radial: Vec<Vec<f64>>,
+    /// Tangential shape, towards growing angle; a x s.
+    pub tangential: Vec<Vec<f64>>,
+    /// Shape along z; a x s.
+    pub lateral: Vec<Vec<f64>>,
+    /// Gauge stress per unit modal coordinate \[Pa\]; a x 4.
+    pub gauge_stress: Vec<[f64; 4]>,
+    /// Gauge stress per newton inwards at +z and a newton outwards at -z [Pa/N]; 4 x s'.
+    pub normal_influence: Vec<Vec<f64>>,
+    /// Gauge stress per newton towards growing angle at +z and one back at -z; 4 x s'.
+    pub tangential_influence: Vec<Vec<f64>>,
+    /// Gauge stress per newton along +z on either rope; 4 x s'.
+    pub lateral_influence: Vec<Vec<f64>>,
 }
 
 /// A further mode of the head.

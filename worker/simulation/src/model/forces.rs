@@ -5,6 +5,7 @@ use crate::math::elementary::sin_cos;
 use crate::math::spline::sum::Sum;
 use crate::model::contact::{Bend, Surface};
 use crate::model::links::Instant;
+use crate::model::strand::BACK;
 use crate::model::{
     Machine, Scratch,
     chain::{ChainState, Joints},
@@ -28,12 +29,18 @@ pub struct Powers {
 impl Machine {
     /// Fills the poses of all cylinders and the deflection of the back head's arc.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
-        let modal = self.layout.beam() + 1..;
-        scratch
-            .deflection
-            .weigh(&self.radial, &q[modal.clone()], &v[modal]);
+        self.deflect(q, v, scratch);
         for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
             chain.pose(q, v, state);
+        }
+    }
+
+    /// Fills the deflection of the back head's arc.
+    fn deflect(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
+        let modal = self.layout.beam() + 1..;
+        let (q, v) = (&q[modal.clone()], &v[modal]);
+        for (face, deflection) in self.faces.iter().zip(&mut scratch.deflection) {
+            deflection.weigh(&face.radial, q, v);
         }
     }
 
@@ -62,7 +69,7 @@ impl Machine {
     }
 
     /// What presses and pulls on the back head at an instant, without the rest of the loads:
-    /// contact and anchor of the back rope, in `scratch` as [`Self::forces`] leaves them.
+    /// contact and anchor of the back ropes, in `scratch` as [`Self::forces`] leaves them.
     pub(crate) fn back_head_loads(
         &self,
         at: &Instant<'_>,
@@ -70,16 +77,15 @@ impl Machine {
         force: &mut [f64],
     ) {
         force.fill(0.0);
-        let modal = self.layout.beam() + 1..;
-        let (q, v) = (&at.q[modal.clone()], &at.v[modal]);
-        scratch.deflection.weigh(&self.radial, q, v);
-        let [chain, _] = &self.chains;
-        let [state, _] = &mut scratch.chains;
-        chain.pose(at.q, at.v, state);
-        chain.load_head(&self.joints(0, at), state);
-        let surface = self.surface(0, at.q, at.v, &scratch.deflection);
-        let (blocks, border) = force.split_at_mut(self.layout.beam());
-        chain.add_contact(&surface, &at.ropes.contact, state, blocks, border);
+        self.deflect(at.q, at.v, scratch);
+        for (k, chain) in self.chains[..self.faces.len()].iter().enumerate() {
+            let state = &mut scratch.chains[k];
+            chain.pose(at.q, at.v, state);
+            chain.load_head(&self.joints(k, at), state);
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+            let (blocks, border) = force.split_at_mut(self.layout.beam());
+            chain.add_contact(&surface, &at.ropes.contact, state, blocks, border);
+        }
     }
 
     /// Acceleration of gravity as a vector [m/s2].
@@ -122,7 +128,7 @@ impl Machine {
         force: &mut [f64],
     ) {
         let loads = &scratch.chains[chain].joints;
-        if chain == 0 {
+        if self.strands[chain].rope == BACK {
             force[self.layout.rod()] += loads[0].torque_j.z;
         } else {
             force[self.layout.suspension()] -= loads[0].force.y;
@@ -133,11 +139,20 @@ impl Machine {
         let i = head.marker;
         let beam = self.layout.beam();
         force[beam] += load.torque_i.z + i.p.x * load.force.y - i.p.y * load.force.x;
-        if chain == 0 {
-            let (s, c) = sin_cos(at.q[beam]);
-            for (k, shape) in self.anchor_shape.iter().enumerate() {
-                force[self.layout.mode(k)] += load.force.x * (c * shape[0] - s * shape[1])
-                    + load.force.y * (s * shape[0] + c * shape[1]);
+        let Some(face) = self.faces.get(chain) else {
+            return;
+        };
+        let (s, c) = sin_cos(at.q[beam]);
+        for (k, shape) in face.anchor.iter().enumerate() {
+            let [x, y, _] = shape.moves;
+            force[self.layout.mode(k)] +=
+                load.force.x * (c * x - s * y) + load.force.y * (s * x + c * y);
+        }
+        if let Some(turn) = self.turn(face, self.arc(chain).anchor, at) {
+            let moments = turn.axes().map(|axis| load.torque_i.dot(&axis));
+            for (k, shape) in face.anchor.iter().enumerate() {
+                let turned = shape.turns[0] * moments[0] + shape.turns[1] * moments[1];
+                force[self.layout.mode(k)] += load.force.z * shape.moves[2] + turned;
             }
         }
     }
@@ -148,16 +163,18 @@ impl Machine {
         chain: usize,
         q: &'a [f64],
         v: &'a [f64],
-        deflection: &'a Sum,
+        deflection: &'a [Sum],
     ) -> Surface<'a> {
         let beam = self.layout.beam();
-        let bend = (chain == 0 && self.layout.modes > 0).then(|| Bend {
-            shapes: &self.radial,
-            sum: deflection,
+        let face = self.faces.get(chain);
+        let bend = face.zip(deflection.get(chain)).map(|(face, sum)| Bend {
+            shapes: &face.radial,
+            sum,
             modal_rate: &v[beam + 1..],
         });
+        let bend = bend.filter(|_| self.layout.modes > 0);
         let mut surface = Surface::new(self.arc(chain), [q[beam], v[beam]], bend);
-        if chain == 0 {
+        if face.is_some() {
             surface.profile = self.hooks.profile();
             surface.reach += self.hooks.bulge();
         }
@@ -197,8 +214,10 @@ impl Machine {
         let (s, c) = sin_cos(at.q[i]);
         let center = at.drive.pin[2] + V2::new(-s, c) * (rod.center_of_mass * a[i])
             - V2::new(c, s) * (rod.center_of_mass * at.v[i] * at.v[i]);
-        // the joint pulls the rod with minus the force on the first cylinder
-        let rope = scratch.chains[0].joints[0].force;
+        // the joints pull the rod with minus the force on the first cylinders
+        let back = &scratch.chains[..self.faces.len()];
+        let pull = back.iter().map(|chain| chain.joints[0].force);
+        let rope = pull.fold(V3::zeros(), |sum, force| sum + force);
         V2::new(
             rod.mass * center.x + rope.x,
             rod.mass * (center.y + self.description.gravity) + rope.y,

@@ -52,17 +52,28 @@ impl<'a> Individual<'a> {
         self.at.1 = state;
     }
 
-    /// Force of the back rope on its head, contact and anchor together, in W \[N\].
+    /// Force of the back ropes on their head, contact and anchor together, in W \[N\].
     ///
     /// From the balance of rope and load path: the wrapped rope and the head together are pulled by
     /// the joint before the first cylinder that touches.
     pub fn head_push(&self) -> [f64; 2] {
-        let back = &self.scratch.chains[0];
-        let first = back.contact.iter().position(|&force| force > 0.0);
-        let joint = first.unwrap_or(self.machine.layout.back);
-        // the joint's force on its outer cylinder points back along the free rope
-        let force = back.joints[joint].force;
-        [force.x, force.y]
+        let mut push = [0.0; 2];
+        for back in &self.scratch.chains[..self.machine.faces.len()] {
+            let first = back.contact.iter().position(|&force| force > 0.0);
+            let joint = first.unwrap_or(self.machine.layout.back);
+            // the joint's force on its outer cylinder points back along the free rope
+            let force = back.joints[joint].force;
+            push[0] += force.x;
+            push[1] += force.y;
+        }
+        push
+    }
+
+    /// Tensions at the bases of the ropes on the back head (0) or the front head (1) \[N\].
+    pub fn base_tensions(&self, rope: usize) -> impl Iterator<Item = f64> + '_ {
+        let all = self.machine.strands.iter().zip(&self.scratch.chains);
+        let on_head = all.filter(move |(strand, _)| strand.rope == rope);
+        on_head.map(|(_, state)| state.joints[0].force.norm())
     }
 
     /// Fills the loads that the back head's stress asks for; the others remain as they were. `force`
@@ -146,10 +157,9 @@ impl Equations for Individual<'_> {
     fn newton_norm(&self, change: &[f64]) -> f64 {
         let layout = self.machine.layout;
         let width = layout.motion.width();
-        let mut norm: f64 = 0.0;
-        for (k, chain) in self.machine.chains.iter().enumerate() {
-            let unit = if k == 0 { ANGLE } else { LENGTH };
-            norm = worst(norm, change[layout.base_block(k) * width] / unit);
+        let mut norm = worst(0.0, change[layout.rod()] / ANGLE);
+        norm = worst(norm, change[layout.suspension()] / LENGTH);
+        for chain in &self.machine.chains {
             norm = cylinders_newton(norm, &change[chain.range()], width);
         }
         norm = worst(norm, change[layout.beam()] / ANGLE);
@@ -201,8 +211,10 @@ impl Static for Individual<'_> {
     /// A metre of a cylinder, of the beam's tip or of the suspension count alike.
     fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {
         let layout = self.machine.layout;
-        for (k, chain) in self.machine.chains.iter().enumerate() {
-            matrix.add_diagonal(layout.base_block(k), 0, 0, lambda);
+        for base in [layout.rod(), layout.suspension()] {
+            matrix.add(base, base, lambda);
+        }
+        for chain in &self.machine.chains {
             chain.add_static_weight(lambda, matrix);
         }
         let arm = self.machine.description.front_arc.radius;

@@ -1,10 +1,12 @@
-//! Who holds the machine's two rope chains: rod or suspension point at the base (revolute), the
-//! heads at the other end.
+//! Who holds the machine's rope chains: rod or suspension point at the base (revolute), the heads at
+//! the other end.
 use crate::drive::DriveState;
 use crate::element::bushing::Marker;
 use crate::math::elementary::sin_cos;
+use crate::math::rotation::skew;
 use crate::model::chain::{Held, Joints};
 use crate::model::description::Arc;
+use crate::model::strand::{BACK, Face, Strand};
 use crate::model::{Machine, Ropes};
 use nalgebra::{Matrix3, Vector3};
 
@@ -17,8 +19,8 @@ type M3 = Matrix3<f64>;
 )]
 impl Machine {
     /// The arc that a chain wraps.
-    pub(crate) const fn arc(&self, chain: usize) -> &Arc {
-        if chain == 0 {
+    pub(crate) fn arc(&self, chain: usize) -> &Arc {
+        if self.strands[chain].rope == BACK {
             &self.description.back_arc
         } else {
             &self.description.front_arc
@@ -30,31 +32,37 @@ impl Machine {
         Joints {
             inner: &at.ropes.joint,
             base: Some(Held {
-                marker: self.base_marker(chain, at),
+                marker: self.base_marker(&self.strands[chain], at),
                 law: &at.ropes.base,
+                pinned: self.layout.twins(),
             }),
             head: Some(Held {
                 marker: self.anchor_marker(chain, at),
                 law: &at.ropes.anchor,
+                pinned: false,
             }),
             axial: {
                 let pitch = self.description.rope.pitch;
-                let stiffness = at.ropes.joint.stiffness[0] * pitch;
-                self.hooks.axial(chain, at.drive, stiffness, pitch)
+                let share = self.share();
+                // laws along a rope are of the pair, as its coefficients are
+                let stiffness = at.ropes.joint.stiffness[0] * pitch / share;
+                let rope = self.strands[chain].rope;
+                self.hooks.axial(rope, at.drive, (stiffness, share), pitch)
             },
         }
     }
 
     /// The joint on the crossbeam end of the rod, or on the suspension point.
-    fn base_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
+    fn base_marker(&self, strand: &Strand, at: &Instant<'_>) -> Marker {
         let (q, v) = (at.q, at.v);
-        if chain == 0 {
+        if strand.rope == BACK {
             let rod = self.layout.rod();
             let (s, c) = sin_cos(q[rod]);
             let [pin, pin_velocity, _] = at.drive.pin;
+            let along = V3::new(c, s, 0.0) * (self.description.rod.length + strand.longer);
             return Marker {
                 p: V3::new(pin.x, pin.y, 0.0),
-                rho: V3::new(c, s, 0.0) * self.description.rod.length,
+                rho: along + V3::new(0.0, 0.0, strand.z),
                 v: V3::new(pin_velocity.x, pin_velocity.y, 0.0),
                 w: V3::new(0.0, 0.0, v[rod]),
                 R: turned(s, c),
@@ -63,7 +71,7 @@ impl Machine {
         let height = self.layout.suspension();
         Marker {
             p: V3::new(self.suspension_x, q[height], 0.0),
-            rho: V3::zeros(),
+            rho: V3::new(0.0, strand.longer, strand.z),
             v: V3::new(0.0, v[height], 0.0),
             w: V3::zeros(),
             R: turned(1.0, 0.0),
@@ -71,7 +79,8 @@ impl Machine {
     }
 
     /// The fixed end of a rope on its head. The reference point carries the head's deflection, so
-    /// that the arm stays rigid.
+    /// that the arm stays rigid; where the end also turns with the head ([`Turn`]), the reference
+    /// point is the end itself, so that it turns in its place.
     pub(crate) fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
         let beam = self.layout.beam();
         let (theta, rate) = (at.q[beam], at.v[beam]);
@@ -80,30 +89,101 @@ impl Machine {
         let place = V3::new(
             arc.center[0] + arc.radius * c,
             arc.center[1] + arc.radius * s,
-            0.0,
+            self.strands[chain].z,
         );
         let (sb, cb) = sin_cos(theta);
         let R = turned(sb, cb);
         let w = V3::new(0.0, 0.0, rate);
         let (mut p, mut v) = (V3::zeros(), V3::zeros());
-        if chain == 0 {
-            for (k, shape) in self.anchor_shape.iter().enumerate() {
-                let direction = R * V3::new(shape[0], shape[1], 0.0);
-                p += direction * at.q[self.layout.mode(k)];
-                v += direction * at.v[self.layout.mode(k)];
-            }
-            v += w.cross(&p);
+        let face = self.faces.get(chain);
+        for (k, shape) in face.iter().flat_map(|face| face.anchor.iter().enumerate()) {
+            let direction = R * V3::from(shape.moves);
+            p += direction * at.q[self.layout.mode(k)];
+            v += direction * at.v[self.layout.mode(k)];
         }
         // the rope's axis: towards the anchor along the arc
         let (sa, ca) = sin_cos(arc.anchor + theta);
         let (st, ct) = (arc.sense * ca, -arc.sense * sa);
-        Marker {
+        let mut marker = Marker {
             p,
             rho: R * place,
             v,
             w,
             R: turned(st, ct),
+        };
+        if let Some(turn) = face.and_then(|face| self.turn(face, arc.anchor, at)) {
+            marker.p += marker.rho;
+            marker.rho = V3::zeros();
+            marker.R = turn.rotation() * marker.R;
+            marker.w += turn.velocity();
         }
+        if face.is_some() {
+            marker.v += w.cross(&marker.p);
+        }
+        marker
+    }
+
+    /// How the modes turn a rope's fixed end, if they do.
+    pub(crate) fn turn(&self, face: &Face, anchor: f64, at: &Instant<'_>) -> Option<Turn> {
+        face.beside?;
+        let (mut angles, mut rates) = ([0.0; 2], [0.0; 2]);
+        for (k, shape) in face.anchor.iter().enumerate() {
+            for (axis, turns) in shape.turns.iter().enumerate() {
+                angles[axis] += turns * at.q[self.layout.mode(k)];
+                rates[axis] += turns * at.v[self.layout.mode(k)];
+            }
+        }
+        let (s, c) = sin_cos(anchor + at.q[self.layout.beam()]);
+        Some(Turn {
+            tangent: V3::new(-s, c, 0.0),
+            radial: V3::new(c, s, 0.0),
+            angles,
+            rates,
+        })
+    }
+}
+
+/// Turn of a rope's fixed end by the head's modes: first about the radius, then about the tangent of
+/// the arc, both carried along by the beam; in W.
+pub(crate) struct Turn {
+    tangent: V3,
+    radial: V3,
+    /// About tangent and radius \[rad\], and their rates.
+    angles: [f64; 2],
+    rates: [f64; 2],
+}
+
+impl Turn {
+    /// The rotation `R_t R_r`.
+    fn rotation(&self) -> M3 {
+        let about = |axis: &V3, angle: f64| {
+            let (s, c) = sin_cos(angle);
+            M3::identity() * c + skew(axis) * s + axis * axis.transpose() * (1.0 - c)
+        };
+        about(&self.tangent, self.angles[0]) * about(&self.radial, self.angles[1])
+    }
+
+    /// Axes about which rising angles turn the end: the tangent, and `R_t r`.
+    pub(crate) fn axes(&self) -> [V3; 2] {
+        let (s, c) = sin_cos(self.angles[0]);
+        [self.tangent, self.radial * c - V3::z() * s]
+    }
+
+    /// Angular velocity that the rates give.
+    pub(crate) fn velocity(&self) -> V3 {
+        let [t, r] = self.axes();
+        t * self.rates[0] + r * self.rates[1]
+    }
+
+    /// Derivative of the second axis by the first angle.
+    pub(crate) fn axis_by_tilt(&self) -> V3 {
+        let (s, c) = sin_cos(self.angles[0]);
+        -self.radial * s - V3::z() * c
+    }
+
+    /// Rate of the second angle [rad/s].
+    pub(crate) const fn second_rate(&self) -> f64 {
+        self.rates[1]
     }
 }
 

@@ -1,12 +1,13 @@
 //! A machine ready to be simulated: constants derived once from a description.
 use crate::effect::{Cycle, Hooks, Selection};
 use crate::element::{bushing::Bushing, impact::Impact};
-use crate::math::elementary::sin_cos;
 use crate::math::spline::{Splines, sum::Sum};
 use crate::model::chain::{Chain, ChainState};
-use crate::model::description::{Arc, Description, RopeLaw};
-use crate::model::kinematics::{DoesNotClose, Mechanism, Position};
+use crate::model::description::{AddedMode, Arc, Description, RopeLaw};
+use crate::model::kinematics::{Mechanism, Position};
 use crate::model::layout::{Layout, Motion};
+use crate::model::strand::{BACK, Face, Strand, faces, strands};
+use crate::model::valid::{InvalidDescription, check};
 
 /// A machine under one working condition; immutable and shared by every individual.
 #[derive(Clone, Debug)]
@@ -22,21 +23,20 @@ pub struct Machine {
     pub lowest_suspension: f64,
     /// Horizontal place of the guided suspension point \[m\].
     pub suspension_x: f64,
-    pub(crate) radial: Splines,
     pub(crate) card: Splines,
-    /// Shapes at the back anchor in the beam frame, mode by mode.
-    pub(crate) anchor_shape: Vec<[f64; 2]>,
-    /// Back rope and front rope.
-    pub(crate) chains: [Chain; 2],
-    pub(crate) normal_influence: Splines,
-    pub(crate) tangential_influence: Splines,
+    /// Back ropes, then front ropes: what they are made of, and where they hang.
+    pub(crate) chains: Vec<Chain>,
+    pub(crate) strands: Vec<Strand>,
+    /// The back head as each back rope sees it.
+    pub(crate) faces: Vec<Face>,
     /// What effects add.
     pub(crate) hooks: Hooks,
     /// The effects, and the ideal turn that they refer to.
     effects: Option<(Selection, Cycle)>,
 }
 
-/// The ropes of one individual: coefficients scaled to the pitch of the chain.
+/// Every rope of one individual: coefficients scaled to the pitch of the chain, and to the rope's share
+/// of them where it is one of two.
 #[derive(Clone, Copy, Debug)]
 pub struct Ropes {
     /// Between two cylinders.
@@ -47,33 +47,6 @@ pub struct Ropes {
     pub anchor: Bushing,
     /// Between a cylinder and a head.
     pub contact: Impact,
-}
-
-/// A description that cannot be a machine.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum InvalidDescription {
-    /// A number that must be positive and finite is not.
-    #[error("{what} is {value}; it must be a positive number")]
-    NotPositive {
-        /// Which number.
-        what: &'static str,
-        /// Its value, SI.
-        value: f64,
-    },
-    /// A table has the wrong size.
-    #[error("{what} has {found} entries; expected {expected}")]
-    Shape {
-        /// Which table.
-        what: &'static str,
-        /// Entries found.
-        found: usize,
-        /// Entries expected.
-        expected: usize,
-    },
-    /// The mechanism does not turn through.
-    #[error("the crank cannot turn through: {0}")]
-    Mechanism(#[from] DoesNotClose),
 }
 
 #[expect(
@@ -136,39 +109,35 @@ impl Machine {
     }
 
     fn assemble(
-        description: Description,
+        mut description: Description,
         modes: usize,
         bottom: Position,
         lowest_suspension: f64,
     ) -> Self {
+        let sway = join_families(&mut description, modes);
         let d = &description;
         let layout = Layout {
             back: d.rope.back,
             front: d.rope.front,
-            modes,
-            motion: Motion::Plane,
+            modes: modes + sway,
+            sway,
+            ropes: if d.twins.is_some() { 2 } else { 1 },
+            motion: if d.twins.is_some() {
+                Motion::Space
+            } else {
+                Motion::Plane
+            },
         };
-        let chain = |k: usize, count: usize| {
-            let first = layout.base_block(k) + 1;
-            let chain = Chain::solid(first, count, d.rope.diameter, d.rope.pitch, d.rope.density);
+        let strands = strands(d);
+        let chain = |(k, strand): (usize, &Strand)| {
+            let count = [d.rope.back, d.rope.front][strand.rope];
+            let density = d.rope.density / layout.ropes as f64;
+            let first = layout.first(k);
+            let chain = Chain::solid(first, count, d.rope.diameter, d.rope.pitch, density);
             Chain {
                 motion: layout.motion,
                 ..chain
             }
-        };
-        let chains = [chain(0, d.rope.back), chain(1, d.rope.front)];
-        let radial = Splines::natural(d.head.start, d.head.step, &d.head.radial[..modes]);
-        let tangential = Splines::natural(d.head.start, d.head.step, &d.head.tangential[..modes]);
-        let (s, c) = sin_cos(d.back_arc.anchor);
-        let anchor_shape = (0..modes)
-            .map(|k| {
-                let r = radial.value(d.back_arc.anchor, k);
-                let t = tangential.value(d.back_arc.anchor, k);
-                [r * c - t * s, r * s + t * c]
-            })
-            .collect();
-        let influence = |curves: &[Vec<f64>]| {
-            Splines::natural(d.head.influence_start, d.head.influence_step, curves)
         };
         Self {
             layout,
@@ -180,11 +149,9 @@ impl Machine {
                 std::f64::consts::TAU / d.card.len() as f64,
                 std::slice::from_ref(&d.card),
             ),
-            anchor_shape,
-            chains,
-            normal_influence: influence(&d.head.normal_influence),
-            tangential_influence: influence(&d.head.tangential_influence),
-            radial,
+            chains: strands.iter().enumerate().map(chain).collect(),
+            faces: faces(d, &layout),
+            strands,
             hooks: Hooks::default(),
             effects: None,
             description,
@@ -238,21 +205,43 @@ impl Machine {
             + self.description.rod.length
     }
 
-    /// Scales an individual's coefficients to this chain's pitch, so that the rope stays the same.
+    /// Share of one rope in what a description states of the rope on a head.
+    pub(crate) fn share(&self) -> f64 {
+        1.0 / self.layout.ropes as f64
+    }
+
+    /// A chain on the back head (0) or on the front head (1).
+    pub(crate) fn chain_on(&self, rope: usize) -> &Chain {
+        &self.chains[if rope == BACK { 0 } else { self.layout.ropes }]
+    }
+
+    /// Scales an individual's coefficients to this chain's pitch, so that the rope stays the same, and
+    /// to one rope of two.
     pub fn ropes(&self, law: &RopeLaw) -> Ropes {
         let rope = &self.description.rope;
         let per_length = rope.reference_pitch / rope.pitch;
-        let joint = law.bushing.scaled(per_length);
-        let end = joint.scaled(1.0 / rope.end_pitches);
+        let share = self.share();
+        let joint = law.bushing.scaled(per_length).scaled(share);
+        let [base, anchor] = self.ends(&joint);
         Ropes {
             joint,
-            base: end.revolute(),
-            anchor: end,
+            base,
+            anchor,
             contact: Impact {
-                stiffness: law.contact.stiffness / per_length,
-                damping: law.contact.damping / per_length,
+                stiffness: law.contact.stiffness / per_length * share,
+                damping: law.contact.damping / per_length * share,
                 ..law.contact
             },
+        }
+    }
+
+    /// The joints that hold a rope's first and last cylinder, from that between two cylinders.
+    pub(crate) fn ends(&self, joint: &Bushing) -> [Bushing; 2] {
+        let end = joint.scaled(1.0 / self.description.rope.end_pitches);
+        if self.layout.twins() {
+            [end.pinned(), end]
+        } else {
+            [end.revolute(), end]
         }
     }
 }
@@ -260,25 +249,45 @@ impl Machine {
 /// Buffers of a simulation.
 #[derive(Clone, Debug)]
 pub struct Scratch {
-    /// Poses and loads of back rope and front rope.
-    pub chains: [ChainState; 2],
-    /// Deflection of the back head's arc.
-    pub deflection: Sum,
+    /// Poses and loads of the back ropes, then of the front ropes.
+    pub chains: Vec<ChainState>,
+    /// Deflection of the back head's arc under each back rope.
+    pub deflection: Vec<Sum>,
 }
 
 impl Scratch {
     /// Buffers for a machine.
     pub fn new(machine: &Machine) -> Self {
         Self {
-            chains: machine.chains.each_ref().map(ChainState::new),
-            deflection: Sum::default(),
+            chains: machine.chains.iter().map(ChainState::new).collect(),
+            deflection: vec![Sum::default(); machine.faces.len()],
         }
     }
 
     /// Deepest penetration of a rope into a head \[m\].
     pub(crate) fn deepest(&self) -> f64 {
-        self.chains[0].deepest.max(self.chains[1].deepest)
+        self.chains
+            .iter()
+            .fold(0.0, |deepest, chain| deepest.max(chain.deepest))
     }
+}
+
+/// Puts the modes out of the plane behind those that are kept; returns how many there are.
+fn join_families(d: &mut Description, modes: usize) -> usize {
+    let Some(twins) = &d.twins else { return 0 };
+    d.head.keep(modes);
+    for (k, &frequency) in twins.sway.frequencies.iter().enumerate() {
+        let stations = twins.sway.radial[k].len();
+        // what a rope sees of them depends on its side: the faces know
+        d.head.add(AddedMode {
+            frequency,
+            radial: vec![0.0; stations],
+            tangential: vec![0.0; stations],
+            participation: [0.0; 3],
+        });
+        d.head.gauge_stress[modes + k] = twins.sway.gauge_stress[k];
+    }
+    twins.sway.frequencies.len()
 }
 
 fn lowest_suspension(d: &Description, bottom: &Position) -> f64 {
@@ -286,80 +295,4 @@ fn lowest_suspension(d: &Description, bottom: &Position) -> f64 {
     let lowest = d.front_arc.radius * bottom.beam;
     let wrapped = d.front_arc.radius * d.front_arc.anchor + lowest;
     wrapped - rope
-}
-
-fn check(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
-    let positive: [(&'static str, f64); 14] = [
-        ("gravity", d.gravity),
-        ("beam inertia", d.beam_inertia),
-        ("crank radius", d.crank.radius),
-        ("crank speed", d.crank.speed),
-        ("rod length", d.rod.length),
-        ("rod mass", d.rod.mass),
-        ("rod inertia", d.rod.inertia),
-        ("suspension mass", d.suspension_mass),
-        ("rope diameter", d.rope.diameter),
-        ("cylinder length", d.rope.pitch),
-        ("rope density", d.rope.density),
-        ("reference length", d.rope.reference_pitch),
-        ("front radius", d.front_arc.radius),
-        ("back radius", d.back_arc.radius),
-    ];
-    for (what, value) in positive {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(InvalidDescription::NotPositive { what, value });
-        }
-    }
-    let stations = d.head.radial.first().map_or(0, Vec::len);
-    let sizes = [
-        ("radial shapes", d.head.radial.len().min(modes), modes),
-        (
-            "tangential shapes",
-            d.head.tangential.len().min(modes),
-            modes,
-        ),
-        (
-            "head frequencies",
-            d.head.frequencies.len().min(modes),
-            modes,
-        ),
-        (
-            "gauge stresses",
-            d.head.gauge_stress.len().min(modes),
-            modes,
-        ),
-        (
-            "participations",
-            d.head.participation.len().min(modes),
-            modes,
-        ),
-        ("normal influence lines", d.head.normal_influence.len(), 4),
-        (
-            "tangential influence lines",
-            d.head.tangential_influence.len(),
-            4,
-        ),
-        ("back rope", d.rope.back.min(3), 3),
-        ("front rope", d.rope.front.min(3), 3),
-        ("load card", d.card.len().min(8), 8),
-    ];
-    for (what, found, expected) in sizes {
-        if found != expected {
-            return Err(InvalidDescription::Shape {
-                what,
-                found,
-                expected,
-            });
-        }
-    }
-    for table in d.head.radial.iter().chain(&d.head.tangential) {
-        if table.len() != stations {
-            return Err(InvalidDescription::Shape {
-                what: "mode shape",
-                found: table.len(),
-                expected: stations,
-            });
-        }
-    }
-    Ok(())
 }

@@ -11,7 +11,9 @@ pub mod layout;
 mod links;
 mod machine;
 pub mod pose;
+pub(crate) mod strand;
 mod tangent;
+mod valid;
 
 /// Most modes a head may have in a simulation.
 pub(crate) const MAX_MODES: usize = 24;
@@ -20,7 +22,8 @@ pub use forces::Powers;
 pub use individual::Individual;
 pub use links::Instant;
 pub(crate) use links::turned;
-pub use machine::{InvalidDescription, Machine, Ropes, Scratch};
+pub use machine::{Machine, Ropes, Scratch};
+pub use valid::InvalidDescription;
 
 #[cfg(test)]
 pub(crate) mod tests;

@@ -4,11 +4,13 @@
 //! of the cylinders' velocity terms and of their inertia by the angles: a cylinder's moment of
 //! inertia is 1e-6 kg m2, so they change the speed of Newton's method by nothing measurable and
 //! its answer not at all.
+use crate::element::bushing::LinkTangent;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::anchor::Anchor;
 use crate::model::chain::{Column, EndTangent};
 use crate::model::links::Instant;
+use crate::model::strand::BACK;
 use crate::model::{Machine, Scratch, pose::Pose};
 
 #[expect(
@@ -38,7 +40,7 @@ impl Machine {
                     chain: k,
                     block: chain.first + chain.count - 1,
                     end: &end,
-                    force: load.force,
+                    load,
                     pose: &state.pose(chain.count - 1),
                 };
                 self.anchor_tangent(&anchor, at, gamma, matrix);
@@ -51,15 +53,16 @@ impl Machine {
 
     fn inertia_blocks(&self, q: &[f64], mu: f64, matrix: &mut Bordered) {
         let d = &self.description;
-        for (k, chain) in self.chains.iter().enumerate() {
-            let block = self.layout.base_block(k);
-            let inertia = if k == 0 {
-                self.rod_inertia()
-            } else {
-                d.suspension_mass
-            };
-            matrix.add_diagonal(block, 0, 0, mu * inertia);
+        for (at, inertia) in [
+            (self.layout.rod(), self.rod_inertia()),
+            (self.layout.suspension(), d.suspension_mass),
+        ] {
+            matrix.add(at, at, mu * inertia);
+        }
+        for block in self.layout.base_blocks().into_iter().flatten() {
             matrix.lock_rest(block);
+        }
+        for chain in &self.chains {
             chain.add_inertia_blocks(q, mu, matrix);
         }
         matrix.add_corner(0, 0, mu * d.beam_inertia);
@@ -76,10 +79,11 @@ impl Machine {
         let &Instant { q, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
-        let (s, c) = sin_cos(q[self.layout.rod()]);
+        let rod = self.layout.rod();
+        let (s, c) = sin_cos(q[rod]);
         let pin = drive.pin[2];
         let hanging = d.rod.mass * d.rod.center_of_mass * ((pin.y + g) * s + pin.x * c);
-        matrix.add_diagonal(0, 0, 0, -hanging);
+        matrix.add(rod, rod, -hanging);
         let (s, c) = sin_cos(q[self.layout.beam()]);
         matrix.add_corner(0, 0, -d.beam_gravity_moment * s);
         for k in 0..self.layout.modes {
@@ -94,7 +98,7 @@ impl Machine {
         }
     }
 
-    /// The joint between rod (0) or suspension (1) and the first cylinder.
+    /// The joint between rod or suspension and the first cylinder.
     fn base_tangent(
         &self,
         chain: usize,
@@ -103,27 +107,33 @@ impl Machine {
         gamma: f64,
         matrix: &mut Bordered,
     ) {
-        let block = self.layout.base_block(chain);
-        let column = base_column(chain, &end.by_body, gamma);
-        let row_j = |c: &Column| if chain == 0 { c[2].z } else { -c[0].y };
-        matrix.add_diagonal(block, 0, 0, -row_j(&column));
+        let back = self.strands[chain].rope == BACK;
+        let base = if back {
+            self.layout.rod()
+        } else {
+            self.layout.suspension()
+        };
+        let first = self.chains[chain].range().start;
+        let column = base_column(back, &end.by_body, gamma);
+        let row_j = |c: &Column| if back { c[2].z } else { -c[0].y };
+        matrix.add(base, base, -row_j(&column));
         let torque = pose.angular().tr_mul(&column[1]);
         for (k, &full) in self.layout.motion.kept().iter().enumerate() {
-            matrix.add_upper(block, 0, k, -row_j(&end.by_cylinder.column(full)));
+            matrix.add(base, first + k, -row_j(&end.by_cylinder.column(full)));
             let pull = if full < 3 {
                 column[0][full]
             } else {
                 torque[full - 3]
             };
-            matrix.add_lower(block, k, 0, -pull);
+            matrix.add(first + k, base, -pull);
         }
     }
 }
 
 /// Derivatives by the one coordinate of the rod (its angle) or the suspension (its height).
-fn base_column(chain: usize, by: &crate::element::bushing::LinkTangent, gamma: f64) -> Column {
+fn base_column(rod: bool, by: &LinkTangent, gamma: f64) -> Column {
     std::array::from_fn(|r| {
-        if chain == 0 {
+        if rod {
             (by.a[r] + by.w[r] * gamma).column(2).into_owned()
         } else {
             (by.p[r] + by.v[r] * gamma).column(1).into_owned()

@@ -4,14 +4,16 @@ use crate::integrator::State;
 use crate::math::elementary::sin_cos;
 use crate::reference;
 use crate::system::Equations;
+use nalgebra::Vector2;
 
 fn machine() -> Machine {
     Machine::new(reference::description(), 2).unwrap()
 }
 
-/// With three and with six coordinates per cylinder.
-fn machines() -> [Machine; 2] {
-    [machine(), machine().in_space()]
+/// With three and with six coordinates per cylinder, and with twin ropes.
+fn machines() -> [Machine; 3] {
+    let twins = Machine::new(reference::twins([0.002, -0.003]), 2).unwrap();
+    [machine(), machine().in_space(), twins]
 }
 
 /// A state near the working position, disturbed in every coordinate so that nothing vanishes.
@@ -87,12 +89,7 @@ fn drive(t: f64) -> DriveState {
 /// Coordinates that are not locked.
 pub(crate) fn free(machine: &Machine) -> impl Iterator<Item = usize> {
     let layout = machine.layout;
-    let width = layout.motion.width();
-    (0..layout.len()).filter(move |&i| {
-        let block = i / width;
-        let base = block == layout.base_block(0) || block == layout.base_block(1);
-        i >= layout.beam() || !base || i % width == 0
-    })
+    (0..layout.len()).filter(move |&i| !layout.is_locked(i))
 }
 
 /// Derivative of the forces along one coordinate, whose rate moves `gamma` times as far.
@@ -188,6 +185,41 @@ fn assert_gradient(machine: &Machine) {
             layout.describe(i),
             force[i]
         );
+    }
+}
+
+/// What all forces do at a crank that stands still is taken from the stored energy or lost, in a moving
+/// state with contact: what acts on one body acts back on another, dampers included.
+#[test]
+fn power_of_the_forces_is_what_is_stored_and_lost() {
+    for machine in machines() {
+        let mut law = reference::law();
+        law.bushing.rotational_stiffness = [308.0; 2];
+        let ropes = machine.ropes(&law);
+        let mut drive = drive(0.0);
+        drive.load = 0.0;
+        drive.pin[1..].fill(Vector2::zeros());
+        let (q, v) = disturbed(&machine);
+        let evaluate = |t: f64| {
+            let q: Vec<f64> = q.iter().zip(&v).map(|(q, v)| q + t * v).collect();
+            let at = Instant {
+                ropes: &ropes,
+                drive: &drive,
+                q: &q,
+                v: &v,
+            };
+            let mut scratch = Scratch::new(&machine);
+            let mut force = vec![0.0; q.len()];
+            machine.forces(&at, &mut scratch, &mut force);
+            let power: f64 = force.iter().zip(&v).map(|(force, v)| force * v).sum();
+            let lost = machine.powers(&at, &v, &scratch).dissipated;
+            (machine.potential(&at, &scratch), power, lost)
+        };
+        let h = 1e-6;
+        let stored = (evaluate(h).0 - evaluate(-h).0) / (2.0 * h);
+        let (_, power, lost) = evaluate(0.0);
+        let missing = (power + stored + lost).abs();
+        assert!(missing < 1e-3 * lost, "{power} + {stored} + {lost}");
     }
 }
 

@@ -24,25 +24,26 @@ pub fn follow(system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
 }
 
 /// From compliant to given ropes.
-struct Path {
+struct Path<'a> {
+    machine: &'a Machine,
     from: Ropes,
     to: Ropes,
-    end_pitches: f64,
     start: Vec<f64>,
 }
 
-impl Path {
+impl<'a> Path<'a> {
     /// `None` where not even compliant ropes reach.
-    fn new(system: &mut System<Individual<'_>>, to: &Ropes) -> Option<Self> {
+    fn new(system: &mut System<Individual<'a>>, to: &Ropes) -> Option<Self> {
         let drive = system.equations.drive_state(0.0);
         let machine = system.equations.machine;
         let hanging = Hanging::new(machine, &drive).ok()?;
-        let from = compliant(machine, to, hanging.tension[0].max(hanging.tension[1]));
+        let tightest = hanging.tension[0].max(hanging.tension[1]);
+        let from = compliant(machine, to, tightest * machine.share());
         let start = guess(machine, &from, &drive).ok()?;
         Some(Self {
+            machine,
             from,
             to: *to,
-            end_pitches: machine.description.rope.end_pitches,
             start,
         })
     }
@@ -56,8 +57,7 @@ impl Path {
         ropes.joint.stiffness = pair(a.joint.stiffness, b.joint.stiffness);
         ropes.joint.rotational_stiffness =
             pair(a.joint.rotational_stiffness, b.joint.rotational_stiffness);
-        ropes.anchor = ropes.joint.scaled(1.0 / self.end_pitches);
-        ropes.base = ropes.anchor.revolute();
+        [ropes.base, ropes.anchor] = self.machine.ends(&ropes.joint);
         ropes.contact.stiffness = mix(a.contact.stiffness, b.contact.stiffness);
         ropes
     }
@@ -113,7 +113,8 @@ fn compliant(machine: &Machine, to: &Ropes, tension: f64) -> Ropes {
     let axial = tension / (1e-3 * pitch);
     ropes.joint.stiffness = [axial, 0.4 * axial];
     ropes.joint.rotational_stiffness = [tension * 1e-2 / pitch; 2];
-    let line = tension * pitch / machine.arc(0).radius.min(machine.arc(1).radius);
+    let d = &machine.description;
+    let line = tension * pitch / d.back_arc.radius.min(d.front_arc.radius);
     ropes.contact.stiffness = line / powf(1e-3, to.contact.exponent);
     ropes
 }

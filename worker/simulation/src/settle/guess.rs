@@ -1,8 +1,11 @@
-//! Where a taut machine about stands: stretched ropes on the arcs, sunk in under their line load.
+//! Where a taut machine about stands: stretched ropes on the arcs, sunk in under their line load. Of
+//! two ropes the shorter one is stretched by what the other is longer.
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::Chain;
 use crate::model::kinematics::{DoesNotClose, Position};
+use crate::model::layout::Motion;
+use crate::model::strand::{BACK, FRONT};
 use crate::model::{Machine, Ropes};
 
 /// Coordinates near equilibrium: taut, stretched ropes on the arcs, sunk in as far as their line
@@ -19,13 +22,14 @@ pub fn guess(
     let layout = machine.layout;
     let pull = drive.load + d.suspension_mass * d.gravity;
     let rigid = rigid_position(machine, drive.pin_angle)?;
-    let front = Strand::new(machine, ropes, 1, pull);
+    let share = machine.share();
+    let front = Taut::new(machine, ropes, FRONT, pull * share);
     let lever = pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1;
-    let back = Strand::new(machine, ropes, 0, lever / rigid.arm);
+    let back = Taut::new(machine, ropes, BACK, lever / rigid.arm * share);
+    let pitches = |count: usize| count as f64 - 1.0 + 2.0 * d.rope.end_pitches;
     let mechanism = machine.mechanism(
         back.radius,
-        machine.back_length()
-            + back.extension * (d.rope.back as f64 - 1.0 + 2.0 * d.rope.end_pitches),
+        machine.back_length() + back.extension * pitches(d.rope.back),
     );
     let position = mechanism.position(drive.pin_angle, rigid.beam, rigid.tangent)?;
 
@@ -35,23 +39,29 @@ pub fn guess(
     let [x, y] = d.back_arc.center;
     let center = [c * x - s * y, s * x + c * y];
     let leave = position.beam + position.tangent;
-    back.place(
-        machine,
-        0,
-        center,
-        [d.back_arc.anchor + position.beam, leave],
-        &mut q,
-    );
     let (s, c) = sin_cos(leave);
     // the rod points along the straight rope, towards the head: -t at the tangent point
     q[layout.rod()] = crate::math::elementary::atan2(-c, s);
-    let end = front.place(
-        machine,
-        1,
-        [0.0; 2],
-        [d.front_arc.anchor + position.beam, 0.0],
-        &mut q,
-    );
+    let mut end = 0.0;
+    for (chain, strand) in machine.strands.iter().enumerate() {
+        let (taut, center, anchor, leave) = if strand.rope == BACK {
+            (back, center, d.back_arc.anchor, leave)
+        } else {
+            (front, [0.0; 2], d.front_arc.anchor, 0.0)
+        };
+        let count = machine.chains[chain].count;
+        let own = taut.longer(strand.longer / pitches(count));
+        let tip = own.place(
+            machine,
+            chain,
+            center,
+            [anchor + position.beam, leave],
+            &mut q,
+        );
+        if strand.rope == FRONT {
+            end += share * tip;
+        }
+    }
     q[layout.suspension()] = end;
     Ok(q)
 }
@@ -70,15 +80,17 @@ pub(super) fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, Do
 }
 
 /// One rope under a tension.
-struct Strand {
+#[derive(Clone, Copy)]
+struct Taut {
     radius: f64,
     extension: f64,
 }
 
-impl Strand {
-    fn new(machine: &Machine, ropes: &Ropes, chain: usize, tension: f64) -> Self {
-        let pitch = machine.description.rope.pitch;
-        let radius = machine.arc(chain).radius;
+impl Taut {
+    fn new(machine: &Machine, ropes: &Ropes, rope: usize, tension: f64) -> Self {
+        let d = &machine.description;
+        let pitch = d.rope.pitch;
+        let radius = [d.back_arc, d.front_arc][rope].radius;
         let depth = ropes
             .contact
             .depth_under(tension * pitch / radius)
@@ -86,6 +98,14 @@ impl Strand {
         Self {
             radius: radius - depth,
             extension: (tension / ropes.joint.stiffness[0]).clamp(0.0, 0.5 * pitch),
+        }
+    }
+
+    /// The same rope with every joint drawn less.
+    fn longer(self, by: f64) -> Self {
+        Self {
+            extension: (self.extension - by).max(0.0),
+            ..self
         }
     }
 
@@ -119,6 +139,9 @@ impl Strand {
             let at = (first + j) * width;
             q[at] = center[0] + self.radius * c - straight * tx;
             q[at + 1] = center[1] + self.radius * s - straight * ty;
+            if machine.layout.motion == Motion::Space {
+                q[at + 2] = machine.strands[chain].z;
+            }
             q[at + width - 1] = crate::math::elementary::atan2(ty, tx);
             along += pitch + self.extension;
         }

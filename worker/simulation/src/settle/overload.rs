@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 /// How the inextensible machine hangs under a drive: of back and front rope.
 pub(super) struct Hanging {
-    /// Tension \[N\].
+    /// Tension, of twin ropes together \[N\].
     pub(super) tension: [f64; 2],
     /// Length that does not lie on the arc \[m\].
     pub(super) span: [f64; 2],
@@ -24,10 +24,11 @@ impl Hanging {
         let rigid = rigid_position(machine, drive.pin_angle)?;
         let moment = pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1;
         let leave = [rigid.tangent, -rigid.beam];
-        let span = [0, 1].map(|chain| {
-            let arc = machine.arc(chain);
-            let length = machine.chains[chain].count as f64 * d.rope.pitch;
-            (length - arc.radius * (arc.anchor - leave[chain]).abs()).max(d.rope.pitch)
+        let ropes = [(&d.back_arc, d.rope.back), (&d.front_arc, d.rope.front)];
+        let span = [0, 1].map(|rope| {
+            let (arc, count) = ropes[rope];
+            let length = count as f64 * d.rope.pitch;
+            (length - arc.radius * (arc.anchor - leave[rope]).abs()).max(d.rope.pitch)
         });
         Ok(Self {
             tension: [moment / rigid.arm, pull],
@@ -51,14 +52,17 @@ pub fn overload(
     limits: &Limits,
 ) -> Option<(Failure, f64)> {
     let Hanging { tension, span } = Hanging::new(machine, drive).ok()?;
-    let pitch = machine.description.rope.pitch;
+    // of two ropes one carries half or more
+    let tension = tension.map(|tension| tension * machine.share());
+    let d = &machine.description;
+    let pitch = d.rope.pitch;
     let tightest = tension[0].max(tension[1]);
     let carried = limits.extension * pitch * ropes.joint.stiffness[0] / tightest;
     if carried < 1.0 {
         return Some((Failure::OverstretchedRope, carried.max(0.0)));
     }
     let line = (0..2)
-        .map(|chain| tension[chain] * pitch / machine.arc(chain).radius)
+        .map(|rope| tension[rope] * pitch / [d.back_arc, d.front_arc][rope].radius)
         .fold(0.0, f64::max);
     let carried = ropes.contact.force(limits.penetration, 0.0).force / line;
     if carried < 1.0 {

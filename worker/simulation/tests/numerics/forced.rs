@@ -32,7 +32,7 @@ impl Forced {
 
 impl Equations for Forced {
     fn matrix(&self) -> Bordered {
-        Bordered::space(&[1], 0)
+        Bordered::space(&[1], [0; 2])
     }
 
     fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {

@@ -23,5 +23,6 @@ mod rope;
 mod statics;
 mod swing;
 mod tangent;
+mod twins;
 mod vibration;
 mod work;

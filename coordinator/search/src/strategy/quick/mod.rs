@@ -8,7 +8,7 @@
 //! scan, refinement.
 use super::{
     Conductor, Piece, SettingsError,
-    design::latin_hypercube,
+    design::hypercube,
     levenberg::{Levenberg, LevenbergSettings},
     memetic::{Memetic, MemeticSettings},
     refine::{Refine, RefineSettings},
@@ -162,7 +162,7 @@ pub fn build(
             Part::Memetic(memetic) => {
                 let mut start = vec![vec![0.0; space.dimension()]];
                 let others = memetic.population.saturating_sub(1);
-                start.extend(latin_hypercube(&settings.trust, others, streams));
+                start.extend(hypercube(&settings.trust, others, streams));
                 let inside = (space, settings.trust.clone());
                 Box::new(Memetic::new(memetic.clone(), inside, &start, streams)?)
             }

@@ -20,7 +20,7 @@ use crate::math::spline::sum::Spread;
 use crate::model::contact::{GAUSS, POINTS};
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
 
 pub use points::Points;
 pub(crate) use tangent::{Column, EndTangent};
@@ -52,6 +52,8 @@ pub struct Held<'a> {
     pub marker: Marker,
     /// Law of the joint.
     pub law: &'a Bushing,
+    /// Whether the law's axis is a pin along the holding body's z axis in place of the chain's own.
+    pub pinned: bool,
 }
 
 /// The joints of a chain at one instant.
@@ -176,15 +178,32 @@ impl Chain {
         let half = 0.5 * self.pitch;
         if joint == 0 {
             let held = joints.base?;
-            return Some(([on_cylinder(&state.pose(0), -half), held.marker], held.law));
+            let markers = [on_cylinder(&state.pose(0), -half), held.marker];
+            return Some((held.turned(markers), held.law));
         }
         if joint == self.count {
             let held = joints.head?;
             let j = on_cylinder(&state.pose(joint - 1), half);
-            return Some(([held.marker, j], held.law));
+            return Some((held.turned([held.marker, j]), held.law));
         }
         let j = on_cylinder(&state.poses[joint - 1], half);
         Some(([on_cylinder(&state.poses[joint], -half), j], joints.inner))
+    }
+}
+
+impl Held<'_> {
+    /// Markers of a joint with the axes that its law refers to.
+    fn turned(&self, markers: [Marker; 2]) -> [Marker; 2] {
+        if !self.pinned {
+            return markers;
+        }
+        markers.map(|marker| {
+            let [x, y, z] = [0, 1, 2].map(|k| marker.R.column(k).into_owned());
+            Marker {
+                R: Matrix3::from_columns(&[z, x, y]),
+                ..marker
+            }
+        })
     }
 }
 

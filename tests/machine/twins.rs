@@ -1,0 +1,170 @@
+//! Twin ropes on the real unit, with the head's tables for a pair that the case is delivered with.
+use crate::{folder, individuals};
+use protocol::case::Case;
+use simulation::model::description::RopeLaw;
+use simulation::observe::{Curves, Recorder};
+use simulation::run::{RunResult, simulate};
+use simulation::verdict::Verdict;
+use std::{fs, os::unix::fs::symlink};
+
+/// The shipped case with twin ropes at `z = +-0.12 m`, those at -z longer by so much \[mm\].
+fn twins(back_mm: f64, front_mm: f64) -> Case {
+    let scratch = tempfile::tempdir().unwrap();
+    for name in ["back_head", "measured"] {
+        symlink(folder().join(name), scratch.path().join(name)).unwrap();
+    }
+    let text = fs::read_to_string(folder().join("case.toml")).unwrap();
+    let entry = format!(
+        "\n[twin_ropes]\noffset_m = 0.12\nback_length_difference_m = {:?}\n\
+         front_length_difference_m = {:?}\nhead_file = \"back_head/back_head_twin.json\"\n",
+        1e-3 * back_mm,
+        1e-3 * front_mm
+    );
+    fs::write(scratch.path().join("case.toml"), text + &entry).unwrap();
+    coordinator::case::load(scratch.path(), &coordinator::case::Overrides::default()).unwrap()
+}
+
+fn simulated(case: &Case, law: &RopeLaw) -> (RunResult, Curves) {
+    let machine = worker::convert::machine(case, 0).unwrap();
+    let settings = worker::convert::run_settings(case);
+    let mut recorder = Recorder::everything(0);
+    let result = simulate(&machine, law, &settings, &mut recorder);
+    assert_eq!(result.verdict, Verdict::Complete);
+    (result, recorder.curves)
+}
+
+fn twisted(law: &RopeLaw, stiffer: f64, damped: f64) -> RopeLaw {
+    let mut other = *law;
+    other.bushing.rotational_stiffness[0] *= stiffer;
+    other.bushing.rotational_damping[0] *= damped;
+    other
+}
+
+/// Largest difference of a gauge of two runs over its range in the second, of all gauges.
+fn apart(a: &Curves, b: &Curves) -> f64 {
+    let each = a.gauge.iter().zip(&b.gauge).map(|(a, b)| {
+        let low = b.iter().copied().fold(f64::MAX, f64::min);
+        let high = b.iter().copied().fold(f64::MIN, f64::max);
+        let most = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+        most.fold(0.0, f64::max) / (high - low)
+    });
+    each.fold(0.0, f64::max)
+}
+
+fn mean(curve: &[f64]) -> f64 {
+    curve.iter().sum::<f64>() / curve.len() as f64
+}
+
+/// Twins of equal length, in space and with the modes of both families, give the gauges of the single
+/// rope in its plane, whatever their torsion: to 1e-9 of the range (measured: 4e-11), step by step.
+#[test]
+fn equal_twins_are_the_single_rope_whatever_their_torsion() {
+    let single = crate::case();
+    let pair = twins(0.0, 0.0);
+    for (name, genes) in individuals(&single) {
+        let law = worker::convert::rope_law(&single, &genes).unwrap();
+        let (one, plane) = simulated(&single, &law);
+        for (stiffer, damped) in [(1.0, 1.0), (1e-2, 1e2), (1e2, 1e-2)] {
+            let (two, space) = simulated(&pair, &twisted(&law, stiffer, damped));
+            let apart = apart(&space, &plane);
+            eprintln!("{name}, torsion times {stiffer}: {apart:.1e}");
+            assert_eq!(two.statistics, one.statistics, "{name} {stiffer}");
+            assert!(apart < 1e-9, "{name} {stiffer}: {apart}");
+        }
+    }
+}
+
+/// A rope that is 1 mm shorter carries `dL EA / (2 L)` more where the contact is stiff, and less than
+/// that where it yields (measured: 0.98 and 0.75 of it). The energy ledger closes.
+#[test]
+fn unequal_twins_share_the_load_and_the_ledger_closes() {
+    let single = crate::case();
+    let pair = twins(1.0, 0.0);
+    for ((name, genes), share) in individuals(&single).into_iter().zip([0.7..0.8, 0.95..1.0]) {
+        let law = worker::convert::rope_law(&single, &genes).unwrap();
+        let (result, curves) = simulated(&pair, &law);
+        let ropes = &single.ropes;
+        let stiffness = law.bushing.stiffness[0] * ropes.reference_length_m;
+        let length = ropes.back_cylinders as f64 * ropes.cylinder_length_m;
+        let expected = 1e-3 * stiffness / (2.0 * length);
+        let [back, front] = &curves.tension_difference;
+        let found = mean(back) / expected;
+        let work = result.work;
+        let gained = work.input - work.output - work.dissipated;
+        let defect = (result.stored - gained).abs() / work.input;
+        eprintln!("{name}: {found:.3} of {expected:.0} N, ledger {defect:.1e}");
+        assert!(share.contains(&found), "{name}: {found}");
+        assert!(front.iter().all(|t| t.abs() < 1.0), "{name}");
+        assert!(defect < 1e-4, "{name}: {defect}");
+    }
+}
+
+/// Two gauges opposite each other on the two cheeks part, one up and one down by as much: gauge 2 is
+/// put where the mirror image of gauge 1 lies.
+#[test]
+fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
+    let mirrored = |back_mm: f64| {
+        let mut case = twins(back_mm, 0.0);
+        let both = |row: &mut [f64; 4]| row[1] = row[0];
+        let opposite = |row: &mut [f64; 4]| row[1] = -row[0];
+        let head = &mut case.modal_head;
+        head.gauge_stress_mpa.iter_mut().for_each(both);
+        head.inertia_stress_mpa.iter_mut().for_each(both);
+        head.influence.normal_mpa_per_n.iter_mut().for_each(both);
+        head.influence
+            .tangential_mpa_per_n
+            .iter_mut()
+            .for_each(both);
+        let head = &mut case.twin_ropes.as_mut().unwrap().head;
+        head.gauge_stress_mpa.iter_mut().for_each(opposite);
+        head.influence
+            .normal_mpa_per_n
+            .iter_mut()
+            .for_each(opposite);
+        head.influence
+            .tangential_mpa_per_n
+            .iter_mut()
+            .for_each(opposite);
+        head.lateral_mpa_per_n.iter_mut().for_each(opposite);
+        case
+    };
+    let case = mirrored(1.0);
+    for (name, genes) in individuals(&case) {
+        let law = worker::convert::rope_law(&case, &genes).unwrap();
+        let (_, curves) = simulated(&case, &law);
+        let (_, equal) = simulated(&mirrored(0.0), &law);
+        let change = |gauge: usize| mean(&curves.gauge[gauge]) - mean(&equal.gauge[gauge]);
+        let (here, there) = (change(0), change(1));
+        eprintln!("{name}: {here:.3e} and {there:.3e} Pa");
+        assert!(
+            here.abs() > 5e4 && here * there < 0.0,
+            "{name}: {here} {there}"
+        );
+        assert!(
+            (here + there).abs() < 0.05 * here.abs(),
+            "{name}: {here} {there}"
+        );
+    }
+}
+
+/// With unequal twins torsion reaches the gauges, and hardly: four decades of `K_44` change one by 1e-5
+/// MPa (3e-7 of its range; two runs that differ in nothing but rounding, by 1e-11), four of `C_44`, with
+/// ropes that sink into a soft contact, by 0.04 MPa.
+#[test]
+fn torsion_of_unequal_twins_reaches_the_gauges() {
+    let case = twins(1.0, 0.0);
+    let changes = [
+        ("K_44", 1e4, 1.0, [1e-8..1e-6, 5e-8..2e-6]),
+        ("C_44", 1.0, 1e4, [5e-4..1e-2, 1e-7..5e-6]),
+    ];
+    for (k, (name, genes)) in individuals(&case).into_iter().enumerate() {
+        let law = worker::convert::rope_law(&case, &genes).unwrap();
+        let (_, plain) = simulated(&case, &law);
+        for (what, stiffer, damped, expected) in &changes {
+            let (_, other) = simulated(&case, &twisted(&law, *stiffer, *damped));
+            let apart = apart(&other, &plain);
+            eprintln!("{name}, four decades of {what}: {apart:.1e}");
+            assert!(expected[k].contains(&apart), "{name} {what}: {apart}");
+        }
+    }
+}

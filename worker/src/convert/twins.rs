@@ -1,0 +1,69 @@
+//! Twin ropes of a case as the dynamics take them.
+use super::{PASCAL_PER_MEGAPASCAL, curves, misconfigured};
+use protocol::case::{Case, TwinHead, TwinRopes};
+use protocol::job::Failure;
+use simulation::model::description::{Sway, Twins};
+
+/// The pair of ropes, if the case has one.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] if the head's tables for it do not lie over those of the modes, or hold
+/// too few modes.
+pub(super) fn twins(case: &Case) -> Result<Option<Twins>, Failure> {
+    let Some(twins) = &case.twin_ropes else {
+        return Ok(None);
+    };
+    check(case, twins)?;
+    Ok(Some(Twins {
+        offset: twins.offset_m,
+        longer: [
+            twins.back_length_difference_m,
+            twins.front_length_difference_m,
+        ],
+        sway: sway(&twins.head, twins.modes),
+    }))
+}
+
+fn check(case: &Case, twins: &TwinRopes) -> Result<(), Failure> {
+    let (head, modes) = (&twins.head, twins.modes);
+    let available = [
+        head.frequencies_hz.len(),
+        head.radial.len(),
+        head.tangential.len(),
+        head.lateral.len(),
+        head.gauge_stress_mpa.len(),
+    ];
+    let least = available.into_iter().min().unwrap_or(0);
+    if modes > least {
+        return Err(misconfigured(
+            "twin_ropes.modes",
+            format!("is {modes}; the head has {least} out of its plane"),
+        ));
+    }
+    if head.influence.psi_deg != case.modal_head.influence.psi_deg {
+        return Err(misconfigured(
+            "twin_ropes.head.influence.psi_deg",
+            "has other stations than the influence lines of the plane".to_owned(),
+        ));
+    }
+    Ok(())
+}
+
+fn sway(head: &TwinHead, modes: usize) -> Sway {
+    Sway {
+        frequencies: head.frequencies_hz[..modes]
+            .iter()
+            .map(|f| f * std::f64::consts::TAU)
+            .collect(),
+        radial: head.radial[..modes].to_vec(),
+        tangential: head.tangential[..modes].to_vec(),
+        lateral: head.lateral[..modes].to_vec(),
+        gauge_stress: head.gauge_stress_mpa[..modes]
+            .iter()
+            .map(|row| row.map(|s| s * PASCAL_PER_MEGAPASCAL))
+            .collect(),
+        normal_influence: curves(&head.influence.normal_mpa_per_n),
+        tangential_influence: curves(&head.influence.tangential_mpa_per_n),
+        lateral_influence: curves(&head.lateral_mpa_per_n),
+    }
+}
