@@ -162,7 +162,7 @@ mod tests {
             assert!((2.0 * k * RATED / (x + 1.0 / x) - torque).abs() < 1e-6 * RATED);
         }
         assert!((motor.holding(RATED) - 0.03).abs() < 1e-12);
-        let speed = 0.5236;
+        let speed = 0.5;
         let heavy = Ripple {
             breakdown: 20.0,
             inertia: 0.25 * RATED / (speed * speed * 0.03),

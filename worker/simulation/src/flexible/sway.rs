@@ -43,10 +43,6 @@ pub struct SwayTables {
     pub lateral_influence: Vec<Vec<f64>>,
 }
 
-#[expect(
-    clippy::multiple_inherent_impl,
-    reason = "what two ropes ask for stands by itself"
-)]
 impl Problem<'_> {
     /// Everything that two ropes ask for, of antisymmetric equations.
     pub(super) fn sway(

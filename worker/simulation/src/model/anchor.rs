@@ -5,7 +5,7 @@
 //! `R_t(sum t_k q_k) R_r(sum r_k q_k)`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, the axes `d`
 //! of [`Turn::axes`], its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and
 //! `Q = (P x F + tau) . z` on the beam.
-use crate::element::bushing::LinkLoad;
+use crate::element::bushing::{LinkLoad, LinkTangent};
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::chain::{Column, EndTangent};
@@ -50,38 +50,23 @@ impl Machine {
         let F = load.force;
         let (by_head, by_cylinder) = (&end.by_body, &end.by_cylinder);
         let beam = self.layout.beam();
-        let (s, c) = sin_cos(at.q[beam]);
         let rate = at.v[beam];
         let z = V3::z();
-        // reference point of the anchor in W from the pivot, its modes and its rate in the beam
-        let mut shapes = [V3::zeros(); MAX_MODES];
         let face = self.faces.get(chain);
         let modes = face.map_or(0, |face| face.anchor.len());
-        let (mut p, mut deflection_rate) = (V3::zeros(), V3::zeros());
-        for (k, shape) in face.iter().flat_map(|face| face.anchor.iter().enumerate()) {
-            let [x, y, along] = shape.moves;
-            shapes[k] = V3::new(c * x - s * y, s * x + c * y, along);
-            p += shapes[k] * at.q[self.layout.mode(k)];
-            deflection_rate += shapes[k] * at.v[self.layout.mode(k)];
-        }
+        let (shapes, mut p, deflection_rate) = self.anchor_shapes(face, at);
         let turning = face.and_then(|face| self.turning(face, chain, at));
         if turning.is_some() {
             p = self.anchor_marker(chain, at).p;
         }
         let zp = z.cross(&p);
-        // velocity of the reference point: deflection_rate + rate z x p
-        let mut by_angle: Column = std::array::from_fn(|r| {
-            by_head.p[r] * zp
-                + by_head.v[r] * (z.cross(&deflection_rate) + zp * gamma + z.cross(&zp) * rate)
-                + by_head.a[r] * z
-                + by_head.w[r] * z * gamma
-        });
-        if let Some(turning) = &turning {
-            let further = z.cross(&turning.velocity);
-            for (r, by_angle) in by_angle.iter_mut().enumerate() {
-                *by_angle += by_head.w[r] * further;
-            }
-        }
+        let moving = Moving {
+            p,
+            deflection_rate,
+            rate,
+            gamma,
+        };
+        let by_angle = moving.by_angle(by_head, turning.as_ref());
         let by_mode = |k: usize| -> Column {
             std::array::from_fn(|r| {
                 let moved = by_head.p[r] * shapes[k]
@@ -107,9 +92,8 @@ impl Machine {
                 };
                 matrix.add_right(block, row, k, entry);
             }
-            let mut beam_entry = beam_row(&column);
             let moved = if k == 0 { zp } else { shapes[k - 1] };
-            beam_entry += moved.x * F.y - moved.y * F.x;
+            let beam_entry = beam_row(&column) + (moved.x * F.y - moved.y * F.x);
             matrix.add_corner(0, k, -beam_entry);
             for (row, shape) in shapes[..modes].iter().enumerate() {
                 let mut entry = column[0].dot(shape);
@@ -139,6 +123,21 @@ impl Machine {
         }
     }
 
+    /// Shapes of the modes at the anchor in W, the deflected place of its reference point from the pivot,
+    /// and the modes' part of its rate.
+    fn anchor_shapes(&self, face: Option<&Face>, at: &Instant<'_>) -> ([V3; MAX_MODES], V3, V3) {
+        let (s, c) = sin_cos(at.q[self.layout.beam()]);
+        let mut shapes = [V3::zeros(); MAX_MODES];
+        let (mut p, mut rate) = (V3::zeros(), V3::zeros());
+        for (k, shape) in face.iter().flat_map(|face| face.anchor.iter().enumerate()) {
+            let [x, y, along] = shape.moves;
+            shapes[k] = V3::new(c * x - s * y, s * x + c * y, along);
+            p += shapes[k] * at.q[self.layout.mode(k)];
+            rate += shapes[k] * at.v[self.layout.mode(k)];
+        }
+        (shapes, p, rate)
+    }
+
     fn turning<'a>(&self, face: &'a Face, chain: usize, at: &Instant<'_>) -> Option<Turning<'a>> {
         let turn = self.turn(face, self.arc(chain).anchor, at)?;
         let [t, r] = turn.axes();
@@ -153,6 +152,46 @@ impl Machine {
             by_tilt: turn.axis_by_tilt(),
             second_rate: turn.second_rate(),
         })
+    }
+}
+
+/// How the reference point of the anchor moves.
+struct Moving {
+    /// In W from the pivot \[m\].
+    p: V3,
+    /// Rate of the modes' part, in W [m/s].
+    deflection_rate: V3,
+    /// Rate of the beam [rad/s].
+    rate: f64,
+    /// Rates by coordinates.
+    gamma: f64,
+}
+
+impl Moving {
+    /// Derivative of the joint's load by the beam's angle.
+    fn by_angle(&self, by_head: &LinkTangent, turning: Option<&Turning<'_>>) -> Column {
+        let &Self {
+            p,
+            deflection_rate,
+            rate,
+            gamma,
+        } = self;
+        let z = V3::z();
+        let zp = z.cross(&p);
+        // velocity of the reference point: deflection_rate + rate z x p
+        let mut by_angle: Column = std::array::from_fn(|r| {
+            by_head.p[r] * zp
+                + by_head.v[r] * (z.cross(&deflection_rate) + zp * gamma + z.cross(&zp) * rate)
+                + by_head.a[r] * z
+                + by_head.w[r] * z * gamma
+        });
+        if let Some(turning) = turning {
+            let further = z.cross(&turning.velocity);
+            for (r, by_angle) in by_angle.iter_mut().enumerate() {
+                *by_angle += by_head.w[r] * further;
+            }
+        }
+        by_angle
     }
 }
 

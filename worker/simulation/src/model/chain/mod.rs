@@ -179,12 +179,12 @@ impl Chain {
         if joint == 0 {
             let held = joints.base?;
             let markers = [on_cylinder(&state.pose(0), -half), held.marker];
-            return Some((held.turned(markers), held.law));
+            return Some((held.turned(&markers), held.law));
         }
         if joint == self.count {
             let held = joints.head?;
             let j = on_cylinder(&state.pose(joint - 1), half);
-            return Some((held.turned([held.marker, j]), held.law));
+            return Some((held.turned(&[held.marker, j]), held.law));
         }
         let j = on_cylinder(&state.poses[joint - 1], half);
         Some(([on_cylinder(&state.poses[joint], -half), j], joints.inner))
@@ -193,9 +193,9 @@ impl Chain {
 
 impl Held<'_> {
     /// Markers of a joint with the axes that its law refers to.
-    fn turned(&self, markers: [Marker; 2]) -> [Marker; 2] {
+    fn turned(&self, markers: &[Marker; 2]) -> [Marker; 2] {
         if !self.pinned {
-            return markers;
+            return *markers;
         }
         markers.map(|marker| {
             let [x, y, z] = [0, 1, 2].map(|k| marker.R.column(k).into_owned());
