@@ -25,7 +25,7 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
         // of a motor of normal design; large: slip in proportion to torque
         Parameter::shape("breakdown", Unit::One, 2.1, [1.5, 20.0]),
         // a rotor of 1 kg m2 behind 146 : 1, cranks and counterweights
-        Parameter::shape("inertia", Unit::KilogramSquareMetre, 2.5e4, [0.0, 3e5]),
+        Parameter::shape("inertia", Unit::KilogramSquareMetre, 2.5e4, [0.0, 1e6]),
     ]),
     build: Build::Named(|v| {
         Box::new(Ripple {
