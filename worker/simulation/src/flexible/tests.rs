@@ -344,7 +344,10 @@ fn a_pair_of_ropes_strains_the_whole_as_its_tables_say() {
     }
     for (k, mode) in reduction.modes.iter().take(3).enumerate() {
         assert!((sway.frequencies[k] / mode.frequency - 1.0).abs() < 1e-12);
-        assert_eq!(sway.gauge_stress[k], mode.gauge_stress);
+        let stresses = sway.gauge_stress[k].iter().zip(&mode.gauge_stress);
+        for (pair, single) in stresses {
+            assert!((pair / single - 1.0).abs() < 1e-9, "{pair} {single}");
+        }
         let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-9, "{a} {b}");
         close(sway.radial[k][0], here.mean(&mode.field, here.radial));
         close(sway.radial[k][0], -there.mean(&mode.field, here.radial));
