@@ -92,7 +92,7 @@ impl Unit {
 
 /// Units that parameters of effects may have, as written; what they measure is the effect's
 /// business.
-pub const EFFECT_UNITS: [&str; 18] = [
+pub const EFFECT_UNITS: [&str; 19] = [
     "1",
     "m",
     "s",
@@ -107,6 +107,7 @@ pub const EFFECT_UNITS: [&str; 18] = [
     "Hz",
     "1/s",
     "kg",
+    "kg.m2",
     "MPa",
     "MPa/rev",
     "MPa/m",
