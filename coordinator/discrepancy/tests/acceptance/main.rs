@@ -24,3 +24,4 @@ mod strata;
 mod trial;
 mod truth;
 mod valley;
+mod worth;
