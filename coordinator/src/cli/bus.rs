@@ -1,14 +1,15 @@
 //! Joins the commands to the dispatcher: the only file of the command line that names it.
 use super::{
-    Door,
+    Door, interrupt,
     json::{BenchOutput, RoundTrip},
     problem::Usage,
 };
 use crate::{
     journal::JournalError,
     runtime::{self, BenchPlan, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
-    study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
+    study::{Completed, Crew, Evaluator, EvaluatorError, Stop, StudyError, WorkerStatus},
 };
+use anyhow::Context as _;
 use link::{
     LinkError,
     memory::{Faults, Hub},
@@ -215,6 +216,31 @@ pub(super) fn block_on<T>(future: impl Future<Output = anyhow::Result<T>>) -> an
         .enable_all()
         .build()?
         .block_on(future)
+}
+
+/// Works with local workers, without a run folder that outlives the command.
+pub(super) fn in_scratch<T>(
+    case: &Case,
+    (kind, local_workers): (&str, usize),
+    work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> Result<T, StudyError>,
+) -> anyhow::Result<T> {
+    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
+    // what decides the result is not written down where nothing is resumed
+    let settings = serde_json::to_string(&(kind, scratch.path()))?;
+    block_on(async {
+        let mut stop = interrupt::listen();
+        let options = Options {
+            run_dir: scratch.path().to_owned(),
+            door: Door::default(),
+            local_workers,
+            kind: kind.to_owned(),
+            settings,
+        };
+        let mut bus = Bus::open(options, case).await?;
+        let result = work(&mut bus, &mut stop).await;
+        bus.close().await?;
+        Ok(result?)
+    })
 }
 
 /// Measures the dispatcher with no-op jobs, in a scratch folder.

@@ -1,8 +1,5 @@
 //! `horsehead head`: the flexible back head from its mesh.
-use super::{
-    Door, EXIT_CODES, OutputChoice, bus, condition, head_files, interrupt, json, output,
-    problem::Usage,
-};
+use super::{EXIT_CODES, OutputChoice, bus, condition, head_files, json, output, problem::Usage};
 use crate::{
     case::{self, HeadSource, QuasiStatic},
     report::table,
@@ -215,19 +212,7 @@ fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead>
         twin_ropes: None,
         ..case.clone()
     };
-    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
-    bus::block_on(async {
-        let mut stop = interrupt::listen();
-        let options = bus::Options {
-            run_dir: scratch.path().to_owned(),
-            door: Door::default(),
-            local_workers: 1,
-            kind: "head".to_owned(),
-            settings: serde_json::to_string(&spec.modes)?,
-        };
-        let mut bus = bus::Bus::open(options, case).await?;
-        let head = study::reduce_head(&mut bus, spec, &mut stop).await;
-        bus.close().await?;
-        Ok(head?)
+    bus::in_scratch(case, ("head", 1), async |bus, stop| {
+        study::reduce_head(bus, spec, stop).await
     })
 }

@@ -1,13 +1,12 @@
 //! `horsehead bench integrators`: accuracy against work, by method of integration.
 use super::{
-    CaseChoice, EXIT_CODES, IndividualChoice, Output, OutputChoice, bus, interrupt, output,
-    problem::Usage, simulate::check_out,
+    CaseChoice, EXIT_CODES, IndividualChoice, Output, OutputChoice, bus, output, problem::Usage,
+    simulate::check_out,
 };
 use crate::{
     report::{self, table, words},
     study::{self, WorkPlan, WorkPoint, WorkPrecision},
 };
-use anyhow::Context as _;
 use clap::Args;
 use protocol::{
     case::{Case, Integrator},
@@ -95,25 +94,13 @@ fn methods(typed: &[String]) -> Result<Vec<Integrator>, Usage> {
 
 /// Compares on one local worker, without a run folder that outlives the command.
 fn compare(case: &Case, plan: &WorkPlan, tell: bool) -> anyhow::Result<WorkPrecision> {
-    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
-    bus::block_on(async {
-        let mut stop = interrupt::listen();
-        let options = bus::Options {
-            run_dir: scratch.path().to_owned(),
-            door: super::Door::default(),
-            local_workers: 1,
-            kind: "bench integrators".to_owned(),
-            settings: format!("{plan:?}"),
-        };
-        let mut bus = bus::Bus::open(options, case).await?;
-        let done = |point: &WorkPoint| {
-            if tell {
-                output::tell(&line(point));
-            }
-        };
-        let result = study::work_precision(&mut bus, plan, &mut stop, done).await;
-        bus.close().await?;
-        Ok(result?)
+    let done = |point: &WorkPoint| {
+        if tell {
+            output::tell(&line(point));
+        }
+    };
+    bus::in_scratch(case, ("bench integrators", 1), async |bus, stop| {
+        study::work_precision(bus, plan, stop, done).await
     })
 }
 

@@ -1,6 +1,6 @@
 //! `horsehead simulate`: one run of the machine.
 use super::{
-    CaseChoice, Door, EXIT_CODES, IndividualChoice, OutputChoice, bus, interrupt, json, output,
+    CaseChoice, EXIT_CODES, IndividualChoice, OutputChoice, bus, json, output,
     problem::Usage,
     run_folder::{RunFolder, command_line},
 };
@@ -135,21 +135,8 @@ pub(super) fn compare_once(
     wanted: &[Wanted],
     workers: usize,
 ) -> anyhow::Result<Vec<Compared>> {
-    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
-    let settings = serde_json::to_string(&(kind, scratch.path()))?;
-    bus::block_on(async {
-        let mut stop = interrupt::listen();
-        let options = bus::Options {
-            run_dir: scratch.path().to_owned(),
-            door: Door::default(),
-            local_workers: workers,
-            kind: kind.to_owned(),
-            settings,
-        };
-        let mut bus = bus::Bus::open(options, case).await?;
-        let result = study::compare(&mut bus, case, wanted, &mut stop).await;
-        bus.close().await?;
-        Ok(result?)
+    bus::in_scratch(case, (kind, workers), async |bus, stop| {
+        study::compare(bus, case, wanted, stop).await
     })
 }
 

@@ -1,13 +1,12 @@
 //! `horsehead bench box`: how individuals end all over the box that a search may propose from.
 use super::{
-    CaseChoice, EXIT_CODES, Output, OutputChoice, bus, condition, interrupt, output, progress,
+    CaseChoice, EXIT_CODES, Output, OutputChoice, bus, condition, output, progress,
     simulate::check_out,
 };
 use crate::{
     report::{self, table},
     study::{self, BoxClass, BoxPlan, BoxPoint},
 };
-use anyhow::Context as _;
 use clap::Args;
 use protocol::{
     case::Case,
@@ -105,24 +104,13 @@ fn simulate(
     tell: bool,
 ) -> anyhow::Result<Vec<BoxPoint>> {
     let space = Space::new(&case.genes)?;
-    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
-    bus::block_on(async {
-        let mut stop = interrupt::listen();
-        let options = bus::Options {
-            run_dir: scratch.path().to_owned(),
-            door: super::Door::default(),
-            local_workers: workers,
-            kind: "bench box".to_owned(),
-            settings: format!("{plan:?}"),
-        };
-        let mut bus = bus::Bus::open(options, case).await?;
-        let counter = progress::Counter::new(plan.points, tell);
-        let done = |ended: usize, _: &BoxPoint| counter.show(ended);
-        let points = study::whole_box(&mut bus, (&space, plan), &mut stop, done).await;
-        counter.clear();
-        bus.close().await?;
-        Ok(points?)
-    })
+    let counter = progress::Counter::new(plan.points, tell);
+    let done = |ended: usize, _: &BoxPoint| counter.show(ended);
+    let points = bus::in_scratch(case, ("bench box", workers), async |bus, stop| {
+        study::whole_box(bus, (&space, plan), stop, done).await
+    });
+    counter.clear();
+    points
 }
 
 /// What `--output json` prints.

@@ -75,6 +75,14 @@ impl StudyError {
         }
     }
 
+    /// The error of a job that failed where nothing can stand in for it.
+    pub(super) fn of(failure: Failure, what: impl FnOnce() -> String) -> Self {
+        Self::hopeless(&failure).unwrap_or_else(|| Self::Unavailable {
+            what: what(),
+            failure,
+        })
+    }
+
     /// What to do about it.
     pub fn help(&self) -> Option<String> {
         let text = match self {

@@ -1,7 +1,8 @@
 //! What a study needs of whoever evaluates: take jobs, give results, say who is at work.
+use super::StudyError;
 use protocol::{
     event::Spent,
-    job::{Job, Outcome},
+    job::{Job, Outcome, Simulation},
 };
 use std::fmt;
 
@@ -33,6 +34,21 @@ pub struct Completed {
     pub outcome: Outcome,
     /// Whether the result is from an earlier session.
     pub replayed: bool,
+}
+
+impl Completed {
+    /// The simulation that was asked for.
+    pub(super) fn simulated(self, what: impl FnOnce() -> String) -> Result<Simulation, StudyError> {
+        match self.outcome {
+            Outcome::Simulated(simulation) => Ok(*simulation),
+            Outcome::Failed(failure) => Err(StudyError::of(failure, what)),
+            Outcome::Scored(_)
+            | Outcome::Observed(_)
+            | Outcome::Described(_)
+            | Outcome::HeadReduced(_)
+            | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: self.id }),
+        }
+    }
 }
 
 /// Why an evaluator gave up.

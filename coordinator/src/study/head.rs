@@ -26,11 +26,8 @@ pub async fn reduce_head(
     let completed = or_stop(evaluator.next(), stop).await??;
     match completed.outcome {
         Outcome::HeadReduced(head) => Ok(*head),
-        Outcome::Failed(failure) => Err(StudyError::hopeless(&failure).unwrap_or({
-            StudyError::Unavailable {
-                what: "the reduction of the back head".to_owned(),
-                failure,
-            }
+        Outcome::Failed(failure) => Err(StudyError::of(failure, || {
+            "the reduction of the back head".to_owned()
         })),
         Outcome::Scored(_)
         | Outcome::Simulated(_)

@@ -8,7 +8,7 @@
 use super::{Evaluator, Stop, StudyError, calibrate::or_stop};
 use protocol::{
     case::Integrator,
-    job::{Counters, Integration, Job, Outcome, Reached, SimulateSpec, Simulation, Verdict},
+    job::{Counters, Integration, Job, Reached, SimulateSpec, Simulation, Verdict},
 };
 
 /// Tolerance and longest step \[s\], from coarse to fine.
@@ -212,22 +212,7 @@ impl<E: Evaluator> Runner<'_, E> {
         };
         self.evaluator.submit(id, Job::Simulate(spec))?;
         let completed = or_stop(self.evaluator.next(), self.stop).await??;
-        match completed.outcome {
-            Outcome::Simulated(simulation) => Ok(*simulation),
-            Outcome::Failed(failure) => {
-                Err(
-                    StudyError::hopeless(&failure).unwrap_or_else(|| StudyError::Unavailable {
-                        what: format!("a run with {}", integration.integrator.as_str()),
-                        failure,
-                    }),
-                )
-            }
-            Outcome::Scored(_)
-            | Outcome::Observed(_)
-            | Outcome::Described(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Nothing(_) => Err(StudyError::WrongKind { id }),
-        }
+        completed.simulated(|| format!("a run with {}", integration.integrator.as_str()))
     }
 
     async fn whole(

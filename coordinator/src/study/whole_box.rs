@@ -3,7 +3,7 @@
 //! Points are a seeded Latin hypercube over the logarithms of the genes, so the same case, seed and
 //! number of points are the same individuals. Everything but the wall times is deterministic.
 use super::{Evaluator, Stop, StudyError, calibrate::or_stop};
-use protocol::job::{Counters, Job, Outcome, Reached, SimulateSpec, Verdict};
+use protocol::job::{Counters, Job, Reached, SimulateSpec, Verdict};
 use search::space::{Interval, Space};
 use search::strategy::latin_hypercube;
 
@@ -73,22 +73,7 @@ pub async fn whole_box<E: Evaluator>(
     for ended in 1..=individuals.len() {
         let completed = or_stop(evaluator.next(), stop).await??;
         let id = completed.id;
-        let simulation = match completed.outcome {
-            Outcome::Simulated(simulation) => *simulation,
-            Outcome::Failed(failure) => {
-                return Err(StudyError::hopeless(&failure).unwrap_or_else(|| {
-                    StudyError::Unavailable {
-                        what: format!("individual {id} of the box"),
-                        failure,
-                    }
-                }));
-            }
-            Outcome::Scored(_)
-            | Outcome::Observed(_)
-            | Outcome::Described(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Nothing(_) => return Err(StudyError::WrongKind { id }),
-        };
+        let simulation = completed.simulated(|| format!("individual {id} of the box"))?;
         let place = usize::try_from(id).ok().and_then(|at| {
             let genes = individuals.get(at)?.clone();
             Some((points.get_mut(at)?, genes))

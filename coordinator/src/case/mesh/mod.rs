@@ -78,6 +78,10 @@ const SIGNS: [[f64; 3]; 8] = [
     [-1.0, 1.0, 1.0],
 ];
 
+/// What to do about tables of another mesh.
+const ANOTHER: &str =
+    "the tables belong to another mesh: `horsehead head CASE --write` computes them again";
+
 /// The tables were computed from this mesh, as far as they say.
 ///
 /// # Errors
@@ -94,7 +98,7 @@ pub(super) fn check_hash(
             "the content of the mesh (blake3)",
             hash,
             format!("{}: mesh_blake3 = {stated}", modes_file.display()),
-            "the tables belong to another mesh: `horsehead head CASE --write` computes them again",
+            ANOTHER,
         )),
         Some(_) | None => Ok(()),
     }
@@ -115,7 +119,7 @@ pub(super) fn check_twin_hash(
             "mesh_blake3",
             stated,
             format!("flexible_head.mesh_file has {hash}"),
-            "the tables belong to another mesh: `horsehead head CASE --write` computes them again",
+            ANOTHER,
         )),
         _ => Ok(()),
     }

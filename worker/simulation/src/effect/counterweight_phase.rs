@@ -3,12 +3,11 @@
 //! Under a prescribed crank that shows only where the motor slips: this effect is the difference that
 //! the counterweight makes to the ripple of the crank's speed, with a slip of its own, so that it
 //! can be told apart from the ripple itself.
-use super::crank_speed_ripple::{NODES, RATED, warp};
+use super::crank_speed_ripple::{RATED, sampled, warp};
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks};
 use crate::model::Machine;
 use std::borrow::Cow;
-use std::f64::consts::TAU;
 
 pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     id: Cow::Borrowed("counterweight_phase"),
@@ -44,11 +43,10 @@ impl Effect for Counterweight {
     fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
         let crank = &machine.description.crank;
         let (phase, moment) = (crank.counterweight_phase, crank.counterweight_moment);
-        let slow = (0..NODES).map(|k| {
-            let turn = TAU * k as f64 / NODES as f64;
+        let slow = sampled(|turn| {
             let now = cycle.torque(turn, phase + self.phase, moment + self.moment);
             self.slope * (now - cycle.torque(turn, phase, moment))
         });
-        hooks.warps.push(warp(&slow.collect::<Vec<f64>>()));
+        hooks.warps.push(warp(&slow));
     }
 }

@@ -65,8 +65,7 @@ impl Ripple {
 
     /// Loss of speed over the turn, at [`NODES`] equal angles.
     fn loss(&self, speed: f64, torque: impl Fn(f64) -> f64) -> Vec<f64> {
-        let held = |k: usize| self.holding(torque(TAU * k as f64 / NODES as f64));
-        let held: Vec<f64> = (0..NODES).map(held).collect();
+        let held = sampled(|turn| self.holding(torque(turn)));
         // in turns of the crank
         let lag = speed * speed * self.inertia * self.slip / RATED;
         filter(&held, u32::MAX, |harmonic| {
@@ -90,7 +89,14 @@ impl Effect for Ripple {
 const SLOWEST: f64 = 0.9;
 
 /// Samples of the turn.
-pub(super) const NODES: usize = 720;
+const NODES: usize = 720;
+
+/// A function of the turn at [`NODES`] equal angles.
+pub(super) fn sampled(of: impl Fn(f64) -> f64) -> Vec<f64> {
+    (0..NODES)
+        .map(|k| of(TAU * k as f64 / NODES as f64))
+        .collect()
+}
 
 /// What the crank is ahead of uniform rotation, over the uniform angle, where its speed is
 /// `1 - slow` up to a constant factor; `slow` at [`NODES`] equal angles.
@@ -132,8 +138,7 @@ mod tests {
     #[test]
     fn a_known_ripple_gives_its_lead() {
         let a = 0.02_f64;
-        let slow = (0..NODES).map(|k| a * sin_cos(TAU * k as f64 / NODES as f64).1);
-        let warp = warp(&slow.collect::<Vec<f64>>());
+        let warp = warp(&sampled(|turn| a * sin_cos(turn).1));
         let uniform = |turn: f64| {
             let (s, c) = sin_cos(0.5 * turn);
             2.0 * atan2((1.0 + a).sqrt() * s, (1.0 - a).sqrt() * c)
