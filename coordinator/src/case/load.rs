@@ -13,7 +13,7 @@ use super::{
     schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry, Records, TwinRopesEntry},
 };
 use discrepancy::record::Record;
-use protocol::case::{Case, Condition, Objective};
+use protocol::case::{Case, Condition, Objective, Smoothing};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -168,12 +168,27 @@ impl Source<'_> {
             self.document.path.display()
         );
         let card = card::read(&self.place(&entry.card_file), entry.smoothing, &role)?;
+        let highest = card.load_n.len() / 2;
+        if let Smoothing::Harmonics(kept) = entry.smoothing
+            && kept as usize > highest
+        {
+            return Err(self.document.field(
+                &way("smoothing"),
+                format!("{{ harmonics = {kept} }}"),
+                format!(
+                    "1 to {highest}: a card of {} points has no more",
+                    card.load_n.len()
+                ),
+                "keep fewer harmonics, or use smoothing = \"none\"",
+            ));
+        }
         let expected = Expected {
             index,
             condition: &entry.name,
             speed_rpm: entry.speed_rpm,
             case_file: &self.document.path,
             step_deg: self.file.run.output_step_deg,
+            sense: self.file.crank.sense,
         };
         let record_file = entry.record_file.as_ref();
         let read = record_file

@@ -1,7 +1,7 @@
 //! Checks of the numbers in `case.toml`: ranges, and whether the ropes fit the machine.
 use super::{
     document::{Document, Step},
-    error::CaseError,
+    error::{CaseError, contradiction},
     geometry::{self, Envelope},
     schema::CaseFile,
     twin,
@@ -187,19 +187,15 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
     let back = ropes.back_cylinders as f64 * ropes.cylinder_length_m;
     let front = ropes.front_cylinders as f64 * ropes.cylinder_length_m;
     let cylinders = |key| [Step::Key("ropes"), Step::Key(key)];
-    let envelope = geometry::envelope(case).map_err(|pin| {
-        document.field(
-            &cylinders("back_cylinders"),
-            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
-            format!(
-                "enough that rope and rod ({} m) reach from the crank pin to the back head at every \
-                 crank angle; they do not at a pin angle of {pin:.0} deg",
-                case.rod.length_m
-            ),
-            "check cylinder count and length, rod.length_m, crank and back_head against each other",
-        )
-    })?;
+    let envelope = geometry::envelope(case).map_err(|pin| open_loop(document, case, pin))?;
     let pitch = ropes.cylinder_length_m;
+    let [lowest, highest] = envelope.beam_deg;
+    // the path that a rope has to cover grows with the swing, and that with the crank
+    let crank = format!(
+        "; or correct crank.radius_m = {}, if a swing of {:.1} deg is not this machine's",
+        case.crank.radius_m,
+        highest - lowest
+    );
     let [free, _] = envelope.free_rope_m;
     if free < pitch {
         return Err(document.field(
@@ -209,8 +205,10 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
                 "at least {:.3} m: at one end of the stroke all of it lies on the head",
                 back - free + pitch
             ),
-            "the rope is shorter than the path it has to cover: add cylinders and shorten the rod, \
-             or move rope_anchor_deg",
+            &format!(
+                "the rope is shorter than the path it has to cover: add cylinders and shorten the rod, \
+                 or move rope_anchor_deg{crank}"
+            ),
         ));
     }
     let [contact, _] = envelope.contact_deg;
@@ -223,18 +221,19 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
                  beyond its anchor at {} deg",
                 case.back_head.rope_anchor_deg
             ),
-            "rope and rod are shorter than the path they have to cover: add cylinders, lengthen \
-             rod.length_m, or move back_head.rope_anchor_deg",
+            &format!(
+                "rope and rod are shorter than the path they have to cover: add cylinders, lengthen \
+                 rod.length_m, or move back_head.rope_anchor_deg{crank}"
+            ),
         ));
     }
-    let [low, _] = envelope.beam_deg;
-    if case.front_head.rope_anchor_deg <= -low {
+    if case.front_head.rope_anchor_deg <= -lowest {
         return Err(document.field(
             &[Step::Key("front_head"), Step::Key("rope_anchor_deg")],
             case.front_head.rope_anchor_deg,
             format!(
                 "above {:.1} deg, where the rope leaves the head with the front down",
-                -low
+                -lowest
             ),
             "move the anchor up along the arc",
         ));
@@ -248,10 +247,35 @@ fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseErr
                 "at least {:.3} m: at the top of the stroke all of it lies on the head",
                 front - hang + pitch
             ),
-            "the rope is shorter than the path it has to cover: add cylinders",
+            &format!("the rope is shorter than the path it has to cover: add cylinders{crank}"),
         ));
     }
     Ok(envelope)
+}
+
+/// The crank cannot turn through: no beam angle closes the loop at a pin angle \[deg\].
+fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
+    let back = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
+    contradiction(
+        &document.path,
+        "the loop of crank, rod, back rope and back head",
+        format!("open at a pin angle of {pin:.0} deg"),
+        format!(
+            "the crank has to turn through: crank.radius_m = {}, its centre ({}, {}) m, rod.length_m = {}, \
+             ropes.back_cylinders = {} ({back:.3} m of rope), back_head.radius_m = {}, its centre \
+             ({}, {}) m",
+            case.crank.radius_m,
+            case.crank.center_x_m,
+            case.crank.center_y_m,
+            case.rod.length_m,
+            case.ropes.back_cylinders,
+            case.back_head.radius_m,
+            case.back_head.center_x_m,
+            case.back_head.center_y_m
+        ),
+        "one of these is wrong, or in another unit: rod and rope must reach from the crank pin to \
+         the head at every crank angle",
+    )
 }
 
 /// The anchor and the contact's whole travel lie on the arc of the reduced head.

@@ -56,7 +56,7 @@ impl Table {
             .collect();
         let places = wanted
             .iter()
-            .map(|name| place(path, &header, name))
+            .map(|name| place(path, &header, name, &wanted))
             .collect::<Result<Vec<usize>, CaseError>>()?;
         let mut table = Self {
             columns: vec![Vec::new(); wanted.len()],
@@ -131,14 +131,21 @@ fn advance(
     })
 }
 
-/// Where a column stands.
-fn place(path: &Path, header: &[String], wanted: &str) -> Result<usize, CaseError> {
+/// Where a column stands; a column that is `needed` itself is no misspelling of another.
+fn place(
+    path: &Path,
+    header: &[String],
+    wanted: &str,
+    needed: &[&str],
+) -> Result<usize, CaseError> {
     let mut places = header
         .iter()
         .enumerate()
         .filter(|(_, name)| *name == wanted);
     let Some((first, _)) = places.next() else {
-        let help = super::document::nearest(wanted, header.iter().map(String::as_str)).map_or_else(
+        let spare = header.iter().map(String::as_str);
+        let spare = spare.filter(|name| !needed.contains(name));
+        let help = super::document::nearest(wanted, spare).map_or_else(
             || {
                 "add the column; the first row must name the columns, separated by commas"
                     .to_owned()

@@ -189,6 +189,39 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "crank too long",
+        |c| c.replace(TOML, "radius_m = 1.0973", "radius_m = 2.0973"),
+        &[
+            "case.toml",
+            "`ropes.back_cylinders` = 72",
+            "or correct crank.radius_m = 2.0973, if a swing of",
+        ],
+    ),
+    (
+        "crank beyond the rod",
+        |c| c.replace(TOML, "radius_m = 1.0973", "radius_m = 4.0"),
+        &[
+            "case.toml",
+            "the loop of crank, rod, back rope and back head is open at a pin angle of",
+            "crank.radius_m = 4",
+        ],
+    ),
+    (
+        "more harmonics than the card has",
+        |c| {
+            c.replace(
+                TOML,
+                "smoothing = \"none\"",
+                "smoothing = { harmonics = 4000 }",
+            );
+        },
+        &[
+            "case.toml",
+            "`conditions[0].smoothing` = { harmonics = 4000 }",
+            "a card of",
+        ],
+    ),
+    (
         "back rope all on the head",
         |c| {
             c.replace(TOML, "back_cylinders = 72", "back_cylinders = 56");

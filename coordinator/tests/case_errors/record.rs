@@ -42,6 +42,36 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["test_5rpm.csv.gz", "damaged"],
     ),
     (
+        "crank turning the other way",
+        |c| {
+            c.replace(
+                SHEET,
+                "the crank turns clockwise",
+                "the crank turns counter-clockwise",
+            )
+        },
+        &[
+            "test_5rpm.toml",
+            "`crank.sense` is counter_clockwise",
+            "crank.sense = \"clockwise\"",
+        ],
+    ),
+    (
+        "one gauge not recorded",
+        |c| {
+            c.lines(RECORD, |_, line| {
+                let mut cells: Vec<&str> = line.split(',').collect();
+                cells.remove(4);
+                Some(cells.join(","))
+            });
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "`stress_3_mpa` is missing",
+            "help: add the column;",
+        ],
+    ),
+    (
         "column missing",
         |c| {
             c.lines(RECORD, |at, line| {

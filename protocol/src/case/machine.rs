@@ -24,6 +24,16 @@ pub enum TurnSense {
     CounterClockwise,
 }
 
+impl std::fmt::Display for TurnSense {
+    /// As case files write it.
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        to.write_str(match self {
+            Self::Clockwise => "clockwise",
+            Self::CounterClockwise => "counter_clockwise",
+        })
+    }
+}
+
 /// Prescribed crank.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -14,7 +14,7 @@ use super::{
     note::Note,
 };
 use discrepancy::record::Record;
-use protocol::case::{GaugeRecord, GaugeTrace};
+use protocol::case::{GaugeRecord, GaugeTrace, TurnSense};
 use samples::Samples;
 use sheet::Sheet;
 use std::path::{Path, PathBuf};
@@ -32,6 +32,8 @@ pub(super) struct Expected<'a> {
     pub(super) case_file: &'a Path,
     /// Output grid \[deg\].
     pub(super) step_deg: f64,
+    /// Sense in which the case's crank turns.
+    pub(super) sense: TurnSense,
 }
 
 /// What was found in a record beside its curves.
@@ -103,6 +105,21 @@ pub(super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseErr
             format!("{stated} /min"),
             speed_of(expected),
             "take the record of this condition, or correct the speed that is wrong",
+        ));
+    }
+    if let Some(stated) = sheet.sense()
+        && stated != expected.sense
+    {
+        return Err(contradiction(
+            &document.path,
+            "`crank.sense`",
+            stated.to_string(),
+            format!(
+                "{} has crank.sense = \"{}\"",
+                expected.case_file.display(),
+                expected.sense
+            ),
+            "both are seen with the well on the right: correct the one that is wrong",
         ));
     }
     let samples = Samples::read(path, &bytes)?;

@@ -5,6 +5,7 @@ use super::super::{
     note::Note,
 };
 use discrepancy::record::{Source, Stated};
+use protocol::case::TurnSense;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -30,6 +31,7 @@ pub(super) struct Sheet {
 #[derive(Debug, Default, Deserialize)]
 struct Crank {
     index_tolerance_deg: Option<f64>,
+    sense: Option<String>,
 }
 
 /// The load cell's part of a data sheet.
@@ -75,6 +77,20 @@ const KNOWN: &[&str] = &[
 ];
 
 impl Sheet {
+    /// The sense in which the sheet's prose says that the crank turns, seen with the well on the
+    /// right; none where it does not say so plainly.
+    pub(super) fn sense(&self) -> Option<TurnSense> {
+        let prose = self.crank.sense.as_ref()?.to_ascii_lowercase();
+        let against = ["counter-clockwise", "counterclockwise", "anticlockwise"];
+        let against = against.iter().any(|word| prose.contains(word));
+        let plain = !prose.contains("left") && prose.contains("clockwise");
+        plain.then_some(if against {
+            TurnSense::CounterClockwise
+        } else {
+            TurnSense::Clockwise
+        })
+    }
+
     /// What the sheet says of the measurement, for channels that are sampled `grid` times as densely
     /// on the output grid as in the record.
     pub(super) fn stated(&self, channels: &[Source], grid: f64) -> Stated {
