@@ -1,5 +1,6 @@
 //! Genes: those a case declares, and files that give each a value.
 use super::{
+    coefficient::{Bodies, Recommended},
     document::{Document, Step, units},
     error::CaseError,
     schema::{GeneEntry, GeneTable, GeneValue},
@@ -17,17 +18,33 @@ const LARGEST: f64 = 1.0e30;
 ///
 /// # Errors
 /// A unit that does not fit, values that are not positive, bounds that exclude the recommended
-/// value.
+/// value, a formula that does not give this coefficient.
 pub(super) fn declared(
     document: &Document,
     table: GeneTable<GeneEntry>,
+    bodies: &Bodies,
 ) -> Result<Vec<Gene>, CaseError> {
     let mut genes = Vec::new();
     for (name, entry) in GeneName::ALL.into_iter().zip(table.into_array()) {
         let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
         check_unit(document, &way("unit"), name, entry.unit)?;
+        let recommended = match entry.recommended {
+            Recommended::Value(value) => value,
+            Recommended::By(formula) => match bodies.give(formula, name) {
+                Some(si) => si / entry.unit.si_factor(),
+                None => {
+                    return Err(document.field(
+                        &way("recommended"),
+                        format!("\"{}\"", formula.word()),
+                        "a number; \"eq3\" for kb1, kb23, kb4 and kb56; \"hertz\" for kc where \
+                         contact.exponent = 1.5",
+                        "the formula does not give this coefficient: state a value",
+                    ));
+                }
+            },
+        };
         let values = [
-            ("recommended", entry.recommended),
+            ("recommended", recommended),
             ("lower", entry.lower),
             ("upper", entry.upper),
         ];
@@ -42,10 +59,10 @@ pub(super) fn declared(
                 "exchange or widen the bounds",
             ));
         }
-        if !(entry.lower..=entry.upper).contains(&entry.recommended) {
+        if !(entry.lower..=entry.upper).contains(&recommended) {
             return Err(document.field(
                 &way("recommended"),
-                entry.recommended,
+                recommended,
                 format!("{} to {} {}", entry.lower, entry.upper, entry.unit.symbol()),
                 "the bounds exclude the recommended value: widen them, or correct it",
             ));
@@ -53,7 +70,7 @@ pub(super) fn declared(
         genes.push(Gene {
             name,
             unit: entry.unit,
-            recommended: entry.recommended,
+            recommended,
             lower: entry.lower,
             upper: entry.upper,
         });

@@ -1,6 +1,7 @@
 //! From a folder to a [`Case`]: reads `case.toml`, then every file it names.
 use super::{
     card,
+    coefficient::Bodies,
     document::{Document, Step, nearest},
     effect::{self, CaseEffect},
     error::{CaseError, damaged},
@@ -105,7 +106,8 @@ pub(super) fn resolve(
         cycles.extend(read.cycles);
         notes.extend(read.notes);
     }
-    let genes = genes::declared(&document, file.genes)?;
+    let bodies = Bodies::of(&file);
+    let genes = genes::declared(&document, file.genes, &bodies)?;
     let case = Case {
         name: file.name,
         gravity_m_s2: file.gravity_m_s2,

@@ -96,19 +96,17 @@ fn check_rope_numbers(document: &Document, case: &CaseFile) -> Result<(), CaseEr
     document.all_within(&pitches, 1.0e-3..=1.0, "m")?;
     document.all_within(&counts, 2.0..=5000.0, "cylinders")?;
     document.all_within(&densities, 100.0..=3.0e4, "kg/m3")?;
-    let flexible = &case.flexible_head;
-    document.within(
-        "flexible_head.young_gpa",
-        flexible.young_gpa,
-        1.0..=1.0e3,
-        "GPa",
-    )?;
-    document.within(
-        "flexible_head.poisson",
-        flexible.poisson,
-        0.0..=0.49,
-        "(no unit)",
-    )?;
+    let (flexible, rope) = (&case.flexible_head, &case.rope_material);
+    let moduli = [
+        ("flexible_head.young_gpa", flexible.young_gpa),
+        ("rope_material.young_gpa", rope.young_gpa),
+    ];
+    let ratios = [
+        ("flexible_head.poisson", flexible.poisson),
+        ("rope_material.poisson", rope.poisson),
+    ];
+    document.all_within(&moduli, 1.0..=1.0e3, "GPa")?;
+    document.all_within(&ratios, 0.0..=0.49, "(no unit)")?;
     document.within("contact.exponent", contact.exponent, 1.0..=3.0, "(no unit)")?;
     let depth = contact.full_damping_penetration_m;
     document.within(

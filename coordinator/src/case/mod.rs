@@ -6,6 +6,7 @@
 //! is worth knowing is a [`Note`]. Nothing here knows of dynamics, of search or of the wire.
 mod card;
 mod check;
+mod coefficient;
 mod document;
 mod effect;
 mod error;

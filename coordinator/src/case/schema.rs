@@ -1,6 +1,6 @@
 //! `case.toml` as it is written: the keys there are, and their types. What the values may be is
 //! checked in [`super::machine`] and beside the data they name.
-use super::effect::CaseEffect;
+use super::{coefficient::Recommended, effect::CaseEffect};
 use protocol::{
     case::{
         BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
@@ -25,6 +25,9 @@ pub(super) struct CaseFile {
     pub(super) rod: Rod,
     pub(super) suspension: Suspension,
     pub(super) ropes: Ropes,
+    /// What formulas for the genes' recommended values take the rope for; steel unless stated.
+    #[serde(default)]
+    pub(super) rope_material: RopeMaterial,
     pub(super) contact: Contact,
     pub(super) front_head: FrontHead,
     pub(super) back_head: BackHead,
@@ -75,6 +78,26 @@ pub(super) struct FlexibleHead {
     /// Poisson's ratio of the mesh \[1\]; steel unless stated.
     #[serde(default = "steel_poisson")]
     pub(super) poisson: f64,
+}
+
+/// Elasticity of the cylinders that stand for the rope.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RopeMaterial {
+    /// Young's modulus \[GPa\].
+    pub(super) young_gpa: f64,
+    /// Poisson's ratio \[1\].
+    pub(super) poisson: f64,
+}
+
+impl Default for RopeMaterial {
+    /// The paper's: 200 GPa, and 80 GPa in shear.
+    fn default() -> Self {
+        Self {
+            young_gpa: 200.0,
+            poisson: 0.25,
+        }
+    }
 }
 
 /// Two ropes side by side on each head.
@@ -138,7 +161,8 @@ impl<T> GeneTable<T> {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GeneEntry {
-    pub(super) recommended: f64,
+    /// In `unit`, or the formula that gives it.
+    pub(super) recommended: Recommended,
     pub(super) lower: f64,
     pub(super) upper: f64,
     pub(super) unit: Unit,

@@ -207,6 +207,36 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "formula for a damping",
+        |c| {
+            c.replace(
+                TOML,
+                "cb1  = { recommended = 400.0,",
+                "cb1  = { recommended = \"eq3\",",
+            );
+        },
+        &[
+            "case.toml",
+            "`genes.cb1.recommended` = \"eq3\"",
+            "\"eq3\" for kb1, kb23, kb4 and kb56",
+        ],
+    ),
+    (
+        "formula misspelt",
+        |c| {
+            c.replace(
+                TOML,
+                "kc   = { recommended = 1.00e6,",
+                "kc   = { recommended = \"herz\",",
+            );
+        },
+        &[
+            "case.toml",
+            "unknown variant `herz`",
+            "did you mean `hertz`?",
+        ],
+    ),
+    (
         "more harmonics than the card has",
         |c| {
             c.replace(

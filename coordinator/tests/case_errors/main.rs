@@ -150,3 +150,31 @@ fn the_weight_is_physical_unless_stated() {
     copy.replace(TOML, "weight_axes = \"exchanged\"", "");
     assert_eq!(axes(), WeightAxes::Physical);
 }
+
+/// Eq. 3 and Eq. 5 in place of numbers, in the units of the genes.
+#[test]
+fn recommended_values_by_formula() {
+    let copy = Copy::new();
+    for (number, formula) in [
+        (
+            "kb1  = { recommended = 3.14e8,",
+            "kb1  = { recommended = \"eq3\",",
+        ),
+        (
+            "kb56 = { recommended = 137.0,",
+            "kb56 = { recommended = \"eq3\",",
+        ),
+        (
+            "kc   = { recommended = 1.00e6, lower = 1.00e2, upper = 1.00e10",
+            "kc   = { recommended = \"hertz\", lower = 1.00e2, upper = 1.00e11",
+        ),
+    ] {
+        copy.replace(TOML, number, formula);
+    }
+    let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
+    let recommended = |at: usize| case.genes[at].recommended;
+    assert!((recommended(0) / 3.1416e8 - 1.0).abs() < 1e-4);
+    // per degree, and a quarter of what Table 3 recommends
+    assert!((recommended(3) / 34.27 - 1.0).abs() < 1e-3);
+    assert!((1.0e10..1.1e10).contains(&recommended(8)));
+}

@@ -1,0 +1,222 @@
+//! Recommended coefficients by formula: the elasticity of a rope (paper, Eq. 3) and the contact of two
+//! elastic bodies (paper, Eq. 5). Knows material and size, no bounds, and damping has no formula.
+use super::schema::CaseFile;
+use protocol::case::GeneName;
+use serde::{
+    Deserialize,
+    de::{self, Visitor},
+};
+use std::{f64::consts::PI, fmt};
+
+/// What a case states as a gene's recommended value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Recommended {
+    /// A number, in the gene's unit.
+    Value(f64),
+    /// What a formula gives.
+    By(Formula),
+}
+
+/// Formulas by their equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Formula {
+    /// Stiffness of a solid round bar of the joint's length.
+    Eq3,
+    /// Contact stiffness of rope and head.
+    Hertz,
+}
+
+impl Formula {
+    const ALL: [Self; 2] = [Self::Eq3, Self::Hertz];
+    const WORDS: &'static [&'static str] = &[Self::Eq3.word(), Self::Hertz.word()];
+
+    /// As case files write it.
+    pub(super) const fn word(self) -> &'static str {
+        match self {
+            Self::Eq3 => "eq3",
+            Self::Hertz => "hertz",
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Recommended {
+    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        from.deserialize_any(NumberOrWord)
+    }
+}
+
+struct NumberOrWord;
+
+impl Visitor<'_> for NumberOrWord {
+    type Value = Recommended;
+
+    fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str("a number, \"eq3\" or \"hertz\"")
+    }
+
+    fn visit_f64<E: de::Error>(self, value: f64) -> Result<Recommended, E> {
+        Ok(Recommended::Value(value))
+    }
+
+    fn visit_i64<E: de::Error>(self, value: i64) -> Result<Recommended, E> {
+        Ok(Recommended::Value(value as f64))
+    }
+
+    fn visit_str<E: de::Error>(self, word: &str) -> Result<Recommended, E> {
+        let named = Formula::ALL.into_iter().find(|known| known.word() == word);
+        named
+            .map(Recommended::By)
+            .ok_or_else(|| E::unknown_variant(word, Formula::WORDS))
+    }
+}
+
+/// Isotropic elastic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Elastic {
+    /// Young's modulus \[Pa\].
+    young: f64,
+    /// Poisson's ratio \[1\].
+    poisson: f64,
+}
+
+impl Elastic {
+    /// Shear modulus \[Pa\].
+    fn shear(&self) -> f64 {
+        self.young / (2.0 * (1.0 + self.poisson))
+    }
+
+    /// `h` of Eq. 5 [1/Pa].
+    fn yielding(&self) -> f64 {
+        (1.0 - self.poisson * self.poisson) / (PI * self.young)
+    }
+}
+
+/// A rope and the head that it lies on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bodies {
+    /// Diameter of the rope \[m\].
+    diameter: f64,
+    /// Length that one joint stands for \[m\].
+    length: f64,
+    rope: Elastic,
+    /// Radius of the back head's surface, where the gauges are \[m\].
+    head_radius: f64,
+    head: Elastic,
+    /// Exponent of the contact's force.
+    exponent: f64,
+}
+
+impl Bodies {
+    pub(super) fn of(case: &CaseFile) -> Self {
+        let elastic = |young_gpa: f64, poisson| Elastic {
+            young: 1e9 * young_gpa,
+            poisson,
+        };
+        let diameter = case.ropes.diameter_m;
+        Self {
+            diameter,
+            length: case.ropes.reference_length_m,
+            rope: elastic(case.rope_material.young_gpa, case.rope_material.poisson),
+            // that of the case is the rope's centre line
+            head_radius: case.back_head.radius_m - 0.5 * diameter,
+            head: elastic(case.flexible_head.young_gpa, case.flexible_head.poisson),
+            exponent: case.contact.exponent,
+        }
+    }
+
+    /// What a formula makes of a coefficient, in SI units; none where it says nothing of it.
+    pub(super) fn give(&self, formula: Formula, name: GeneName) -> Option<f64> {
+        match formula {
+            Formula::Eq3 => self.eq3(name),
+            Formula::Hertz => (name == GeneName::Kc).then(|| self.hertz()).flatten(),
+        }
+    }
+
+    /// Stiffness of a joint as of a solid round bar [N/m, N.m/rad] (paper, Eq. 3).
+    fn eq3(&self, name: GeneName) -> Option<f64> {
+        let Self {
+            diameter: d,
+            length,
+            rope,
+            ..
+        } = self;
+        let area = PI * d * d / 4.0;
+        let second_moment = PI * d * d * d * d / 64.0;
+        match name {
+            GeneName::Kb1 => Some(rope.young * area / length),
+            GeneName::Kb23 => Some(rope.shear() * area / length),
+            GeneName::Kb4 => Some(rope.shear() * 2.0 * second_moment / length),
+            GeneName::Kb56 => Some(rope.young * second_moment / length),
+            GeneName::Cb1
+            | GeneName::Cb23
+            | GeneName::Cb4
+            | GeneName::Cb56
+            | GeneName::Kc
+            | GeneName::Cc => None,
+        }
+    }
+
+    /// Stiffness of the contact of two elastic spheres of these radii [N/m^1.5] (paper, Eq. 5);
+    /// none where the contact is of another exponent.
+    fn hertz(&self) -> Option<f64> {
+        let own = 0.5 * self.diameter;
+        let radius = own * self.head_radius / (own + self.head_radius);
+        let stiffness =
+            4.0 / (3.0 * PI * (self.rope.yielding() + self.head.yielding())) * radius.sqrt();
+        ((self.exponent - 1.5).abs() < 1e-9).then_some(stiffness)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Bodies, Elastic, Formula};
+    use protocol::{case::GeneName, unit::Unit};
+
+    const STEEL: Elastic = Elastic {
+        young: 200e9,
+        poisson: 0.25,
+    };
+    const BODIES: Bodies = Bodies {
+        diameter: 0.010,
+        length: 0.050,
+        rope: STEEL,
+        head_radius: 1.895,
+        head: STEEL,
+        exponent: 1.5,
+    };
+
+    /// Table 3's recommended values: Eq. 3 for what moves along, four times Eq. 3 in N.m/deg for
+    /// what turns.
+    #[test]
+    fn eq_3_gives_the_papers_recommended_values() {
+        let per_degree = Unit::NewtonMetrePerDegree.si_factor();
+        for (name, printed) in [
+            (GeneName::Kb1, 3.14e8),
+            (GeneName::Kb23, 1.25e8),
+            (GeneName::Kb4, 110.0 / 4.0 * per_degree),
+            (GeneName::Kb56, 137.0 / 4.0 * per_degree),
+        ] {
+            let given = BODIES.give(Formula::Eq3, name).unwrap();
+            assert!((given / printed - 1.0).abs() < 6e-3, "{name:?}: {given}");
+        }
+        for name in [GeneName::Cb1, GeneName::Kc, GeneName::Cc] {
+            assert_eq!(BODIES.give(Formula::Eq3, name), None);
+        }
+    }
+
+    /// In the usual form, K = 4/3 E* sqrt(R) with 1/E* = 2 (1 - nu^2) / E.
+    #[test]
+    fn eq_5_is_the_hertz_contact() {
+        let effective = 200e9 / (2.0 * (1.0 - 0.0625));
+        let radius: f64 = 1.0 / (1.0 / 0.005 + 1.0 / 1.895);
+        let expected = 4.0 / 3.0 * effective * radius.sqrt();
+        let given = BODIES.give(Formula::Hertz, GeneName::Kc).unwrap();
+        assert!((given / expected - 1.0).abs() < 1e-12, "{given}");
+        let other = Bodies {
+            exponent: 2.0,
+            ..BODIES
+        };
+        assert_eq!(other.give(Formula::Hertz, GeneName::Kc), None);
+        assert_eq!(BODIES.give(Formula::Hertz, GeneName::Kb1), None);
+    }
+}
