@@ -22,7 +22,8 @@ const SHARE: f64 = 0.3;
 /// The same, from which a suspect is refitted from the deepest valley.
 const WORTH: f64 = 0.1;
 
-/// Share of the misfit of a lost valley from which the genes of rivals are tried.
+/// Share of the misfit of a lost valley from which the genes of rivals are tried, and other stiffness and
+/// contact: a contact that is too soft leaves as much.
 const LOOSE: f64 = 0.5;
 /// Looks for valleys in one round: each begins where the one before ended.
 const DEEPER: usize = 3;
@@ -52,7 +53,7 @@ pub(crate) async fn look<L: Laboratory>(
     settle(lab, base, (current, round), found).await?;
     for _ in 0..DEEPER {
         let mut found = Vec::new();
-        for leader in leaders(round, bench.metric.len(), settings.valley) {
+        for leader in leaders(round, bench.metric.len(), LOOSE * settings.valley) {
             let fit = &round.refits[leader].fit;
             if let Some(other) = valley::enter(lab, (bench, Stage::Refit), fit).await? {
                 found.push((leader, other));
