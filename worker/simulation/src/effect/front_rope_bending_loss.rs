@@ -16,23 +16,31 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     joint: "front_rope",
     place: Place::Dynamics,
     generic: false,
-    parameters: Cow::Borrowed(&[Parameter::size("loss", Unit::One, 0.005, [0.0, 0.1])]),
-    build: Build::Named(|v| Box::new(Loss { loss: v[0] })),
+    parameters: Cow::Borrowed(&[
+        Parameter::size("loss", Unit::One, 0.005, [0.0, 0.1]),
+        // at which three quarters of the loss are there; the beam reaches 0.3 rad/s
+        Parameter::shape("creep", Unit::RadianPerSecond, 2e-3, [5e-4, 0.1]),
+    ]),
+    build: Build::Named(|v| {
+        Box::new(Loss {
+            loss: v[0],
+            creep: v[1],
+        })
+    }),
 };
 
 #[derive(Clone, Copy, Debug)]
 struct Loss {
     loss: f64,
+    creep: f64,
 }
-
-/// Speed [rad/s] at which three quarters of the loss are there; the beam reaches 0.3 rad/s.
-const CREEP: f64 = 2e-3;
 
 impl Effect for Loss {
     fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
         let d = &machine.description;
         hooks.forces.push(Arc::new(Line {
             arm: self.loss * d.front_arc.radius,
+            creep: self.creep,
             weight: d.suspension_mass * d.gravity,
             beam: machine.layout.beam(),
         }));
@@ -42,6 +50,7 @@ impl Effect for Loss {
 #[derive(Clone, Copy, Debug)]
 struct Line {
     arm: f64,
+    creep: f64,
     weight: f64,
     beam: usize,
 }
@@ -52,6 +61,6 @@ impl LineForce for Line {
     }
 
     fn along(&self, drive: &DriveState, _: f64, rate: f64) -> Along {
-        dry_friction(self.arm * (drive.load + self.weight), rate, CREEP)
+        dry_friction(self.arm * (drive.load + self.weight), rate, self.creep)
     }
 }

@@ -26,6 +26,8 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
         ),
         Parameter::shape("stribeck_ratio", Unit::One, 1.2, [1.0, 3.0]),
         Parameter::shape("stribeck_speed", Unit::RadianPerSecond, 0.02, [2e-3, 0.3]),
+        // at which three quarters of the friction are there; the beam reaches 0.3 rad/s
+        Parameter::shape("creep", Unit::RadianPerSecond, 2e-3, [5e-4, 0.1]),
     ]),
     build: Build::Named(|v| {
         Box::new(Bearing {
@@ -33,6 +35,7 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
             viscous: v[1],
             ratio: v[2],
             speed: v[3],
+            creep: v[4],
         })
     }),
 };
@@ -43,10 +46,8 @@ struct Bearing {
     viscous: f64,
     ratio: f64,
     speed: f64,
+    creep: f64,
 }
-
-/// Speed [rad/s] at which three quarters of the friction are there; the beam reaches 0.3 rad/s.
-const CREEP: f64 = 2e-3;
 
 impl Effect for Bearing {
     fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
@@ -74,13 +75,14 @@ impl LineForce for Line {
             viscous,
             ratio,
             speed,
+            creep,
         } = self.law;
-        let t = tanh(rate / CREEP);
+        let t = tanh(rate / creep);
         let u = rate / speed;
         let rise = (ratio - 1.0) * exp(-(u * u));
         Along {
             other: -moment * (1.0 + rise) * t - viscous * rate,
-            by_rate: -moment * ((1.0 + rise) * (1.0 - t * t) / CREEP - rise * t * 2.0 * u / speed)
+            by_rate: -moment * ((1.0 + rise) * (1.0 - t * t) / creep - rise * t * 2.0 * u / speed)
                 - viscous,
             ..Along::default()
         }

@@ -2,8 +2,9 @@
 //!
 //! The tension that pulls the head is `T (1 -+ e)` as the rope winds on or off, so that the same
 //! moment needs `dT = -e T sign(psi')`: a couple `M = e T h sign(psi')` on the head, with `psi` the
-//! angle of the tangent point on it. It changes sign where the winding turns round, which is not at
-//! the dead centres. Tension, arm and speed of winding are those of the ideal mechanism.
+//! angle of the tangent point on it. It changes sign where the winding turns round, which is not at the
+//! dead centres, and with `tanh(psi' / w_0)`, since one wire slips after another. Tension, arm and speed
+//! of winding are those of the ideal mechanism.
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Cycle, Effect, Hooks, LineForce};
 use crate::drive::DriveState;
@@ -18,22 +19,29 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     joint: "back_rope",
     place: Place::Dynamics,
     generic: false,
-    parameters: Cow::Borrowed(&[Parameter::size("loss", Unit::One, 0.015, [0.0, 0.1])]),
-    build: Build::Named(|v| Box::new(Loss { loss: v[0] })),
+    parameters: Cow::Borrowed(&[
+        Parameter::size("loss", Unit::One, 0.015, [0.0, 0.1]),
+        // speed of winding at which three quarters of the loss are there; it reaches 0.5 rad/s
+        Parameter::shape("creep", Unit::RadianPerSecond, 1e-2, [1e-3, 0.2]),
+    ]),
+    build: Build::Named(|v| {
+        Box::new(Loss {
+            loss: v[0],
+            creep: v[1],
+        })
+    }),
 };
 
 #[derive(Clone, Copy, Debug)]
 struct Loss {
     loss: f64,
+    creep: f64,
 }
-
-/// Speed of winding [rad/s] at which three quarters of the loss are there; it reaches 0.5 rad/s.
-const CREEP: f64 = 1e-2;
 
 impl Effect for Loss {
     fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
         hooks.forces.push(Arc::new(Couple {
-            loss: self.loss,
+            law: *self,
             beam: machine.layout.beam(),
             cycle: cycle.clone(),
         }));
@@ -42,7 +50,7 @@ impl Effect for Loss {
 
 #[derive(Clone, Debug)]
 struct Couple {
-    loss: f64,
+    law: Loss,
     beam: usize,
     cycle: Cycle,
 }
@@ -57,7 +65,7 @@ impl LineForce for Couple {
         let winding = self.cycle.tangent(drive.turn).first * turning;
         let pull = self.cycle.tension(drive.turn) * self.cycle.arm(drive.turn);
         Along {
-            other: self.loss * pull * tanh(winding / CREEP),
+            other: self.law.loss * pull * tanh(winding / self.law.creep),
             ..Along::default()
         }
     }

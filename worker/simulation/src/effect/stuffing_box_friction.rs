@@ -1,5 +1,5 @@
 //! Friction of the stuffing box that the load cell does not see: `F - F_s sign(v)` on the suspension
-//! point, with `tanh(v / v_0)` for the sign.
+//! point, with `tanh(v / v_0)` for the sign: packing gives before it slides.
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::line::dry_friction;
 use super::{Along, Cycle, Effect, Hooks, LineForce};
@@ -14,22 +14,29 @@ pub(super) const DESCRIPTOR: Descriptor = Descriptor {
     joint: "suspension",
     place: Place::Dynamics,
     generic: false,
-    parameters: Cow::Borrowed(&[Parameter::size("force", Unit::Newton, 800.0, [0.0, 2e4])]),
-    build: Build::Named(|v| Box::new(Packing { force: v[0] })),
+    parameters: Cow::Borrowed(&[
+        Parameter::size("force", Unit::Newton, 800.0, [0.0, 2e4]),
+        // at which three quarters of the friction are there; the stroke reaches 1 m/s
+        Parameter::shape("creep", Unit::MetrePerSecond, 5e-3, [1e-3, 0.3]),
+    ]),
+    build: Build::Named(|v| {
+        Box::new(Packing {
+            force: v[0],
+            creep: v[1],
+        })
+    }),
 };
 
 #[derive(Clone, Copy, Debug)]
 struct Packing {
     force: f64,
+    creep: f64,
 }
-
-/// Speed \[m/s\] at which three quarters of the friction are there; the stroke reaches 1 m/s.
-const CREEP: f64 = 5e-3;
 
 impl Effect for Packing {
     fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
         hooks.forces.push(Arc::new(Line {
-            force: self.force,
+            law: *self,
             suspension: machine.layout.suspension(),
         }));
     }
@@ -37,7 +44,7 @@ impl Effect for Packing {
 
 #[derive(Clone, Copy, Debug)]
 struct Line {
-    force: f64,
+    law: Packing,
     suspension: usize,
 }
 
@@ -47,6 +54,6 @@ impl LineForce for Line {
     }
 
     fn along(&self, _: &DriveState, _: f64, rate: f64) -> Along {
-        dry_friction(self.force, rate, CREEP)
+        dry_friction(self.law.force, rate, self.law.creep)
     }
 }
