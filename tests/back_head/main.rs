@@ -11,9 +11,7 @@ use coordinator::{
     study,
 };
 use protocol::job::ElementKind as ReadKind;
-use simulation::flexible::{
-    ElementKind, Family, Gauge, Mesh, Reduction, Request, Steel, reduce,
-};
+use simulation::flexible::{ElementKind, Family, Gauge, Mesh, Reduction, Request, Steel, reduce};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -42,7 +40,9 @@ fn mesh_of(path: &Path) -> Mesh {
             ReadKind::Hexahedron => ElementKind::Hexahedron,
             ReadKind::Tetrahedron => ElementKind::Tetrahedron,
         },
-        held: ["pin_a", "pin_b"].map(|pin| &read.surfaces[pin][..]).concat(),
+        held: ["pin_a", "pin_b"]
+            .map(|pin| &read.surfaces[pin][..])
+            .concat(),
         rim: read.surfaces["rope_surface"].clone(),
         elements: read.volumes["steel"].clone(),
         half: read.half,

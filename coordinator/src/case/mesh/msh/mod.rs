@@ -6,6 +6,8 @@
 //! tests.
 mod elements;
 mod lines;
+#[cfg(test)]
+mod tests;
 
 use super::{
     super::{

@@ -99,33 +99,6 @@ fn frequencies_converge_with_the_fourth_power_of_the_size() {
     assert!(tetrahedra[1] > 0.0 && tetrahedra[1] < 0.05 * bricks[1].abs());
 }
 
-/// A body that comes as its half is the body.
-#[test]
-fn a_half_is_as_good_as_the_whole() {
-    for whole in of_every_kind() {
-        let half = mesh::Half::new(&whole).unwrap().mesh;
-        assert!(half.half && half.nodes.len() < whole.nodes.len());
-        let gauges = [Gauge {
-            position: [-0.7, 0.12, -0.1],
-            length: 0.02,
-        }];
-        let families = [Family::Symmetric, Family::Antisymmetric];
-        let stations = [std::f64::consts::PI - 1.2];
-        let [of_whole, of_half] = [&whole, &half].map(|mesh| {
-            let mut asked = request(mesh, &gauges, &families);
-            asked.stations = &stations;
-            asked.probes = &stations;
-            asked.pair = Some(Pair {
-                offset: 0.06,
-                modes: 3,
-            });
-            asked.fields = false;
-            reduce(&asked).unwrap()
-        });
-        assert_eq!(of_whole, of_half);
-    }
-}
-
 /// Edges that follow a round body give its volume and its frequencies where straight ones do not: a
 /// quarter of a ring of a few elements, against many bricks.
 #[test]
