@@ -115,7 +115,9 @@ mod tests {
             "{volume}"
         );
         let mut turned = bent(0.4, 0.3);
-        turned.iter_mut().for_each(|node| node[2] = -node[2]);
+        for node in &mut turned {
+            node[2] = -node[2];
+        }
         assert_eq!(of(ElementKind::Tetrahedron, &turned), None);
         // the middle of the edge 0-1 three quarters of the way: the edge turns back
         let mut folded = bent(0.0, 0.0);

@@ -54,8 +54,11 @@ pub(super) fn read(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(),
             continue;
         }
         let (of, name) = known(number);
-        let (Type::Volume(kind) | Type::Face(kind)) = of else {
-            return Err(refused(lines, of, (number, name)));
+        let mesh = &mut sections.mesh;
+        let (kind, nodes, groups) = match of {
+            Type::Volume(kind) => (kind, kind.nodes(), &mut mesh.volumes),
+            Type::Face(kind) => (kind, kind.face_nodes(), &mut mesh.surfaces),
+            Type::Linear | Type::Other => return Err(refused(lines, of, (number, name))),
         };
         let (expected, line, other) = *first.get_or_insert((kind, lines.number(), name));
         if kind != expected {
@@ -64,11 +67,7 @@ pub(super) fn read(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(),
             );
             return Err(lines.wrong_with(&problem, ALLOWED));
         }
-        sections.mesh.kind = kind;
-        let (nodes, groups) = match of {
-            Type::Volume(_) => (kind.nodes(), &mut sections.mesh.volumes),
-            _ => (kind.face_nodes(), &mut sections.mesh.surfaces),
-        };
+        mesh.kind = kind;
         let read = block(lines, count, nodes, &sections.index)?;
         let tags = sections.groups.get(&(dimension, entity));
         for tag in tags.into_iter().flatten() {
@@ -83,7 +82,7 @@ pub(super) fn read(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(),
 fn refused(lines: &Lines<'_>, of: Type, (number, name): (i64, &str)) -> CaseError {
     if of == Type::Linear {
         let problem = format!(
-            "element type {number}, {name}: tetrahedra of order 1 lock, plates of them are many \
+            "element type {number}, {name}: tetrahedra of order 1 lock: a layer of them is five \
              times too stiff in bending"
         );
         let help = "mesh with order 2: gmsh -order 2, or Mesh.ElementOrder = 2; for tetrahedra of \

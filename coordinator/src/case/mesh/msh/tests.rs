@@ -1,7 +1,7 @@
 //! A file of one tetrahedron, and what is said about files that are not like it.
 use super::*;
 use protocol::job::ElementKind;
-use std::fs;
+use std::{fmt::Write as _, fs};
 
 /// Corners of the unit tetrahedron, then the middles of its edges as Gmsh orders them.
 const NODES: [[f64; 3]; 10] = [
@@ -34,18 +34,29 @@ fn read_blocks(blocks: &[Block], nodes: &[[f64; 3]], floor: &str) -> Result<Mesh
          $Entities\n0 0 4 1\n"
     );
     for tag in [1, 2, 3, 4, 1] {
-        text += &format!("{tag} 0 0 0 0 0 0 1 {tag} 0\n");
+        writeln!(text, "{tag} 0 0 0 0 0 0 1 {tag} 0").unwrap();
     }
     let count = nodes.len();
-    text += &format!("$EndEntities\n$Nodes\n1 {count} 1 {count}\n3 1 0 {count}\n");
-    (1..=count).for_each(|tag| text += &format!("{tag}\n"));
-    for [x, y, z] in nodes {
-        text += &format!("{x} {y} {z}\n");
+    write!(
+        text,
+        "$EndEntities\n$Nodes\n1 {count} 1 {count}\n3 1 0 {count}\n"
+    )
+    .unwrap();
+    for tag in 1..=count {
+        writeln!(text, "{tag}").unwrap();
     }
-    text += &format!("$EndNodes\n$Elements\n{0} {0} 1 {0}\n", blocks.len());
+    for [x, y, z] in nodes {
+        writeln!(text, "{x} {y} {z}").unwrap();
+    }
+    write!(text, "$EndNodes\n$Elements\n{0} {0} 1 {0}\n", blocks.len()).unwrap();
     for (tag, (dimension, entity, kind, element)) in (1..).zip(blocks) {
         let words: Vec<String> = element.iter().map(ToString::to_string).collect();
-        text += &format!("{dimension} {entity} {kind} 1\n{tag} {}\n", words.join(" "));
+        write!(
+            text,
+            "{dimension} {entity} {kind} 1\n{tag} {}\n",
+            words.join(" ")
+        )
+        .unwrap();
     }
     text += "$EndElements\n";
     let folder = tempfile::tempdir().unwrap();
@@ -71,7 +82,7 @@ fn quadratic_tetrahedra_are_read_whole_or_as_a_half() {
 #[test]
 fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
     let good = [PIN_A, PIN_B, ROPE, TETRAHEDRON];
-    // the blocks' lines: after 35 lines of names, entities and nodes, then two each
+    // the first block stands on line 46, and each has two lines
     let with = |at: usize, block: Block| {
         let mut blocks = good;
         blocks[at] = block;
@@ -81,7 +92,7 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
         (
             with(3, (3, 1, 4, &[1, 2, 3, 4])),
             &[
-                "line 50",
+                "line 52",
                 "4-node tetrahedra",
                 "lock",
                 "help: mesh with order 2",
@@ -91,7 +102,7 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
         (
             with(0, (2, 1, 2, &[1, 2, 4])),
             &[
-                "line 44",
+                "line 46",
                 "3-node triangles",
                 "lock",
                 "help: mesh with order 2",
@@ -100,15 +111,15 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
         (
             with(3, (3, 1, 5, &[1, 2, 3, 4, 5, 6, 7, 8])),
             &[
-                "line 50",
-                "8-node hexahedra, but line 44 has 6-node triangles",
+                "line 52",
+                "8-node hexahedra, but line 46 has 6-node triangles",
                 "help: mesh all volumes alike",
             ],
         ),
         (
             with(3, (3, 1, 6, &[1, 2, 3, 4, 5, 6])),
             &[
-                "line 50",
+                "line 52",
                 "6-node prisms",
                 "11 (10-node tetrahedron)",
                 "help: ",
@@ -116,7 +127,7 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
         ),
         (
             with(3, (3, 1, 11, &[1, 2, 3, 4, 5, 6, 7, 8, 9])),
-            &["line 51", "at least 11 numbers", "help: "],
+            &["line 53", "at least 11 numbers", "help: "],
         ),
         (
             with(3, (3, 1, 11, &[2, 1, 3, 4, 5, 7, 6, 10, 9, 8])),

@@ -41,9 +41,11 @@ fn factorial(n: i32) -> f64 {
 /// claims, and not beyond.
 #[test]
 fn rules_are_exact_to_their_degree_and_no_further() {
-    let rules: [(i32, Vec<([f64; 3], f64)>); 2] =
-        [(2, degree_2().collect()), (5, degree_5().collect())];
-    for (degree, rule) in rules {
+    for degree in [2, 5] {
+        let rule: Vec<([f64; 3], f64)> = match degree {
+            2 => degree_2().collect(),
+            _ => degree_5().collect(),
+        };
         assert!(
             rule.iter()
                 .all(|(p, w)| *w > 0.0 && p.iter().all(|x| *x > 0.0))
