@@ -2,12 +2,12 @@
 //!
 //! Nodes are the four corners and six points near the middles of the edges, which also give the
 //! element its shape. In volume coordinates `L_0 + L_1 + L_2 + L_3 = 1` a corner has
-//! `N = L (2 L - 1)` and an edge `N = 4 L_a L_b` ([Zienkiewicz2013] 6.3). It bends, as its strain is
+//! `N = L (2 L - 1)` and an edge `N = 4 L_a L_b` ([Zienkiewicz2013]). It bends, as its strain is
 //! linear; the 4-node tetrahedron, whose strain is constant, locks (a layer is five times too stiff) and
 //! is no element here.
 //!
 //! Stiffness by 4 points of degree 2, exact for straight edges and without modes of zero energy;
-//! mass by 15 points of degree 5 ([Stroud1971] T3:5-1; [Keast1986] 8), exact for straight edges, and
+//! mass by 15 points of degree 5 ([Stroud1971], T3:5-1), exact for straight edges, and
 //! for curved ones as far as the total mass goes. Knows one element, no mesh.
 use super::{
     Element, Face, InsideOut, Matrices, Steel, add_stiffness, add_weight, face::Triangle, jacobian,
