@@ -11,7 +11,7 @@ use protocol::{
     },
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::{Failure, Job, ModeFamily, Outcome, PhysicsFailure, Reached, Verdict},
+    job::{ElementKind, Failure, Job, ModeFamily, Outcome, PhysicsFailure, Reached, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
     unit::Unit,
     wire::{self, Kind},
@@ -30,7 +30,7 @@ fn form() -> String {
         };
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case);
-    trace!(Job Outcome Failure Verdict PhysicsFailure Reached ModeFamily);
+    trace!(Job Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
     trace!(Place Role Sign Unit GeneName Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense WeightAxes);
     let registry = tracer.registry().expect("every variant was seen");

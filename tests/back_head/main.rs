@@ -4,11 +4,14 @@
     clippy::unwrap_used,
     reason = "the helpers read shipped files; a test that cannot read them has failed"
 )]
+mod tetrahedra;
+
 use coordinator::{
     case::{self, mesh},
     study,
 };
-use simulation::flexible::{Family, Gauge, Mesh, Reduction, Request, Steel, reduce};
+use protocol::job::ElementKind as ReadKind;
+use simulation::flexible::{ElementKind, Family, Gauge, Mesh, Reduction, Request, Steel, reduce};
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -26,12 +29,23 @@ fn folder() -> PathBuf {
 }
 
 fn shipped_mesh() -> Mesh {
-    let read = mesh::read(&folder().join("back_head.msh")).unwrap();
-    let held = ["pin_a", "pin_b"].map(|pin| read.surfaces[pin].iter().flatten().copied());
+    mesh_of(&folder().join("back_head.msh"))
+}
+
+/// A mesh file as the reduction takes it.
+fn mesh_of(path: &Path) -> Mesh {
+    let read = mesh::read(path).unwrap();
     Mesh {
-        held: held.into_iter().flatten().collect(),
+        kind: match read.kind {
+            ReadKind::Hexahedron => ElementKind::Hexahedron,
+            ReadKind::Tetrahedron => ElementKind::Tetrahedron,
+        },
+        held: ["pin_a", "pin_b"]
+            .map(|pin| &read.surfaces[pin][..])
+            .concat(),
         rim: read.surfaces["rope_surface"].clone(),
-        hexahedra: read.volumes["steel"].clone(),
+        elements: read.volumes["steel"].clone(),
+        half: read.half,
         nodes: read.nodes_m,
     }
 }

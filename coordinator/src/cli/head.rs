@@ -10,6 +10,7 @@ use clap::{Args, ValueEnum};
 use protocol::{
     case::Case,
     job::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap},
+    wire,
 };
 use std::path::PathBuf;
 
@@ -72,8 +73,7 @@ impl FamilyChoice {
     }
 }
 
-/// Most modes: beyond, a mesh of this kind no longer resolves them, and their fields no longer
-/// travel in one message.
+/// Most modes: beyond, a mesh of this kind no longer resolves them.
 const MOST_MODES: usize = 40;
 
 /// Reduces, compares, writes.
@@ -107,6 +107,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if arguments.vtu.is_some() {
         spec.fields = Some(hardest(&case, &turn));
     }
+    check_size(&spec)?;
     let head = reduce_once(&case, spec.clone())?;
     let wrapped = study::wrapped_turn(&turn, case.back_head.rope_anchor_deg);
     let comparison = study::compare_head(&head, &case.modal_head, &wrapped, case.run.modes);
@@ -179,30 +180,54 @@ fn mesh(read: &case::mesh::Mesh) -> HeadMesh {
         clippy::cast_possible_truncation,
         reason = "a mesh of four billion nodes does not fit into memory"
     )]
-    let index = |node: usize| node as u32;
+    let indices = |nodes: &[usize]| nodes.iter().map(|&node| node as u32).collect::<Vec<u32>>();
     let surface = |name: &str| read.surfaces.get(name).map_or(&[][..], Vec::as_slice);
-    let mut held: Vec<u32> = ["pin_a", "pin_b"]
-        .into_iter()
-        .flat_map(surface)
-        .flatten()
-        .map(|&node| index(node))
-        .collect();
+    let mut held = [surface("pin_a"), surface("pin_b")].concat();
     held.sort_unstable();
     held.dedup();
-    let hexahedra = read.volumes.get(case::mesh::VOLUME);
+    let elements = read.volumes.get(case::mesh::VOLUME);
     HeadMesh {
         nodes_m: read.nodes_m.clone(),
-        hexahedra: hexahedra
-            .into_iter()
-            .flatten()
-            .map(|e| e.map(index))
-            .collect(),
-        held,
-        rope_surface: surface("rope_surface")
-            .iter()
-            .map(|f| f.map(index))
-            .collect(),
+        kind: read.kind,
+        elements: indices(elements.map_or(&[], Vec::as_slice)),
+        held: indices(&held),
+        rope_surface: indices(surface("rope_surface")),
+        half: read.half,
     }
+}
+
+/// A job and its answer each travel in one message.
+fn check_size(spec: &ReduceHeadSpec) -> Result<(), Usage> {
+    const MEBIBYTE: usize = 1 << 20;
+    // what is not the fields of the answer is small beside this
+    const ROOM: usize = wire::BODY_LIMIT - MEBIBYTE;
+    let (nodes, elements) = (
+        spec.mesh.nodes_m.len(),
+        spec.mesh.elements.len() / spec.mesh.kind.nodes(),
+    );
+    let too_long = |what: &str, help: String| Usage {
+        message: format!(
+            "{what} of a mesh of {nodes} nodes and {elements} elements is more than the {} MiB \
+             that travel in one message",
+            ROOM / MEBIBYTE
+        ),
+        help,
+    };
+    // positions of 24 bytes, numbers of at most 5
+    let there = 24 * nodes + 5 * (spec.mesh.elements.len() + spec.mesh.rope_surface.len());
+    if there > ROOM {
+        let half = "mesh the half z >= 0 alone (physical group `symmetry`), or more coarsely";
+        return Err(too_long("the description", half.to_owned()));
+    }
+    let field = size_of::<[f32; 3]>() * nodes;
+    let stress = size_of::<[f32; 6]>() * elements;
+    let fields = (spec.modes + 1) * field + stress;
+    if spec.fields.is_some() && fields > ROOM {
+        let most = ROOM.saturating_sub(stress + field) / field.max(1);
+        let help = format!("ask for at most {most} modes with --vtu (--modes {most})");
+        return Err(too_long(&format!("--vtu with {} modes", spec.modes), help));
+    }
+    Ok(())
 }
 
 /// Reduces on one local worker, without a run folder that outlives the command.

@@ -173,8 +173,7 @@ pub(super) fn write_vtu(
     let path = folder.join("head.vtu");
     let problem = || format!("cannot write {}", path.display());
     let mut to = BufWriter::new(File::create(&path).with_context(problem)?);
-    let plain = (&mesh.nodes_m[..], &mesh.hexahedra[..]);
-    vtu::write(&mut to, plain, &at_nodes, &at_elements)
+    vtu::write(&mut to, mesh, &at_nodes, &at_elements)
         .and_then(|()| to.flush())
         .with_context(problem)?;
     Ok(path)

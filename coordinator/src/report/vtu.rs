@@ -1,10 +1,18 @@
-//! A mesh with fields for `ParaView`: an unstructured grid of hexahedra as VTK XML, in plain text.
+//! A mesh with fields for `ParaView`: an unstructured grid as VTK XML, in plain text.
 //!
 //! Knows the file format and nothing of what the fields mean.
+use protocol::job::{ElementKind, HeadMesh};
 use std::io::{self, Write};
 
-/// Number of the 8-node hexahedron among VTK's cells; its order of nodes is Gmsh's.
-const HEXAHEDRON: u8 = 12;
+/// An element as VTK knows it: the number of its cell, and for each of its nodes the place that it
+/// has in Gmsh's order.
+const fn cell(kind: ElementKind) -> (u8, &'static [usize]) {
+    match kind {
+        ElementKind::Hexahedron => (12, &[0, 1, 2, 3, 4, 5, 6, 7]),
+        // Gmsh goes on from the edge 0-3 with 2-3 and 1-3, VTK with 1-3 and 2-3
+        ElementKind::Tetrahedron => (24, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+    }
+}
 
 /// Values of one name; `values[k]` belongs to node or element k.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,11 +39,13 @@ impl Field {
 /// [`io::Error`] when the writer fails.
 pub fn write(
     mut to: impl Write,
-    (nodes_m, hexahedra): (&[[f64; 3]], &[[u32; 8]]),
+    mesh: &HeadMesh,
     at_nodes: &[Field],
     at_elements: &[Field],
 ) -> io::Result<()> {
-    let (points, cells) = (nodes_m.len(), hexahedra.len());
+    let (number, order) = cell(mesh.kind);
+    let elements = mesh.elements.chunks_exact(order.len());
+    let (points, cells) = (mesh.nodes_m.len(), elements.len());
     writeln!(to, "<?xml version=\"1.0\"?>")?;
     writeln!(to, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\">")?;
     writeln!(to, "<UnstructuredGrid>")?;
@@ -46,12 +56,13 @@ pub fn write(
     fields(&mut to, "PointData", at_nodes)?;
     fields(&mut to, "CellData", at_elements)?;
     writeln!(to, "<Points>")?;
-    array(&mut to, "Float64", ("Points", 3), nodes_m.iter())?;
+    array(&mut to, "Float64", ("Points", 3), mesh.nodes_m.iter())?;
     writeln!(to, "</Points>\n<Cells>")?;
-    array(&mut to, "Int64", ("connectivity", 1), hexahedra.iter())?;
-    let offsets = (1..=cells).map(|k| [8 * k]);
+    let nodes = elements.map(|element| order.iter().map(|&place| element[place]));
+    array(&mut to, "Int64", ("connectivity", 1), nodes)?;
+    let offsets = (1..=cells).map(|k| [order.len() * k]);
     array(&mut to, "Int64", ("offsets", 1), offsets)?;
-    let types = hexahedra.iter().map(|_| [HEXAHEDRON]);
+    let types = (0..cells).map(|_| [number]);
     array(&mut to, "UInt8", ("types", 1), types)?;
     writeln!(to, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
 }
@@ -102,8 +113,12 @@ mod tests {
         let shape = Field::new("mode <1>", &[[0.5_f32, -1e-9, 3.0]; 8]);
         let stress = Field::new("stress", &[[1.0_f32; 6]]);
         let mut bytes = Vec::new();
-        let mesh = (&nodes[..], &[[0, 1, 2, 3, 4, 5, 6, 7]][..]);
-        write(&mut bytes, mesh, &[shape], &[stress]).unwrap();
+        let mesh = HeadMesh {
+            nodes_m: nodes,
+            elements: (0..8).collect(),
+            ..HeadMesh::default()
+        };
+        write(&mut bytes, &mesh, &[shape], &[stress]).unwrap();
         let text = String::from_utf8(bytes).unwrap();
         let document = roxmltree::Document::parse(&text).unwrap();
         let array = |name: &str| {
@@ -132,5 +147,41 @@ mod tests {
             "small numbers keep their digits"
         );
         assert_eq!(array("stress"), (vec![1.0; 6], "6".to_owned()));
+    }
+
+    /// Node k of VTK's quadratic tetrahedron lies between the corners that VTK says, wherever Gmsh
+    /// lists it.
+    #[test]
+    fn a_tetrahedron_is_written_in_the_other_order() {
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let middle = |[a, b]: [usize; 2]| [0, 1, 2].map(|k| 0.5 * (corners[a][k] + corners[b][k]));
+        let gmsh = [[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [3, 1]];
+        let vtk = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+        let mesh = HeadMesh {
+            nodes_m: corners.into_iter().chain(gmsh.map(middle)).collect(),
+            kind: ElementKind::Tetrahedron,
+            elements: (0..10).collect(),
+            ..HeadMesh::default()
+        };
+        let mut bytes = Vec::new();
+        write(&mut bytes, &mesh, &[], &[]).unwrap();
+        let text = String::from_utf8(bytes).unwrap();
+        let after = |name: &str| text.split(&format!("Name=\"{name}\"")).nth(1).unwrap();
+        let numbers = |name: &str| -> Vec<usize> {
+            let lines = after(name).lines().skip(1);
+            let words = lines.take_while(|line| !line.starts_with('<'));
+            words
+                .flat_map(str::split_whitespace)
+                .map(|word| word.parse().unwrap())
+                .collect()
+        };
+        let nodes = numbers("connectivity");
+        for (node, ends) in nodes[4..].iter().zip(vtk) {
+            assert_eq!(
+                mesh.nodes_m[*node].map(f64::to_bits),
+                middle(ends).map(f64::to_bits)
+            );
+        }
+        assert_eq!((numbers("offsets"), numbers("types")), (vec![10], vec![24]));
     }
 }

@@ -7,8 +7,8 @@ fuzz_target!(|bytes: &[u8]| {
     match coordinator::case::mesh::read(&file("head.msh", bytes)) {
         Ok(mesh) => {
             let nodes = mesh.nodes_m.len();
-            let solid = mesh.volumes.values().flatten().flatten();
-            let flat = mesh.surfaces.values().flatten().flatten();
+            let solid = mesh.volumes.values().flatten();
+            let flat = mesh.surfaces.values().flatten();
             assert!(solid.chain(flat).all(|node| *node < nodes));
         }
         Err(error) => assert!(!error.to_string().is_empty()),

@@ -1,10 +1,10 @@
 //! Reduces the back head of a job: plain data in, plain data out; the case plays no part.
 use protocol::case::{Influence, TwinHead};
 use protocol::job::{
-    Failure, HeadFields, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
+    ElementKind, Failure, HeadFields, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
 };
 use simulation::flexible::{
-    Family, Gauge, Mesh, Pair, Reduction, Request, Steel, SwayTables, Wrap, reduce,
+    self, Family, Gauge, Mesh, Pair, Reduction, Request, Steel, SwayTables, Wrap, reduce,
 };
 use std::time::Instant;
 
@@ -113,17 +113,17 @@ const fn family(family: ModeFamily) -> Family {
 }
 
 fn mesh(spec: &ReduceHeadSpec) -> Mesh {
-    let index = |node: u32| node as usize;
+    let indices = |nodes: &[u32]| nodes.iter().map(|&node| node as usize).collect();
     Mesh {
         nodes: spec.mesh.nodes_m.clone(),
-        hexahedra: spec.mesh.hexahedra.iter().map(|e| e.map(index)).collect(),
-        held: spec.mesh.held.iter().map(|&node| index(node)).collect(),
-        rim: spec
-            .mesh
-            .rope_surface
-            .iter()
-            .map(|f| f.map(index))
-            .collect(),
+        kind: match spec.mesh.kind {
+            ElementKind::Hexahedron => flexible::ElementKind::Hexahedron,
+            ElementKind::Tetrahedron => flexible::ElementKind::Tetrahedron,
+        },
+        elements: indices(&spec.mesh.elements),
+        held: indices(&spec.mesh.held),
+        rim: indices(&spec.mesh.rope_surface),
+        half: spec.mesh.half,
     }
 }
 

@@ -1,7 +1,8 @@
-//! The back head's mesh: 8-node hexahedra in named groups, and whether it is the head of the modes.
+//! The back head's mesh: elements of one kind in named groups, and whether it is the head of the modes.
 //!
 //! Checking it takes some milliseconds, so every load reads it whole; nothing of it travels.
 mod msh;
+mod volume;
 
 pub use msh::read;
 pub(super) use msh::read_hashed;
@@ -10,73 +11,49 @@ use super::{
     error::{CaseError, contradiction},
     head::Provenance,
 };
+use protocol::job::ElementKind;
 use std::{collections::BTreeMap, path::Path};
 
-/// A mesh of hexahedra with named groups.
+/// A mesh with named groups.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Node positions in the beam frame \[m\].
     pub nodes_m: Vec<[f64; 3]>,
-    /// Hexahedra per volume group: indices of nodes, in Gmsh's order.
-    pub volumes: BTreeMap<String, Vec<[usize; 8]>>,
-    /// Quadrilaterals per surface group: indices of nodes.
-    pub surfaces: BTreeMap<String, Vec<[usize; 4]>>,
+    /// What its elements are.
+    pub kind: ElementKind,
+    /// Elements per volume group: indices of nodes, element after element, in Gmsh's order.
+    pub volumes: BTreeMap<String, Vec<usize>>,
+    /// Faces per surface group: indices of nodes, face after face.
+    pub surfaces: BTreeMap<String, Vec<usize>>,
+    /// Whether it is the half z >= 0 of the head: it has a group [`SYMMETRY`].
+    pub half: bool,
 }
 
 /// The group of all elements.
 pub const VOLUME: &str = "steel";
 /// The groups of the held pin holes and of the loaded rim.
 pub const SURFACES: [&str; 3] = ["pin_a", "pin_b", "rope_surface"];
+/// The group of the cut face in the plane z = 0, which only a half has.
+pub const SYMMETRY: &str = "symmetry";
 
 impl Mesh {
-    /// Volume of all hexahedra \[m3\].
+    /// Volume of the head \[m3\]: of all elements, twice that of a half.
     pub fn volume_m3(&self) -> f64 {
-        let elements = self.volumes.values().flatten();
-        elements
-            .map(|element| self.element_volume_m3(element))
-            .sum()
+        let elements = self.volumes.values();
+        let elements = elements.flat_map(|group| group.chunks_exact(self.kind.nodes()));
+        let sum: f64 = elements
+            .filter_map(|element| self.element_volume_m3(element))
+            .sum();
+        if self.half { 2.0 * sum } else { sum }
     }
 
-    /// Volume of one hexahedron \[m3\], exact by 2 x 2 x 2 Gauss points; negative if inside out.
-    fn element_volume_m3(&self, element: &[usize; 8]) -> f64 {
-        let corner = |&node: &usize| self.nodes_m.get(node).copied().unwrap_or_default();
-        let corners: Vec<[f64; 3]> = element.iter().map(corner).collect();
-        let at = 1.0 / 3.0_f64.sqrt();
-        let mut volume = 0.0;
-        for point in &SIGNS {
-            let [r, s, t] = point.map(|sign| sign * at);
-            let mut jacobian = [[0.0; 3]; 3];
-            for (sign, corner) in SIGNS.iter().zip(&corners) {
-                let [a, b, c] = *sign;
-                let slopes = [
-                    a * (1.0 + b * s) * (1.0 + c * t) / 8.0,
-                    b * (1.0 + a * r) * (1.0 + c * t) / 8.0,
-                    c * (1.0 + a * r) * (1.0 + b * s) / 8.0,
-                ];
-                for (row, slope) in jacobian.iter_mut().zip(slopes) {
-                    for (entry, x) in row.iter_mut().zip(corner) {
-                        *entry += slope * x;
-                    }
-                }
-            }
-            let [[a, b, c], [d, e, f], [g, h, i]] = jacobian;
-            volume += a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g);
-        }
-        volume
+    /// Volume of one element \[m3\]; none if it is inside out.
+    fn element_volume_m3(&self, element: &[usize]) -> Option<f64> {
+        let place = |&node: &usize| self.nodes_m.get(node).copied().unwrap_or_default();
+        let places: Vec<[f64; 3]> = element.iter().map(place).collect();
+        volume::of(self.kind, &places)
     }
 }
-
-/// Corners of the reference cube in Gmsh's order.
-const SIGNS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 /// What to do about tables of another mesh.
 const ANOTHER: &str =

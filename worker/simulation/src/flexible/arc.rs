@@ -1,10 +1,13 @@
 //! The rope arc: what a rope at an angle feels of a displacement field, averaged over the width.
 //!
 //! At an angle psi about the arc's centre the rope crosses the rim along a line of constant psi.
-//! Every face that the line crosses is cut at two of its edges; displacement is linear along an
-//! edge and taken as linear along the cut. The same weights spread a force over the rim. Knows
-//! nothing of ropes or modes.
-use super::{ReductionError, mesh::Mesh};
+//! Every face that the line crosses is cut from edge to edge, with the face's own shape functions.
+//! The same weights spread a force over the rim. Knows nothing of ropes or modes.
+use super::{
+    ReductionError,
+    element::{Crossing, Cut},
+    mesh::Mesh,
+};
 use crate::math::elementary::{atan2, sin_cos};
 use std::collections::BTreeMap;
 
@@ -77,7 +80,7 @@ impl<'a> Rim<'a> {
     pub(super) fn new(mesh: &'a Mesh, center: [f64; 2]) -> Self {
         let mut span = [f64::INFINITY, f64::NEG_INFINITY];
         let mut angles = BTreeMap::new();
-        for &node in mesh.rim.iter().flatten() {
+        for &node in &mesh.rim {
             let [x, y, _] = mesh.nodes[node];
             let angle = atan2(y - center[1], x - center[0]).rem_euclid(std::f64::consts::TAU);
             span = [span[0].min(angle), span[1].max(angle)];
@@ -93,12 +96,11 @@ impl<'a> Rim<'a> {
     pub(super) fn station(&self, psi: f64) -> Result<Station, ReductionError> {
         let at = self.within(psi)?;
         let mut weights = BTreeMap::new();
-        for [p, q] in self.cuts(at) {
-            let length = (p.height - q.height).abs();
-            for point in [p, q] {
-                for (node, share) in point.nodes {
-                    *weights.entry(node).or_insert(0.0) += 0.5 * length * share;
-                }
+        for cut in self.cuts(at) {
+            let [p, q] = cut.ends();
+            let length = (p - q).abs();
+            for (point, share) in cut.points() {
+                add(&mut weights, point, share * length);
             }
         }
         let total: f64 = weights.values().sum();
@@ -117,17 +119,17 @@ impl<'a> Rim<'a> {
     /// As [`Self::station`]; [`ReductionError::Beside`] if the rim is not so wide.
     pub(super) fn station_beside(&self, psi: f64, z: f64) -> Result<Station, ReductionError> {
         let at = self.within(psi)?;
-        let spans = |[p, q]: &[Crossing; 2]| (p.height <= z) != (q.height <= z);
-        let [p, q] = self.cuts(at).find(spans).ok_or(ReductionError::Beside {
+        let spans = |cut: &Cut| {
+            let [p, q] = cut.ends();
+            (p <= z) != (q <= z)
+        };
+        let cut = self.cuts(at).find(spans).ok_or(ReductionError::Beside {
             psi_deg: psi.to_degrees(),
             offset: z,
         })?;
-        let share = (z - p.height) / (q.height - p.height);
         let mut weights = BTreeMap::new();
-        for (point, share) in [(p, 1.0 - share), (q, share)] {
-            for (node, of_edge) in point.nodes {
-                *weights.entry(node).or_insert(0.0) += share * of_edge;
-            }
+        for (point, share) in cut.at(z) {
+            add(&mut weights, point, share);
         }
         Ok(Station::new(psi, weights.into_iter()))
     }
@@ -152,36 +154,17 @@ impl<'a> Rim<'a> {
     }
 
     /// Where faces are cut by the line at an angle.
-    fn cuts(&self, psi: f64) -> impl Iterator<Item = [Crossing; 2]> + '_ {
-        let faces = self.mesh.rim.iter();
-        faces.filter_map(move |face| self.cut(face, psi))
-    }
-
-    /// Where a face is cut by the line at an angle: two points on its edges, or nothing.
-    fn cut(&self, face: &[usize; 4], psi: f64) -> Option<[Crossing; 2]> {
-        let mut found = (0..4).filter_map(|k| {
-            let (a, b) = (face[k], face[(k + 1) % 4]);
-            let (angle_a, angle_b) = (self.angles[&a], self.angles[&b]);
-            // a node on the line belongs to the side above it: no edge is crossed twice
-            if (angle_a <= psi) == (angle_b <= psi) {
-                return None;
-            }
-            let share = (psi - angle_a) / (angle_b - angle_a);
-            let height = |node: usize| self.mesh.nodes[node][2];
-            Some(Crossing {
-                nodes: [(a, 1.0 - share), (b, share)],
-                height: height(a) * (1.0 - share) + height(b) * share,
-            })
-        });
-        Some([found.next()?, found.next()?])
+    fn cuts(&self, psi: f64) -> impl Iterator<Item = Cut> + '_ {
+        let kind = self.mesh.law().face();
+        let seen = |node: usize| [self.angles[&node], self.mesh.nodes[node][2]];
+        let faces = self.mesh.faces();
+        faces.filter_map(move |face| kind.cut(face, &seen, psi))
     }
 }
 
-/// A point on an edge.
-#[derive(Clone, Copy, Debug)]
-struct Crossing {
-    /// Ends of the edge and their shares.
-    nodes: [(usize, f64); 2],
-    /// Its z \[m\].
-    height: f64,
+/// Adds a share of a point to the weights of its nodes.
+fn add(weights: &mut BTreeMap<usize, f64>, point: &Crossing, share: f64) {
+    for &(node, of_point) in &point.nodes {
+        *weights.entry(node).or_insert(0.0) += share * of_point;
+    }
 }

@@ -2,7 +2,7 @@
 //!
 //! Both matrices are symmetric; the lower triangle is kept column by column, so that every sum runs
 //! in a fixed order. Knows nothing of rims, gauges or modes.
-use super::{ReductionError, hexahedron::Hexahedron, hexahedron::Steel, mesh::Mesh};
+use super::{ReductionError, element::Steel, mesh::Mesh};
 use faer::{
     Side,
     linalg::solvers::Solve,
@@ -128,10 +128,10 @@ impl Assembly {
     ) -> Result<Self, ReductionError> {
         let mut stiffness = pattern(mesh, unknowns);
         let mut mass = stiffness.clone();
-        for (element, nodes) in mesh.hexahedra.iter().enumerate() {
+        for (element, nodes) in mesh.elements().enumerate() {
             let inside_out = |_| ReductionError::InsideOut { element };
-            let hexahedron = Hexahedron::new(mesh.corners(nodes));
-            let own = hexahedron.matrices(steel).map_err(inside_out)?;
+            let own = mesh.law().matrices(&mesh.places(nodes), steel);
+            let own = own.map_err(inside_out)?;
             for (i, a) in each(nodes, unknowns) {
                 for (j, b) in each(nodes, unknowns) {
                     if a >= b {
@@ -146,14 +146,14 @@ impl Assembly {
 }
 
 /// Unknowns of an element: (place in the element, number).
-fn each(nodes: &[usize; 8], unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
-    (0..24).filter_map(|i| Some((i, unknowns.number(nodes[i / 3], i % 3)?)))
+fn each(nodes: &[usize], unknowns: &Unknowns) -> impl Iterator<Item = (usize, usize)> {
+    (0..3 * nodes.len()).filter_map(|i| Some((i, unknowns.number(nodes[i / 3], i % 3)?)))
 }
 
 /// An empty matrix with a place for every pair of unknowns that share an element.
 fn pattern(mesh: &Mesh, unknowns: &Unknowns) -> Symmetric {
     let mut neighbours = vec![BTreeSet::new(); mesh.nodes.len()];
-    for element in &mesh.hexahedra {
+    for element in mesh.elements() {
         for &node in element {
             neighbours[node].extend(element);
         }

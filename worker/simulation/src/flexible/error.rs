@@ -13,7 +13,8 @@ pub enum ReductionError {
     /// The mesh is not its own mirror image in z = 0.
     #[error(
         "the mesh is not its own mirror image in the plane z = 0: nothing stands opposite \
-         ({x:.4}, {y:.4}, {z:.4}) m"
+         ({x:.4}, {y:.4}, {z:.4}) m. Free meshers do not mirror: mesh the half z >= 0 alone, \
+         with its cut face as physical group `symmetry`, or mirror that half's mesh"
     )]
     NotMirrored {
         /// Position of the lonely node \[m\].

@@ -1,12 +1,10 @@
 //! Strain gauges: from a place on the steel to a row that reads stress off a displacement field.
 //!
 //! A gauge reads `E (u_y(p + l/2) - u_y(p - l/2)) / l`: the mean vertical strain over its length,
-//! times Young's modulus.
-use super::{
-    ReductionError,
-    hexahedron::{jacobian, shape},
-    mesh::Mesh,
-};
+//! times Young's modulus, by the displacement of the elements that hold its ends. That is what a
+//! glued strip feels, for elements of any kind; it is also more exact than stress at a point, which
+//! jumps between elements.
+use super::{ReductionError, mesh::Mesh};
 use nalgebra::Vector3;
 
 /// A gauge that measures vertical strain.
@@ -18,9 +16,7 @@ pub struct Gauge {
     pub length: f64,
 }
 
-/// Steps of Newton's method towards a point within an element.
-const STEPS: usize = 30;
-/// How far outside the reference cube a point may lie and still belong to the element.
+/// How far outside the reference body a point may lie and still belong to the element.
 const SLACK: f64 = 1e-3;
 
 impl Gauge {
@@ -40,27 +36,29 @@ impl Gauge {
             let end = Vector3::new(x, y + 0.5 * side * self.length, z);
             let (nodes, point) = locate(mesh, &end, number)?;
             let factor = side * young / self.length;
-            row.extend(nodes.into_iter().zip(shape(&point).map(|n| factor * n)));
+            let shape = mesh.law().shape(&point);
+            row.extend(nodes.iter().copied().zip(shape.iter().map(|n| factor * n)));
         }
         Ok(row)
     }
 }
 
 /// The element that holds a point, and where.
-fn locate(
-    mesh: &Mesh,
+fn locate<'a>(
+    mesh: &'a Mesh,
     place: &Vector3<f64>,
     number: usize,
-) -> Result<([usize; 8], [f64; 3]), ReductionError> {
-    let mut best: Option<([usize; 8], [f64; 3], f64)> = None;
+) -> Result<(&'a [usize], [f64; 3]), ReductionError> {
+    let law = mesh.law();
+    let mut best: Option<(&[usize], [f64; 3], f64)> = None;
     let mut nearest = f64::INFINITY;
-    for element in &mesh.hexahedra {
-        let corners = mesh.corners(element);
-        let center = corners
+    for element in mesh.elements() {
+        let nodes = mesh.places(element);
+        let center = nodes
             .iter()
             .fold(Vector3::zeros(), |sum, node| sum + Vector3::from(*node))
-            / 8.0;
-        let size = corners
+            / nodes.len() as f64;
+        let size = nodes
             .iter()
             .map(|node| (Vector3::from(*node) - center).norm())
             .fold(0.0, f64::max);
@@ -70,12 +68,12 @@ fn locate(
         if distance > 0.0 {
             continue;
         }
-        let Some(point) = invert(&corners, place) else {
+        let Some(point) = law.invert(&nodes, place) else {
             continue;
         };
-        let outside = point.iter().fold(0.0_f64, |most, x| most.max(x.abs())) - 1.0;
+        let outside = law.outside(&point);
         if best.as_ref().is_none_or(|(.., least)| outside < *least) {
-            best = Some((*element, point, outside));
+            best = Some((element, point, outside));
         }
     }
     match best {
@@ -85,24 +83,4 @@ fn locate(
             distance_mm: nearest * 1e3,
         }),
     }
-}
-
-/// Coordinates of a point in the reference cube, if Newton finds them.
-fn invert(corners: &[[f64; 3]; 8], place: &Vector3<f64>) -> Option<[f64; 3]> {
-    let mut point = [0.0; 3];
-    for _ in 0..STEPS {
-        let mut here = Vector3::zeros();
-        for (share, node) in shape(&point).iter().zip(corners) {
-            here += *share * Vector3::from(*node);
-        }
-        // the rows of the Jacobian are reference directions
-        let step = jacobian(corners, &point).transpose().try_inverse()? * (place - here);
-        for (x, dx) in point.iter_mut().zip(&step) {
-            *x = (*x + dx).clamp(-3.0, 3.0);
-        }
-        if step.amax() < 1e-13 {
-            return Some(point);
-        }
-    }
-    None
 }

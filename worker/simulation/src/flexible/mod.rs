@@ -1,4 +1,4 @@
-//! The flexible back head: from a mesh of bricks to modes and static influence lines.
+//! The flexible back head: from a mesh of bricks or tetrahedra to modes and static influence lines.
 //!
 //! Linear elasticity with the pin holes held. What comes out is all that the dynamics need of the
 //! head: natural modes seen along the rope arc, gauge stress, inertial coupling, exact statics.
@@ -6,9 +6,9 @@
 mod arc;
 mod assembly;
 mod eigen;
+mod element;
 mod error;
 mod gauge;
-mod hexahedron;
 mod mesh;
 mod problem;
 mod reduction;
@@ -16,9 +16,9 @@ mod sway;
 #[cfg(test)]
 mod tests;
 
+pub use element::{ElementKind, Steel};
 pub use error::ReductionError;
 pub use gauge::Gauge;
-pub use hexahedron::Steel;
 pub use mesh::Mesh;
 pub use reduction::{Family, Mode, Reduction, Request, Wrap, reduce};
 pub use sway::{Pair, SwayTables};

@@ -6,11 +6,11 @@ use super::{
     arc::{Rim, Station},
     assembly::{Assembly, Factor, Unknowns},
     eigen::lowest,
-    hexahedron::{DOFS, Hexahedron, Steel},
+    element::Steel,
     mesh::{Half, Mesh},
     reduction::{Family, Mode, Reduction, Request, Row, Wrap},
 };
-use nalgebra::SVector;
+use nalgebra::DVector;
 
 /// Motions of the whole body per unit base acceleration: along x, along y, about the origin.
 fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
@@ -263,9 +263,11 @@ impl<'a> Problem<'a> {
         // the rope runs towards increasing psi and pulls its fixed end that way
         anchor.add_force(&mut load, anchor.tangential, 0.5 * wrap.tension);
         let field = self.half.unfold(&self.solve(&load), self.family.image());
-        let stress = request.mesh.hexahedra.iter().map(|element| {
-            let hexahedron = Hexahedron::new(request.mesh.corners(element));
-            hexahedron.center_stress(&request.steel, &element.map(|node| field[node]))
+        let stress = request.mesh.elements().map(|element| {
+            let moved: Vec<[f64; 3]> = element.iter().map(|&node| field[node]).collect();
+            let nodes = request.mesh.places(element);
+            let law = request.mesh.law();
+            law.center_stress(&request.steel, &nodes, &moved)
         });
         let stress = stress.collect();
         Ok((field, stress))
@@ -279,13 +281,12 @@ fn mass_times<const N: usize>(
     fields: &[Vec<[f64; 3]>; N],
 ) -> Result<[Vec<[f64; 3]>; N], ReductionError> {
     let mut products = [(); N].map(|()| vec![[0.0; 3]; mesh.nodes.len()]);
-    for (element, nodes) in mesh.hexahedra.iter().enumerate() {
-        let own = Hexahedron::new(mesh.corners(nodes))
-            .matrices(steel)
-            .map_err(|_| ReductionError::InsideOut { element })?;
+    for (element, nodes) in mesh.elements().enumerate() {
+        let own = mesh.law().matrices(&mesh.places(nodes), steel);
+        let mass = own.map_err(|_| ReductionError::InsideOut { element })?.mass;
         for (product, field) in products.iter_mut().zip(fields) {
-            let values = SVector::<f64, DOFS>::from_fn(|i, _| field[nodes[i / 3]][i % 3]);
-            let force = own.mass * values;
+            let values = DVector::from_fn(mass.ncols(), |i, _| field[nodes[i / 3]][i % 3]);
+            let force = &mass * values;
             for (i, force) in force.iter().enumerate() {
                 product[nodes[i / 3]][i % 3] += force;
             }

@@ -6,8 +6,8 @@
 use super::{
     ReductionError,
     arc::{Rim, Station},
+    element::Steel,
     gauge::Gauge,
-    hexahedron::Steel,
     mesh::{Half, Mesh},
     problem::Problem,
     sway::{Pair, SwayTables},

@@ -1,28 +1,34 @@
-//! Reads Gmsh MSH 4.1, ASCII: nodes, hexahedra, quadrilaterals, physical groups.
+//! Reads Gmsh MSH 4.1, ASCII: nodes, elements and their faces, physical groups.
 //!
 //! The reader is our own, for two reasons found with the crate `mshio` 0.4.2: it skips
 //! `$PhysicalNames` and the physical tags of entities, without which nothing says what a pin hole
 //! is, and it panics on a malformed node count. It stays the judge of nodes and elements in the
 //! tests.
+mod elements;
+mod lines;
+#[cfg(test)]
+mod tests;
+
 use super::{
     super::{
         error::{CaseError, damaged},
         file,
         table::clip,
     },
-    Mesh, SURFACES, VOLUME,
+    Mesh, SURFACES, SYMMETRY, VOLUME,
 };
+use lines::Lines;
 use std::{collections::BTreeMap, path::Path};
 
 /// What to do about a mesh that cannot be read.
 const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh41), \
-                          8-node hexahedra of order 1";
+                          8-node hexahedra of order 1 or 10-node tetrahedra";
 
 /// Reads a mesh.
 ///
 /// # Errors
-/// Another version or a binary file, malformed sections (with the line), other elements than
-/// hexahedra and quadrilaterals, a missing physical group, an element that is inside out.
+/// Another version or a binary file, malformed sections (with the line), elements that are not taken
+/// or of two kinds, a missing physical group, an element that is inside out, a half that is none.
 pub fn read(path: &Path) -> Result<Mesh, CaseError> {
     read_hashed(path).map(|(mesh, _)| mesh)
 }
@@ -45,7 +51,7 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
             "$PhysicalNames" => sections.names = physical_names(&mut lines)?,
             "$Entities" => sections.groups = entities(&mut lines)?,
             "$Nodes" => nodes(&mut lines, &mut sections)?,
-            "$Elements" => elements(&mut lines, &mut sections)?,
+            "$Elements" => elements::read(&mut lines, &mut sections)?,
             other => skip(&mut lines, other)?,
         }
     }
@@ -63,10 +69,11 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
         VOLUME,
         sections.mesh.volumes.get(VOLUME).map_or(0, Vec::len),
     )?;
-    let mesh = sections.mesh;
+    let mut mesh = sections.mesh;
     for (group, elements) in &mesh.volumes {
-        let inverted = |element: &[usize; 8]| mesh.element_volume_m3(element) <= 0.0;
-        if let Some(at) = elements.iter().position(inverted) {
+        let inverted = |element: &[usize]| mesh.element_volume_m3(element).is_none();
+        let mut elements = elements.chunks_exact(mesh.kind.nodes());
+        if let Some(at) = elements.position(inverted) {
             return Err(damaged(
                 path,
                 format!(
@@ -77,7 +84,40 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
             ));
         }
     }
+    mesh.half = mesh.surfaces.contains_key(SYMMETRY);
+    check_half(path, &mesh)?;
     Ok(mesh)
+}
+
+/// A half ends on the plane z = 0, and nothing of it lies beyond.
+fn check_half(path: &Path, mesh: &Mesh) -> Result<(), CaseError> {
+    const NEAR_M: f64 = 1e-6;
+    let wrong = |[x, y, z]: &[f64; 3], problem: &str| {
+        Err(damaged(
+            path,
+            format!("the node at ({x:.4}, {y:.4}, {z:.4}) m {problem}"),
+            "cut the body at z = 0, mesh the side z >= 0 alone, and name the cut face symmetry",
+        ))
+    };
+    let cut = mesh.surfaces.get(SYMMETRY);
+    let mut cut = cut
+        .into_iter()
+        .flatten()
+        .filter_map(|&node| mesh.nodes_m.get(node));
+    if let Some(node) = cut.find(|[_, _, z]| z.abs() > NEAR_M) {
+        return wrong(
+            node,
+            "belongs to group `symmetry`, which must lie in the plane z = 0",
+        );
+    }
+    let beyond = mesh.nodes_m.iter().find(|[_, _, z]| *z < -NEAR_M);
+    match beyond {
+        Some(node) if mesh.half => wrong(
+            node,
+            "lies beyond the plane z = 0: a mesh with a group `symmetry` is the half z >= 0",
+        ),
+        _ => Ok(()),
+    }
 }
 
 /// What has been read so far.
@@ -132,72 +172,6 @@ fn require(path: &Path, sections: &Sections, wanted: &str, count: usize) -> Resu
         ),
         "name the groups steel (volume), pin_a, pin_b and rope_surface (surfaces) in Gmsh",
     ))
-}
-
-/// Lines of the file, counted.
-struct Lines<'a> {
-    path: &'a Path,
-    rest: std::str::Lines<'a>,
-    number: usize,
-}
-
-impl<'a> Lines<'a> {
-    fn new(path: &'a Path, text: &'a str) -> Self {
-        Self {
-            path,
-            rest: text.lines(),
-            number: 0,
-        }
-    }
-
-    fn next(&mut self) -> Option<&'a str> {
-        self.number += 1;
-        self.rest.next()
-    }
-
-    /// An error at the line that was read last.
-    fn wrong(&self, problem: &str) -> CaseError {
-        damaged(
-            self.path,
-            format!("line {}: {problem}", self.number),
-            SAVE_AGAIN,
-        )
-    }
-
-    /// The next line, which must be there.
-    fn line(&mut self) -> Result<&'a str, CaseError> {
-        self.next()
-            .ok_or_else(|| self.wrong("the file ends inside a section"))
-    }
-
-    /// The numbers of the next line; at least `least` of them.
-    fn numbers<T: std::str::FromStr>(&mut self, least: usize) -> Result<Vec<T>, CaseError> {
-        let line = self.line()?;
-        let words = line.split_ascii_whitespace();
-        let numbers: Result<Vec<T>, _> = words.map(str::parse).collect();
-        match numbers {
-            Ok(numbers) if numbers.len() >= least => Ok(numbers),
-            _ => Err(self.wrong(&format!("at least {least} numbers are expected here"))),
-        }
-    }
-
-    /// Exactly `N` integers; further numbers of the line are ignored.
-    fn integers<const N: usize>(&mut self) -> Result<[i64; N], CaseError> {
-        let numbers = self.numbers::<i64>(N)?;
-        numbers
-            .first_chunk::<N>()
-            .copied()
-            .ok_or_else(|| self.wrong("numbers are missing"))
-    }
-
-    /// The end of a section.
-    fn end(&mut self, tag: &str) -> Result<(), CaseError> {
-        if self.line()?.trim() == tag {
-            Ok(())
-        } else {
-            Err(self.wrong(&format!("`{tag}` is expected here")))
-        }
-    }
 }
 
 /// Skips a section that is not needed.
@@ -297,78 +271,4 @@ fn nodes(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError
         )));
     }
     lines.end("$EndNodes")
-}
-
-/// Blocks of elements, each of one type and one entity.
-fn elements(lines: &mut Lines<'_>, sections: &mut Sections) -> Result<(), CaseError> {
-    const QUADRILATERAL: i64 = 3;
-    const HEXAHEDRON: i64 = 5;
-    let [blocks, _, _, _] = lines.integers::<4>()?;
-    for _ in 0..blocks {
-        let [dimension, entity, kind, count] = lines.integers::<4>()?;
-        let dimension = usize::try_from(dimension).unwrap_or(usize::MAX);
-        let groups: Vec<String> = sections
-            .groups
-            .get(&(dimension, entity))
-            .into_iter()
-            .flatten()
-            .filter_map(|tag| sections.names.get(&(dimension, *tag)).cloned())
-            .collect();
-        match kind {
-            QUADRILATERAL => {
-                let read = block::<5, 4>(lines, count, &sections.index)?;
-                for group in groups {
-                    sections
-                        .mesh
-                        .surfaces
-                        .entry(group)
-                        .or_default()
-                        .extend(&read);
-                }
-            }
-            HEXAHEDRON => {
-                let read = block::<9, 8>(lines, count, &sections.index)?;
-                for group in groups {
-                    sections
-                        .mesh
-                        .volumes
-                        .entry(group)
-                        .or_default()
-                        .extend(&read);
-                }
-            }
-            // points and lines of the geometry carry nothing
-            _ if dimension < 2 => {
-                for _ in 0..count {
-                    lines.line()?;
-                }
-            }
-            _ => {
-                return Err(lines.wrong(&format!(
-                    "element type {kind}; allowed: 3 (4-node quadrilateral), 5 (8-node hexahedron)"
-                )));
-            }
-        }
-    }
-    lines.end("$EndElements")
-}
-
-/// `count` elements: a tag and N node tags each, which become indices.
-fn block<const LINE: usize, const N: usize>(
-    lines: &mut Lines<'_>,
-    count: i64,
-    index: &BTreeMap<i64, usize>,
-) -> Result<Vec<[usize; N]>, CaseError> {
-    let mut elements = Vec::new();
-    for _ in 0..count {
-        let numbers = lines.integers::<LINE>()?;
-        let mut element = [0; N];
-        for (node, tag) in element.iter_mut().zip(numbers.iter().skip(1)) {
-            *node = *index
-                .get(tag)
-                .ok_or_else(|| lines.wrong(&format!("node {tag} does not exist")))?;
-        }
-        elements.push(element);
-    }
-    Ok(elements)
 }

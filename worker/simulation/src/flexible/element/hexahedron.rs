@@ -1,0 +1,162 @@
+//! The 8-node brick with incompatible modes: stiffness, mass and stress of one element.
+//!
+//! Displacement is `sum_i N_i d_i + sum_k (1 - xi_k^2) a_k`. The nine amplitudes `a` belong to the
+//! element alone and are condensed out; they let a brick bend without locking ([Wilson1973]). Their
+//! gradients are taken with the Jacobian of the element's centre and scaled by `det J0 / det J`, so
+//! that they integrate to zero and distorted elements pass the patch test ([Taylor1976]). They move
+//! mass too: the inertia of the whole displacement is condensed by the same static shapes (Guyan
+//! 1965), without which a thin plate of one brick rings up to 2 % too high. All integrals by
+//! 2 x 2 x 2 Gauss points. Knows one element, no mesh.
+//!
+//! `CalculiX`'s C3D8I is the same element without the factor `det J0 / det J`, for which it fails the
+//! patch test; so changed, this one gives its frequencies to 1e-4, and as it stands to 0.6 %.
+use super::{
+    Element, Face, InsideOut, Matrices, Steel, add_stiffness, add_weight, face::Quadrilateral,
+    jacobian,
+};
+use nalgebra::{DMatrix, SMatrix, Vector3};
+
+/// Displacements of one element, node by node.
+const DOFS: usize = 24;
+/// Amplitudes of the incompatible modes.
+const INNER: usize = 9;
+/// Nodes and incompatible modes.
+const SHAPES: usize = 8 + INNER / 3;
+/// A matrix of one element.
+type Square = SMatrix<f64, DOFS, DOFS>;
+
+/// The 8-node brick.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hexahedron;
+
+/// Corners of the reference cube, in Gmsh's order of nodes.
+const CORNERS: [[f64; 3]; 8] = [
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+];
+
+/// Shape functions at a point of the reference cube.
+fn shape(point: &[f64; 3]) -> [f64; 8] {
+    CORNERS.map(|corner| {
+        0.125
+            * (1.0 + corner[0] * point[0])
+            * (1.0 + corner[1] * point[1])
+            * (1.0 + corner[2] * point[2])
+    })
+}
+
+/// Their slopes in the reference cube.
+fn slopes(point: &[f64; 3]) -> [Vector3<f64>; 8] {
+    CORNERS.map(|[a, b, c]| {
+        let [r, s, t] = [1.0 + a * point[0], 1.0 + b * point[1], 1.0 + c * point[2]];
+        Vector3::new(a * s * t, b * r * t, c * r * s) * 0.125
+    })
+}
+
+/// Shape functions of the nodes, then of the incompatible modes.
+fn all_shapes(point: &[f64; 3]) -> [f64; SHAPES] {
+    let nodes = shape(point);
+    std::array::from_fn(|i| {
+        nodes
+            .get(i)
+            .copied()
+            .unwrap_or_else(|| 1.0 - point[i - 8] * point[i - 8])
+    })
+}
+
+/// The eight integration points; all weights are 1.
+fn gauss() -> [[f64; 3]; 8] {
+    let at = 1.0 / 3.0_f64.sqrt();
+    CORNERS.map(|corner| corner.map(|sign| sign * at))
+}
+
+impl Element for Hexahedron {
+    fn nodes(&self) -> usize {
+        CORNERS.len()
+    }
+
+    fn face(&self) -> &'static dyn Face {
+        &Quadrilateral
+    }
+
+    fn center(&self) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    fn shape(&self, point: &[f64; 3]) -> Vec<f64> {
+        shape(point).to_vec()
+    }
+
+    fn slopes(&self, point: &[f64; 3]) -> Vec<Vector3<f64>> {
+        slopes(point).to_vec()
+    }
+
+    fn outside(&self, point: &[f64; 3]) -> f64 {
+        point.iter().fold(0.0_f64, |most, x| most.max(x.abs())) - 1.0
+    }
+
+    /// After condensation of the incompatible modes.
+    fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut> {
+        const ALL: usize = DOFS + INNER;
+        let lame = steel.lame();
+        let center = jacobian(&slopes(&[0.0; 3]), nodes);
+        let center_inverse = center.try_inverse().ok_or(InsideOut)?;
+        let mut full = Box::new(SMatrix::<f64, ALL, ALL>::zeros());
+        let mut weight = [[0.0; SHAPES]; SHAPES];
+        for point in gauss() {
+            let slopes = slopes(&point);
+            let jacobian = jacobian(&slopes, nodes);
+            let volume = jacobian.determinant();
+            if volume <= 0.0 {
+                return Err(InsideOut);
+            }
+            let inverse = jacobian.try_inverse().ok_or(InsideOut)?;
+            let mut gradients = [Vector3::zeros(); SHAPES];
+            for (gradient, slope) in gradients.iter_mut().zip(slopes) {
+                *gradient = inverse * slope;
+            }
+            let ratio = center.determinant() / volume;
+            for (k, gradient) in gradients[8..].iter_mut().enumerate() {
+                *gradient = center_inverse.column(k) * (-2.0 * point[k] * ratio);
+            }
+            add_stiffness(&mut full, &gradients, lame, volume);
+            add_weight(&mut weight, &all_shapes(&point), steel.density * volume);
+        }
+        let outer = full.fixed_view::<DOFS, DOFS>(0, 0);
+        let mixed = full.fixed_view::<INNER, DOFS>(DOFS, 0).into_owned();
+        let inner = full.fixed_view::<INNER, INNER>(DOFS, DOFS).into_owned();
+        // the incompatible modes follow the nodes by minus this
+        let follow = inner.cholesky().ok_or(InsideOut)?.solve(&mixed);
+        let stiffness: Square = outer - mixed.transpose() * follow;
+        let mass = condensed(&weight, &follow);
+        let dynamic = |matrix: &Square| DMatrix::from_column_slice(DOFS, DOFS, matrix.as_slice());
+        Ok(Matrices {
+            stiffness: dynamic(&stiffness),
+            mass: dynamic(&mass),
+        })
+    }
+}
+
+/// `T' M T` with the mass of all shapes and `T = (1, -follow)`.
+fn condensed(weight: &[[f64; SHAPES]; SHAPES], follow: &SMatrix<f64, INNER, DOFS>) -> Square {
+    // M T, of which every direction is its own
+    let part = |shape: usize, k: usize, column: usize| {
+        let own = if column % 3 == k {
+            weight[shape][column / 3]
+        } else {
+            0.0
+        };
+        let inner = (0..INNER / 3).map(|m| weight[shape][8 + m] * follow[(3 * m + k, column)]);
+        own - inner.sum::<f64>()
+    };
+    let outer = Square::from_fn(|row, column| part(row / 3, row % 3, column));
+    let inner =
+        SMatrix::<f64, INNER, DOFS>::from_fn(|row, column| part(8 + row / 3, row % 3, column));
+    outer - follow.transpose() * inner
+}

@@ -1,0 +1,161 @@
+//! The 10-node tetrahedron: quadratic displacement on straight or curved edges.
+//!
+//! Nodes are the four corners and six points near the middles of the edges, which also give the
+//! element its shape. In volume coordinates `L_0 + L_1 + L_2 + L_3 = 1` a corner has
+//! `N = L (2 L - 1)` and an edge `N = 4 L_a L_b` ([Zienkiewicz2013]). It bends, as its strain is
+//! linear; the 4-node tetrahedron, whose strain is constant, locks (a layer is five times too stiff) and
+//! is no element here.
+//!
+//! Stiffness by 4 points of degree 2, exact for straight edges and without modes of zero energy;
+//! mass by 15 points of degree 5 ([Stroud1971], T3:5-1), exact for straight edges, and
+//! for curved ones as far as the total mass goes. Knows one element, no mesh.
+use super::{
+    Element, Face, InsideOut, Matrices, Steel, add_stiffness, add_weight, face::Triangle, jacobian,
+};
+use nalgebra::{DMatrix, SMatrix, Vector3};
+
+/// Nodes of one element.
+const NODES: usize = 10;
+/// Displacements of one element, node by node.
+const DOFS: usize = 3 * NODES;
+/// Ends of the edges that nodes 4 to 9 lie on, in Gmsh's order.
+pub(super) const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [2, 3], [1, 3]];
+/// Slopes of the volume coordinates along the reference coordinates, which are the last three.
+const DIRECTIONS: [Vector3<f64>; 4] = [
+    Vector3::new(-1.0, -1.0, -1.0),
+    Vector3::new(1.0, 0.0, 0.0),
+    Vector3::new(0.0, 1.0, 0.0),
+    Vector3::new(0.0, 0.0, 1.0),
+];
+
+/// The 10-node tetrahedron.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tetrahedron;
+
+/// Volume coordinates of a point.
+fn volume_coordinates(&[r, s, t]: &[f64; 3]) -> [f64; 4] {
+    [1.0 - r - s - t, r, s, t]
+}
+
+/// Shape functions at a point.
+fn shape(point: &[f64; 3]) -> [f64; NODES] {
+    let l = volume_coordinates(point);
+    std::array::from_fn(|node| match node.checked_sub(4) {
+        None => l[node] * (2.0 * l[node] - 1.0),
+        Some(edge) => {
+            let [a, b] = EDGES[edge];
+            4.0 * l[a] * l[b]
+        }
+    })
+}
+
+/// Their slopes in the reference tetrahedron.
+fn slopes(point: &[f64; 3]) -> [Vector3<f64>; NODES] {
+    let l = volume_coordinates(point);
+    std::array::from_fn(|node| match node.checked_sub(4) {
+        None => DIRECTIONS[node] * (4.0 * l[node] - 1.0),
+        Some(edge) => {
+            let [a, b] = EDGES[edge];
+            DIRECTIONS[a] * (4.0 * l[b]) + DIRECTIONS[b] * (4.0 * l[a])
+        }
+    })
+}
+
+/// A point with three equal volume coordinates `rest`, and the corner where the fourth is.
+fn towards(corner: usize, rest: f64) -> [f64; 3] {
+    let at = |k: usize| {
+        if k == corner { 1.0 - 3.0 * rest } else { rest }
+    };
+    [at(1), at(2), at(3)]
+}
+
+/// Integration points of degree 2 and their shares of the volume.
+pub(super) fn degree_2() -> impl Iterator<Item = ([f64; 3], f64)> {
+    let rest = (5.0 - 5.0_f64.sqrt()) / 20.0;
+    (0..4).map(move |corner| (towards(corner, rest), 0.25))
+}
+
+/// Integration points of degree 5 and their shares of the volume: the centre, four points towards
+/// the faces, four towards the corners, six towards the edges.
+pub(super) fn degree_5() -> impl Iterator<Item = ([f64; 3], f64)> {
+    let root = 15.0_f64.sqrt();
+    let corners = [-1.0, 1.0].into_iter().flat_map(move |sign| {
+        let rest = (7.0 - sign * root) / 34.0;
+        let share = (2665.0 + sign * 14.0 * root) / 37800.0;
+        (0..4).map(move |corner| (towards(corner, rest), share))
+    });
+    let edges = EDGES.into_iter().map(move |edge| {
+        let at = |k: usize| {
+            let sign = if edge.contains(&k) { 1.0 } else { -1.0 };
+            (5.0 + sign * root) / 20.0
+        };
+        ([at(1), at(2), at(3)], 10.0 / 189.0)
+    });
+    std::iter::once(([0.25; 3], 16.0 / 135.0))
+        .chain(corners)
+        .chain(edges)
+}
+
+impl Element for Tetrahedron {
+    fn nodes(&self) -> usize {
+        NODES
+    }
+
+    fn face(&self) -> &'static dyn Face {
+        &Triangle
+    }
+
+    fn center(&self) -> [f64; 3] {
+        [0.25; 3]
+    }
+
+    fn shape(&self, point: &[f64; 3]) -> Vec<f64> {
+        shape(point).to_vec()
+    }
+
+    fn slopes(&self, point: &[f64; 3]) -> Vec<Vector3<f64>> {
+        slopes(point).to_vec()
+    }
+
+    fn outside(&self, point: &[f64; 3]) -> f64 {
+        let least = volume_coordinates(point).into_iter();
+        -least.fold(f64::INFINITY, f64::min)
+    }
+
+    fn matrices(&self, nodes: &[[f64; 3]], steel: &Steel) -> Result<Matrices, InsideOut> {
+        let mut stiffness = Box::new(SMatrix::<f64, DOFS, DOFS>::zeros());
+        for (point, share) in degree_2() {
+            let slopes = slopes(&point);
+            let jacobian = jacobian(&slopes, nodes);
+            let inverse = jacobian.try_inverse().ok_or(InsideOut)?;
+            let volume = positive(jacobian.determinant())? * share;
+            let gradients = slopes.map(|slope| inverse * slope);
+            add_stiffness(&mut stiffness, &gradients, steel.lame(), volume);
+        }
+        let mut weight = [[0.0; NODES]; NODES];
+        for (point, share) in degree_5() {
+            let volume = positive(jacobian(&slopes(&point), nodes).determinant())? * share;
+            add_weight(&mut weight, &shape(&point), steel.density * volume);
+        }
+        let mass = |row: usize, column: usize| {
+            if row % 3 == column % 3 {
+                weight[row / 3][column / 3]
+            } else {
+                0.0
+            }
+        };
+        Ok(Matrices {
+            stiffness: DMatrix::from_column_slice(DOFS, DOFS, stiffness.as_slice()),
+            mass: DMatrix::from_fn(DOFS, DOFS, mass),
+        })
+    }
+}
+
+/// Volume of a tetrahedron by the determinant of its Jacobian.
+fn positive(determinant: f64) -> Result<f64, InsideOut> {
+    if determinant > 0.0 {
+        Ok(determinant / 6.0)
+    } else {
+        Err(InsideOut)
+    }
+}

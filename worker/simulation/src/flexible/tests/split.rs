@@ -1,0 +1,101 @@
+//! Bricks cut into 10-node tetrahedra, face to face: a mesh with a known answer for the other kind.
+//!
+//! Every brick is a cone from its node of lowest rank over the faces that do not hold it; every face
+//! is cut from its own node of lowest rank, so that neighbours cut it alike. Ranks that are equal on
+//! both sides of a plane give a mesh that is its own mirror image in it.
+use std::collections::BTreeMap;
+
+/// Faces of a brick, nodes counterclockwise as seen from outside.
+const FACES: [[usize; 4]; 6] = [
+    [0, 3, 2, 1],
+    [4, 5, 6, 7],
+    [0, 1, 5, 4],
+    [1, 2, 6, 5],
+    [2, 3, 7, 6],
+    [3, 0, 4, 7],
+];
+
+/// Corners of the edges that further nodes lie on: of a triangle, of a tetrahedron, as Gmsh counts.
+const OF_TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+const OF_TETRAHEDRON: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [3, 0], [2, 3], [3, 1]];
+
+/// A mesh that is being cut.
+pub(crate) struct Split<R> {
+    /// Positions \[m\]: the bricks' nodes, then the middles of edges.
+    pub(crate) nodes: Vec<[f64; 3]>,
+    /// Nodes in the middle of edges, by the edges' ends in ascending order.
+    pub(crate) middles: BTreeMap<[usize; 2], usize>,
+    rank: R,
+}
+
+impl<R: Fn(usize) -> usize> Split<R> {
+    /// A mesh of bricks by its nodes and their ranks, of which no two in a brick are equal.
+    pub(crate) const fn new(nodes: Vec<[f64; 3]>, rank: R) -> Self {
+        Self {
+            nodes,
+            middles: BTreeMap::new(),
+            rank,
+        }
+    }
+
+    /// Tetrahedra of bricks, 10 nodes each.
+    pub(crate) fn tetrahedra(&mut self, bricks: &[usize]) -> Vec<usize> {
+        let mut tetrahedra = Vec::new();
+        for brick in bricks.chunks_exact(8) {
+            let apex = self.lowest(brick);
+            let faces = FACES.map(|face| face.map(|k| brick[k]));
+            for face in faces.iter().filter(|face| !face.contains(&apex)) {
+                for [a, b, c] in self.corners(face) {
+                    tetrahedra.extend(self.with_middles([a, c, b, apex], &OF_TETRAHEDRON));
+                }
+            }
+        }
+        tetrahedra
+    }
+
+    /// Triangles of faces, 6 nodes each.
+    pub(crate) fn triangles(&mut self, faces: &[usize]) -> Vec<usize> {
+        let mut triangles = Vec::new();
+        for face in faces.chunks_exact(4) {
+            for corners in self.corners(face) {
+                triangles.extend(self.with_middles(corners, &OF_TRIANGLE));
+            }
+        }
+        triangles
+    }
+
+    fn lowest(&self, nodes: &[usize]) -> usize {
+        let ranked = nodes.iter().copied().min_by_key(|&node| (self.rank)(node));
+        ranked.expect("an element has nodes")
+    }
+
+    /// A face in two, the way round that it has.
+    fn corners(&self, face: &[usize]) -> [[usize; 3]; 2] {
+        let first = self.lowest(face);
+        let at = face.iter().position(|&node| node == first);
+        let at = at.expect("the lowest is one of them");
+        let node = |k: usize| face[(at + k) % 4];
+        [[first, node(1), node(2)], [first, node(2), node(3)]]
+    }
+
+    fn with_middles<const N: usize>(
+        &mut self,
+        nodes: [usize; N],
+        edges: &[[usize; 2]],
+    ) -> Vec<usize> {
+        let mut all = nodes.to_vec();
+        for edge in edges {
+            let mut ends = edge.map(|k| nodes[k]);
+            ends.sort_unstable();
+            let count = self.nodes.len();
+            let middle = *self.middles.entry(ends).or_insert(count);
+            if middle == count {
+                let [a, b] = ends.map(|node| self.nodes[node]);
+                let half = |k: usize| 0.5 * (a[k] + b[k]);
+                self.nodes.push([half(0), half(1), half(2)]);
+            }
+            all.push(middle);
+        }
+        all
+    }
+}
