@@ -1,4 +1,8 @@
 //! An export needs no more memory for many results than for few: rows stream through it.
+#![expect(
+    clippy::unwrap_used,
+    reason = "helpers of a test: what cannot be written or read has failed"
+)]
 use coordinator::{
     case::{Overrides, load},
     journal::{self, Journal},

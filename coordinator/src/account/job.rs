@@ -36,15 +36,12 @@ struct Kind {
 impl Jobs {
     pub(super) fn add(&mut self, finished: &Finished) {
         let outcome = &finished.outcome;
-        let name = match outcome {
-            Outcome::Failed(failure) => {
-                self.given_up.push((finished.job().0, failure.to_string()));
-                return;
-            }
-            done => done.kind(),
-        };
+        if let Outcome::Failed(failure) = outcome {
+            self.given_up.push((finished.job().0, failure.to_string()));
+            return;
+        }
         let failed = matches!(outcome.verdict(), Some(Verdict::Failed { .. }));
-        let kind = self.kinds.entry(name).or_default();
+        let kind = self.kinds.entry(outcome.kind()).or_default();
         kind.times_us.push(finished.wall_us);
         kind.machine_failed += u64::from(failed);
     }

@@ -2,7 +2,7 @@
 use super::{
     EXIT_CODES, Output, OutputChoice, bus, integrators, json::SilentOutput, output, whole_box,
 };
-use crate::runtime::{self, BenchPlan, Crew};
+use crate::runtime::{self, BenchPlan, Crew, SilentPlan};
 use clap::{Args, Subcommand};
 use link::locator::Locator;
 
@@ -44,8 +44,11 @@ Examples:
         result_bytes: u32,
         /// Measure too, in turn without and with them, what so many connections cost that say
         /// nothing and are opened again whenever the coordinator closes them.
-        #[arg(long, value_name = "N", default_value_t = 0, conflicts_with = "sessions", env = "HORSEHEAD_SILENT", value_parser = clap::value_parser!(u32).range(..=8000))]
-        silent: u32,
+        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_SILENT", value_parser = clap::value_parser!(u32).range(1..=8000))]
+        silent: Option<u32>,
+        /// How often, with --silent: 8 s without and 8 s with them each time.
+        #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_TURNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
+        turns: u32,
         #[command(flatten)]
         output: OutputChoice,
     },
@@ -91,6 +94,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             jobs,
             result_bytes,
             silent,
+            turns,
             output: OutputChoice { output },
         } => {
             let (crew, workers, of_what) = match (sessions, connections) {
@@ -115,7 +119,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 workers: workers as usize,
                 jobs: *jobs,
                 result_bytes: *result_bytes,
-                silent: *silent as usize,
+                silent: silent.map(|connections| SilentPlan {
+                    connections: connections as usize,
+                    turns: *turns as usize,
+                }),
             };
             dispatch(plan, of_what, *output)
         }

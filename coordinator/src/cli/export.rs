@@ -313,7 +313,7 @@ fn explained(error: StoreError) -> anyhow::Error {
     let help = match &error {
         StoreError::Foreign { .. } => "choose another place with --to, or replace it with --force",
         StoreError::Io { .. } => "choose a place that can be written, with --to",
-        _ => return error.into(),
+        StoreError::Table { .. } | StoreError::Journal(_) => return error.into(),
     };
     Usage {
         message: error.to_string(),

@@ -13,6 +13,7 @@ use crate::{
 use protocol::{
     event::{Event, RunHeader},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
+    job::Outcome,
     message::Attempt,
 };
 use search::{space::Space, strategy::preset};
@@ -50,7 +51,7 @@ impl Evaluator for Scribe {
         let finished = Finished {
             attempt: Attempt {
                 job: JobId(id),
-                attempt: AttemptId(1 << 16 | (id % 3) as u32),
+                attempt: AttemptId(1 << 16 | u32::try_from(id % 3).unwrap()),
             },
             work: work_hash(&self.jobs[&id]),
             worker: Some(WorkerId(7)),
@@ -212,12 +213,13 @@ fn three_forms_hold_what_the_search_saw_and_leave_no_trace() {
         assert_eq!(jobs[row], i64::try_from(finished.job().0).unwrap());
         assert_eq!(attempts[row], jobs[row] % 3 + 1);
     }
-    let scored = recorded
-        .iter()
-        .map(|(_, finished)| match &finished.outcome {
-            protocol::job::Outcome::Scored(evaluation) => evaluation.channels.len(),
-            _ => 0,
-        });
+    let scored = recorded.iter().map(|(_, finished)| {
+        if let Outcome::Scored(evaluation) = &finished.outcome {
+            evaluation.channels.len()
+        } else {
+            0
+        }
+    });
     assert_eq!(tables["scores"].1.len(), scored.sum::<usize>());
     let kinds: std::collections::BTreeSet<String> = column(tables, "evaluations", "verdict")
         .iter()

@@ -4,7 +4,7 @@ mod sessions;
 mod silent;
 
 pub use sessions::connect;
-pub use silent::{SilentResult, keep_silent};
+pub use silent::{SilentPlan, SilentResult, keep_silent};
 
 use super::{Dispatch, DispatchError, DispatchOptions};
 use protocol::{id::JobId, job::Job};
@@ -51,9 +51,9 @@ pub struct BenchPlan {
     pub jobs: u64,
     /// Bytes of each result; a residual vector has about 10,000, a score 300.
     pub result_bytes: u32,
-    /// Connections that say nothing, to be measured beside; 0 for none. Not with
-    /// [`Crew::Sessions`], which have no address.
-    pub silent: usize,
+    /// Connections that say nothing, to be measured beside. Not with [`Crew::Sessions`], which
+    /// have no address.
+    pub silent: Option<SilentPlan>,
 }
 
 /// What the bus costs.
@@ -145,8 +145,8 @@ pub async fn bench(
     let cpu = marks[marks.len() - 1].saturating_sub(marks[0]);
     let coordinator_rss_mib = resident_mib();
     let silent = match plan.silent {
-        0 => None,
-        count => Some(silent::measure(&mut dispatch, &mut load, count).await?),
+        Some(silent) => Some(silent::measure(&mut dispatch, &mut load, silent).await?),
+        None => None,
     };
     dispatch.close().await?;
     drop(crew);

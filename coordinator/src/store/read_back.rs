@@ -129,12 +129,15 @@ fn csv(folder: &Path) -> Tables {
 }
 
 fn parquet(folder: &Path) -> Tables {
-    let value = |field: &Field| match field {
-        Field::Long(number) => Value::Integer(*number),
-        Field::Double(number) => Value::Real(*number),
-        Field::Str(text) => Value::Text(text.clone()),
-        other => {
-            assert_eq!(*other, Field::Null);
+    let value = |field: &Field| {
+        if let Field::Long(number) = field {
+            Value::Integer(*number)
+        } else if let Field::Double(number) = field {
+            Value::Real(*number)
+        } else if let Field::Str(text) = field {
+            Value::Text(text.clone())
+        } else {
+            assert_eq!(*field, Field::Null);
             Value::Null
         }
     };

@@ -105,13 +105,12 @@ impl Sink for Database {
             connection,
             tables,
         } = *self;
-        let mut end = String::new();
-        for (name, _, by_job) in tables {
-            if by_job {
-                end += &format!("CREATE INDEX \"{name}_{JOB}\" ON \"{name}\" (\"{JOB}\"); ");
-            }
-        }
-        end += "COMMIT";
+        let by_job = tables.iter().filter(|(_, _, by_job)| *by_job);
+        let index = |(name, _, _): &(&str, String, bool)| {
+            format!("CREATE INDEX \"{name}_{JOB}\" ON \"{name}\" (\"{JOB}\"); ")
+        };
+        let mut end: String = by_job.map(index).collect();
+        end.push_str("COMMIT");
         let failed = |error| StoreError::table(&path, error);
         connection.execute_batch(&end).map_err(failed)?;
         connection.close().map_err(|(_, error)| failed(error))?;

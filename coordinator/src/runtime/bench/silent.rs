@@ -22,8 +22,6 @@ use tokio::{
     time::sleep,
 };
 
-/// How often it is measured without and with them.
-const TURNS: usize = 5;
 /// How long each time: twice as long as the coordinator bears with those that say nothing.
 const BLOCK: Duration = Duration::from_secs(8);
 /// How long the connections may take to open, and to be gone.
@@ -32,6 +30,15 @@ const SETTLING: Duration = Duration::from_secs(30);
 const OPENING: usize = 64;
 /// Pause before a connection that failed is tried again.
 const AGAIN: Duration = Duration::from_millis(50);
+
+/// Connections that say nothing, to be measured beside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SilentPlan {
+    /// How many.
+    pub connections: usize,
+    /// How often it is measured without and with them; once at least.
+    pub turns: usize,
+}
 
 /// What silent connections cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,12 +74,13 @@ struct Block {
 pub(super) async fn measure(
     dispatch: &mut Dispatch,
     load: &mut Load,
-    connections: usize,
+    SilentPlan { connections, turns }: SilentPlan,
 ) -> Result<SilentResult, DispatchError> {
+    let turns = turns.max(1);
     let at = dispatch.listening().into_iter().next().unwrap_or_default();
     let (mut held, mut reopened) = (connections, 0);
     let mut blocks = Vec::new();
-    for _ in 0..TURNS {
+    for _ in 0..turns {
         let own = open_files();
         let without = block(dispatch, load).await?;
         let silent = Silent::start(connections, &at).map_err(DispatchError::Start)?;
@@ -90,17 +98,17 @@ pub(super) async fn measure(
         all.sort_by(f64::total_cmp);
         all
     };
-    let median = |of| each(of)[TURNS / 2];
+    let median = |of| each(of)[turns / 2];
     let ratios = each(|(without, beside)| beside.jobs_per_s / without.jobs_per_s);
     Ok(SilentResult {
         connections,
         held,
         reopened,
-        turns: TURNS,
+        turns,
         jobs_per_s_without: median(|(without, _)| without.jobs_per_s),
         jobs_per_s_beside: median(|(_, beside)| beside.jobs_per_s),
-        rate_ratio: ratios[TURNS / 2],
-        rate_ratio_range: (ratios[0], ratios[TURNS - 1]),
+        rate_ratio: ratios[turns / 2],
+        rate_ratio_range: (ratios[0], ratios[turns - 1]),
         cpu_ratio: median(|(without, beside)| beside.cpu_s_per_job / without.cpu_s_per_job),
     })
 }
