@@ -2,7 +2,7 @@
 //!
 //! Data flows one way: a case folder is read and checked ([`case`]), a search strategy proposes
 //! individuals, the sans-I/O [`core`] leases them to workers, the [`journal`] records what came
-//! back, the [`account`] of slot time and the [`report`] show it. [`study`] is the loop from the first proposal to the
+//! back, the [`account`] of slot time and the [`report`] show it, the [`store`] makes tables of it for queries. [`study`] is the loop from the first proposal to the
 //! comparison of the result, [`cli`] the commands around it, [`runtime`] the only asynchronous
 //! glue. Nothing here links the dynamics.
 pub mod account;
@@ -12,4 +12,5 @@ pub mod core;
 pub mod journal;
 pub mod report;
 pub mod runtime;
+pub mod store;
 pub mod study;

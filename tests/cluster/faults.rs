@@ -203,6 +203,7 @@ async fn the_bench_measures_the_bus() {
             workers: 2,
             jobs: 400,
             result_bytes: 1000,
+            silent: None,
         };
         let result = bench(options(&folder, None, 0), plan).await.unwrap();
         eprintln!("{result:?}");

@@ -35,21 +35,15 @@ struct Kind {
 
 impl Jobs {
     pub(super) fn add(&mut self, finished: &Finished) {
-        let (kind, verdict) = match &finished.outcome {
-            Outcome::Scored(evaluation) => ("score", Some(evaluation.verdict)),
-            Outcome::Simulated(simulation) => ("simulate", Some(simulation.verdict)),
-            Outcome::Observed(observation) => ("observe", Some(observation.verdict)),
-            Outcome::HeadReduced(_) => ("reduce_head", None),
-            Outcome::Described(_) => ("describe", None),
-            Outcome::Nothing(_) => ("nothing", None),
-            Outcome::Failed(failure) => {
-                self.given_up.push((finished.job().0, failure.to_string()));
-                return;
-            }
-        };
-        let kind = self.kinds.entry(kind).or_default();
+        let outcome = &finished.outcome;
+        if let Outcome::Failed(failure) = outcome {
+            self.given_up.push((finished.job().0, failure.to_string()));
+            return;
+        }
+        let failed = matches!(outcome.verdict(), Some(Verdict::Failed { .. }));
+        let kind = self.kinds.entry(outcome.kind()).or_default();
         kind.times_us.push(finished.wall_us);
-        kind.machine_failed += u64::from(matches!(verdict, Some(Verdict::Failed { .. })));
+        kind.machine_failed += u64::from(failed);
     }
 
     /// By kind, and the jobs that were given up with the reason.

@@ -61,48 +61,68 @@ pub struct RunAccount {
 /// # Errors
 /// [`JournalError::Io`] if it cannot be read, [`JournalError::Version`] if another version wrote it.
 pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
-    let mut account = RunAccount::default();
-    let mut rows: BTreeMap<(WorkerId, u32), WorkerAccount> = BTreeMap::new();
-    let mut left: BTreeMap<String, u64> = BTreeMap::new();
-    let mut jobs = job::Jobs::default();
-    let mut lasted: BTreeMap<u32, u64> = BTreeMap::new();
-    let report = journal::fold(path, |_, event| match event {
-        Event::Opened { .. } => account.processes += 1,
-        Event::Finished(finished) => {
-            account.results += 1;
-            jobs.add(&finished);
-        }
-        Event::Left { reason, .. } => *left.entry(reason).or_default() += 1,
-        Event::Accounted(said) => {
-            let longest = lasted.entry(said.epoch).or_default();
-            *longest = said.at_ms.max(*longest);
-            for row in said.workers {
-                // the last word about a worker in a process counts
-                rows.insert((row.worker, said.epoch), row);
+    let mut folding = Folding::default();
+    let report = journal::fold(path, |_, event| folding.apply(&event))?;
+    Ok(folding.finish(report.damage))
+}
+
+/// An account while the journal is read, for whoever reads it for other reasons too.
+#[derive(Debug, Default)]
+pub struct Folding {
+    account: RunAccount,
+    rows: BTreeMap<(WorkerId, u32), WorkerAccount>,
+    left: BTreeMap<String, u64>,
+    jobs: job::Jobs,
+    /// How long each process lasted \[ms\].
+    lasted: BTreeMap<u32, u64>,
+}
+
+impl Folding {
+    /// Takes the next event.
+    pub fn apply(&mut self, event: &Event) {
+        match event {
+            Event::Opened { .. } => self.account.processes += 1,
+            Event::Finished(finished) => {
+                self.account.results += 1;
+                self.jobs.add(finished);
             }
-        }
-        Event::Begun { .. } | Event::Joined { .. } | Event::Closed | Event::Proved { .. } => {}
-    })?;
-    account.damage = report.damage;
-    account.wall_s = lasted.values().sum::<u64>() as f64 / 1e3;
-    (account.jobs, account.given_up) = jobs.counted();
-    for row in rows.into_values() {
-        account.spent.add(&row.spent);
-        account.failed += row.failed;
-        match account.workers.last_mut() {
-            Some(last) if last.worker == row.worker => {
-                last.done += row.done;
-                last.failed += row.failed;
-                last.spent.add(&row.spent);
+            Event::Left { reason, .. } => *self.left.entry(reason.clone()).or_default() += 1,
+            Event::Accounted(said) => {
+                let longest = self.lasted.entry(said.epoch).or_default();
+                *longest = said.at_ms.max(*longest);
+                for row in &said.workers {
+                    // the last word about a worker in a process counts
+                    self.rows.insert((row.worker, said.epoch), row.clone());
+                }
             }
-            Some(_) | None => account.workers.push(row),
+            Event::Begun { .. } | Event::Joined { .. } | Event::Closed | Event::Proved { .. } => {}
         }
     }
-    account.left = left.into_iter().collect();
-    account
-        .left
-        .sort_by_key(|(_, times)| std::cmp::Reverse(*times));
-    Ok(account)
+
+    /// The account, with what of the journal could not be read.
+    pub fn finish(self, damage: Vec<Damage>) -> RunAccount {
+        let mut account = self.account;
+        account.damage = damage;
+        account.wall_s = self.lasted.values().sum::<u64>() as f64 / 1e3;
+        (account.jobs, account.given_up) = self.jobs.counted();
+        for row in self.rows.into_values() {
+            account.spent.add(&row.spent);
+            account.failed += row.failed;
+            match account.workers.last_mut() {
+                Some(last) if last.worker == row.worker => {
+                    last.done += row.done;
+                    last.failed += row.failed;
+                    last.spent.add(&row.spent);
+                }
+                Some(_) | None => account.workers.push(row),
+            }
+        }
+        account.left = self.left.into_iter().collect();
+        account
+            .left
+            .sort_by_key(|(_, times)| std::cmp::Reverse(*times));
+        account
+    }
 }
 
 impl RunAccount {

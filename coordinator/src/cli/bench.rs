@@ -1,6 +1,8 @@
 //! `horsehead bench`: what the machinery costs without physics, and what accuracy costs with it.
-use super::{EXIT_CODES, Output, OutputChoice, bus, integrators, output, whole_box};
-use crate::runtime::{self, BenchPlan, Crew};
+use super::{
+    EXIT_CODES, Output, OutputChoice, bus, integrators, json::SilentOutput, output, whole_box,
+};
+use crate::runtime::{self, BenchPlan, Crew, SilentPlan};
 use clap::{Args, Subcommand};
 use link::locator::Locator;
 
@@ -19,6 +21,7 @@ Examples:
   horsehead bench dispatch --workers 2 --jobs 20000
   horsehead bench dispatch --connections 512
   horsehead bench dispatch --sessions 512 --jobs 1000000 --result-bytes 300
+  horsehead bench dispatch --silent 5000
 
 {EXIT_CODES}"))]
     Dispatch {
@@ -39,6 +42,13 @@ Examples:
         /// Bytes of each result: a score has about 300, one with its residual 10,000.
         #[arg(long, value_name = "N", default_value_t = 10_000, env = "HORSEHEAD_RESULT_BYTES", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
         result_bytes: u32,
+        /// Measure too, in turn without and with them, what so many connections cost that say
+        /// nothing and are opened again whenever the coordinator closes them.
+        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_SILENT", value_parser = clap::value_parser!(u32).range(1..=8000))]
+        silent: Option<u32>,
+        /// How often, with --silent: 8 s without and 8 s with them each time.
+        #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_TURNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
+        turns: u32,
         #[command(flatten)]
         output: OutputChoice,
     },
@@ -58,6 +68,20 @@ Example:
         #[arg(value_name = "N")]
         sessions: usize,
     },
+    /// Hold connections that say nothing, for `bench dispatch --silent`, until standard input ends.
+    #[command(hide = true, after_help = format!("\
+Example:
+  horsehead bench silent tcp/127.0.0.1:7447 5000
+
+{EXIT_CODES}"))]
+    Silent {
+        /// Address to dial.
+        #[arg(value_name = "LOCATOR", value_parser = Locator::parse)]
+        connect: Locator,
+        /// How many.
+        #[arg(value_name = "N")]
+        connections: usize,
+    },
 }
 
 /// Measures and shows.
@@ -69,6 +93,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             connections,
             jobs,
             result_bytes,
+            silent,
+            turns,
             output: OutputChoice { output },
         } => {
             let (crew, workers, of_what) = match (sessions, connections) {
@@ -93,6 +119,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 workers: workers as usize,
                 jobs: *jobs,
                 result_bytes: *result_bytes,
+                silent: silent.map(|connections| SilentPlan {
+                    connections: connections as usize,
+                    turns: *turns as usize,
+                }),
             };
             dispatch(plan, of_what, *output)
         }
@@ -101,6 +131,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         What::Sessions { connect, sessions } => {
             bus::block_on(async { Ok(runtime::connect(connect, *sessions).await?) })
         }
+        What::Silent {
+            connect,
+            connections,
+        } => bus::block_on(async { Ok(runtime::keep_silent(connect, *connections).await?) }),
     }
 }
 
@@ -111,7 +145,7 @@ fn dispatch(plan: BenchPlan, of_what: &str, output: Output) -> anyhow::Result<()
     }
     let result = bus::block_on(bus::bench(plan))?;
     let table = || {
-        format!(
+        let mut text = format!(
             "{} workers   joined within {:.2} s\n\
              round trip   {:>10.3} ms median, {:.3} ms at 99 %\n\
              throughput   {:>10.0} jobs/s\n\
@@ -125,7 +159,28 @@ fn dispatch(plan: BenchPlan, of_what: &str, output: Output) -> anyhow::Result<()
             result.coordinator_cpu_us_per_job,
             result.cost_ratio,
             result.coordinator_rss_mib
-        )
+        );
+        if let Some(silent) = &result.silent {
+            text += &beside(silent);
+        }
+        text
     };
     output::print(output, table, &result)
+}
+
+fn beside(silent: &SilentOutput) -> String {
+    let [smallest, largest] = silent.rate_ratio_range;
+    format!(
+        "beside {} silent connections ({} held at least, {} opened again in {} blocks):\n\
+         throughput   {:>10.0} jobs/s, {:.0} without: {:.3} times, {smallest:.3} to {largest:.3}\n\
+         coordinator  {:>10.2} times the CPU per job\n",
+        silent.connections,
+        silent.held,
+        silent.reopened,
+        silent.turns,
+        silent.jobs_per_s_beside,
+        silent.jobs_per_s_without,
+        silent.rate_ratio,
+        silent.cpu_ratio,
+    )
 }

@@ -1,19 +1,19 @@
 //! Joins the commands to the dispatcher: the only file of the command line that names it.
 use super::{
     Door, interrupt,
-    json::{BenchOutput, RoundTrip},
+    json::{BenchOutput, RoundTrip, SilentOutput},
     problem::Usage,
 };
 use crate::{
     journal::JournalError,
-    runtime::{self, BenchPlan, Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
+    runtime::{
+        self, BenchPlan, Dispatch, DispatchError, DispatchOptions, RunHeader, SilentResult,
+        Snapshot,
+    },
     study::{Completed, Crew, Evaluator, EvaluatorError, Stop, StudyError, WorkerStatus},
 };
 use anyhow::Context as _;
-use link::{
-    LinkError,
-    memory::{Faults, Hub},
-};
+use link::LinkError;
 use protocol::{
     case::Case,
     id::{ContentHash, JobId},
@@ -75,16 +75,6 @@ impl Bus {
     /// How many results earlier sessions left in the journal.
     pub(super) const fn recorded(&self) -> usize {
         self.dispatch.recorded()
-    }
-
-    /// Opens the journal without anybody who could evaluate: only recorded results come back.
-    /// Needs a running asynchronous runtime.
-    pub(super) fn replay(options: Options, case: &Case) -> anyhow::Result<Self> {
-        let options = options.for_dispatch(case)?;
-        let dispatch = Dispatch::over(&options, |_, blob| Hub::new(Faults::NONE, blob).0);
-        Ok(Self {
-            dispatch: dispatch.map_err(|error| refuse(&error))?,
-        })
     }
 
     /// Tells the workers to end and waits for the local ones.
@@ -274,7 +264,23 @@ pub(super) async fn bench(plan: BenchPlan) -> anyhow::Result<BenchOutput> {
         coordinator_cpu_us_per_job: result.coordinator_cpu_us_per_job,
         cost_ratio: result.cost_ratio,
         coordinator_rss_mib: result.coordinator_rss_mib,
+        silent: result.silent.map(silent),
     })
+}
+
+fn silent(result: SilentResult) -> SilentOutput {
+    let (smallest, largest) = result.rate_ratio_range;
+    SilentOutput {
+        connections: result.connections,
+        held: result.held,
+        reopened: result.reopened,
+        turns: result.turns,
+        jobs_per_s_without: result.jobs_per_s_without,
+        jobs_per_s_beside: result.jobs_per_s_beside,
+        rate_ratio: result.rate_ratio,
+        rate_ratio_range: [smallest, largest],
+        cpu_ratio: result.cpu_ratio,
+    }
 }
 
 /// A case in which everything is zero or empty: jobs that do nothing need no more. Its encoding

@@ -185,7 +185,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         door: arguments.door.clone(),
         local_workers,
         resumed,
-        replay: false,
     };
     let result = bus::block_on(async {
         let mut stop = interrupt::listen();

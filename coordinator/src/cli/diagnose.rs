@@ -1,19 +1,19 @@
 //! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
 //! that is, and how far the gap closes.
 use super::{
-    Door, EXIT_CODES, Output, OutputChoice,
+    Door, EXIT_CODES, OutputChoice,
     answer::Answer,
-    bus, cores, diagnosis_json, interrupt, output,
+    bus, cores, interrupt, output,
     problem::Usage,
     progress::StageDisplay,
     run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, command_line},
 };
 use crate::{
     case::{Loaded, Overrides, load_with_notes, read_genes},
-    study::{self, Crew, Diagnosed, StudyError},
+    study::{self, Diagnosed, Evaluator, StudyError},
 };
 use clap::Args;
-use discrepancy::{diagnose::Inputs, laboratory::Stage, settings::Settings};
+use discrepancy::{diagnose::Inputs, settings::Settings};
 use protocol::{announce::EffectDescriptor, case::Case, job::Refinement};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
@@ -77,7 +77,7 @@ pub(super) struct Arguments {
 
 /// Everything that decides a diagnosis beside case and seed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct Decides {
+pub(super) struct Decides {
     /// Thresholds.
     thresholds: Settings,
     /// Where the recalibration starts (declared units), if that is known.
@@ -170,68 +170,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         answer.add(&target.folder.join("case.toml"))?;
     }
     answer.print(arguments.output.output, &object)
-}
-
-/// Writes the files of a finished diagnosis again, from its journal.
-pub(super) fn again(path: &Path, output: Output) -> anyhow::Result<()> {
-    let (folder, manifest, case) = RunFolder::open::<Decides>(path, DIAGNOSE)?;
-    folder.expect_replayable(&manifest)?;
-    let own = PathBuf::from(&manifest.measured);
-    let replaced = std::path::absolute(&own)? != manifest.case_folder;
-    let overrides = Overrides {
-        measured: replaced.then_some(own),
-    };
-    // a run keeps its case, but not the cycles of its records
-    let loaded = load_with_notes(&manifest.case_folder, &overrides)?;
-    if bus::case_hash(&loaded.case)? != bus::case_hash(&case)? {
-        return Err(Usage {
-            message: format!(
-                "the case has changed since {} was made, and its records are read anew",
-                path.display()
-            ),
-            help: format!(
-                "put {} back as it was, or diagnose it again with another --run",
-                manifest.case_folder.display()
-            ),
-        }
-        .into());
-    }
-    let (mut diagnosed, library) = bus::block_on(async {
-        let mut stop = interrupt::listen();
-        let options = bus::Options {
-            run_dir: path.to_owned(),
-            door: Door::default(),
-            local_workers: 0,
-            kind: DIAGNOSE.to_owned(),
-            settings: manifest.settings_json()?,
-        };
-        let mut bus = bus::Bus::replay(options, &case)?;
-        let found = diagnose(&mut bus, &manifest, &loaded, &mut Unwatched, &mut stop).await;
-        let closed = bus.close().await;
-        let found = found?;
-        closed?;
-        anyhow::Ok(found)
-    })?;
-    // reading takes a moment: the times are those of the session that computed
-    let earlier: diagnosis_json::Times = folder.read_json("result.json")?;
-    earlier.restore(&mut diagnosed.accounts);
-    let answer = Answer {
-        folder: &folder,
-        manifest: &manifest,
-        loaded: &loaded,
-        diagnosed: &diagnosed,
-        library: &library,
-        wall_s: manifest.wall_s,
-    };
-    let object = answer.write()?;
-    answer.print(output, &object)
-}
-
-/// Shows nothing.
-struct Unwatched;
-
-impl study::Watch for Unwatched {
-    fn progress(&mut self, _: Stage, _: u64, _: usize, _: &dyn Fn() -> Crew) {}
 }
 
 /// The case, and where the recalibration starts.
@@ -332,14 +270,15 @@ fn experiment(
     })
 }
 
-async fn diagnose(
-    bus: &mut bus::Bus,
+/// Learns the library and diagnoses, on whatever evaluates.
+pub(super) async fn diagnose<E: Evaluator>(
+    evaluator: &mut E,
     manifest: &Manifest<Decides>,
     loaded: &Loaded,
     display: &mut dyn study::Watch,
     stop: &mut study::Stop,
 ) -> anyhow::Result<(Diagnosed, Vec<EffectDescriptor>)> {
-    let library = study::library(bus, stop).await?;
+    let library = study::library(evaluator, stop).await?;
     let thresholds = &manifest.settings.thresholds;
     for id in &thresholds.without {
         if library.iter().all(|effect| effect.id != *id) {
@@ -353,7 +292,7 @@ async fn diagnose(
         }
     }
     let inputs = inputs(loaded, manifest, library)?;
-    let diagnosed = study::diagnose_on(bus, &inputs, display, stop).await?;
+    let diagnosed = study::diagnose_on(evaluator, &inputs, display, stop).await?;
     Ok((diagnosed, inputs.library))
 }
 

@@ -1,6 +1,6 @@
-//! From a run folder to its result: the search (or its replay), the comparison, the files.
+//! From a run folder to its result: the search (or its repetition), the comparison, the files.
 use super::{
-    Door, Output, bus,
+    Door, Output, bus, export,
     json::{self, Both, CalibrateOutput},
     output,
     run_folder::{Manifest, RunFolder, gene_file},
@@ -11,7 +11,7 @@ use crate::{
         self, Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, WorkerUse,
         table,
     },
-    study::{self, Calibrated, Compared, Curves, Observe, Stop, Wanted},
+    study::{self, Calibrated, Compared, Curves, Evaluator, Observe, Stop, Wanted},
 };
 use protocol::{
     case::Case,
@@ -37,13 +37,11 @@ pub(super) struct Session<'a> {
     pub(super) local_workers: usize,
     /// Whether the run was begun by an earlier session.
     pub(super) resumed: bool,
-    /// Whether nothing is to be computed.
-    pub(super) replay: bool,
 }
 
 /// What a session found.
 pub(super) struct Found {
-    calibrated: Calibrated,
+    pub(super) calibrated: Calibrated,
     /// The calibrated condition first.
     compared: Vec<Compared>,
 }
@@ -61,11 +59,7 @@ impl Session<'_> {
         observer: &mut dyn Observe,
         stop: &mut Stop,
     ) -> anyhow::Result<Found> {
-        let space = Space::new(&self.case.genes)?;
-        let settings: &Settings = &self.manifest.settings;
-        let mut strategy = settings
-            .build(&space, self.manifest.seed)
-            .map_err(study::StudyError::from)?;
+        let mut strategy = strategy(self.case, self.manifest)?;
         let options = bus::Options {
             run_dir: self.folder.path().to_owned(),
             door: self.door.clone(),
@@ -73,22 +67,12 @@ impl Session<'_> {
             kind: "calibrate".to_owned(),
             settings: self.manifest.settings_json()?,
         };
-        let mut bus = if self.replay {
-            bus::Bus::replay(options, self.case)?
-        } else {
-            bus::Bus::open(options, self.case).await?
-        };
-        if !self.replay {
-            self.begun(bus.recorded())?;
-        }
+        let mut bus = bus::Bus::open(options, self.case).await?;
+        self.begun(bus.recorded())?;
         observer.resumed(bus.recorded());
-        let found = self.work(&mut bus, strategy.as_mut(), observer, stop).await;
+        let found = work(&mut bus, self.case, strategy.as_mut(), observer, stop).await;
         // while the run is still locked
-        let remembered = if self.replay {
-            Ok(())
-        } else {
-            self.folder.spent(self.manifest, self.case, self.wall_s())
-        };
+        let remembered = self.folder.spent(self.manifest, self.case, self.wall_s());
         let closed = bus.close().await;
         let found = found?;
         remembered?;
@@ -108,26 +92,44 @@ impl Session<'_> {
         });
         Ok(())
     }
+}
 
-    async fn work(
-        &self,
-        bus: &mut bus::Bus,
-        strategy: &mut dyn Strategy,
-        observer: &mut dyn Observe,
-        stop: &mut Stop,
-    ) -> Result<Found, study::StudyError> {
-        let calibrated = study::calibrate(bus, self.case, strategy, observer, stop).await?;
-        debug_assert!(
-            strategy.finished().is_some(),
-            "a calibration ends with its search"
-        );
-        let wanted = comparison(self.case, &calibrated.best.genes);
-        let compared = study::compare(bus, self.case, &wanted, stop).await?;
-        Ok(Found {
-            calibrated,
-            compared,
-        })
-    }
+/// The same search again, on what answers from a recording.
+pub(super) async fn repeat<E: Evaluator>(
+    evaluator: &mut E,
+    (case, manifest): (&Case, &Manifest),
+    observer: &mut dyn Observe,
+    stop: &mut Stop,
+) -> anyhow::Result<Found> {
+    let mut strategy = strategy(case, manifest)?;
+    Ok(work(evaluator, case, strategy.as_mut(), observer, stop).await?)
+}
+
+fn strategy(case: &Case, manifest: &Manifest) -> anyhow::Result<Box<dyn Strategy>> {
+    let space = Space::new(&case.genes)?;
+    let settings: &Settings = &manifest.settings;
+    let built = settings.build(&space, manifest.seed);
+    Ok(built.map_err(study::StudyError::from)?)
+}
+
+async fn work<E: Evaluator>(
+    evaluator: &mut E,
+    case: &Case,
+    strategy: &mut dyn Strategy,
+    observer: &mut dyn Observe,
+    stop: &mut Stop,
+) -> Result<Found, study::StudyError> {
+    let calibrated = study::calibrate(evaluator, case, strategy, observer, stop).await?;
+    debug_assert!(
+        strategy.finished().is_some(),
+        "a calibration ends with its search"
+    );
+    let wanted = comparison(case, &calibrated.best.genes);
+    let compared = study::compare(evaluator, case, &wanted, stop).await?;
+    Ok(Found {
+        calibrated,
+        compared,
+    })
 }
 
 /// Recommended and best individual under every condition with a record, the calibrated one first
@@ -199,6 +201,8 @@ pub(super) fn show(session: &Session<'_>, found: &Found, output: Output) -> anyh
         .iter()
         .map(|path| path.display().to_string())
         .collect();
+    let exported = export::calibration(folder, session.manifest, session.case)?;
+    files.extend(exported.iter().map(|path| path.display().to_string()));
     files.push(folder.file("calibrated.toml").display().to_string());
     files.push(folder.file("result.json").display().to_string());
     let object = result_object(session, found, files);

@@ -314,6 +314,31 @@ pub(super) struct BenchOutput {
     pub(super) cost_ratio: f64,
     /// Memory of this process (MiB).
     pub(super) coordinator_rss_mib: f64,
+    /// What silent connections cost; null where none were asked for.
+    pub(super) silent: Option<SilentOutput>,
+}
+
+/// Rate and cost beside connections that say nothing, over those without them.
+#[derive(Debug, Serialize)]
+pub(super) struct SilentOutput {
+    /// Connections that were asked for.
+    pub(super) connections: usize,
+    /// The fewest that the coordinator held when a block began or ended.
+    pub(super) held: usize,
+    /// How often one that had been closed was opened again.
+    pub(super) reopened: u64,
+    /// Blocks without, and as many with them.
+    pub(super) turns: usize,
+    /// Throughput of the median block without them.
+    pub(super) jobs_per_s_without: f64,
+    /// Throughput of the median block beside them.
+    pub(super) jobs_per_s_beside: f64,
+    /// Median over the turns of throughput beside them over that without.
+    pub(super) rate_ratio: f64,
+    /// The smallest and the largest.
+    pub(super) rate_ratio_range: [f64; 2],
+    /// Median over the turns of the coordinator's CPU time per job beside them over that without.
+    pub(super) cpu_ratio: f64,
 }
 
 /// Round-trip times (ms).

@@ -225,6 +225,17 @@ fn a_bench_has_the_fields_that_programs_rely_on() {
         coordinator_cpu_us_per_job: 120.0,
         cost_ratio: 1.0,
         coordinator_rss_mib: 22.0,
+        silent: Some(SilentOutput {
+            connections: 5000,
+            held: 4900,
+            reopened: 8000,
+            turns: 5,
+            jobs_per_s_without: 2000.0,
+            jobs_per_s_beside: 1900.0,
+            rate_ratio: 0.95,
+            rate_ratio_range: [0.9, 1.0],
+            cpu_ratio: 1.05,
+        }),
     };
     let value = serde_json::to_value(&object).unwrap();
     assert_eq!(
@@ -238,6 +249,7 @@ fn a_bench_has_the_fields_that_programs_rely_on() {
             "jobs_per_s",
             "joined_s",
             "rtt_ms",
+            "silent",
             "workers"
         ]
     );

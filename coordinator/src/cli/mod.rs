@@ -9,8 +9,10 @@ mod calibrate;
 mod case;
 mod completions;
 mod diagnose;
+mod diagnosed;
 mod diagnosis_json;
 mod explain;
+mod export;
 mod finish;
 mod head;
 mod head_files;
@@ -67,6 +69,7 @@ enum Command {
     Head(head::Arguments),
     Report(report::Arguments),
     Explain(explain::Arguments),
+    Export(export::Arguments),
     Case(case::Arguments),
     Keys(keys::Arguments),
     Bench(bench::Arguments),
@@ -219,6 +222,7 @@ pub fn main() -> ExitCode {
         Command::Head(arguments) => head::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
         Command::Case(arguments) => case::run(&arguments),
         Command::Keys(arguments) => keys::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -1,12 +1,17 @@
 //! `horsehead report`: the files of a finished run again, from its journal.
 use super::{
-    Door, EXIT_CODES, OutputChoice, bus, diagnose,
+    Door, EXIT_CODES, OutputChoice, bus, diagnosed,
     finish::{self, Session},
-    interrupt,
+    interrupt, output,
     progress::Silent,
     run_folder::{CALIBRATE, DIAGNOSE, RunFolder},
 };
+use crate::{
+    journal::{self, Recording},
+    study::Recorded,
+};
 use clap::Args;
+use protocol::{event::Finished, job::Job};
 use std::{path::PathBuf, time::Instant};
 
 /// Write tables, figures and report of a finished run again, from its journal.
@@ -29,7 +34,7 @@ pub(super) struct Arguments {
 /// Replays the run and writes its files.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if RunFolder::kind(&arguments.run).as_deref() == Some(DIAGNOSE) {
-        return diagnose::again(&arguments.run, arguments.output.output);
+        return diagnosed::report(&arguments.run, arguments.output.output);
     }
     let (folder, manifest, case) =
         RunFolder::open::<search::strategy::Settings>(&arguments.run, CALIBRATE)?;
@@ -43,11 +48,22 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         door: Door::default(),
         local_workers: 0,
         resumed: true,
-        replay: true,
     };
+    let recording = recording(&folder)?;
+    let mut unseen = |_: &Job, _: &Finished| Ok(());
+    let mut recorded = Recorded::new(&recording, &mut unseen);
     let found = bus::block_on(async {
         let mut stop = interrupt::listen();
-        session.run(&mut Silent, &mut stop).await
+        finish::repeat(&mut recorded, (&case, &manifest), &mut Silent, &mut stop).await
     })?;
     finish::show(&session, &found, arguments.output.output)
+}
+
+/// The journal of a run, for reading alone; what of it is damaged goes to standard error.
+pub(super) fn recording(folder: &RunFolder) -> anyhow::Result<Recording> {
+    let recording = Recording::read(&folder.file(journal::FILE), |_, _| {})?;
+    for damage in journal::words(&recording.report().damage) {
+        output::tell(&format!("warning: {damage}"));
+    }
+    Ok(recording)
 }

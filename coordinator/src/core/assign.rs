@@ -18,6 +18,8 @@ use std::time::Duration;
 const PATIENCE: u32 = 8;
 /// And this much more.
 const GRACE: Duration = Duration::from_secs(10);
+/// The attempt of a failure that the coordinator states itself.
+pub(super) const STATED: AttemptId = AttemptId(u32::MAX);
 
 /// Gives queued jobs, lowest id first, to the least loaded workers.
 pub(super) fn assign(core: &mut Core, now: Duration) {
@@ -82,6 +84,18 @@ fn reserved(core: &Core) -> Option<WorkerId> {
         .map(|(id, _)| *id)
 }
 
+/// The name of an attempt: no other process of the run gives the same one.
+const fn offer(epoch: u32, number: u32) -> AttemptId {
+    AttemptId(epoch << 16 | (number & 0xffff))
+}
+
+/// Which process of the run offered an attempt, from 1, and how many
+/// offers of its job went before there; none for what the coordinator stated itself.
+pub fn offered(attempt: AttemptId) -> Option<(u32, u32)> {
+    let AttemptId(number) = attempt;
+    (attempt != STATED).then_some((number >> 16, number & 0xffff))
+}
+
 /// Gives a worker a job.
 pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration) {
     let Some(pending) = core.jobs.get_mut(&job) else {
@@ -90,10 +104,9 @@ pub(super) fn lease(core: &mut Core, worker: WorkerId, job: JobId, now: Duration
     let Some(member) = core.members.get_mut(&worker) else {
         return;
     };
-    let number = core.options.epoch << 16 | (pending.next & 0xffff);
     let attempt = Attempt {
         job,
-        attempt: AttemptId(number),
+        attempt: offer(core.options.epoch, pending.next),
     };
     if !pending.holders.is_empty() {
         core.counts.copies += 1;

@@ -26,6 +26,7 @@ mod tail;
 #[cfg(test)]
 mod tests;
 
+pub use assign::offered;
 pub use input::{Command, Input};
 pub use job_set::JobSet;
 pub use notice::{Notice, Stop};

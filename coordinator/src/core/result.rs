@@ -9,7 +9,7 @@ use super::{
 };
 use protocol::{
     event::Finished,
-    id::{AttemptId, JobId, WorkerId},
+    id::{JobId, WorkerId},
     job::{Failure, Outcome},
     message::{Attempt, Done, ToWorker},
 };
@@ -194,7 +194,7 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
     }
     let attempt = Attempt {
         job,
-        attempt: AttemptId(u32::MAX),
+        attempt: assign::STATED,
     };
     let done = Done {
         attempt,

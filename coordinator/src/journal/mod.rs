@@ -11,14 +11,17 @@
 //! over it; a journal of another one is refused as such and not taken for damage. Readers are folds over the events ([`fold`]). The writer
 //! ([`Journal`]) holds a lock, so that one run has one writer; on a full disk it waits.
 mod head;
+mod index;
 mod open;
 mod read;
+mod recording;
 #[cfg(test)]
 pub(crate) mod sample;
 mod write;
 
 pub use open::{Begun, Journal};
 pub use read::{Damage, Entry, ReadReport, fold, words};
+pub use recording::Recording;
 pub use write::Appended;
 
 use protocol::{

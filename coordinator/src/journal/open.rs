@@ -1,19 +1,18 @@
-//! Opening a journal, or going on with it; its results by job.
+//! Opening a journal, or going on with it.
 use super::{
-    FILE, JournalError, LOCK, RECORD_HEADER, differences, head,
+    FILE, JournalError, LOCK, differences, head,
+    index::Results,
     read::{Entry, ReadReport, fold},
     write::{Appended, Writer, record},
 };
 use protocol::{
     event::{Event, Finished, RunHeader},
     id::{ContentHash, JobId, RunId, WorkerId},
-    wire,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs::{File, OpenOptions, TryLockError},
     io::{self, Seek, SeekFrom, Write},
-    os::unix::fs::FileExt,
     path::{Path, PathBuf},
     sync::{
         Arc,
@@ -59,9 +58,7 @@ pub struct Begun {
 #[derive(Debug)]
 pub struct Journal {
     path: PathBuf,
-    /// For reading results back.
-    file: File,
-    index: Index,
+    results: Results,
     to_writer: Option<mpsc::Sender<Event>>,
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
@@ -124,7 +121,6 @@ impl Journal {
         // the folder's own entries of the files must be safe too
         let synced = File::open(folder).and_then(|folder| folder.sync_all());
         synced.map_err(failed("write", folder))?;
-        let reader = File::open(&path).map_err(failed("open", &path))?;
         let closing = Arc::new(AtomicBool::new(false));
         let (to_writer, events) = mpsc::channel();
         let end = file.stream_position().map_err(failed("open", &path))?;
@@ -142,9 +138,8 @@ impl Journal {
             report,
         };
         let journal = Self {
+            results: Results::new(&path, past.results)?,
             path,
-            file: reader,
-            index: Index::new(past.results),
             to_writer: Some(to_writer),
             writer: Some(writer),
             closing,
@@ -155,7 +150,7 @@ impl Journal {
 
     /// Jobs whose results the journal held when it was opened, in order.
     pub fn finished(&self) -> impl Iterator<Item = JobId> + '_ {
-        self.index.0.iter().map(|(job, _)| *job)
+        self.results.jobs()
     }
 
     /// A result from before this process; `None` if there is none.
@@ -163,31 +158,7 @@ impl Journal {
     /// # Errors
     /// [`JournalError::Io`] or [`JournalError::Wire`] if the record cannot be read again.
     pub fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
-        let Some(at) = self.index.find(job) else {
-            return Ok(None);
-        };
-        let failed = |source| JournalError::Io {
-            doing: "read",
-            path: self.path.clone(),
-            source,
-        };
-        let mut length = [0; 4];
-        // after the mark, before the checksum
-        self.file
-            .read_exact_at(&mut length, at - RECORD_HEADER as u64 + 4)
-            .map_err(failed)?;
-        let mut body = vec![0; (u32::from_le_bytes(length) as usize).min(wire::BODY_LIMIT)];
-        self.file.read_exact_at(&mut body, at).map_err(failed)?;
-        match wire::decode(&body)? {
-            Event::Finished(finished) => Ok(Some(*finished)),
-            Event::Begun { .. }
-            | Event::Opened { .. }
-            | Event::Joined { .. }
-            | Event::Left { .. }
-            | Event::Closed
-            | Event::Proved { .. }
-            | Event::Accounted(_) => Ok(None),
-        }
+        self.results.recall(job)
     }
 
     /// Hands an event to the writing thread.
@@ -227,37 +198,18 @@ impl Journal {
 
     /// Number of results it held when it was opened.
     pub const fn len(&self) -> usize {
-        self.index.0.len()
+        self.results.len()
     }
 
     /// Whether it holds no result.
     pub const fn is_empty(&self) -> bool {
-        self.index.0.is_empty()
+        self.results.len() == 0
     }
 }
 
 impl Drop for Journal {
     fn drop(&mut self) {
         self.close();
-    }
-}
-
-/// Where the body of each job's result lies: 16 bytes a result, since there may be millions.
-#[derive(Debug)]
-struct Index(Vec<(JobId, u64)>);
-
-impl Index {
-    /// Of results in the order of the file; should a job be there twice, the first counts.
-    fn new(mut results: Vec<(JobId, u64)>) -> Self {
-        results.sort_unstable();
-        results.dedup_by_key(|(job, _)| *job);
-        results.shrink_to_fit();
-        Self(results)
-    }
-
-    fn find(&self, job: JobId) -> Option<u64> {
-        let at = self.0.binary_search_by_key(&job, |(job, _)| *job).ok()?;
-        self.0.get(at).map(|(_, at)| *at)
     }
 }
 

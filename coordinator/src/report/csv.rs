@@ -1,11 +1,11 @@
 //! The data behind the figures as CSV, units in the column names.
 //!
 //! An empty field is a value that does not exist; numbers are written with all their digits.
-use super::data::{ConditionResult, HistoryPoint, Run, SingleRun};
+use super::data::{ConditionResult, Run, SingleRun};
 use super::words::condition_name;
 use crate::study::{BoxPoint, WorkPrecision};
 use protocol::case::{Case, GaugeRecord};
-use protocol::job::{Reached, Simulation, Verdict};
+use protocol::job::{Simulation, Verdict};
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.
@@ -151,18 +151,12 @@ pub fn whole_box(to: impl Write, case: &Case, points: &[BoxPoint]) -> Result<(),
     ];
     writer.write_record(std::iter::once("point").chain(genes).chain(rest))?;
     for (index, point) in points.iter().enumerate() {
-        let (verdict, load, time) = match point.verdict {
-            Verdict::Complete => ("complete", None, None),
-            Verdict::Failed { kind, reached } => match reached {
-                Reached::LoadFraction(share) => (kind.as_str(), Some(share), None),
-                Reached::TimeFraction(share) => (kind.as_str(), None, Some(share)),
-            },
-        };
         let counters = &point.counters;
         let mut fields = vec![index.to_string()];
         fields.extend(point.genes.iter().map(f64::to_string));
-        fields.push(verdict.to_owned());
-        fields.extend([load, time].map(field));
+        let verdict = point.verdict;
+        fields.push(verdict.as_str().to_owned());
+        fields.extend([verdict.load_fraction(), verdict.time_fraction()].map(field));
         fields.extend([
             counters.steps.to_string(),
             counters.newton_iterations.to_string(),
@@ -173,43 +167,6 @@ pub fn whole_box(to: impl Write, case: &Case, points: &[BoxPoint]) -> Result<(),
     }
     writer.flush()?;
     Ok(())
-}
-
-/// Writes the evaluation log: one row per individual, genes in declared units.
-///
-/// # Errors
-/// [`csv::Error`] when the writer fails.
-pub fn history(to: impl Write, case: &Case, history: &[HistoryPoint]) -> Result<(), csv::Error> {
-    let mut writer = csv::Writer::from_writer(to);
-    let mut head: Vec<String> = [
-        "id",
-        "generation",
-        "purpose",
-        "fitness_mpa2",
-        "complete",
-        "failure",
-    ]
-    .map(str::to_owned)
-    .to_vec();
-    let genes = case.genes.iter();
-    head.extend(genes.map(|gene| format!("{} [{}]", gene.name.as_str(), gene.unit.symbol())));
-    let width = head.len();
-    writer.write_record(&head)?;
-    for point in history {
-        let mut fields = vec![
-            point.id.to_string(),
-            point.generation.to_string(),
-            point.purpose.clone(),
-            field(Some(point.fitness)),
-            point.complete.to_string(),
-            point.failure.clone().unwrap_or_default(),
-        ];
-        fields.extend(point.genes.iter().map(|&value| field(Some(value))));
-        // every record has as many fields as the head, whatever the log holds
-        fields.resize(width, String::new());
-        writer.write_record(fields)?;
-    }
-    Ok(writer.flush()?)
 }
 
 /// Writes a comparison of methods: one row per run; the error is empty where the run did not end.

@@ -51,7 +51,7 @@ pub enum ReportError {
 }
 
 /// Writes the report of a calibration into a folder, which is made if it does not exist:
-/// `report.html`, `curves.csv`, `history.csv`, `tables.txt` and `figures/*.svg`. Returns the paths,
+/// `report.html`, `curves.csv`, `tables.txt` and `figures/*.svg`. Returns the paths,
 /// the HTML first.
 ///
 /// # Errors
@@ -68,9 +68,6 @@ pub fn write_calibration(
     )?];
     written.push(stream(folder, "curves.csv", |file| {
         csv::curves(file, case, &calibration.conditions)
-    })?);
-    written.push(stream(folder, "history.csv", |file| {
-        csv::history(file, case, &calibration.history)
     })?);
     let mut tables = table::text(&table::table_3(calibration), false);
     let mut figures = Vec::new();

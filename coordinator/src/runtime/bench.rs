@@ -1,8 +1,10 @@
 //! The bus alone: jobs that do nothing, over a real journal; workers are real processes, or mere
 //! sessions where there are to be more of them than the machine can bear.
 mod sessions;
+mod silent;
 
 pub use sessions::connect;
+pub use silent::{SilentPlan, SilentResult, keep_silent};
 
 use super::{Dispatch, DispatchError, DispatchOptions};
 use protocol::{id::JobId, job::Job};
@@ -19,6 +21,8 @@ const JOB_BYTES: usize = 1000;
 const ALONE: u64 = 1000;
 /// Jobs asked for ahead, per worker: enough to keep them busy.
 const AHEAD: u64 = 4;
+/// Jobs that are done between two looks at the clock, over those asked for ahead.
+const ROUND: u64 = 16;
 /// How long workers may take to join before it is measured with those that are there.
 const JOINING: Duration = Duration::from_mins(3);
 /// Parts of the measurement whose cost is compared.
@@ -47,6 +51,9 @@ pub struct BenchPlan {
     pub jobs: u64,
     /// Bytes of each result; a residual vector has about 10,000, a score 300.
     pub result_bytes: u32,
+    /// Connections that say nothing, to be measured beside. Not with [`Crew::Sessions`], which
+    /// have no address.
+    pub silent: Option<SilentPlan>,
 }
 
 /// What the bus costs.
@@ -71,6 +78,8 @@ pub struct BenchResult {
     pub cost_ratio: f64,
     /// Memory of this process at the end (MiB); with sessions of it, theirs too.
     pub coordinator_rss_mib: f64,
+    /// What silent connections cost, if they were asked for.
+    pub silent: Option<SilentResult>,
 }
 
 /// Measures round trip, rate and cost of the run that `options` describe; the run should be new.
@@ -124,7 +133,6 @@ pub async fn bench(
         trips.push(begun.elapsed());
     }
     trips.sort_unstable();
-    let cost = || cpu_time(|thread| thread != sessions::THREAD);
     let begun = Instant::now();
     let mut marks = vec![cost()];
     for part in 0..PARTS {
@@ -136,6 +144,10 @@ pub async fn bench(
     let part = |n: usize| marks[n + 1].saturating_sub(marks[n]).as_secs_f64();
     let cpu = marks[marks.len() - 1].saturating_sub(marks[0]);
     let coordinator_rss_mib = resident_mib();
+    let silent = match plan.silent {
+        Some(silent) => Some(silent::measure(&mut dispatch, &mut load, silent).await?),
+        None => None,
+    };
     dispatch.close().await?;
     drop(crew);
     Ok(BenchResult {
@@ -148,6 +160,7 @@ pub async fn bench(
         coordinator_cpu_us_per_job: cpu.as_secs_f64() * 1e6 / plan.jobs.max(1) as f64,
         cost_ratio: part(marks.len() - 2) / part(0),
         coordinator_rss_mib,
+        silent,
     })
 }
 
@@ -168,10 +181,20 @@ struct Load {
 }
 
 impl Load {
+    /// Jobs that keep everybody busy for a moment.
+    fn round(&self) -> u64 {
+        ROUND * self.ahead()
+    }
+
+    /// Jobs asked for ahead.
+    fn ahead(&self) -> u64 {
+        AHEAD * self.plan.workers.max(1) as u64
+    }
+
     /// Has so many jobs done, some asked for ahead.
     async fn run(&mut self, dispatch: &mut Dispatch, jobs: u64) -> Result<(), DispatchError> {
         let until = self.next + jobs;
-        let ahead = AHEAD * self.plan.workers.max(1) as u64;
+        let ahead = self.ahead();
         while self.next < until || self.open > 0 {
             while self.next < until && self.open < ahead {
                 self.submit(dispatch)?;
@@ -199,6 +222,11 @@ fn quantile_ms(sorted: &[Duration], percent: usize) -> f64 {
     sorted
         .get(at)
         .map_or(f64::NAN, |trip| trip.as_secs_f64() * 1e3)
+}
+
+/// Processor time of the coordinator.
+fn cost() -> Duration {
+    cpu_time(|thread| thread != sessions::THREAD)
 }
 
 /// Processor time of the living threads of this process that are counted, by name; zero where the

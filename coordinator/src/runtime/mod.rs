@@ -10,7 +10,9 @@ pub mod locate;
 mod sleep;
 
 pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
-pub use bench::{BenchPlan, BenchResult, Crew, bench, connect};
+pub use bench::{
+    BenchPlan, BenchResult, Crew, SilentPlan, SilentResult, bench, connect, keep_silent,
+};
 pub use error::DispatchError;
 pub use protocol::event::{RunHeader, Spent};
 

@@ -26,6 +26,9 @@ pub trait Observe {
 
     /// Before anything else: how many results an earlier session left.
     fn resumed(&mut self, _recorded: usize) {}
+
+    /// An individual is going to be evaluated.
+    fn asked(&mut self, _proposal: &Proposal) {}
 }
 
 /// Becomes true when the user wants to stop.
@@ -48,6 +51,7 @@ pub async fn calibrate<E: Evaluator>(
     let mut view = ProgressView::default();
     loop {
         for proposal in strategy.ask() {
+            observer.asked(&proposal);
             evaluator.submit(proposal.id, score(case, &proposal))?;
             open.insert(proposal.id, proposal);
         }

@@ -27,6 +27,9 @@ pub struct Account {
 pub trait Watch {
     /// An experiment of a stage came back; `open` more of its batch are awaited.
     fn progress(&mut self, stage: Stage, done: u64, open: usize, crew: &dyn Fn() -> Crew);
+
+    /// An experiment of a stage is going to be done, as the job of this id.
+    fn asked(&mut self, _stage: Stage, _id: u64) {}
 }
 
 /// A finished diagnosis, and what it cost.
@@ -113,6 +116,7 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
         let mut open = batch.len();
         for spec in batch {
+            self.watch.asked(stage, self.next_id);
             self.evaluator.submit(self.next_id, Job::Observe(spec))?;
             self.next_id += 1;
         }

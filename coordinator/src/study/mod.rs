@@ -14,6 +14,7 @@ mod head;
 mod integrators;
 mod log;
 mod progress;
+mod recorded;
 mod whole_box;
 
 pub use calibrate::{Calibrated, Observe, Stop, calibrate};
@@ -28,7 +29,8 @@ pub use head::{
 pub use integrators::{FixedPrice, WorkPlan, WorkPoint, WorkPrecision, work_precision};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
+pub use recorded::Recorded;
 pub use whole_box::{BoxClass, BoxPlan, BoxPoint, box_classes, whole_box};
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -17,7 +17,7 @@ use std::{collections::BTreeMap, path::Path};
 use tokio::sync::watch;
 
 /// Answers jobs in a random order; `known` are results of an earlier session.
-struct Oracle {
+pub(crate) struct Oracle {
     space: Space,
     open: Vec<(u64, Job)>,
     order: Stream,
@@ -28,7 +28,11 @@ struct Oracle {
 }
 
 impl Oracle {
-    fn new(case: &Case, order: u64, answer: fn(&Space, u64, &ScoreSpec) -> Outcome) -> Self {
+    pub(crate) fn new(
+        case: &Case,
+        order: u64,
+        answer: fn(&Space, u64, &ScoreSpec) -> Outcome,
+    ) -> Self {
         Self {
             space: Space::new(&case.genes).unwrap(),
             open: Vec::new(),
@@ -91,7 +95,7 @@ impl Observe for Quiet {
     }
 }
 
-fn case() -> Case {
+pub(crate) fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
 }
@@ -141,7 +145,7 @@ fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
     }
 }
 
-fn physics(space: &Space, _id: u64, spec: &ScoreSpec) -> Outcome {
+pub(crate) fn physics(space: &Space, _id: u64, spec: &ScoreSpec) -> Outcome {
     let told = RESONANCE.tell(space, &spec.genes);
     let kind = PhysicsFailure::LoadNotLifted;
     let verdict = if told.complete {

@@ -104,3 +104,25 @@ fn bench_integrators_measures_error_and_work() {
     let rows = fs::read_to_string(scratch.path().join("integrators.csv")).unwrap();
     assert_eq!(rows.lines().count(), 5);
 }
+
+/// Connections that say nothing are held, closed by the coordinator and opened again, and the rate
+/// beside them is measured.
+#[test]
+fn bench_dispatch_measures_beside_silent_connections() {
+    let object = json(&[
+        "bench", "dispatch", "--jobs", "200", "--silent", "300", "--turns", "1",
+    ]);
+    let silent = &object["silent"];
+    assert_eq!(silent["connections"], 300);
+    assert!(number(&silent["held"]) > 0.0, "{silent}");
+    // a block lasts twice as long as silence is borne with
+    assert!(number(&silent["reopened"]) >= 300.0, "{silent}");
+    for rate in [
+        "jobs_per_s_without",
+        "jobs_per_s_beside",
+        "rate_ratio",
+        "cpu_ratio",
+    ] {
+        assert!(number(&silent[rate]) > 0.0, "{silent}");
+    }
+}

@@ -79,6 +79,36 @@ pub enum Outcome {
     Observed(Observation),
 }
 
+impl Outcome {
+    /// Name of the kind of job that it answers, as [`Job::kind`]; `failed` if it was not done.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Scored(_) => "score",
+            Self::Simulated(_) => "simulate",
+            Self::Observed(_) => "observe",
+            Self::HeadReduced(_) => "reduce_head",
+            Self::Described(_) => "describe",
+            Self::Nothing(_) => "nothing",
+            Self::Failed(_) => "failed",
+        }
+    }
+
+    /// How the simulation ended and what it cost; none where nothing was simulated.
+    pub fn simulation(&self) -> Option<(Verdict, Counters)> {
+        match self {
+            Self::Scored(evaluation) => Some((evaluation.verdict, evaluation.counters)),
+            Self::Simulated(simulation) => Some((simulation.verdict, simulation.counters)),
+            Self::Observed(seen) => Some((seen.verdict, seen.counters)),
+            Self::HeadReduced(_) | Self::Described(_) | Self::Nothing(_) | Self::Failed(_) => None,
+        }
+    }
+
+    /// How the simulation ended; none where nothing was simulated.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.simulation().map(|(verdict, _)| verdict)
+    }
+}
+
 /// Why a job could not be done.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
@@ -112,6 +142,17 @@ pub enum Failure {
 }
 
 impl Failure {
+    /// Name of the kind, as written in tables.
+    pub const fn kind(&self) -> &'static str {
+        match self {
+            Self::Deadline { .. } => "deadline",
+            Self::Crashed { .. } => "crashed",
+            Self::Lost { .. } => "lost",
+            Self::Refused { .. } => "refused",
+            Self::Misconfigured { .. } => "misconfigured",
+        }
+    }
+
     /// Whether another attempt, on another worker, may succeed.
     pub const fn is_retryable(&self) -> bool {
         match self {

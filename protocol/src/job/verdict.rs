@@ -15,6 +15,39 @@ pub enum Verdict {
     },
 }
 
+impl Verdict {
+    /// `complete`, or what ended it early, as written in tables.
+    pub const fn as_str(&self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Failed { kind, .. } => kind.as_str(),
+        }
+    }
+
+    /// Share of the static load that it failed at \[1\]; none if it got further.
+    pub const fn load_fraction(&self) -> Option<f64> {
+        match self {
+            Self::Failed {
+                reached: Reached::LoadFraction(share),
+                ..
+            } => Some(*share),
+            Self::Failed { .. } | Self::Complete => None,
+        }
+    }
+
+    /// Share of the simulated time that it failed at \[1\]; none if it did not get so far or is
+    /// complete.
+    pub const fn time_fraction(&self) -> Option<f64> {
+        match self {
+            Self::Failed {
+                reached: Reached::TimeFraction(share),
+                ..
+            } => Some(*share),
+            Self::Failed { .. } | Self::Complete => None,
+        }
+    }
+}
+
 /// What ended a simulation early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

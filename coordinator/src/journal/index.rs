@@ -1,0 +1,94 @@
+//! Results of a journal by job: where each lies, and reading it again.
+use super::{JournalError, RECORD_HEADER};
+use protocol::{
+    event::{Event, Finished},
+    id::JobId,
+    wire,
+};
+use std::{
+    fs::File,
+    os::unix::fs::FileExt,
+    path::{Path, PathBuf},
+};
+
+/// Results that a journal held when it was read.
+#[derive(Debug)]
+pub(super) struct Results {
+    path: PathBuf,
+    file: File,
+    index: Index,
+}
+
+impl Results {
+    /// Of results, with the place of their bodies, in the order of the file.
+    pub(super) fn new(path: &Path, results: Vec<(JobId, u64)>) -> Result<Self, JournalError> {
+        let file = File::open(path).map_err(|source| JournalError::Io {
+            doing: "open",
+            path: path.to_owned(),
+            source,
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            index: Index::new(results),
+        })
+    }
+
+    /// Jobs in order.
+    pub(super) fn jobs(&self) -> impl Iterator<Item = JobId> + '_ {
+        self.index.0.iter().map(|(job, _)| *job)
+    }
+
+    /// How many jobs have one.
+    pub(super) const fn len(&self) -> usize {
+        self.index.0.len()
+    }
+
+    /// The result of a job; `None` if there is none.
+    pub(super) fn recall(&self, job: JobId) -> Result<Option<Finished>, JournalError> {
+        let Some(at) = self.index.find(job) else {
+            return Ok(None);
+        };
+        let failed = |source| JournalError::Io {
+            doing: "read",
+            path: self.path.clone(),
+            source,
+        };
+        let mut length = [0; 4];
+        // after the mark, before the checksum
+        self.file
+            .read_exact_at(&mut length, at - RECORD_HEADER as u64 + 4)
+            .map_err(failed)?;
+        let mut body = vec![0; (u32::from_le_bytes(length) as usize).min(wire::BODY_LIMIT)];
+        self.file.read_exact_at(&mut body, at).map_err(failed)?;
+        match wire::decode(&body)? {
+            Event::Finished(finished) => Ok(Some(*finished)),
+            Event::Begun { .. }
+            | Event::Opened { .. }
+            | Event::Joined { .. }
+            | Event::Left { .. }
+            | Event::Closed
+            | Event::Proved { .. }
+            | Event::Accounted(_) => Ok(None),
+        }
+    }
+}
+
+/// Where the body of each job's result lies: 16 bytes a result, since there may be millions.
+#[derive(Debug)]
+struct Index(Vec<(JobId, u64)>);
+
+impl Index {
+    /// Of results in the order of the file; should a job be there twice, the first counts.
+    fn new(mut results: Vec<(JobId, u64)>) -> Self {
+        results.sort_unstable();
+        results.dedup_by_key(|(job, _)| *job);
+        results.shrink_to_fit();
+        Self(results)
+    }
+
+    fn find(&self, job: JobId) -> Option<u64> {
+        let at = self.0.binary_search_by_key(&job, |(job, _)| *job).ok()?;
+        self.0.get(at).map(|(_, at)| *at)
+    }
+}

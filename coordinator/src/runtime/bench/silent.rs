@@ -1,0 +1,250 @@
+//! Peers that connect and never say a word: what they cost a coordinator at work, measured in
+//! blocks of the same run, in turn without and with them.
+//!
+//! They are connections of one other process, which opens again whatever the coordinator closes.
+use super::{DispatchError, Load, cost};
+use crate::runtime::{Dispatch, allow_connections};
+use link::locator::Locator;
+use std::{
+    env, fs,
+    io::{self, BufRead as _, BufReader, Read as _, Write as _},
+    process::{Child, ChildStdout, Command, Stdio},
+    sync::{
+        Arc,
+        atomic::{AtomicU64, Ordering},
+    },
+    time::{Duration, Instant},
+};
+use tokio::{
+    net::TcpStream,
+    sync::{Notify, Semaphore},
+    task::JoinSet,
+    time::sleep,
+};
+
+/// How long each time: twice as long as the coordinator bears with those that say nothing.
+const BLOCK: Duration = Duration::from_secs(8);
+/// How long the connections may take to open, and to be gone.
+const SETTLING: Duration = Duration::from_secs(30);
+/// Connections that are being opened at a time.
+const OPENING: usize = 64;
+/// Pause before a connection that failed is tried again.
+const AGAIN: Duration = Duration::from_millis(50);
+
+/// Connections that say nothing, to be measured beside.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SilentPlan {
+    /// How many.
+    pub connections: usize,
+    /// How often it is measured without and with them; once at least.
+    pub turns: usize,
+}
+
+/// What silent connections cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SilentResult {
+    /// How many were asked for.
+    pub connections: usize,
+    /// The fewest that the coordinator held when a block began or ended.
+    pub held: usize,
+    /// How often one that had been closed was opened again, in all blocks.
+    pub reopened: u64,
+    /// Blocks without, and as many with them.
+    pub turns: usize,
+    /// Jobs per second without them, the median block.
+    pub jobs_per_s_without: f64,
+    /// Jobs per second beside them, the median block.
+    pub jobs_per_s_beside: f64,
+    /// Rate beside them over that of the block before, without: the median \[1\].
+    pub rate_ratio: f64,
+    /// The smallest and the largest of those \[1\].
+    pub rate_ratio_range: (f64, f64),
+    /// The same of the coordinator's processor time per job: the median \[1\].
+    pub cpu_ratio: f64,
+}
+
+/// Rate and cost of one block.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    jobs_per_s: f64,
+    cpu_s_per_job: f64,
+}
+
+/// Measures a run that is going, in turn without and with silent connections.
+pub(super) async fn measure(
+    dispatch: &mut Dispatch,
+    load: &mut Load,
+    SilentPlan { connections, turns }: SilentPlan,
+) -> Result<SilentResult, DispatchError> {
+    let turns = turns.max(1);
+    let at = dispatch.listening().into_iter().next().unwrap_or_default();
+    let (mut held, mut reopened) = (connections, 0);
+    let mut blocks = Vec::new();
+    for _ in 0..turns {
+        let own = open_files();
+        let without = block(dispatch, load).await?;
+        let silent = Silent::start(connections, &at).map_err(DispatchError::Start)?;
+        let silent = silent.opened().await.map_err(DispatchError::Start)?;
+        settle(|| open_files() >= own + connections).await;
+        held = held.min(open_files().saturating_sub(own));
+        let beside = block(dispatch, load).await?;
+        held = held.min(open_files().saturating_sub(own));
+        reopened += silent.end().await.map_err(DispatchError::Start)?;
+        settle(|| open_files() <= own).await;
+        blocks.push((without, beside));
+    }
+    let each = |of: fn(&(Block, Block)) -> f64| {
+        let mut all: Vec<f64> = blocks.iter().map(of).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    };
+    let median = |of| each(of)[turns / 2];
+    let ratios = each(|(without, beside)| beside.jobs_per_s / without.jobs_per_s);
+    Ok(SilentResult {
+        connections,
+        held,
+        reopened,
+        turns,
+        jobs_per_s_without: median(|(without, _)| without.jobs_per_s),
+        jobs_per_s_beside: median(|(_, beside)| beside.jobs_per_s),
+        rate_ratio: ratios[turns / 2],
+        rate_ratio_range: (ratios[0], ratios[turns - 1]),
+        cpu_ratio: median(|(without, beside)| beside.cpu_s_per_job / without.cpu_s_per_job),
+    })
+}
+
+async fn block(dispatch: &mut Dispatch, load: &mut Load) -> Result<Block, DispatchError> {
+    let (begun, at_first, first) = (Instant::now(), cost(), load.next);
+    while begun.elapsed() < BLOCK {
+        let round = load.round();
+        load.run(dispatch, round).await?;
+    }
+    let jobs = (load.next - first) as f64;
+    Ok(Block {
+        jobs_per_s: jobs / begun.elapsed().as_secs_f64(),
+        cpu_s_per_job: cost().saturating_sub(at_first).as_secs_f64() / jobs,
+    })
+}
+
+/// Waits until something holds, but not for ever: how many were held is part of the result.
+async fn settle(holds: impl Fn() -> bool) {
+    let begun = Instant::now();
+    while !holds() && begun.elapsed() < SETTLING {
+        sleep(Duration::from_millis(20)).await;
+    }
+}
+
+/// Files that this process has open, connections among them.
+fn open_files() -> usize {
+    fs::read_dir("/proc/self/fd").map_or(0, Iterator::count)
+}
+
+/// A process that holds silent connections; ended when dropped.
+struct Silent {
+    process: Child,
+    said: Option<BufReader<ChildStdout>>,
+}
+
+impl Silent {
+    /// Starts this program again, with so many connections to an address.
+    fn start(count: usize, connect: &str) -> io::Result<Self> {
+        let mut process = Command::new(env::current_exe()?)
+            .args(["bench", "silent", connect, &count.to_string()])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()?;
+        let said = process.stdout.take().map(BufReader::new);
+        Ok(Self { process, said })
+    }
+
+    /// Waits until all of them are open.
+    async fn opened(mut self) -> io::Result<Self> {
+        self.word().await?;
+        Ok(self)
+    }
+
+    /// Ends them; how many were opened again.
+    async fn end(mut self) -> io::Result<u64> {
+        drop(self.process.stdin.take());
+        let word = self.word().await?;
+        word.trim().parse().map_err(io::Error::other)
+    }
+
+    /// The next line that it says.
+    async fn word(&mut self) -> io::Result<String> {
+        let Some(mut said) = self.said.take() else {
+            return Err(io::ErrorKind::BrokenPipe.into());
+        };
+        let read = tokio::task::spawn_blocking(move || {
+            let mut line = String::new();
+            let read = said.read_line(&mut line);
+            read.map(|_| (line, said))
+        });
+        let (line, said) = read.await.map_err(io::Error::other)??;
+        self.said = Some(said);
+        Ok(line)
+    }
+}
+
+impl Drop for Silent {
+    fn drop(&mut self) {
+        // fails only if it has ended by itself
+        drop(self.process.kill());
+        drop(self.process.wait());
+    }
+}
+
+/// Holds so many connections to an address and says nothing, until standard input ends. One that is
+/// closed is opened again. Standard output has a line when all are open, and at the end how many
+/// were opened again.
+///
+/// # Errors
+/// If standard output cannot be written.
+pub async fn keep_silent(to: &Locator, count: usize) -> io::Result<()> {
+    allow_connections();
+    let address = format!("{}:{}", to.bare_host(), to.port);
+    let opening = Arc::new(Semaphore::new(OPENING));
+    let (opened, all) = (Arc::new(AtomicU64::new(0)), Arc::new(Notify::new()));
+    let mut connections = JoinSet::new();
+    for _ in 0..count {
+        let (address, opening) = (address.clone(), Arc::clone(&opening));
+        let (opened, all) = (Arc::clone(&opened), Arc::clone(&all));
+        connections.spawn(async move {
+            loop {
+                let place = opening.acquire().await;
+                let Ok(connection) = TcpStream::connect(&address).await else {
+                    sleep(AGAIN).await;
+                    continue;
+                };
+                drop(place);
+                if opened.fetch_add(1, Ordering::Relaxed) + 1 == count as u64 {
+                    all.notify_one();
+                }
+                closed(&connection).await;
+            }
+        });
+    }
+    all.notified().await;
+    let say = |line: &str| {
+        let mut out = io::stdout().lock();
+        writeln!(out, "{line}").and_then(|()| out.flush())
+    };
+    say("open")?;
+    let ended = tokio::task::spawn_blocking(|| io::stdin().read_to_end(&mut Vec::new()));
+    ended.await.map_err(io::Error::other)??;
+    let opened = opened.load(Ordering::Relaxed);
+    say(&opened.saturating_sub(count as u64).to_string())
+}
+
+/// Waits for the other end to close, whatever it says before.
+async fn closed(connection: &TcpStream) {
+    let mut piece = [0; 64];
+    while connection.readable().await.is_ok() {
+        match connection.try_read(&mut piece) {
+            Ok(0) => return,
+            Ok(_) => {}
+            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+            Err(_) => return,
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! An export needs no more memory for many results than for few: rows stream through it.
+#![expect(
+    clippy::unwrap_used,
+    reason = "helpers of a test: what cannot be written or read has failed"
+)]
+use coordinator::{
+    case::{Overrides, load},
+    journal::{self, Journal},
+    store::{Format, Label, Store, Target},
+};
+use protocol::{
+    event::{Event, Finished, RunHeader},
+    id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
+    job::{ChannelScore, Counters, Evaluation, Job, Outcome, ScoreSpec, Verdict},
+    message::Attempt,
+};
+use std::{fs, path::Path};
+
+/// Residuals of each result (a tenth of a real one's).
+const RESIDUALS: usize = 144;
+/// What an export of a hundred thousand evaluations may need beyond one of ten thousand (MiB); they
+/// are 160 MiB in the journal, and more as rows.
+const MORE_MIB: u64 = 24;
+
+fn finished(job: u64) -> Finished {
+    let score = ChannelScore {
+        gauge: 1,
+        mse_mpa2: job as f64,
+        mse_fixed_offset_mpa2: 0.5,
+        offset_mpa: 0.25,
+        rmse_over_half_range: 0.1,
+        relative_error: 0.1,
+        peak_to_peak_error: 0.1,
+    };
+    Finished {
+        attempt: Attempt {
+            job: JobId(job),
+            attempt: AttemptId(1 << 16),
+        },
+        work: ContentHash::of(&job.to_le_bytes()),
+        worker: Some(WorkerId(job % 64)),
+        wall_us: job,
+        outcome: Outcome::Scored(Evaluation {
+            verdict: Verdict::Complete,
+            fitness: 1.0 / (job + 1) as f64,
+            channels: vec![score; 4],
+            residual_mpa: vec![0.5; RESIDUALS],
+            counters: Counters::default(),
+        }),
+    }
+}
+
+/// The most memory that this process has had since it was last asked (MiB).
+fn peak_mib() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kib = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+    fs::write("/proc/self/clear_refs", "5").unwrap();
+    kib.unwrap() / 1024
+}
+
+#[test]
+fn a_hundred_thousand_evaluations_need_the_memory_of_ten_thousand() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    let case = load(&folder, &Overrides::default()).unwrap();
+    for format in [Format::Sqlite, Format::Csv, Format::Parquet] {
+        let mut peaks = Vec::new();
+        for count in [10_000, 100_000] {
+            let run = scratch.path().join(count.to_string());
+            if !run.exists() {
+                write(&run, count);
+            }
+            peak_mib();
+            let target = Target {
+                path: scratch.path().join(format.as_str()),
+                format,
+                force: false,
+            };
+            let mut store = Store::begin(target, &case).unwrap();
+            let recording = store.journal(&run.join(journal::FILE)).unwrap();
+            for job in 0..count {
+                let finished = recording.recall(JobId(job)).unwrap().unwrap();
+                let spec = ScoreSpec {
+                    condition: 0,
+                    genes: case.recommended(),
+                    effects: Vec::new(),
+                    with_residual: true,
+                };
+                let label = Label {
+                    generation: Some(0),
+                    purpose: "initial".to_owned(),
+                };
+                store
+                    .evaluation(label, &Job::Score(spec), &finished)
+                    .unwrap();
+            }
+            let rows = store.finish().unwrap().rows;
+            assert_eq!((rows["evaluations"], rows["scores"]), (count, 4 * count));
+            peaks.push(peak_mib());
+        }
+        eprintln!("{format:?}: {} MiB, then {} MiB", peaks[0], peaks[1]);
+        assert!(peaks[1] <= peaks[0] + MORE_MIB, "{format:?}: {peaks:?}");
+    }
+}
+
+fn write(folder: &Path, count: u64) {
+    let header = RunHeader {
+        kind: "test".to_owned(),
+        case: ContentHash::of(b""),
+        settings: String::new(),
+    };
+    let (mut journal, _) = Journal::open(folder, &header, RunId(1), 0, |_| {}).unwrap();
+    for job in 0..count {
+        journal
+            .append(Event::Finished(Box::new(finished(job))))
+            .unwrap();
+    }
+    journal.close();
+}
