@@ -40,6 +40,12 @@ const CURVE_COLUMNS: [&str; 22] = [
     "crank_torque_n_m",
 ];
 
+/// The columns of curves: one per simulated mode of the back head at the end, mass-normalised.
+fn head(case: &Case) -> impl Iterator<Item = String> {
+    let modes = (1..=case.run.modes).map(|mode| format!("mode_{mode}_sqrt_kg_m"));
+    CURVE_COLUMNS.map(str::to_owned).into_iter().chain(modes)
+}
+
 /// Writes the curves of every condition: one row per crank angle and parameter set. Measured
 /// values stand in the rows whose crank angle is on the record's grid; a failed simulation has
 /// rows as far as it got.
@@ -48,7 +54,7 @@ const CURVE_COLUMNS: [&str; 22] = [
 /// [`csv::Error`] when the writer fails.
 pub fn curves(to: impl Write, case: &Case, results: &[ConditionResult]) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
-    writer.write_record(CURVE_COLUMNS)?;
+    writer.write_record(head(case))?;
     for result in results {
         for (who, run) in [
             ("recommended", &result.recommended),
@@ -67,7 +73,7 @@ pub fn curves(to: impl Write, case: &Case, results: &[ConditionResult]) -> Resul
 /// [`csv::Error`] when the writer fails.
 pub fn single_curves(to: impl Write, run: &SingleRun) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
-    writer.write_record(CURVE_COLUMNS)?;
+    writer.write_record(head(&run.case))?;
     rows(
         &mut writer,
         &run.case,
@@ -118,9 +124,57 @@ fn rows(
             &simulation.crank_torque_n_m,
         ];
         fields.extend(curves.map(|curve| field(curve.get(index).copied())));
+        let value = |mode: usize| simulation.modal.get(mode)?.get(index).copied();
+        fields.extend((0..case.run.modes).map(|mode| field(value(mode))));
         writer.write_record(fields)?;
     }
     Ok(())
+}
+
+/// Writes where every cylinder was at each snapshot of a simulation, what pulled at it and what pressed
+/// on it, from the free ends of the ropes on.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub fn ropes(to: impl Write, simulation: &Simulation) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    let columns = [
+        "turn_deg",
+        "rope",
+        "cylinder",
+        "x_m",
+        "y_m",
+        "tension_n",
+        "contact_n",
+    ];
+    writer.write_record(columns)?;
+    for motion in &simulation.motion {
+        let back = (
+            "back",
+            &motion.back_rope_m,
+            (&motion.back_tension_n, &motion.back_contact_n),
+        );
+        let front = (
+            "front",
+            &motion.front_rope_m,
+            (&motion.front_tension_n, &motion.front_contact_n),
+        );
+        for (rope, places, (tension, contact)) in [back, front] {
+            let forces = tension.iter().zip(contact);
+            for (cylinder, ([x, y], (tension, contact))) in (1..).zip(places.iter().zip(forces)) {
+                let number: i32 = cylinder;
+                let values = [x, y, tension, contact].map(|value| field(Some(f64::from(*value))));
+                let mut fields = vec![
+                    field(Some(motion.turn_deg)),
+                    rope.to_owned(),
+                    number.to_string(),
+                ];
+                fields.extend(values);
+                writer.write_record(fields)?;
+            }
+        }
+    }
+    Ok(writer.flush()?)
 }
 
 /// Row of the record at a crank angle, if it has one there.

@@ -94,7 +94,7 @@ pub fn write_calibration(
 }
 
 /// Writes the report of one simulation into a folder, which is made if it does not exist:
-/// `report.html`, `curves.csv`, `tables.txt` and `figures/*.svg`. Returns the paths, the HTML first.
+/// `report.html`, `curves.csv`, `ropes.csv`, `tables.txt` and `figures/*.svg`. Returns the paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a figure cannot be drawn or a file cannot be written.
@@ -102,6 +102,9 @@ pub fn write_simulation(folder: &Path, run: &SingleRun) -> Result<Vec<PathBuf>, 
     let mut written = vec![write(folder, "report.html", &html::simulation(run)?)?];
     written.push(stream(folder, "curves.csv", |file| {
         csv::single_curves(file, run)
+    })?);
+    written.push(stream(folder, "ropes.csv", |file| {
+        csv::ropes(file, &run.simulation)
     })?);
     let tables = [
         table::simulation(run),

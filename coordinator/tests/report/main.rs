@@ -7,7 +7,7 @@ mod suspicion;
 use coordinator::report::{
     Calibration, SingleRun, chart, csv, html, table, write_calibration, write_simulation,
 };
-use protocol::job::{PhysicsFailure, Reached, Verdict};
+use protocol::job::{Motion, PhysicsFailure, Reached, Verdict};
 use roxmltree::{Document, ParsingOptions};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -464,7 +464,31 @@ fn the_curves_are_written_with_all_their_digits() {
             number("crank_torque_n_m"),
             optimised.crank_torque_n_m[index].to_bits()
         );
+        assert_eq!(
+            number("mode_2_sqrt_kg_m"),
+            optimised.modal[1][index].to_bits()
+        );
     }
+}
+
+/// Every cylinder of every snapshot stands in a row of its own.
+#[test]
+fn ropes_are_written_cylinder_by_cylinder() {
+    let simulation = sample::single().simulation;
+    let mut bytes = Vec::new();
+    csv::ropes(&mut bytes, &simulation).unwrap();
+    let mut reader = ::csv::Reader::from_reader(bytes.as_slice());
+    let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
+    let cylinders = |motion: &Motion| motion.back_rope_m.len() + motion.front_rope_m.len();
+    let expected: usize = simulation.motion.iter().map(cylinders).sum();
+    assert!(expected > 0, "the sample has snapshots");
+    assert_eq!(rows.len(), expected);
+    let first = &simulation.motion[0];
+    let row = &rows[first.back_rope_m.len()];
+    assert_eq!((&row[1], &row[2]), ("front", "1"));
+    let written = |column: usize| row[column].parse::<f64>().unwrap().to_bits();
+    assert_eq!(written(5), f64::from(first.front_tension_n[0]).to_bits());
+    assert_eq!(written(6), f64::from(first.front_contact_n[0]).to_bits());
 }
 
 #[test]

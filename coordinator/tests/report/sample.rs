@@ -307,7 +307,12 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
         suspension_m: height,
         suspension_velocity_m_s: velocity,
         suspension_acceleration_m_s2: acceleration,
-        modal: Vec::new(),
+        modal: (1..=6)
+            .map(|mode| {
+                let curve = tension.iter();
+                curve.map(|pull| 1e-9 * f64::from(mode) * pull).collect()
+            })
+            .collect(),
         energy: Energy {
             input_j: 92_310.0,
             output_j: 91_800.0,
