@@ -19,7 +19,7 @@ check() {
         --test numerics "determinism::$tests"
 }
 check 3 ""
-# a run is some twenty times slower there: threads and fused operations have been tried above
+# a run is some sixty times slower there: threads and fused operations have been tried above
 check 0 "" every_build_reproduces_the_reference_run
 case "$(uname -m)" in
 x86_64)
