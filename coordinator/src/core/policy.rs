@@ -56,6 +56,9 @@ pub struct Policy {
     pub unstored: usize,
     /// Deadline while fewer than [`Self::deadline_samples`] jobs are done (default 120 s).
     pub first_deadline: Duration,
+    /// The same for the reduction of a head, which is asked for once and takes as long as its mesh is
+    /// large (default 30 min).
+    pub reduction_deadline: Duration,
     /// Least deadline (default 10 s).
     pub least_deadline: Duration,
     /// Deadline over the time that 95 % of recent jobs of the kind needed (default 4).
@@ -103,6 +106,7 @@ impl Default for Policy {
             prefetch_percent: 4,
             unstored: 1024,
             first_deadline: Duration::from_mins(2),
+            reduction_deadline: Duration::from_mins(30),
             least_deadline: Duration::from_secs(10),
             deadline_factor: 4,
             longest_factor: 2,
@@ -195,7 +199,11 @@ impl Times {
     pub(super) fn deadline(&self, kind: &'static str, overdue: u32, policy: &Policy) -> Duration {
         let known = self.0.get(kind);
         let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
-        let once = usual.map_or(policy.first_deadline, |(usual, longest)| {
+        let first = match kind {
+            "reduce_head" => policy.reduction_deadline,
+            _ => policy.first_deadline,
+        };
+        let once = usual.map_or(first, |(usual, longest)| {
             usual
                 .saturating_mul(policy.deadline_factor)
                 .max(longest.saturating_mul(policy.longest_factor))
@@ -252,9 +260,14 @@ mod tests {
             Duration::from_secs(160)
         );
         assert_eq!(
-            times.deadline("reduce_head", 0, &policy),
+            times.deadline("simulate", 0, &policy),
             Duration::from_mins(2),
             "nothing is known of that kind"
+        );
+        assert_eq!(
+            times.deadline("reduce_head", 0, &policy),
+            Duration::from_mins(30),
+            "a fine mesh takes long on a busy node"
         );
     }
 

@@ -48,11 +48,7 @@ fn sqlite(path: &Path) -> Tables {
     let read = |name: String| {
         let query = format!("SELECT * FROM \"{name}\" ORDER BY rowid");
         let mut statement = database.prepare(&query).expect("it can be read");
-        let columns: Vec<String> = statement
-            .column_names()
-            .into_iter()
-            .map(str::to_owned)
-            .collect();
+        let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
         let width = columns.len();
         let rows = statement
             .query_map([], |row| {

@@ -18,6 +18,9 @@ use protocol::{
 /// Gauges of the machine.
 const GAUGES: u8 = 4;
 
+/// One of the counts of a simulation's work.
+type Count = fn(Counters) -> u64;
+
 /// Every table of an export.
 pub(super) struct Tables {
     pub(super) run: Table<Fact>,
@@ -180,7 +183,7 @@ fn outcome() -> Columns<Brief> {
         );
         columns = columns.real(&name, &about, move |row| row.mse_mpa2(gauge));
     }
-    let counters: [(&str, &str, fn(Counters) -> u64); 5] = [
+    let counters: [(&str, &str, Count); 5] = [
         ("steps", "accepted steps", |work| work.steps),
         ("rejected_steps", "rejected steps", |work| {
             work.rejected_steps

@@ -48,7 +48,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 SHEET,
                 "the crank turns clockwise",
                 "the crank turns counter-clockwise",
-            )
+            );
         },
         &[
             "test_5rpm.toml",
