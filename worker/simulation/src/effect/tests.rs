@@ -136,8 +136,8 @@ fn every_effect_at_its_typical_size_acts() {
     }
 }
 
-/// Every parameter at both of its bounds, the others typical: a run ends in a verdict, and what it
-/// gives are numbers.
+/// Every parameter at both of its bounds, the others typical: a run ends in a verdict, what it gives
+/// are numbers, and they are not the same at both.
 #[test]
 fn bounds_end_in_a_verdict() {
     let settings = RunSettings {
@@ -151,6 +151,7 @@ fn bounds_end_in_a_verdict() {
     let mut failed = Vec::new();
     for d in catalogue().iter().filter(|d| !d.generic) {
         for (k, p) in d.parameters.iter().enumerate() {
+            let mut seen = Vec::new();
             for bound in [p.lower, p.upper] {
                 let other = |i: usize| d.parameters[i].typical;
                 let asked = at(d, |i| if i == k { bound } else { other(i) });
@@ -164,11 +165,15 @@ fn bounds_end_in_a_verdict() {
                 let result = simulate(&machine, &reference::law(), &settings, &mut recorder);
                 let mut stress = recorder.curves.gauge.iter().flatten();
                 assert!(stress.all(|s| s.is_finite()), "{}.{} {bound}", d.id, p.name);
+                seen.push(bits(&recorder.curves.gauge));
                 if result.verdict == Verdict::Complete {
                     complete += 1;
                 } else {
                     failed.push(format!("{}.{} {bound} {:?}", d.id, p.name, result.verdict));
                 }
+            }
+            if let [lower, upper] = seen.as_slice() {
+                assert_ne!(lower, upper, "{}.{} does nothing", d.id, p.name);
             }
         }
     }
