@@ -8,7 +8,12 @@ use crate::{
     pool::{Pool, SlotOptions},
 };
 use link::WorkerEnd;
-use protocol::{announce::Announcement, id::WorkerId, job::Job, wire};
+use protocol::{
+    announce::Announcement,
+    id::WorkerId,
+    job::{Job, REDUCE_HEAD},
+    wire,
+};
 use state::{State, Step};
 use std::{
     future::Future,
@@ -131,7 +136,7 @@ fn announcement(slots: usize) -> Announcement {
             "simulate",
             "observe",
             Job::Describe.kind(),
-            "reduce_head",
+            REDUCE_HEAD,
             nothing.kind(),
         ]
         .map(str::to_owned)

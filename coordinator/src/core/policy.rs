@@ -11,7 +11,7 @@
 //!
 //! What is recorded is part of the run and never computed again; another build or another case may
 //! do better with the last two. If the first 8 jobs all fail, the run stops.
-use protocol::job::Failure;
+use protocol::job::{Failure, REDUCE_HEAD};
 use std::{
     collections::{BTreeMap, VecDeque},
     time::Duration,
@@ -200,7 +200,7 @@ impl Times {
         let known = self.0.get(kind);
         let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
         let first = match kind {
-            "reduce_head" => policy.reduction_deadline,
+            REDUCE_HEAD => policy.reduction_deadline,
             _ => policy.first_deadline,
         };
         let once = usual.map_or(first, |(usual, longest)| {
@@ -265,7 +265,7 @@ mod tests {
             "nothing is known of that kind"
         );
         assert_eq!(
-            times.deadline("reduce_head", 0, &policy),
+            times.deadline(REDUCE_HEAD, 0, &policy),
             Duration::from_mins(30),
             "a fine mesh takes long on a busy node"
         );

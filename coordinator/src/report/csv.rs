@@ -149,27 +149,19 @@ pub fn ropes(to: impl Write, simulation: &Simulation) -> Result<(), csv::Error> 
     ];
     writer.write_record(columns)?;
     for motion in &simulation.motion {
-        let back = (
-            "back",
-            &motion.back_rope_m,
-            (&motion.back_tension_n, &motion.back_contact_n),
-        );
-        let front = (
-            "front",
-            &motion.front_rope_m,
-            (&motion.front_tension_n, &motion.front_contact_n),
-        );
-        for (rope, places, (tension, contact)) in [back, front] {
-            let forces = tension.iter().zip(contact);
-            for (cylinder, ([x, y], (tension, contact))) in (1..).zip(places.iter().zip(forces)) {
-                let number: i32 = cylinder;
-                let values = [x, y, tension, contact].map(|value| field(Some(f64::from(*value))));
+        let back = motion.back_rope_m.iter();
+        let back = back.zip(motion.back_tension_n.iter().zip(&motion.back_contact_n));
+        let front = motion.front_rope_m.iter();
+        let front = front.zip(motion.front_tension_n.iter().zip(&motion.front_contact_n));
+        for (rope, cylinders) in [("back", back), ("front", front)] {
+            for (number, ([x, y], (tension, contact))) in (1_u32..).zip(cylinders) {
                 let mut fields = vec![
                     field(Some(motion.turn_deg)),
                     rope.to_owned(),
                     number.to_string(),
                 ];
-                fields.extend(values);
+                let values = [x, y, tension, contact];
+                fields.extend(values.map(|value| field(Some(f64::from(*value)))));
                 writer.write_record(fields)?;
             }
         }

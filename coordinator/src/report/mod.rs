@@ -94,7 +94,8 @@ pub fn write_calibration(
 }
 
 /// Writes the report of one simulation into a folder, which is made if it does not exist:
-/// `report.html`, `curves.csv`, `ropes.csv`, `tables.txt` and `figures/*.svg`. Returns the paths, the HTML first.
+/// `report.html`, `curves.csv`, `ropes.csv`, `tables.txt` and `figures/*.svg`. Returns the paths, the
+/// HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a figure cannot be drawn or a file cannot be written.

@@ -46,6 +46,9 @@ pub enum Job {
     Observe(ObserveSpec),
 }
 
+/// Kind of the job that reduces a head: it takes minutes where others take seconds.
+pub const REDUCE_HEAD: &str = "reduce_head";
+
 impl Job {
     /// Name of the kind, as workers announce it.
     pub const fn kind(&self) -> &'static str {
@@ -53,7 +56,7 @@ impl Job {
             Self::Score(_) => "score",
             Self::Simulate(_) => "simulate",
             Self::Observe(_) => "observe",
-            Self::ReduceHead(_) => "reduce_head",
+            Self::ReduceHead(_) => REDUCE_HEAD,
             Self::Describe => "describe",
             Self::Nothing { .. } => "nothing",
         }
@@ -86,7 +89,7 @@ impl Outcome {
             Self::Scored(_) => "score",
             Self::Simulated(_) => "simulate",
             Self::Observed(_) => "observe",
-            Self::HeadReduced(_) => "reduce_head",
+            Self::HeadReduced(_) => REDUCE_HEAD,
             Self::Described(_) => "describe",
             Self::Nothing(_) => "nothing",
             Self::Failed(_) => "failed",
