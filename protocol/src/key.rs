@@ -1,8 +1,8 @@
 //! The names under which messages travel, and nothing else.
 //!
 //! ```text
-//! horsehead/1/RUN/w/WORKER/job     coordinator -> worker: jobs, cancellations
-//! horsehead/1/RUN/w/WORKER/ack     coordinator -> worker: admission, stored results, the end
+//! horsehead/1/w/WORKER/job         coordinator -> worker: jobs, cancellations
+//! horsehead/1/w/WORKER/ack         coordinator -> worker: admission, stored results, the end
 //! horsehead/1/RUN/res/WORKER       worker -> coordinator: results
 //! horsehead/1/RUN/hb/WORKER        worker -> coordinator: announcements, heartbeats
 //! horsehead/1/RUN/alive/WORKER     presence
@@ -12,6 +12,10 @@
 //! `RUN` is 16 hexadecimal digits, all zeros until a coordinator has told the worker. `WORKER` is
 //! two parts: the name of its certificate and the 16 digits of its process ([`WorkerName`]).
 //! Access control grants a worker only keys with the name of its certificate in them.
+//!
+//! Workers listen to keys without patterns, and without the run, which they do not know at first and
+//! which every frame says: the router remembers the way of a key that somebody listens to as it is,
+//! and looks through the patterns of all workers for any other, at every message.
 use crate::{
     id::{ContentHash, RunId},
     name::WorkerName,
@@ -30,13 +34,13 @@ pub enum Lane {
     Control,
 }
 
-/// Where the coordinator puts a message for a worker.
-pub fn to_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
+/// Where the coordinator puts a message for a worker, and the worker listens.
+pub fn to_worker(worker: &WorkerName, lane: Lane) -> String {
     let lane = match lane {
         Lane::Data => "job",
         Lane::Control => "ack",
     };
-    format!("{ROOT}/{run}/w/{worker}/{lane}")
+    format!("{ROOT}/w/{worker}/{lane}")
 }
 
 /// Where a worker puts a message for the coordinator.
@@ -46,11 +50,6 @@ pub fn from_worker(run: RunId, worker: &WorkerName, lane: Lane) -> String {
         Lane::Control => "hb",
     };
     format!("{ROOT}/{run}/{lane}/{worker}")
-}
-
-/// Everything for one worker, of any run: it learns the run from the first admission.
-pub fn all_to_worker(worker: &WorkerName) -> String {
-    format!("{ROOT}/*/w/{worker}/*")
 }
 
 /// Everything from any worker in one lane, of any run: newcomers do not know the run.
@@ -103,7 +102,7 @@ impl Grant {
     /// What `owner`'s workers may do.
     pub fn of(owner: &str) -> Self {
         Self {
-            hear: format!("{ROOT}/*/w/{owner}/*/*"),
+            hear: format!("{ROOT}/w/{owner}/*/*"),
             speak: [
                 format!("{ROOT}/*/res/{owner}/*"),
                 format!("{ROOT}/*/hb/{owner}/*"),

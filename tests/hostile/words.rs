@@ -39,17 +39,20 @@ impl Peer {
         let session = raw_session(locator, nowhere, false, 5000).await.unwrap();
         let name = WorkerName::anyone(process);
         let heard: Arc<Mutex<Vec<(RunId, ToWorker)>>> = Arc::default();
-        let to = Arc::clone(&heard);
-        session
-            .declare_subscriber(key::all_to_worker(&name))
-            .callback(move |sample| {
-                if let Ok(message) = wire::unseal(Kind::ToWorker, &sample.payload().to_bytes()) {
-                    to.lock().unwrap().push(message);
-                }
-            })
-            .background()
-            .await
-            .unwrap();
+        for lane in [Lane::Data, Lane::Control] {
+            let to = Arc::clone(&heard);
+            session
+                .declare_subscriber(key::to_worker(&name, lane))
+                .callback(move |sample| {
+                    if let Ok(message) = wire::unseal(Kind::ToWorker, &sample.payload().to_bytes())
+                    {
+                        to.lock().unwrap().push(message);
+                    }
+                })
+                .background()
+                .await
+                .unwrap();
+        }
         Self {
             session,
             name,

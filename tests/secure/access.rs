@@ -137,7 +137,7 @@ async fn a_certificate_speaks_for_nobody_else() {
             "forged",
         )
         .await;
-        put(&one, key::to_worker(RUN, &theirs, lane), "forged").await;
+        put(&one, key::to_worker(&theirs, lane), "forged").await;
     }
     put(&one, key::from_worker(RUN, &mine, Lane::Data), "mine").await;
     let heard = heard_until(&mut end, b"mine").await;
@@ -177,14 +177,14 @@ async fn a_certificate_overhears_nobody_else() {
     let spied: Vec<_> = [
         "horsehead/**".to_owned(),
         "**".to_owned(),
-        key::all_to_worker(&theirs),
+        key::to_worker(&theirs, Lane::Data),
         key::all_from_workers(Lane::Data),
     ]
     .into_iter()
     .map(|pattern| listen(&one, pattern))
     .collect();
-    let own = listen(&one, key::all_to_worker(&mine));
-    let jobs = listen(&two, key::all_to_worker(&theirs));
+    let own = listen(&one, key::to_worker(&mine, Lane::Data));
+    let jobs = listen(&two, key::to_worker(&theirs, Lane::Data));
     // both are known once they have spoken; then jobs go out until the slower one has heard
     arrive(&mut end, &one, &mine).await;
     arrive(&mut end, &two, &theirs).await;

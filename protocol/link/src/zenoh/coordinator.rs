@@ -40,7 +40,6 @@ pub struct ZenohCoordinator {
     session: Session,
     sender: Sender,
     heard: mpsc::Receiver<Heard>,
-    run: RunId,
     listening: Vec<Locator>,
     names: Arc<Mutex<Names>>,
     gates: Vec<Gate>,
@@ -93,7 +92,6 @@ impl ZenohCoordinator {
             session,
             sender,
             heard,
-            run,
             listening: locators,
             names,
             gates,
@@ -110,9 +108,7 @@ impl CoordinatorEnd for ZenohCoordinator {
     fn send(&mut self, to: WorkerId, lane: Lane, frame: Vec<u8>) {
         let key = {
             let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
-            names
-                .of(to)
-                .map(|name| key::to_worker(self.run, name, lane))
+            names.of(to).map(|name| key::to_worker(name, lane))
         };
         if let Some(key) = key {
             self.sender.send(key, lane, frame);

@@ -65,19 +65,20 @@ impl ZenohWorker {
         });
         let session = open(&config, &format!("connect to {connect}")).await?;
         let (to, frames) = mpsc::channel(INBOX);
-        session
-            .declare_subscriber(key::all_to_worker(&name))
-            .callback(move |sample| {
-                if to
-                    .try_send(sample.payload().to_bytes().into_owned())
-                    .is_err()
-                {
-                    tracing::debug!("a frame was dropped: too many are waiting");
-                }
-            })
-            .background()
-            .await
-            .map_err(|error| transport("subscribe to jobs", &error))?;
+        for lane in [Lane::Data, Lane::Control] {
+            let to = to.clone();
+            session
+                .declare_subscriber(key::to_worker(&name, lane))
+                .callback(move |sample| {
+                    let frame = sample.payload().to_bytes().into_owned();
+                    if to.try_send(frame).is_err() {
+                        tracing::debug!("a frame was dropped: too many are waiting");
+                    }
+                })
+                .background()
+                .await
+                .map_err(|error| transport("subscribe to jobs", &error))?;
+        }
         let sender = Sender::start(session.clone())
             .map_err(|error| transport("start the sending thread", &error))?;
         Ok(Self {
