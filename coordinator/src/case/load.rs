@@ -43,6 +43,22 @@ pub struct Loaded {
     pub envelope: Envelope,
 }
 
+impl Loaded {
+    /// The case as it was when effects were found in it: without those whose provenance names it, by its
+    /// content hash, as their dataset.
+    #[must_use]
+    pub fn without_found_in(mut self, dataset: &str) -> Self {
+        let found = |effect: &CaseEffect| {
+            let provenance = effect.provenance.as_ref();
+            provenance.and_then(|p| p.dataset.as_deref()) == Some(dataset)
+        };
+        self.effects.retain(|effect| !found(effect));
+        self.case.effects = self.effects.iter().map(CaseEffect::setting).collect();
+        self.case.effect_units = self.effects.iter().map(CaseEffect::units).collect();
+        self
+    }
+}
+
 /// Loads a case folder.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! The files and the output of a finished diagnosis.
 use super::{
     Output, bus, diagnosis_json, output,
-    run_folder::{Manifest, RunFolder},
+    run_folder::{Manifest, RunFolder, gene_file},
 };
 use crate::{case::Loaded, report::diagnosis as report, study::Diagnosed};
 use anyhow::Context as _;
@@ -42,12 +42,24 @@ impl<S> Answer<'_, S> {
         })
     }
 
+    /// Writes the parameters that the answer rests on: with the effects in the case, a simulation of
+    /// them is the diagnosis's "after".
+    fn write_genes(&self) -> anyhow::Result<()> {
+        let Some(fit) = &self.diagnosed.diagnosis.after else {
+            return Ok(());
+        };
+        let about = format!("Parameters of {}", self.folder.path().display());
+        let genes = gene_file(&self.loaded.case, &fit.model.genes(fit.x()), &about);
+        self.folder.write("calibrated.toml", &genes)
+    }
+
     /// Writes the files into the run folder; returns the object of `--output json`.
     pub(super) fn write(&self) -> anyhow::Result<diagnosis_json::DiagnoseOutput> {
         let subject = self.subject()?;
         if let Some(text) = report::effects_toml(&subject) {
             self.folder.write("effects.toml", &text)?;
         }
+        self.write_genes()?;
         for file in report::write(self.folder.path(), &subject)?.iter().take(1) {
             output::tell(&format!("open {}", file.display()));
         }

@@ -3,7 +3,9 @@
 use super::{
     Door, EXIT_CODES, OutputChoice,
     answer::Answer,
-    bus, cores, interrupt, output,
+    bus, cores,
+    diagnosed::Earlier,
+    interrupt, output,
     problem::Usage,
     progress::StageDisplay,
     run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, command_line},
@@ -99,7 +101,16 @@ struct Target {
 /// Diagnoses from the record to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
-    let target = target(arguments)?;
+    let mut target = target(arguments)?;
+    let path = arguments
+        .run
+        .clone()
+        .unwrap_or_else(|| default_path(&target.loaded.case, &target, arguments.seed));
+    let stated = target.loaded.effects.len();
+    if let Ok(earlier) = Earlier::open(&path) {
+        target.loaded = earlier.as_begun(target.loaded)?;
+    }
+    let has_own = target.loaded.effects.len() < stated;
     let case = &target.loaded.case;
     let notes: Vec<String> = target
         .loaded
@@ -136,10 +147,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         notes,
         wall_s: 0.0,
     };
-    let path = arguments
-        .run
-        .clone()
-        .unwrap_or_else(|| default_path(case, &target, arguments.seed));
     let begun = RunFolder::begin(&path, &manifest, case)?;
     let (diagnosed, library) =
         experiment(arguments, &manifest, &begun, &target).inspect_err(|error| {
@@ -166,8 +173,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         wall_s,
     };
     let object = answer.write()?;
-    if arguments.add {
-        answer.add(&target.folder.join("case.toml"))?;
+    let file = target.folder.join("case.toml");
+    if arguments.add && has_own {
+        output::tell(&format!(
+            "{} has what this run found already",
+            file.display()
+        ));
+    } else if arguments.add {
+        answer.add(&file)?;
     }
     answer.print(arguments.output.output, &object)
 }

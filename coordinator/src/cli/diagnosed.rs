@@ -43,7 +43,7 @@ impl Earlier {
         let overrides = Overrides {
             measured: replaced.then_some(own),
         };
-        let loaded = load_with_notes(&manifest.case_folder, &overrides)?;
+        let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
         if bus::case_hash(&loaded.case)? != bus::case_hash(&self.case)? {
             return Err(Usage {
                 message: format!(
@@ -58,6 +58,11 @@ impl Earlier {
             .into());
         }
         Ok(loaded)
+    }
+
+    /// A case without what this very diagnosis has added to it.
+    pub(super) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
+        Ok(loaded.without_found_in(&bus::case_hash(&self.case)?))
     }
 
     /// Diagnoses again, on what answers from a recording.

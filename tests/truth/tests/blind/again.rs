@@ -1,0 +1,125 @@
+//! A diagnosis that is killed, gone on with, told again, added to the case and simulated: always the
+//! same numbers.
+use crate::coarse::{Trial, run};
+use serde_json::Value;
+use std::{fs, path::Path, process::Stdio, thread::sleep, time::Duration};
+
+/// All but the friction that is hidden and a rival.
+const WITHOUT: &str = "load_cell_lag,load_cell_gain,card_smoothing,valve_leakage,gas_interference,\
+fluid_pound,stuffing_box_friction,rod_string_reaction,front_head_radius,front_rope_bending_loss,\
+rope_bending_loss,beam_inertia,post_compliance,head_profile_wear,head_damping,rope_stretch,rope_toe,\
+rope_hysteresis,counterweight_phase,crank_speed_ripple,crank_angle_offset,pin_clearance,\
+twin_rope_inequality,gauge_cross_talk,gauge_gain,gauge_drift,amplifier_lag,card_time_shift";
+
+/// Results in the journal before the diagnosis is killed (bytes): far fewer than it needs.
+const KILLED_AT: u64 = 500_000;
+
+/// What a diagnosis says, but for the times it took.
+fn said(text: &str) -> Value {
+    let mut all: Value = serde_json::from_str(text).expect("an object");
+    let fields = all.as_object_mut().expect("an object");
+    fields.remove("wall_s").expect("a time");
+    for stage in fields["stages"].as_array_mut().expect("stages") {
+        stage.as_object_mut().expect("a stage").remove("wall_s");
+    }
+    all
+}
+
+/// Curves by channel.
+fn after(curves: &Path, condition: &str) -> Vec<[f64; 4]> {
+    let text = fs::read_to_string(curves).expect("curves");
+    let mut rows: Vec<[f64; 4]> = Vec::new();
+    for line in text.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let gauge = fields[1].strip_prefix("gauge ").map(str::parse::<usize>);
+        let (true, Some(Ok(gauge))) = (fields[0] == condition, gauge) else {
+            continue;
+        };
+        let turn: f64 = fields[3].parse().expect("an angle");
+        let at = (turn * 2.0).round() as usize;
+        rows.resize(rows.len().max(at + 1), [f64::NAN; 4]);
+        rows[at][gauge - 1] = fields[7].parse().expect("a stress");
+    }
+    rows
+}
+
+#[test]
+fn what_is_found_is_told_again_added_and_simulated_with_the_same_numbers() {
+    let trial = Trial::make(&[
+        "--seed",
+        "2",
+        "--stratum",
+        "single",
+        "--effect",
+        "pivot_friction",
+        "--times",
+        "5",
+        "--noise",
+        "4",
+    ]);
+    // killed on the way
+    let mut first = trial.diagnose(WITHOUT);
+    let mut first = first.stdout(Stdio::null()).spawn().expect("it starts");
+    let journal = trial.at("run/journal.hhj");
+    while fs::metadata(&journal).map_or(0, |file| file.len()) < KILLED_AT {
+        assert!(
+            first.try_wait().expect("a state").is_none(),
+            "it ended before"
+        );
+        sleep(Duration::from_millis(20));
+    }
+    first.kill().expect("a signal");
+    first.wait().expect("an end");
+    assert!(!trial.at("run/result.json").exists());
+
+    let whole = said(&run(&mut trial.diagnose(WITHOUT)));
+    assert_eq!(whole["effects"][0]["id"], "pivot_friction", "{whole}");
+    assert_eq!(
+        said(&run(
+            &mut trial.horsehead(&["report", "run", "--output", "json"])
+        )),
+        whole
+    );
+
+    // the case has what was found, once, and the run still knows its case
+    for _ in 0..2 {
+        assert_eq!(said(&run(trial.diagnose(WITHOUT).arg("--add"))), whole);
+    }
+    let case = fs::read_to_string(trial.at("case/case.toml")).expect("a case");
+    assert_eq!(case.matches("id = \"pivot_friction\"").count(), 1);
+    assert_eq!(
+        said(&run(
+            &mut trial.horsehead(&["report", "run", "--output", "json"])
+        )),
+        whole
+    );
+
+    // with the step of the diagnosis, a simulation of the case is its "after"
+    let usual = "longest_step_s = 0.06 ";
+    assert_eq!(case.matches(usual).count(), 1);
+    let finer = format!("longest_step_s = {:e} ", 0.7 * 0.06);
+    fs::write(trial.at("case/case.toml"), case.replace(usual, &finer)).expect("a case");
+    let mut simulate = trial.horsehead(&["simulate", "case", "--output", "json", "--measured"]);
+    simulate
+        .arg(&trial.set)
+        .args(["--genes", "run/calibrated.toml"]);
+    let simulated: Value = serde_json::from_str(&run(&mut simulate)).expect("an object");
+    let after = after(&trial.at("run/curves.csv"), "5rpm");
+    for gauge in 1..=4 {
+        let stress = simulated["gauge_mpa"][gauge.to_string()]
+            .as_array()
+            .expect("a curve");
+        assert_eq!(stress.len(), 720);
+        for (at, stress) in stress.iter().enumerate() {
+            let bits = |value: f64| value.to_bits();
+            let diagnosed = after[at][gauge - 1];
+            if !diagnosed.is_nan() {
+                assert_eq!(
+                    stress.as_f64().map(bits),
+                    Some(bits(diagnosed)),
+                    "gauge {gauge} at {at}"
+                );
+            }
+        }
+    }
+}

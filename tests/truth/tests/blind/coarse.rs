@@ -1,0 +1,140 @@
+//! A coarse copy of the shipped machine, and sets of records made for it.
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+};
+
+pub(crate) fn truth(arguments: &[&str]) -> String {
+    run(Command::new(env!("CARGO_BIN_EXE_truth")).args(arguments))
+}
+
+pub(crate) fn run(command: &mut Command) -> String {
+    let out = command
+        .stderr(Stdio::inherit())
+        .output()
+        .expect("it starts");
+    assert!(out.status.success(), "{command:?} fails");
+    String::from_utf8(out.stdout).expect("text")
+}
+
+/// The judged program, with its worker beside it.
+pub(crate) fn horsehead() -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_BIN_EXE_truth"));
+    for (name, package) in [("horsehead", "coordinator"), ("horsehead-worker", "worker")] {
+        if !folder.with_file_name(name).is_file() {
+            run(Command::new(env!("CARGO")).args(["build", "-p", package, "--bin", name]));
+        }
+    }
+    folder.with_file_name("horsehead")
+}
+
+/// The shipped case with fewer, longer cylinders.
+pub(crate) fn coarse_case(folder: &Path) -> PathBuf {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
+    let case = folder.join("case");
+    for part in ["back_head", "measured"] {
+        fs::create_dir_all(case.join(part)).expect("a folder");
+        for file in fs::read_dir(shipped.join(part)).expect("the shipped case") {
+            let file = file.expect("an entry");
+            let to = case.join(part).join(file.file_name());
+            fs::copy(file.path(), to).expect("a copy");
+        }
+    }
+    let mut text = fs::read_to_string(shipped.join("case.toml")).expect("the case file");
+    for (key, fine, coarse) in [
+        ("cylinder_length_m", "0.050", "0.150"),
+        ("back_cylinders", "72", "24"),
+        ("front_cylinders", "114", "38"),
+    ] {
+        let (from, to) = (format!("{key} = {fine}"), format!("{key} = {coarse}"));
+        assert_eq!(text.matches(&from).count(), 1, "{from}");
+        text = text.replace(&from, &to);
+    }
+    fs::write(case.join("case.toml"), text).expect("the case file");
+    case
+}
+
+/// Where a calibration of the machine ended before: the optimised column of the paper's Table 3, with the
+/// axial damping of a steel rope.
+const START: &str = r#"
+kb1  = { value = 7.81e8, unit = "N/m" }
+kb23 = { value = 2.26e8, unit = "N/m" }
+kb4  = { value = 204.0, unit = "N.m/deg" }
+kb56 = { value = 308.0, unit = "N.m/deg" }
+cb1  = { value = 1.0e6, unit = "N.s/m" }
+cb23 = { value = 4287.0, unit = "N.s/m" }
+cb4  = { value = 45.0, unit = "N.m.s/deg" }
+cb56 = { value = 56.0, unit = "N.m.s/deg" }
+kc   = { value = 4.01e8, unit = "N/m^1.5" }
+cc   = { value = 1.02e3, unit = "N.s/m" }
+"#;
+
+/// Effects that are not considered. Those that are: pivot friction, what looks like it, and others of
+/// load, crank and gauges.
+pub(crate) const WITHOUT: &str = "load_cell_lag,load_cell_gain,card_smoothing,valve_leakage,gas_interference,\
+fluid_pound,stuffing_box_friction,rod_string_reaction,front_head_radius,front_rope_bending_loss,\
+beam_inertia,post_compliance,head_profile_wear,head_damping,rope_stretch,rope_toe,rope_hysteresis,\
+counterweight_phase,crank_angle_offset,pin_clearance,twin_rope_inequality,gauge_cross_talk,gauge_gain,\
+amplifier_lag";
+
+/// A set of records that hides something, with a case that is asked about it.
+pub(crate) struct Trial {
+    scratch: tempfile::TempDir,
+    /// The records.
+    pub(crate) set: PathBuf,
+    /// What `truth make` commits itself to.
+    pub(crate) commitment: String,
+}
+
+impl Trial {
+    /// Makes a set.
+    pub(crate) fn make(arguments: &[&str]) -> Self {
+        let scratch = tempfile::tempdir().expect("a folder");
+        coarse_case(scratch.path());
+        fs::write(scratch.path().join("start.toml"), START).expect("a file");
+        let at = |name: &str| scratch.path().join(name).display().to_string();
+        let (case, sets, answers) = (at("case"), at("sets"), at("answers.json"));
+        let make = [
+            "make",
+            "--case",
+            &case,
+            "--out",
+            &sets,
+            "--answers",
+            &answers,
+        ];
+        let said = truth(&[&make, &["--coarse"][..], arguments].concat());
+        Self {
+            set: PathBuf::from(said.lines().next().expect("a folder's name")),
+            commitment: said
+                .split_whitespace()
+                .last()
+                .expect("a commitment")
+                .to_owned(),
+            scratch,
+        }
+    }
+
+    /// A path in its folder.
+    pub(crate) fn at(&self, name: &str) -> PathBuf {
+        self.scratch.path().join(name)
+    }
+
+    /// The judged program in its folder.
+    pub(crate) fn horsehead(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(horsehead());
+        command.args(arguments).current_dir(self.scratch.path());
+        command
+    }
+
+    /// One round of diagnosis of the set, without some of the effects.
+    pub(crate) fn diagnose(&self, without: &str) -> Command {
+        let mut command = self.horsehead(&["diagnose", "case", "--run", "run", "--rounds", "1"]);
+        command.args(["--genes", "start.toml", "--output", "json"]);
+        command
+            .args(["--without", without, "--measured"])
+            .arg(&self.set);
+        command
+    }
+}
