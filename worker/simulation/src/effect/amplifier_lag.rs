@@ -1,6 +1,8 @@
 //! The gauges' amplifier or its anti-alias filter lags: `t s_m' + s_m = s`, periodic.
 //!
 //! Between samples the stress is taken as straight, for which the filter's answer is exact.
+//!
+//! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks, Reading};
 use crate::math::elementary::{exp, powf};

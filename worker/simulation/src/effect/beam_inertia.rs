@@ -1,4 +1,6 @@
 //! Another inertia of beam and heads, or ice on them: `J (1 + x)`.
+//!
+//! Source: articulating inertia of a pumping unit: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;

@@ -5,6 +5,9 @@
 //! itself rings after each transfer of the load, at its fundamental `a / 4 L` and decaying:
 //! `+- (A sin w t + B cos w t (1 - exp(-t / 0.1 s))) exp(-c t)` after the steepest rise (+) and the
 //! steepest fall (-) of the smoothed card. Sine and cosine together have any phase.
+//!
+//! Source: what a smoothed card loses are the rod string's reflections: Gibbs, "Predicting the
+//! Behavior of Sucker-Rod Pumping Systems", JPT 15 (1963).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::math::elementary::{exp, sin_cos};

@@ -1,5 +1,8 @@
 //! The load card is late: the machine feels at `phi` what the card holds at `phi + w t`, the motion stays
 //! as it is.
+//!
+//! Source: a card is load over position at the same moment: Gibbs and Neely, "Computer Diagnosis of
+//! Down-Hole Conditions in Sucker Rod Pumping Wells", JPT 18 (1966).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::math::spline::Splines;

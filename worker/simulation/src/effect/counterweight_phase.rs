@@ -3,6 +3,8 @@
 //! Under a prescribed crank that shows only where the motor slips: this effect is the difference that
 //! the counterweight makes to the ripple of the crank's speed, with a slip of its own, so that it
 //! can be told apart from the ripple itself.
+//!
+//! Source: counterbalance moment with its phase angle: API Spec 11E.
 use super::crank_speed_ripple::{RATED, sampled, warp};
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks};

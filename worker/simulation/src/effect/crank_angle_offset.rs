@@ -1,4 +1,7 @@
 //! The record's angle is wrong: `sigma_m(phi) = sigma(phi + d)`, all channels together.
+//!
+//! Source: angles of a pumping unit: Svinos, "Exact Kinematic Analysis of Pumping Units", SPE 12201
+//! (1983).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks};
 use crate::model::Machine;

@@ -6,6 +6,9 @@
 //! mark per revolution, so only what the crank is ahead of uniform rotation matters: `u = c int dphi /
 //! (w / w_0)`, with `c` such that a turn stays a turn. The net torque is that of the ideal mechanism,
 //! counterweight included.
+//!
+//! Source: Kloss, "Drehmoment und Schlüpfung des Drehstrommotors", Archiv für Elektrotechnik 5
+//! (1916).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks};
 use crate::math::harmonics::filter;

@@ -4,6 +4,8 @@
 //! suspension point has come down by `1 - fillage` of its stroke; there it falls to the card's value
 //! within `fall` degrees. The blow, `dF = Z v`, rings in the rods:
 //! `-impact sin(w t) exp(-t / 3 s)` from then on.
+//!
+//! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015); the blow's wave: Gibbs, JPT 15 (1963).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect};
 use crate::math::elementary::{exp, sin_cos};

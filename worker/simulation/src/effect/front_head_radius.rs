@@ -2,6 +2,8 @@
 //!
 //! A centre lower by `e` makes the arm `A + e sin(theta)`: it differs with the sign of the beam
 //! angle. The suspension point stays under the arc's foremost point at beam angle 0.
+//!
+//! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;

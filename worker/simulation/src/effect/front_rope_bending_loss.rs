@@ -2,6 +2,8 @@
 //!
 //! The tension is that of the load alone, from the card and the ideal motion. The rope always leaves
 //! the arc at the height of its centre, so it winds as the beam turns.
+//!
+//! Source: efficiency of ropes over sheaves: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::line::dry_friction;
 use super::{Along, Cycle, Effect, Hooks, LineForce};

@@ -3,6 +3,8 @@
 //!
 //! The delay grows from top dead centre on, is greatest 60 deg later and gone after 120 deg:
 //! `d = d_0 sin^2(pi (phi - phi_top) / 120 deg)`.
+//!
+//! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect};
 use crate::math::elementary::sin_cos;

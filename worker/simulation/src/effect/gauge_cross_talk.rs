@@ -1,5 +1,7 @@
 //! A gauge feels what its partner on the other cheek measures: `s_i + x_i s_j`, partners 1 and 3,
 //! 2 and 4. Wrong placement and misalignment mix the same two components.
+//!
+//! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks, Reading, Sampled};
 use crate::model::Machine;

@@ -1,6 +1,8 @@
 //! Zeros drift over the revolution, as a cheek warms in the sun: `s + k t / t_rev`.
 //!
 //! A saw-tooth in the averaged record, with its jump at the mark.
+//!
+//! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks, Reading, Sampled};
 use crate::model::Machine;

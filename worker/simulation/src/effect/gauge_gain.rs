@@ -1,5 +1,7 @@
 //! A gauge reads too much or too little: `(1 + g) s`, by its factor, its leads, its amplifier, its
 //! place.
+//!
+//! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks, Reading, Sampled};
 use crate::model::Machine;

@@ -1,4 +1,6 @@
 //! Bolted and welded joints damp the back head's modes more than assumed: `zeta + x`.
+//!
+//! Source: modal damping: Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2nd ed. (2006).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;

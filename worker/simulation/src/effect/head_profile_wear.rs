@@ -3,6 +3,8 @@
 //! `width`.
 //!
 //! The rope passes the same place twice a turn, winding on and off.
+//!
+//! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hollow, Hooks};
 use crate::model::Machine;

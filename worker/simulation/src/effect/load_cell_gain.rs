@@ -1,4 +1,6 @@
 //! The load cell reads a share too little: `F (1 + g)`.
+//!
+//! Source: static calibration: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;

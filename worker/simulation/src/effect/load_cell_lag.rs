@@ -5,6 +5,8 @@
 //! load and the machine is loaded by a lagged one, `1 / (1 + i n w |t|)`; the two agree to first
 //! order. What is restored is noise from some harmonic on: the gain's change fades out as
 //! `1 / (1 + (n / 90)^4)`, above the ropes' own modes (orders 60 to 80).
+//!
+//! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::math::harmonics::filter;

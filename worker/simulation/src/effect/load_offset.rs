@@ -2,6 +2,9 @@
 //!
 //! The three have the same shape in the rope's tension to within a few per cent, so they are one
 //! effect.
+//!
+//! Source: zero of the cell: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3; structural
+//! unbalance: API Spec 11E.
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;

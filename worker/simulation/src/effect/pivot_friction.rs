@@ -2,6 +2,9 @@
 //!
 //! Coulomb friction with Stribeck's rise towards rest, and a viscous part; `tanh(w / w_0)` for the
 //! sign.
+//!
+//! Source: Armstrong-Hélouvry, Dupont and Canudas de Wit, "A survey of models, analysis tools and
+//! compensation methods for the control of machines with friction", Automatica 30 (1994).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Cycle, Effect, Hooks, LineForce};
 use crate::drive::DriveState;

@@ -4,6 +4,9 @@
 //! along the axes of the beam frame: contact, anchor and weight act on them as on any mode. The front
 //! side is not modelled twice: its pull, the load with the carrier's weight, hangs on the pivot as a
 //! given force. The post is equally stiff along and across; `mass` moves with the pivot.
+//!
+//! Source: elastic supports: Craig and Kurdila, *Fundamentals of Structural Dynamics*, 2nd ed.
+//! (2006).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Dashpot, Effect, Force, Hooks};
 use crate::linear::Bordered;

@@ -3,6 +3,9 @@
 //! The card was measured while the suspension point moved with `v_m`, here that of the ideal
 //! mechanism; a rope that swings the suspension point drives a wave down the rods, whose impedance
 //! is `Z = sqrt(E A mu)`, 20.5 kN s/m for 25 mm rods.
+//!
+//! Source: characteristic impedance of a rod: Graff, *Wave Motion in Elastic Solids* (1975); the
+//! string: Gibbs, JPT 15 (1963).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Cycle, Effect, Hooks, LineForce};
 use crate::drive::DriveState;

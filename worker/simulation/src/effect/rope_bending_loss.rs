@@ -5,6 +5,8 @@
 //! angle of the tangent point on it. It changes sign where the winding turns round, which is not at the
 //! dead centres, and with `tanh(psi' / w_0)`, since one wire slips after another. Tension, arm and speed
 //! of winding are those of the ideal mechanism.
+//!
+//! Source: efficiency of ropes over sheaves: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Cycle, Effect, Hooks, LineForce};
 use crate::drive::DriveState;

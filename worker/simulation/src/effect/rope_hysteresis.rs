@@ -8,6 +8,9 @@
 //! goes as `e_y (1 - exp(-x / e_y))`. Every joint remembers strain and `z` of the last accepted step
 //! and follows that form from there: between steps nothing is split, and the only error is that
 //! a turn of the motion within a step is seen at its end.
+//!
+//! Source: Wen, "Method for Random Vibration of Hysteretic Systems", ASCE Journal of the
+//! Engineering Mechanics Division 102 (1976).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Axial, Cycle, Effect, Hooks, Memory, Strain};
 use crate::math::elementary::exp;

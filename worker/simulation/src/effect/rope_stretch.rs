@@ -1,6 +1,8 @@
 //! The back rope is longer than drawn: construction stretch, bedding, creep, warmth.
 //!
 //! The length is put where the rope hangs on the crossbeam: `L_0 + x`.
+//!
+//! Source: permanent elongation: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;

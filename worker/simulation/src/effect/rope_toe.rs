@@ -2,6 +2,8 @@
 //!
 //! The law is solved for the pull at a strain; what it differs from the individual's straight line is
 //! added between all cylinders of both ropes. Below zero tension the toe goes on with its slope.
+//!
+//! Source: modulus that grows with stress: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Along, Axial, Cycle, Effect, Hooks, Strain};
 use crate::math::elementary::exp;

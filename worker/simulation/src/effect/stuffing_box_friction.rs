@@ -1,5 +1,8 @@
 //! Friction of the stuffing box that the load cell does not see: `F - F_s sign(v)` on the suspension
 //! point, with `tanh(v / v_0)` for the sign: packing gives before it slides.
+//!
+//! Source: the law: Armstrong-Hélouvry, Dupont and Canudas de Wit, Automatica 30 (1994); packings:
+//! Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::line::dry_friction;
 use super::{Along, Cycle, Effect, Hooks, LineForce};

@@ -6,6 +6,8 @@
 //!
 //! Where a description has twin ropes the length is cut off the back rope at +z instead, and everything
 //! follows from the motion.
+//!
+//! Source: sharing among parallel ropes: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use super::{Cycle, Effect, Hooks, Reading, Sampled};
 use crate::model::Machine;

@@ -4,6 +4,8 @@
 //! back at 210 deg; where the standing valve leaks, the lower line rises from 210 to 350 deg and is
 //! back at 370 deg. Only what the card does not know already counts, if it was not measured on the
 //! same strokes.
+//!
+//! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use super::Effect;
 use super::descriptor::{Build, Descriptor, Parameter, Place, Unit};
 use crate::model::description::Description;
