@@ -160,6 +160,7 @@ struct StageOutput {
     stage: &'static str,
     simulations: u64,
     failed: u64,
+    batches: u64,
     wall_s: f64,
 }
 
@@ -258,6 +259,7 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
                 stage: stage.name(),
                 simulations: account.experiments,
                 failed: account.failed,
+                batches: account.batches,
                 wall_s: account.wall.as_secs_f64(),
             })
             .collect(),

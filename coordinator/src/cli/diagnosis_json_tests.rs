@@ -122,6 +122,7 @@ fn printed(diagnosis: Diagnosis) -> Value {
             Account {
                 experiments: 40,
                 failed: 2,
+                batches: 3,
                 wall: Duration::from_millis(1500),
             },
         )],
@@ -228,6 +229,7 @@ fn effects_gaps_and_limits_are_as_documented() {
     assert_eq!(said["data_worth"][0]["cycles"], 2.5);
     assert!(said["data_worth"][0]["cycles_with_other_conditions"].is_null());
     assert_eq!(said["stages"][0]["simulations"], 40);
+    assert_eq!(said["stages"][0]["batches"], 3);
     assert_eq!(said["stages"][0]["wall_s"], 1.5);
 }
 

@@ -19,6 +19,8 @@ pub struct Account {
     pub experiments: u64,
     /// Of those, how many did not run to their end.
     pub failed: u64,
+    /// Batches in which they were asked for: what is in one is independent, one follows another.
+    pub batches: u64,
     /// Time from the first experiment's start to the last one's end, waiting included.
     pub wall: Duration,
 }
@@ -154,7 +156,9 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
             self.watch
                 .progress(stage, account.experiments, open, &|| evaluator.crew());
         }
-        self.accounts.entry(stage).or_default().wall += started.elapsed();
+        let account = self.accounts.entry(stage).or_default();
+        account.batches += u64::from(!results.is_empty());
+        account.wall += started.elapsed();
         Ok(results)
     }
 }

@@ -367,6 +367,7 @@ fn accounts() -> Vec<(Stage, Account)> {
     let account = |experiments, failed, seconds| Account {
         experiments,
         failed,
+        batches: 7,
         wall: Duration::from_secs(seconds),
     };
     vec![

@@ -57,6 +57,7 @@ pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Tabl
                 [
                     count(account.experiments),
                     count(account.failed),
+                    count(account.batches),
                     duration(account.wall.as_secs_f64()),
                 ],
             )
@@ -68,16 +69,18 @@ pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Tabl
         [
             count(total(|account| account.experiments)),
             count(total(|account| account.failed)),
+            count(total(|account| account.batches)),
             duration(subject.wall_s),
         ],
     ));
     (!accounts.is_empty()).then(|| {
         let mut made = table(
             "What each stage cost",
-            ["", "simulations", "did not complete", "time in this session"],
+            ["", "simulations", "did not complete", "batches", "time in this session"],
             rows,
         );
         made.notes = vec![
+            "Simulations of one batch are independent of each other; a batch waits for the one before.".to_owned(),
             "Results that the journal held already take no time; the last line's time is that of all \
              sessions."
                 .to_owned(),
