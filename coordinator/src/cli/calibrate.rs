@@ -40,7 +40,8 @@ pub(super) struct Arguments {
     /// Fixes every random choice: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
-    /// Run folder [default: runs/CASE-PRESET-seedN].
+    /// Run folder [default: runs/CASE-PRESET-seedN, with --measured also the folder's name and the
+    /// start of its records' hash].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     /// Of the preset `window`: an individual is bred from results that are this many behind, part
@@ -146,10 +147,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         .into());
     }
     let local_workers = arguments.workers.unwrap_or_else(cores);
-    let path = arguments
-        .run
-        .clone()
-        .unwrap_or_else(|| RunFolder::default_path(&case.name, preset.name, arguments.seed));
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let replaced = arguments.choice.measured.as_deref();
+        RunFolder::default_path(&case, preset.name, replaced, arguments.seed)?
+    };
     let mut settings = (preset.settings)(&space);
     set_window(&mut settings, arguments, &path, local_workers)?;
     let manifest = Manifest {

@@ -65,7 +65,8 @@ pub(super) struct Arguments {
     /// Fixes every random choice: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
-    /// Run folder [default: runs/CASE-diagnose-seedN].
+    /// Run folder [default: runs/CASE-diagnose-seedN, with --measured also the folder's name and the
+    /// start of its records' hash].
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
@@ -102,10 +103,12 @@ struct Target {
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let started = Instant::now();
     let mut target = target(arguments)?;
-    let path = arguments
-        .run
-        .clone()
-        .unwrap_or_else(|| default_path(&target.loaded.case, &target, arguments.seed));
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let measured = target.measured.as_deref();
+        RunFolder::default_path(&target.loaded.case, DIAGNOSE, measured, arguments.seed)?
+    };
     let stated = target.loaded.effects.len();
     if let Ok(earlier) = Earlier::open(&path) {
         target.loaded = earlier.as_begun(target.loaded)?;
@@ -237,16 +240,6 @@ fn target(arguments: &Arguments) -> anyhow::Result<Target> {
         loaded,
         start,
     })
-}
-
-/// `runs/CASE-diagnose[-RECORDS]-seedN`.
-fn default_path(case: &Case, target: &Target, seed: u64) -> PathBuf {
-    let records = target.measured.as_deref().and_then(Path::file_name);
-    let name = records.map_or_else(
-        || DIAGNOSE.to_owned(),
-        |records| format!("{DIAGNOSE}-{}", records.to_string_lossy()),
-    );
-    RunFolder::default_path(&case.name, &name, seed)
 }
 
 /// Opens the bus, learns the library and diagnoses.

@@ -6,7 +6,7 @@
 use super::problem::Usage;
 use crate::journal;
 use anyhow::Context as _;
-use protocol::case::Case;
+use protocol::{case::Case, id::ContentHash, wire};
 use search::strategy::Settings;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
@@ -123,10 +123,17 @@ pub(super) struct RunFolder {
 }
 
 impl RunFolder {
-    /// `runs/CASE-PRESET-seedN` below the current folder, so that the same command finds it.
-    pub(super) fn default_path(case: &str, preset: &str, seed: u64) -> PathBuf {
-        let word: String = case
-            .chars()
+    /// `runs/CASE-WHAT[-RECORDS-HASH]-seedN` below the current folder, so that the same command finds it.
+    /// `measured` is the folder of records that replace the case's: many folders have the same name, so
+    /// the start of the records' hash tells them apart.
+    pub(super) fn default_path(
+        case: &Case,
+        what: &str,
+        measured: Option<&Path>,
+        seed: u64,
+    ) -> anyhow::Result<PathBuf> {
+        let name = case.name.chars();
+        let word: String = name
             .map(|c| {
                 if c.is_ascii_alphanumeric() {
                     c.to_ascii_lowercase()
@@ -135,7 +142,18 @@ impl RunFolder {
                 }
             })
             .collect();
-        Path::new("runs").join(format!("{word}-{preset}-seed{seed}"))
+        let records = match measured {
+            None => String::new(),
+            Some(folder) => {
+                let name = folder
+                    .file_name()
+                    .map_or_else(String::new, |name| format!("-{}", name.to_string_lossy()));
+                let hash = ContentHash::of(&wire::encode(&case.conditions)?).to_string();
+                format!("{name}-{}", hash.get(..8).unwrap_or_default())
+            }
+        };
+        let folder = format!("{word}-{what}{records}-seed{seed}");
+        Ok(Path::new("runs").join(folder))
     }
 
     /// Whether a run can begin here, or go on because it is the same one. Writes nothing:

@@ -104,8 +104,21 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     let case = crate::case::load(&shipped(), &crate::case::Overrides::default()).unwrap();
     let path = scratch
         .path()
-        .join(RunFolder::default_path(&case.name, "quick", 3));
+        .join(RunFolder::default_path(&case, "quick", None, 3).unwrap());
     assert!(path.ends_with("runs/cyjs10-5-37hb-quick-seed3"));
+    // other records in a folder of the same name are another run
+    let mut other = case.clone();
+    other.conditions[0].speed_rpm += 1.0;
+    let beside = |case| {
+        let records = Path::new("tests/of/march");
+        RunFolder::default_path(case, "diagnose", Some(records), 3).unwrap()
+    };
+    assert_ne!(beside(&case), beside(&other));
+    let named = beside(&case).display().to_string();
+    assert!(
+        named.starts_with("runs/cyjs10-5-37hb-diagnose-march-"),
+        "{named}"
+    );
     let first = RunFolder::begin(&path, &manifest(&case, 3), &case).unwrap();
     assert!(!first.resumed && !first.folder.is_finished());
     assert!(!path.exists(), "nothing is written before the journal is");
