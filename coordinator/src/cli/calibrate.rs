@@ -59,7 +59,7 @@ pub(super) struct Arguments {
 }
 
 fn presets() -> String {
-    let line = |preset: &Preset| format!("  {:<12} {}\n", preset.name, preset.summary);
+    let line = |preset: &Preset| format!("  {:<14} {}\n", preset.name, preset.summary);
     CATALOGUE.iter().map(line).collect()
 }
 
