@@ -41,7 +41,10 @@ fn effects_far_below_their_limits_are_not_claimed() {
             let truth = planted(healthy, effect, 0.3);
             let answer = diagnose_usual(&truth);
             let limits = answer.limits.iter().filter(|l| l.id == effect.id);
-            assert_eq!(limits.count(), discrepancy::model::sizes(effect).len());
+            // a recalibration that does not converge has none, and says nothing
+            let printed = answer.rounds.is_empty()
+                || limits.count() == discrepancy::model::sizes(effect).len();
+            assert!(printed, "{}: {}", effect.id, line(&answer));
             if answer.verdict == Verdict::NothingDetected {
                 quiet += 1;
             } else {
