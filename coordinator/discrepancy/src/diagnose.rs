@@ -1,21 +1,23 @@
 //! A diagnosis from the record to the verdict: the order of the stages and what they hand on.
 use crate::bench::Fit;
-use crate::estimate::estimates;
+use crate::conclude::conclude;
 pub use crate::estimate::{Estimate, Limit};
 use crate::evidence::misfit;
+pub use crate::force::Force;
 use crate::laboratory::Laboratory;
 use crate::model::Model;
 use crate::record::Record;
 pub use crate::rounds::Round;
 use crate::rounds::rounds;
 use crate::settings::Settings;
-use crate::stage::establish::{Base, establish};
+use crate::stage::establish::establish;
 use crate::stage::preflight::Preflight;
+use crate::stage::refit::Refitted;
 use crate::stage::show::Row;
+use crate::stage::whereabouts;
 use crate::stage::whereabouts::Where;
 pub use crate::stage::worth::LookAlikes;
-use crate::stage::{show, whereabouts};
-use crate::verdict::{Findings, Verdict, verdict};
+use crate::verdict::Verdict;
 use protocol::announce::EffectDescriptor;
 use protocol::job::Refinement;
 use search::space::Space;
@@ -54,8 +56,10 @@ pub struct Diagnosis {
     pub rounds: Vec<Round>,
     /// Where the recalibrated model and the record part.
     pub whereabouts: Option<Where>,
-    /// The numerical check.
+    /// The numerical check of the recalibrated model.
     pub preflight: Option<Preflight>,
+    /// That of the answer, or of the likeliest suspect that was dropped for it.
+    pub preflight_after: Option<Preflight>,
     /// Detection limits of all effects.
     pub limits: Vec<Limit>,
     /// Effects that this record cannot tell apart, and what would.
@@ -68,8 +72,10 @@ pub struct Diagnosis {
     pub rows: Vec<Row>,
     /// The best rejected rival and its gap by record.
     pub rival: Option<(String, Vec<Row>)>,
-    /// Form and joint of a force that beats every name.
+    /// Form and joint of a force that beats every name, where nothing speaks against saying so.
     pub generic: Option<String>,
+    /// A force that beats every name, with its size, whatever the verdict says of it.
+    pub force: Option<Force>,
     /// Whether the noise was assumed.
     pub assumed_noise: bool,
     /// What else should be known.
@@ -122,7 +128,7 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
         return Ok(diagnosis);
     }
     let after = rounds(lab, inputs, &base, &mut diagnosis).await?;
-    finish(lab, inputs, &base, (after, &held), &mut diagnosis).await?;
+    conclude(lab, inputs, &base, (after, &held), &mut diagnosis).await?;
     Ok(diagnosis)
 }
 
@@ -130,63 +136,16 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
 /// below is taken off by the tests themselves, which look at the residual after that step.
 const PROMISED: f64 = 0.1;
 
-/// Estimates, the proof and the verdict.
-async fn finish<L: Laboratory>(
-    lab: &mut L,
-    inputs: &Inputs,
-    base: &Base,
-    (after, held): (Fit, &Record),
-    diagnosis: &mut Diagnosis,
-) -> Result<(), L::Error> {
-    let mut records: Vec<(&Record, bool)> = vec![(&base.bench.record, true), (held, false)];
-    records.extend(inputs.records.iter().skip(1).map(|record| (record, false)));
-    records.retain(|(record, _)| !record.cycles.is_empty());
-    let refinement = base.bench.refinement;
-    let added = after.model.added.len();
-    diagnosis.rows = show::compare(lab, &records, (&base.fit, &after), refinement).await?;
-    let rival = diagnosis.rounds.first().and_then(|round| {
-        let outside = round.refits.iter().find(|r| !round.set.contains(&r.id));
-        outside.or_else(|| round.refits.get(1)).cloned()
-    });
-    if let Some(rival) = rival.filter(|_| added > 0) {
-        let rows = show::compare(lab, &records, (&base.fit, &rival.fit), refinement).await?;
-        diagnosis.rival = Some((rival.id, rows));
-    }
-    diagnosis.effects = estimates(&diagnosis.rounds, &after);
-    let names = diagnosis
-        .rounds
-        .first()
-        .is_some_and(|r| r.p_value < inputs.settings.alpha);
-    let parameters = after.x().len();
-    let misfit = !base.is_noise(after.chi_squared(), parameters, inputs.settings.adequacy);
-    if misfit && diagnosis.generic.is_none() {
-        let ratio = after.chi_squared() / base.bench.metric.len() as f64;
-        diagnosis.notes.push(format!(
-            "what is left is {ratio:.2} times the noise: more than noise, and not explained"
-        ));
-    }
-    let findings = Findings {
-        sound: true,
-        rejected: misfit || names,
-        added,
-        rivals: diagnosis
-            .rounds
-            .iter()
-            .map(|r| r.set.len())
-            .max()
-            .unwrap_or(0),
-        generic: diagnosis.generic.is_some(),
-    };
-    diagnosis.verdict = verdict(&findings);
-    if diagnosis.verdict == Verdict::Unresolved {
-        let why = diagnosis.rounds.first().and_then(|r| r.reason.clone());
-        diagnosis.reason = diagnosis.notes.last().filter(|_| !names).cloned().or(why);
-    }
-    diagnosis.after = Some(after);
-    Ok(())
-}
-
 impl Diagnosis {
+    /// The best refit that no answer holds, neither as added nor as a member of an ambiguity set, with
+    /// the first round in which something was added.
+    pub fn rejected(&self) -> Option<(&Round, &Refitted)> {
+        let round = self.rounds.iter().find(|round| round.added.is_some())?;
+        let held = |id: &String| self.rounds.iter().any(|round| round.set.contains(id));
+        let rival = round.refits.iter().find(|refit| !held(&refit.id))?;
+        Some((round, rival))
+    }
+
     /// Nothing but a reason.
     pub fn unresolved(reason: &str) -> Self {
         Self {
@@ -196,6 +155,7 @@ impl Diagnosis {
             rounds: Vec::new(),
             whereabouts: None,
             preflight: None,
+            preflight_after: None,
             limits: Vec::new(),
             look_alikes: Vec::new(),
             before: None,
@@ -203,6 +163,7 @@ impl Diagnosis {
             rows: Vec::new(),
             rival: None,
             generic: None,
+            force: None,
             assumed_noise: false,
             notes: Vec::new(),
         }

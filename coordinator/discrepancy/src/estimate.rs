@@ -9,6 +9,7 @@ use crate::settings::Settings;
 use crate::stage::establish::Base;
 use crate::stage::refit::Refitted;
 use crate::tangent::Tangent;
+use nalgebra::DMatrix;
 use protocol::announce::Sign;
 
 /// An effect of the answer.
@@ -41,7 +42,7 @@ pub struct Limit {
 
 /// Half-width of a 95 % interval in standard deviations: Student's, for the nine degrees of freedom
 /// that the variance of a low order has from a handful of cycles.
-const QUANTILE: f64 = 2.262;
+pub(crate) const QUANTILE: f64 = 2.262;
 
 /// Detection limits of all effects, before any verdict.
 pub(crate) fn limits(round: &Round, fit: &Fit, base: &Base, settings: &Settings) -> Vec<Limit> {
@@ -128,6 +129,15 @@ fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
 
 /// Standard deviations of a fit's unknowns, inflated by the misfit.
 fn deviations(fit: &Fit, phi: f64) -> Vec<f64> {
+    covariance(fit, phi).map_or_else(
+        || vec![f64::INFINITY; fit.x().len()],
+        |covariance| covariance.diagonal().iter().map(|v| v.sqrt()).collect(),
+    )
+}
+
+/// Covariance of a fit's unknowns, inflated by the misfit; nothing where the fit leaves one of them
+/// open.
+pub(crate) fn covariance(fit: &Fit, phi: f64) -> Option<DMatrix<f64>> {
     let at = fit.search.best();
     let mut curvature = at.jacobian.tr_mul(&at.jacobian);
     for (k, v) in fit.variables().iter().enumerate() {
@@ -135,16 +145,5 @@ fn deviations(fit: &Fit, phi: f64) -> Vec<f64> {
             curvature[(k, k)] += 1.0 / (prior.deviation * prior.deviation);
         }
     }
-    let n = curvature.nrows();
-    curvature.cholesky().map_or_else(
-        || vec![f64::INFINITY; n],
-        |factor| {
-            factor
-                .inverse()
-                .diagonal()
-                .iter()
-                .map(|v| phi * v.sqrt())
-                .collect()
-        },
-    )
+    Some(curvature.cholesky()?.inverse() * (phi * phi))
 }

@@ -113,20 +113,27 @@ impl Noise {
     /// Adds an error of known spectrum (numerical error of the model, say), smoothed over orders and
     /// taken as independent between channels.
     pub fn add_error(&mut self, spectra: &[Vec<C>]) {
-        let highest = self.covariances.len();
-        for order in 1..=highest {
-            let reach = reach(order);
-            let (from, to) = (
-                order.saturating_sub(reach).max(1),
-                (order + reach).min(highest),
-            );
-            for (channel, spectrum) in spectra.iter().enumerate() {
-                let power: f64 = spectrum[from - 1..to].iter().map(C::norm_sqr).sum();
-                let mean = power / (to + 1 - from) as f64;
-                self.covariances[order - 1][(channel, channel)] += C::from(mean);
+        for (channel, spectrum) in spectra.iter().enumerate() {
+            let powers: Vec<f64> = spectrum.iter().map(C::norm_sqr).collect();
+            for (covariance, mean) in self.covariances.iter_mut().zip(smoothed(&powers)) {
+                covariance[(channel, channel)] += C::from(mean);
             }
         }
     }
+}
+
+/// Powers by order, from 1 on, each the mean over its neighbours.
+pub(crate) fn smoothed(powers: &[f64]) -> Vec<f64> {
+    let highest = powers.len();
+    let mean = |order: usize| {
+        let reach = reach(order);
+        let (from, to) = (
+            order.saturating_sub(reach).max(1),
+            (order + reach).min(highest),
+        );
+        powers[from - 1..to].iter().sum::<f64>() / (to + 1 - from) as f64
+    };
+    (1..=highest).map(mean).collect()
 }
 
 /// Deviations of the cycles' coefficients from their mean, less what the inputs explain; cycle,

@@ -1,17 +1,20 @@
 //! Rounds of suspicion: test everything, refit the likeliest, let forces without a cause challenge them,
 //! believe the best or stop; at the end, take back what is not needed any more.
 use crate::bench::Fit;
+use crate::decide::decide;
 use crate::diagnose::{Diagnosis, Inputs};
 use crate::estimate::limits;
-use crate::evidence::{ambiguity_set, log_evidence, misfit};
+use crate::evidence::{log_evidence, misfit};
+use crate::force::force;
 use crate::laboratory::{Laboratory, Stage};
 use crate::score::{chi_squared_tail, family_wise};
 use crate::settings::Settings;
 use crate::stage::challenge::{Challenger, Named, challenge};
 use crate::stage::establish::Base;
+use crate::stage::preflight::Checked;
 use crate::stage::refit::Refitted;
 use crate::stage::suspect::Suspect;
-use crate::stage::{again, pair, refit, suspect, worth};
+use crate::stage::{again, pair, preflight, refit, suspect, worth};
 use protocol::announce::EffectDescriptor;
 use search::least_squares;
 
@@ -79,10 +82,28 @@ pub(crate) async fn rounds<L: Laboratory>(
         }
         let next = match contested(lab, base, &current, &round, settings).await? {
             Some(challenger) => {
-                unlisted(&mut round, &challenger, (&base.fit, &current), diagnosis);
+                let gained = challenger.log_evidence - round.null_evidence;
+                let fits = (&current, &challenger.fit);
+                let checked = preflight::believed(lab, base, fits, gained, inputs.finer).await?;
+                match drowned(&challenger.id, checked, (settings, diagnosis)) {
+                    Some(reason) => round.reason = Some(reason),
+                    None => unlisted(&mut round, challenger, (&base.fit, &current), diagnosis),
+                }
                 None
             }
             None => decide(&mut round, &current, settings, base),
+        };
+        let next = match next {
+            Some(fit) => {
+                hold(
+                    lab,
+                    (base, inputs),
+                    (&current, fit),
+                    (&mut round, diagnosis),
+                )
+                .await?
+            }
+            None => None,
         };
         diagnosis.rounds.push(round);
         match next {
@@ -90,7 +111,50 @@ pub(crate) async fn rounds<L: Laboratory>(
             None => break,
         }
     }
-    prune(lab, base, current, (settings, diagnosis)).await
+    let added = current.model.added.len();
+    let answer = prune(lab, base, current, (settings, diagnosis)).await?;
+    if answer.model.added.len() < added {
+        let fits = (&answer, &base.fit);
+        diagnosis.preflight_after = preflight::check(lab, &base.bench, fits, inputs.finer).await?;
+    }
+    Ok(answer)
+}
+
+/// The next model, if it is still believed when what a finer model changes of it counts as noise.
+async fn hold<L: Laboratory>(
+    lab: &mut L,
+    (base, inputs): (&Base, &Inputs),
+    (current, next): (&Fit, Fit),
+    (round, diagnosis): (&mut Round, &mut Diagnosis),
+) -> Result<Option<Fit>, L::Error> {
+    let gained = log_evidence(next.search.best(), next.variables()) - round.null_evidence;
+    let fits = (current, &next);
+    let checked = preflight::believed(lab, base, fits, gained, inputs.finer).await?;
+    let id = round.added.clone().unwrap_or_default();
+    let Some(reason) = drowned(&id, checked, (&inputs.settings, diagnosis)) else {
+        return Ok(Some(next));
+    };
+    round.added = None;
+    round.set.clear();
+    round.reason = Some(reason);
+    Ok(None)
+}
+
+/// Why what a finer model says of an answer is enough to doubt it, if it is; the check is kept.
+fn drowned(
+    id: &str,
+    checked: Option<Checked>,
+    (settings, diagnosis): (&Settings, &mut Diagnosis),
+) -> Option<String> {
+    let Checked { preflight, gain } = checked?;
+    diagnosis.preflight_after = Some(preflight);
+    (gain < settings.gain).then(|| {
+        format!(
+            "{id} is the likeliest, but its gain drowns in the numerical error: with what a finer \
+             model changes there as noise, {gain:.1} nats are left and {:.0} are needed",
+            settings.gain
+        )
+    })
 }
 
 /// A force that beats the best name, and the best two names together.
@@ -175,7 +239,7 @@ async fn prune<L: Laboratory>(
 /// does it is a remark: what is left there may be the laws of those names, a little otherwise.
 fn unlisted(
     round: &mut Round,
-    challenger: &Challenger,
+    challenger: Challenger,
     (before, current): (&Fit, &Fit),
     diagnosis: &mut Diagnosis,
 ) {
@@ -186,6 +250,7 @@ fn unlisted(
     );
     if challenger.removed > named {
         diagnosis.generic = Some(challenger.id.clone());
+        diagnosis.force = Some(force(challenger, current, round));
     } else {
         diagnosis.notes.push(said.clone());
     }
@@ -252,37 +317,4 @@ impl Round {
         // no test at all rejects nothing
         self.p_value = family_wise(least, self.suspects.len().max(1));
     }
-}
-
-/// Whether the best refit is believed; then it is the next model.
-fn decide(round: &mut Round, current: &Fit, settings: &Settings, base: &Base) -> Option<Fit> {
-    let best = round.refits.first()?;
-    let scale = round.phi * round.phi;
-    let gain = (best.log_evidence - round.null_evidence) / scale;
-    if round.p_value > settings.alpha || gain < settings.gain {
-        round.reason = Some(format!(
-            "{} is the likeliest, but p = {:.2} over the family and {gain:.1} nats are not enough",
-            best.id, round.p_value
-        ));
-        return None;
-    }
-    let evidences: Vec<f64> = round.refits.iter().map(|r| r.log_evidence).collect();
-    round.set = ambiguity_set(&evidences, round.phi)
-        .into_iter()
-        .map(|i| round.refits[i].id.clone())
-        .collect();
-    // of the gap that there was before anything was added
-    let removed = (current.chi_squared() - best.fit.chi_squared())
-        / (base.fit.chi_squared() - base.bench.metric.len() as f64).max(1.0);
-    if removed < settings.practical {
-        round.reason = Some(format!(
-            "{} is there, but a trace: it removes {:.1} % of what is left above the noise",
-            best.id,
-            100.0 * removed
-        ));
-        round.set.clear();
-        return None;
-    }
-    round.added = Some(best.id.clone());
-    Some(best.fit.clone())
 }

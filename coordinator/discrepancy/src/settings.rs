@@ -32,8 +32,8 @@ pub struct Settings {
     /// Longest step of all experiments, as a share of the case's: what is enough for a search is
     /// seen beside averaged noise.
     pub step: f64,
-    /// Cylinder length of the numerical check and, where it matters, of the last refits, as a share
-    /// of the case's.
+    /// Cylinder length of the numerical check, as a share of the case's. The fits keep the case's
+    /// length: what a finer model changes counts as noise.
     pub refinement: f64,
     /// Effects that are not considered.
     pub without: Vec<String>,

@@ -17,11 +17,24 @@ pub enum Verdict {
     Unresolved,
 }
 
+/// What the tests stand on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ground {
+    /// The fit converged, the model is fine enough, the noise was seen: tests mean what they say.
+    Firm,
+    /// The noise was assumed: no name is as sure as its tests say.
+    NoiseAssumed,
+    /// Not one effect of the library was considered: nothing can be named, and nothing is unlisted.
+    NothingConsidered,
+    /// How far the discretisation moves the curves is not known.
+    Unsound,
+}
+
 /// What the tests of a diagnosis found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Findings {
-    /// The fit converged and the model is fine enough: tests mean what they say.
-    pub sound: bool,
+    /// What they stand on.
+    pub ground: Ground,
     /// Some family of tests rejects.
     pub rejected: bool,
     /// Effects that were added, each believed and worth it.
@@ -34,17 +47,16 @@ pub struct Findings {
 
 /// The verdict of findings. Every combination has one, and a rejection is never "nothing".
 pub const fn verdict(findings: &Findings) -> Verdict {
-    if !findings.sound {
-        return Verdict::Unresolved;
-    }
-    if findings.generic {
-        return Verdict::Unlisted;
-    }
-    match (findings.added, findings.rivals) {
-        (0, _) if findings.rejected => Verdict::Unresolved,
-        (0, _) => Verdict::NothingDetected,
-        (_, 0 | 1) => Verdict::Named,
-        _ => Verdict::Ambiguous,
+    let something = findings.rejected || findings.added > 0 || findings.generic;
+    match (findings.ground, findings.added, findings.rivals) {
+        (Ground::Unsound, ..) => Verdict::Unresolved,
+        (Ground::NoiseAssumed | Ground::NothingConsidered, ..) if something => Verdict::Unresolved,
+        (Ground::NoiseAssumed | Ground::NothingConsidered, ..) => Verdict::NothingDetected,
+        (Ground::Firm, ..) if findings.generic => Verdict::Unlisted,
+        (Ground::Firm, 0, _) if findings.rejected => Verdict::Unresolved,
+        (Ground::Firm, 0, _) => Verdict::NothingDetected,
+        (Ground::Firm, _, 0 | 1) => Verdict::Named,
+        (Ground::Firm, ..) => Verdict::Ambiguous,
     }
 }
 
@@ -55,13 +67,19 @@ mod tests {
     #[test]
     fn every_combination_has_a_verdict_and_a_rejection_is_never_nothing() {
         let flags = [false, true];
-        for sound in flags {
+        let grounds = [
+            Ground::Firm,
+            Ground::NoiseAssumed,
+            Ground::NothingConsidered,
+            Ground::Unsound,
+        ];
+        for ground in grounds {
             for rejected in flags {
                 for generic in flags {
                     for added in 0..4 {
                         for rivals in 0..5 {
                             let said = verdict(&Findings {
-                                sound,
+                                ground,
                                 rejected,
                                 added,
                                 rivals,
@@ -70,8 +88,12 @@ mod tests {
                             if rejected || added > 0 || generic {
                                 assert_ne!(said, Verdict::NothingDetected);
                             }
-                            if !sound {
+                            if ground == Ground::Unsound {
                                 assert_eq!(said, Verdict::Unresolved);
+                            }
+                            if ground != Ground::Firm {
+                                let quiet = [Verdict::NothingDetected, Verdict::Unresolved];
+                                assert!(quiet.contains(&said), "{ground:?} {said:?}");
                             }
                         }
                     }

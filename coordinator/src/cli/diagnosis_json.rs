@@ -1,8 +1,9 @@
 //! The object that `horsehead diagnose --output json` prints: a contract, more may be added.
 use crate::report::diagnosis::Subject;
 use crate::study::Account;
-use discrepancy::diagnose::{Diagnosis, Estimate};
+use discrepancy::diagnose::{Diagnosis, Estimate, Force};
 use discrepancy::laboratory::Stage;
+use discrepancy::stage::preflight::Preflight;
 use discrepancy::stage::show::Row;
 use discrepancy::verdict::Verdict;
 use serde::{Deserialize, Serialize};
@@ -17,10 +18,13 @@ pub(super) struct DiagnoseOutput {
     verdict: Verdict,
     /// Why, where the verdict needs a reason.
     reason: Option<String>,
-    /// Added effects, then the other members of their ambiguity sets; the best first.
+    /// Added effects, then the other members of their ambiguity sets; the best first. Where the
+    /// verdict is unresolved, suspects, of which none is added.
     effects: Vec<EffectOutput>,
     /// Form and joint of a force that beats every name.
     generic: Option<String>,
+    /// That force with its size, also where the verdict does not believe it.
+    generic_force: Option<ForceOutput>,
     rounds: Vec<RoundOutput>,
     #[serde(rename = "where")]
     whereabouts: Option<WhereOutput>,
@@ -147,12 +151,39 @@ struct RivalOutput {
     gap: GapOutput,
 }
 
+/// A force without a cause.
+#[derive(Debug, Serialize)]
+struct ForceOutput {
+    id: String,
+    joint: String,
+    form: String,
+    amplitude: ParameterOutput,
+    /// Of a harmonic.
+    phase_deg: Option<f64>,
+    ln_evidence: f64,
+    gap: GapOutput,
+}
+
 /// How far a finer model moves the channels (in their units).
 #[derive(Debug, Serialize)]
 struct NumericalOutput {
     rms: Vec<f64>,
     rms_after_recalibration: Vec<f64>,
     standard_error: Vec<f64>,
+    /// The same at the answer, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at_answer: Option<Box<Self>>,
+}
+
+impl NumericalOutput {
+    fn of(check: &Preflight) -> Self {
+        Self {
+            rms: check.rms.clone(),
+            rms_after_recalibration: check.rms_left.clone(),
+            standard_error: check.standard_error.clone(),
+            at_answer: None,
+        }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -207,6 +238,10 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .map(|e| effect(diagnosis, e))
             .collect(),
         generic: diagnosis.generic.clone(),
+        generic_force: diagnosis
+            .force
+            .as_ref()
+            .map(|found| force(found, calibrated)),
         rounds: rounds(diagnosis),
         whereabouts: whereabouts(subject),
         detection_limits: diagnosis
@@ -239,10 +274,12 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             gap: gap(rows, calibrated),
         }),
         assumed_noise: diagnosis.assumed_noise,
-        numerical_error: diagnosis.preflight.as_ref().map(|p| NumericalOutput {
-            rms: p.rms.clone(),
-            rms_after_recalibration: p.rms_left.clone(),
-            standard_error: p.standard_error.clone(),
+        numerical_error: diagnosis.preflight.as_ref().map(|check| NumericalOutput {
+            at_answer: diagnosis
+                .preflight_after
+                .as_ref()
+                .map(|after| Box::new(NumericalOutput::of(after))),
+            ..NumericalOutput::of(check)
         }),
         genes: subject
             .case
@@ -286,6 +323,22 @@ fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
         parameters: found.parameters.iter().map(parameter).collect(),
         p_value: found.p_value,
         ln_evidence: found.ln_evidence,
+    }
+}
+
+fn force(found: &Force, calibrated: usize) -> ForceOutput {
+    ForceOutput {
+        id: found.id.clone(),
+        joint: found.joint.clone(),
+        form: found.form.clone(),
+        amplitude: ParameterOutput {
+            value: found.amplitude,
+            unit: found.unit.clone(),
+            ci95: found.interval,
+        },
+        phase_deg: found.phase_deg,
+        ln_evidence: found.ln_evidence,
+        gap: gap(&found.rows, calibrated),
     }
 }
 

@@ -2,12 +2,16 @@
 use super::*;
 use crate::report::Provenance;
 use crate::study::Diagnosed;
+use discrepancy::bench::Fit;
 use discrepancy::diagnose::{Limit, LookAlikes, Round};
 use discrepancy::locate::{angle, joint, order};
+use discrepancy::model::Model;
 use discrepancy::record::{Record, Source, Stated};
 use discrepancy::show::Closed;
 use discrepancy::stage::whereabouts::Where;
 use protocol::case::Case;
+use search::least_squares::{LeastSquares, Settings};
+use search::space::Space;
 use serde_json::Value;
 use std::path::Path;
 
@@ -162,12 +166,52 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
                 "rival",
                 "reason",
                 "generic",
+                "generic_force",
                 "stages",
             ] {
                 assert!(fields.contains_key(field), "{word} has no {field}");
             }
         }
     }
+}
+
+/// The fit of a force needs a record; everything else of it is as documented.
+#[test]
+fn a_force_without_a_cause_is_printed_with_its_size() {
+    let case = case();
+    let space = Space::new(&case.genes).unwrap();
+    let model = Model::plain(space);
+    let search = LeastSquares::new(model.variables(&[]), Settings::default());
+    let found = Force {
+        id: "probe.saddle.cos3".to_owned(),
+        joint: "saddle".to_owned(),
+        form: "harmonic 3".to_owned(),
+        amplitude: 900.0,
+        unit: "N.m".to_owned(),
+        interval: [800.0, 1000.0],
+        phase_deg: Some(-40.0),
+        ln_evidence: 75.0,
+        fit: Fit {
+            model,
+            search,
+            curves: Vec::new(),
+        },
+        rows: vec![row(0, true, 0.9), row(1, false, 0.7)],
+    };
+    let said = printed(Diagnosis {
+        generic: Some(found.id.clone()),
+        force: Some(found),
+        ..full(Verdict::Unlisted)
+    });
+    assert_eq!(said["generic"], "probe.saddle.cos3");
+    let force = &said["generic_force"];
+    assert_eq!(force["joint"], "saddle");
+    assert_eq!(force["form"], "harmonic 3");
+    let amplitude = serde_json::json!({"value": 900.0, "unit": "N.m", "ci95": [800.0, 1000.0]});
+    assert_eq!(force["amplitude"], amplitude);
+    assert_eq!(force["phase_deg"], -40.0);
+    assert_eq!(force["gap"]["other_condition"]["closed"], 0.7);
+    assert!(printed(full(Verdict::Named))["generic_force"].is_null());
 }
 
 #[test]

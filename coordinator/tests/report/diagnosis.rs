@@ -153,6 +153,48 @@ fn what_is_not_known_is_said() {
 }
 
 #[test]
+fn two_rounds_are_two_things_that_are_missing() {
+    let made = suspicion::two_rounds();
+    let text = diagnosis::text(&made.subject());
+    let said = "The simulation lacks clearance of the <pins> & their \"bores\" (pin_clearance) and one \
+                of drift of the gauges (gauge_drift) or lag of the load cell (load_cell_lag); this \
+                record does not tell which.";
+    assert!(text.contains(said), "{text}");
+    // every refit of the first round is in an answer now
+    assert!(!text.contains("best rejected rival, drift") && !text.contains("nats behind; 3 are"));
+}
+
+#[test]
+fn a_force_without_a_cause_has_a_size_and_a_gap() {
+    let made = suspicion::diagnosis(Verdict::Unlisted);
+    let text = diagnosis::text(&made.subject()).replace('\u{a0}', " ");
+    for said in [
+        "amplitude 420 N (95 % interval 380 to 460 N)",
+        "With that force, ",
+        "the force without a cause, probe.back_head.sign",
+    ] {
+        assert!(text.contains(said), "{said} is not in\n{text}");
+    }
+}
+
+#[test]
+fn a_suspect_under_assumed_noise_is_shown_and_not_named() {
+    let made = suspicion::assumed();
+    let text = diagnosis::text(&made.subject());
+    let page = words(&page(&made));
+    for said in [&text, &page] {
+        assert!(
+            said.contains("suspected, not named: pin_clearance"),
+            "{said}"
+        );
+        assert!(said.contains("The noise was assumed, not seen"), "{said}");
+        for name in ["The simulation lacks", "[[effects]]", "Sizes of the answer"] {
+            assert!(!said.contains(name), "{name} in\n{said}");
+        }
+    }
+}
+
+#[test]
 fn the_folder_holds_the_figures_and_the_data_behind_them() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("diagnosis");
     let made = suspicion::diagnosis(Verdict::Named);

@@ -4,7 +4,7 @@ use coordinator::report::Provenance;
 use coordinator::report::diagnosis::Subject;
 use coordinator::study::{Account, Diagnosed};
 use discrepancy::bench::Fit;
-use discrepancy::diagnose::{Diagnosis, Estimate, Limit, LookAlikes, Round};
+use discrepancy::diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, Round};
 use discrepancy::laboratory::Stage;
 use discrepancy::locate::{angle, joint, order};
 use discrepancy::model::Model;
@@ -335,6 +335,7 @@ fn preflight() -> Preflight {
         rms_left: each(0.05),
         standard_error: each(0.1),
         left: Vec::new(),
+        whole: true,
     }
 }
 
@@ -405,6 +406,18 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     } else {
         before.clone()
     };
+    let force = (verdict == Verdict::Unlisted).then(|| Force {
+        id: "probe.back_head.sign".to_owned(),
+        joint: "back_head".to_owned(),
+        form: "sign".to_owned(),
+        amplitude: 420.0,
+        unit: "N".to_owned(),
+        interval: [380.0, 460.0],
+        phase_deg: None,
+        ln_evidence: 210.0,
+        fit: fit(&case, &[&library[8]], 6.0, curves(0.1)),
+        rows: rows(&records, 0.2),
+    });
     let diagnosis = Diagnosis {
         verdict,
         reason: (verdict == Verdict::Unresolved).then(|| "the likeliest is not enough".to_owned()),
@@ -412,6 +425,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         rounds: vec![round],
         whereabouts: Some(whereabouts()),
         preflight: Some(preflight()),
+        preflight_after: added.then(preflight),
         limits: limits(&library),
         look_alikes: vec![LookAlikes {
             effects: ["pin_clearance".to_owned(), "gauge_drift".to_owned()],
@@ -423,6 +437,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         rows: rows(&records, if added { 0.1 } else { 1.0 }),
         rival: added.then(|| ("load_cell_lag".to_owned(), rows(&records, 0.4))),
         generic: (verdict == Verdict::Unlisted).then(|| "probe.back_head.sign".to_owned()),
+        force,
         assumed_noise: false,
         notes: Vec::new(),
     };
@@ -436,6 +451,38 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         },
         notes: vec!["The card of <5rpm> is no simultaneous measurement.".to_owned()],
     }
+}
+
+/// An ambiguous diagnosis whose first round added one effect, and whose second one of two.
+pub(crate) fn two_rounds() -> Made {
+    let mut made = diagnosis(Verdict::Ambiguous);
+    let ids: Vec<String> = made
+        .library
+        .iter()
+        .map(|effect| effect.id.clone())
+        .collect();
+    let again = estimate(&made.library[2], 0.3, 12.0);
+    let Diagnosis {
+        rounds, effects, ..
+    } = &mut made.diagnosed.diagnosis;
+    let mut second = rounds[0].clone();
+    rounds[0].set = vec![ids[0].clone()];
+    second.refits.remove(0);
+    second.set = vec![ids[1].clone(), ids[2].clone()];
+    second.added = Some(ids[1].clone());
+    rounds.push(second);
+    effects.push(again);
+    made
+}
+
+/// A diagnosis of one cycle: a suspect, and no name.
+pub(crate) fn assumed() -> Made {
+    let mut made = diagnosis(Verdict::Unresolved);
+    let suspect = estimate(&made.library[0], 0.8, 596.9);
+    let diagnosis = &mut made.diagnosed.diagnosis;
+    diagnosis.assumed_noise = true;
+    diagnosis.effects = vec![suspect];
+    made
 }
 
 /// A diagnosis that stopped before it began: nothing but a reason.

@@ -15,6 +15,10 @@ use crate::stage::{basin, preflight, recalibrate, valley};
 use nalgebra::{Complex, DVector};
 use protocol::announce::EffectDescriptor;
 
+/// A data sheet's noise may be off by this factor in its variance, either way; what is left beyond it
+/// is no noise, or not the noise that was assumed.
+const ASSUMED: f64 = 2.0;
+
 /// The recalibrated model in its final metric.
 pub(crate) struct Base {
     pub(crate) bench: Bench,
@@ -26,12 +30,16 @@ pub(crate) struct Base {
 }
 
 impl Base {
-    /// Whether noise alone may leave so much after a fit of so many parameters, at a level; always,
-    /// where the noise is only assumed.
+    /// Whether noise alone may leave so much after a fit of so many parameters, at a level; where the
+    /// noise is only assumed, whether the assumption bears with what is left.
     pub(crate) fn is_noise(&self, chi_squared: f64, parameters: usize, level: f64) -> bool {
         let n = self.bench.metric.len();
+        if self.assumed {
+            let left = n.saturating_sub(parameters).max(1) as f64;
+            return (1.0 / ASSUMED..=ASSUMED).contains(&(chi_squared / left));
+        }
         let freedom = n as f64 * (self.bench.record.cycles.len() as f64 - 1.0);
-        self.assumed || misfit_tail(chi_squared, n, parameters, freedom) >= level
+        misfit_tail(chi_squared, n, parameters, freedom) >= level
     }
 }
 
@@ -78,9 +86,16 @@ pub(crate) async fn establish<L: Laboratory>(
     let Some(second) = recalibrate::converge(lab, &bench, model, first.x()).await? else {
         return Ok(None);
     };
-    let preflight = preflight::check(lab, &bench, &second, inputs.finer).await?;
+    let preflight = preflight::check(lab, &bench, (&second, &second), inputs.finer).await?;
     let mut notes = Vec::new();
     let (bench, fit) = if let Some(seen) = &preflight {
+        if !seen.whole {
+            notes.push(
+                "the finer model did not complete as a whole: cylinders and steps were refined one at \
+                 a time"
+                    .to_owned(),
+            );
+        }
         noise.add_error(&seen.left);
         let bench = weigh(&noise);
         match recalibrate::converge(lab, &bench, model, second.x()).await? {

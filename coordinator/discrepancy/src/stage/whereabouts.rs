@@ -3,6 +3,7 @@ use crate::bench::{Bench, Fit};
 use crate::laboratory::{Laboratory, Stage};
 use crate::locate::{angle, joint, order};
 use crate::model::{Model, absent};
+use crate::score::family_wise;
 use crate::settings::Settings;
 use crate::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
@@ -20,6 +21,17 @@ pub struct Where {
     pub joints: Vec<joint::JointEvidence>,
     /// How many of them are not told apart.
     pub equivalent: usize,
+}
+
+impl Where {
+    /// Whether the map by angle or that by order rejects that only noise is left, each at a level over
+    /// all its places.
+    pub fn rejects(&self, alpha: f64) -> bool {
+        let entries: usize = self.order.ratio.iter().map(Vec::len).sum();
+        let mut peaks = self.order.peaks.iter();
+        self.angle.windows.iter().any(|w| w.p_value <= alpha)
+            || peaks.any(|peak| family_wise(peak.p_value, entries) <= alpha)
+    }
 }
 
 /// Highest harmonic of the latent forces.

@@ -18,6 +18,7 @@ mod composed;
 mod machine;
 mod maps;
 mod nothing;
+mod numerics;
 mod robust;
 mod single;
 mod strata;

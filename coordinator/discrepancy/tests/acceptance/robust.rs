@@ -3,6 +3,8 @@
 use crate::strata::{named, planted};
 use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
+use discrepancy::bench::Fit;
+use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::record::Source;
 use discrepancy::verdict::Verdict;
 
@@ -29,8 +31,7 @@ fn a_reversed_library_gives_the_same_verdict() {
     reversed.library.reverse();
     for truth in sample() {
         let (one, (other, _)) = (diagnose_usual(&truth), diagnosed(&truth, &reversed));
-        let ids =
-            |d: &discrepancy::diagnose::Diagnosis| sorted(d.effects.iter().map(|e| e.id.clone()));
+        let ids = |d: &Diagnosis| sorted(d.effects.iter().map(|e| e.id.clone()));
         assert_eq!(
             (one.verdict, ids(&one)),
             (other.verdict, ids(&other)),
@@ -52,9 +53,7 @@ fn lost_runs_change_no_verdict() {
         let (one, (other, lost)) = (diagnose_usual(&truth), diagnosed(&truth, &lossy));
         assert!(lost > 20, "{lost}");
         // where two names are a nat or two apart, lost runs may tip one of them over the margin
-        let says_a_name = |d: &discrepancy::diagnose::Diagnosis| {
-            matches!(d.verdict, Verdict::Named | Verdict::Ambiguous)
-        };
+        let says_a_name = |d: &Diagnosis| matches!(d.verdict, Verdict::Named | Verdict::Ambiguous);
         assert_eq!(
             says_a_name(&one),
             says_a_name(&other),
@@ -62,11 +61,8 @@ fn lost_runs_change_no_verdict() {
             line(&one),
             line(&other)
         );
-        let first =
-            |d: &discrepancy::diagnose::Diagnosis| d.rounds.first().and_then(|r| r.added.clone());
-        let set = |d: &discrepancy::diagnose::Diagnosis| {
-            d.rounds.first().map(|r| r.set.clone()).unwrap_or_default()
-        };
+        let first = |d: &Diagnosis| d.rounds.first().and_then(|r| r.added.clone());
+        let set = |d: &Diagnosis| d.rounds.first().map(|r| r.set.clone()).unwrap_or_default();
         let (a, b) = (first(&one), first(&other));
         let agree = a == b
             || a.is_some_and(|a| set(&other).contains(&a))
@@ -107,19 +103,20 @@ fn permuted_labels_fall_to_chance() {
     assert!(by_meaning as f64 >= 0.8 * n as f64, "{by_meaning} of {n}");
 }
 
-/// One cycle says nothing about its own noise: that is marked, and a healthy machine is still left
-/// alone.
+/// One cycle says nothing about its own noise: that is marked, a healthy machine is left alone, and a
+/// sick one gets no name, however clear the tests are; the suspect stays visible.
 #[test]
-fn one_cycle_only_rests_on_assumed_noise() {
+fn one_cycle_only_carries_no_name() {
     let setup = Setup {
         cycles: 1,
         ..Setup::default()
     };
-    let mut claims = 0;
+    let mut quiet = 0;
     for seed in 0..8 {
         let (answer, _) = diagnosed(&Truth::healthy(8000 + seed), &setup);
         assert!(answer.assumed_noise);
-        claims += usize::from(!answer.effects.is_empty() || answer.generic.is_some());
+        withheld(&answer);
+        quiet += usize::from(answer.verdict == Verdict::NothingDetected);
         assert!(
             answer
                 .rows
@@ -127,13 +124,62 @@ fn one_cycle_only_rests_on_assumed_noise() {
                 .all(|row| row.fitted || row.condition == 1)
         );
     }
-    assert!(claims <= 1, "{claims} of 8");
+    assert!(quiet >= 7, "{quiet} of 8");
+    let id = &named()[1].id;
     let (strong, _) = diagnosed(&planted(Truth::healthy(8100), named()[1], 8.0), &setup);
-    assert!(strong.assumed_noise);
-    assert!(
-        strong.effects.iter().any(|e| e.id == named()[1].id),
+    withheld(&strong);
+    assert_eq!(strong.verdict, Verdict::Unresolved, "{}", line(&strong));
+    let reason = strong.reason.as_deref().unwrap_or_default();
+    for said in [id.as_str(), "assumed", "record more cycles"] {
+        assert!(reason.contains(said), "{reason}");
+    }
+    let suspects = &strong.rounds[0].refits;
+    assert_eq!(
+        suspects.first().map(|r| &r.id),
+        Some(id),
         "{}",
         line(&strong)
+    );
+    assert!(
+        strong.effects.iter().any(|e| e.id == *id),
+        "{}",
+        line(&strong)
+    );
+    // with several cycles the same machine gets its name
+    let seen = diagnose_usual(&planted(Truth::healthy(8100), named()[1], 8.0));
+    assert_eq!(seen.verdict, Verdict::Named, "{}", line(&seen));
+}
+
+/// Noise that a data sheet understates, or overstates, is neither nothing nor a name.
+#[test]
+fn noise_that_was_wrongly_assumed_is_said() {
+    for (k, stated) in [0.2, 4.0].into_iter().enumerate() {
+        let setup = Setup {
+            cycles: 1,
+            stated,
+            ..Setup::default()
+        };
+        let (answer, _) = diagnosed(&Truth::healthy(8150 + k as u64), &setup);
+        withheld(&answer);
+        assert_eq!(answer.verdict, Verdict::Unresolved, "{}", line(&answer));
+        let reason = answer.reason.as_deref().unwrap_or_default();
+        assert!(reason.contains("assumed noise"), "{reason}");
+    }
+}
+
+/// That an answer claims nothing.
+fn withheld(answer: &Diagnosis) {
+    let quiet = [Verdict::NothingDetected, Verdict::Unresolved];
+    assert!(quiet.contains(&answer.verdict), "{}", line(answer));
+    assert!(answer.generic.is_none(), "{}", line(answer));
+    let claims = |round: &Round| round.added.is_some() || !round.set.is_empty();
+    assert!(!answer.rounds.iter().any(claims), "{}", line(answer));
+    assert!(answer.rival.is_none());
+    let added = |fit: &Fit| !fit.model.added.is_empty();
+    assert!(
+        !answer.after.as_ref().is_some_and(added),
+        "{}",
+        line(answer)
     );
 }
 
@@ -155,7 +201,7 @@ fn missing_channels_are_no_disagreement() {
         );
         let named = MACHINE.library().iter().filter(|e| !e.generic);
         let sizes: usize = named.map(|e| discrepancy::model::sizes(e).len()).sum();
-        assert!(answer.limits.len() <= sizes && !answer.limits.is_empty());
+        assert_eq!(answer.limits.len(), sizes, "a limit of every size");
     }
 }
 

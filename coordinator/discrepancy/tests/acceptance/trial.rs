@@ -1,6 +1,6 @@
 //! One diagnosis of one truth, and what is asked of its answer.
 use crate::case::{ORDERS, space};
-use crate::machine::{AtOnce, Machine};
+use crate::machine::{AtOnce, Machine, Numerics, ripple};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::record::Source;
@@ -30,6 +30,12 @@ pub(crate) struct Setup {
     pub(crate) lost_every: u64,
     /// Names of the library with the machine's own, where they differ.
     pub(crate) labels: Vec<(String, String)>,
+    /// What discretisation does.
+    pub(crate) numerics: Numerics,
+    /// A ripple of the gauges that the record has and nothing makes (MPa).
+    pub(crate) ripple_mpa: f64,
+    /// The noise that the data sheet states, over the true one.
+    pub(crate) stated: f64,
 }
 
 impl Default for Setup {
@@ -45,16 +51,29 @@ impl Default for Setup {
             library: MACHINE.library().to_vec(),
             lost_every: 0,
             labels: Vec::new(),
+            numerics: Numerics::Exact,
+            ripple_mpa: 0.0,
+            stated: 1.0,
         }
     }
 }
 
 /// Diagnoses; the number of lost runs is second.
 pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
-    let records = vec![
+    let mut records = vec![
         record(truth, 0, &setup.channels, setup.cycles),
         record(truth, 1, &setup.channels, 4),
     ];
+    for record in &mut records {
+        for cycle in &mut record.cycles {
+            // nothing but the gauges has it
+            let gauges = setup.channels.len().min(4);
+            ripple(&mut cycle[..gauges], setup.ripple_mpa);
+        }
+        for noise in record.stated.noise.iter_mut().flatten() {
+            *noise *= setup.stated;
+        }
+    }
     let inputs = Inputs {
         space: space(),
         records,
@@ -71,12 +90,13 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         usual: Refinement::default(),
         finer: Refinement {
             cylinder_length_m: Some(0.025),
+            longest_step_s: Some(0.01),
             ..Refinement::default()
         },
         seed: 1,
         settings: setup.settings.clone(),
     };
-    let mut lab = AtOnce::new(&MACHINE, setup.lost_every, &setup.labels);
+    let mut lab = AtOnce::new(&MACHINE, setup.lost_every, &setup.labels, setup.numerics);
     let answer = now(diagnose(&mut lab, &inputs));
     (answer, lab.lost)
 }

@@ -56,6 +56,13 @@ impl Truth {
         }
     }
 
+    /// With more or less noise.
+    #[must_use]
+    pub(crate) const fn noisy(mut self, factor: f64) -> Self {
+        self.noise = factor;
+        self
+    }
+
     /// With an effect.
     #[must_use]
     pub(crate) fn with(mut self, id: &str, amounts: &[f64]) -> Self {

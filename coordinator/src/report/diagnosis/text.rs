@@ -15,11 +15,8 @@ pub fn text(subject: &Subject<'_>) -> String {
     if let Some(reason) = &diagnosis.reason {
         item(&mut text, &format!("The reason: {reason}."));
     }
-    for effect in &diagnosis.effects {
-        item(
-            &mut text,
-            &format!("{}: {}", effect.id, words::sizes(subject, effect)),
-        );
+    for (label, sizes) in words::effects(subject) {
+        item(&mut text, &format!("{label}: {sizes}"));
     }
     for sentence in words::confidence(subject) {
         item(&mut text, &sentence);

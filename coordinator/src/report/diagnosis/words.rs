@@ -4,7 +4,7 @@
 use super::Subject;
 use crate::report::number::{NONE, figure, fixed, percent};
 use crate::report::words::condition_name;
-use discrepancy::diagnose::{Diagnosis, Estimate, Limit};
+use discrepancy::diagnose::{Diagnosis, Estimate, Limit, Round};
 use discrepancy::record::{Record, Source};
 use discrepancy::stage::show::Row;
 use discrepancy::verdict::Verdict;
@@ -120,6 +120,11 @@ pub(super) fn verdict(subject: &Subject<'_>) -> String {
         each.collect()
     };
     match diagnosis.verdict {
+        Verdict::NothingDetected if diagnosis.limits.is_empty() => {
+            "Nothing detected: what the recalibrated simulation leaves of the record is noise; no \
+             effect was looked for by name."
+                .to_owned()
+        }
         Verdict::NothingDetected => {
             "Nothing detected: what the recalibrated simulation leaves of the \
              record is noise, down to the detection limits below."
@@ -130,8 +135,8 @@ pub(super) fn verdict(subject: &Subject<'_>) -> String {
             listed(&names(added(diagnosis).collect()), "and")
         ),
         Verdict::Ambiguous => format!(
-            "The simulation lacks one of these, and this record does not tell which: {}.",
-            listed(&names(diagnosis.effects.iter().collect()), "or")
+            "The simulation lacks {}; this record does not tell which.",
+            listed(&choices(subject), "and")
         ),
         Verdict::Unlisted => format!(
             "The simulation lacks something that the library does not have; it acts like {}.",
@@ -142,6 +147,51 @@ pub(super) fn verdict(subject: &Subject<'_>) -> String {
         ),
         Verdict::Unresolved => "Unresolved: this record does not carry a name.".to_owned(),
     }
+}
+
+/// What was added, round by round: a name, or the members of a set of which one acts.
+fn choices(subject: &Subject<'_>) -> Vec<String> {
+    let rounds = &subject.diagnosed.diagnosis.rounds;
+    let found = rounds.iter().filter(|round| round.added.is_some());
+    let choice = |round: &Round| {
+        let members: Vec<String> = round.set.iter().map(|id| named(subject, id)).collect();
+        let of = if members.len() > 1 { "one of " } else { "" };
+        format!("{of}{}", listed(&members, "or"))
+    };
+    found.map(choice).collect()
+}
+
+/// What a diagnosis without a verdict for it suspects, with its size: one item per effect.
+pub(super) fn effects(subject: &Subject<'_>) -> Vec<(String, String)> {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    let label = |id: &str| match diagnosis.verdict {
+        Verdict::Unresolved => format!("suspected, not named: {id}"),
+        _ => id.to_owned(),
+    };
+    let each = diagnosis.effects.iter();
+    each.map(|effect| (label(&effect.id), sizes(subject, effect)))
+        .collect()
+}
+
+/// The size of a force without a cause, and by how much it closes the gap on each record.
+pub(super) fn force(subject: &Subject<'_>) -> Vec<String> {
+    let Some(force) = &subject.diagnosed.diagnosis.force else {
+        return Vec::new();
+    };
+    let phase = force.phase_deg.map_or_else(String::new, |phase| {
+        format!(", largest at {} deg of its own turn", figure(phase))
+    });
+    let mut sentences = vec![format!(
+        "The force {}: amplitude {} (95\u{a0}% interval {}){phase}; with every gene fitted again, the \
+         record speaks for it by {} nats.",
+        force.id,
+        quantity(force.amplitude, &force.unit),
+        interval(force.interval, &force.unit),
+        nats(force.ln_evidence)
+    )];
+    let rows = force.rows.iter().filter(|row| !row.fitted);
+    sentences.extend(rows.map(|row| format!("With that force, {}", closing(subject, row))));
+    sentences
 }
 
 /// A force without a cause: what it is and where it acts.
@@ -165,13 +215,17 @@ pub(super) fn confidence(subject: &Subject<'_>) -> Vec<String> {
             nats(effect.ln_evidence)
         ));
     }
-    if let Some((rival, behind)) = rejected(diagnosis) {
+    if let Some((round, rival)) = diagnosis.rejected()
+        && let Some(best) = round.refits.first()
+    {
+        let behind = (best.log_evidence - rival.log_evidence) / (round.phi * round.phi);
         sentences.push(format!(
             "The best rejected rival, {}, lies {} nats behind; 3 are asked for.",
-            named(subject, rival),
+            named(subject, &rival.id),
             nats(behind)
         ));
     }
+    sentences.extend(force(subject));
     for row in diagnosis.rows.iter().filter(|row| !row.fitted) {
         if added(diagnosis).next().is_some() {
             sentences.push(closing(subject, row));
@@ -180,7 +234,7 @@ pub(super) fn confidence(subject: &Subject<'_>) -> Vec<String> {
     if diagnosis.assumed_noise {
         sentences.push(
             "The noise was assumed, not seen: with one cycle there is no scatter to take it from, so \
-             every probability here is as good as the data sheet."
+             every probability and every limit here is as good as the data sheet."
                 .to_owned(),
         );
     }
@@ -194,21 +248,6 @@ pub(super) fn equals(p: &str) -> String {
     } else {
         format!("= {p}")
     }
-}
-
-/// The best refit outside the first added effect's set, and how many nats it lies behind.
-fn rejected(diagnosis: &Diagnosis) -> Option<(&str, f64)> {
-    let round = diagnosis
-        .rounds
-        .iter()
-        .find(|round| round.added.is_some())?;
-    let best = round.refits.first()?.log_evidence;
-    let rival = round
-        .refits
-        .iter()
-        .find(|refit| !round.set.contains(&refit.id))?;
-    let behind = (best - rival.log_evidence) / (round.phi * round.phi);
-    Some((rival.id.as_str(), behind))
 }
 
 /// What a row's cycles were to the fit.
@@ -297,7 +336,9 @@ pub(super) fn next(subject: &Subject<'_>) -> Vec<String> {
 }
 
 fn unresolved(diagnosis: &Diagnosis) -> String {
-    if diagnosis.before.is_none() {
+    if diagnosis.assumed_noise && diagnosis.before.is_some() {
+        "Do not change the machine for a suspect whose noise is only assumed.".to_owned()
+    } else if diagnosis.before.is_none() {
         "See that the case simulates at all (`horsehead simulate`) and that its record is complete \
          (`horsehead case check`)."
             .to_owned()

@@ -1,8 +1,37 @@
 //! The machine as a laboratory.
 use super::Machine;
+use crate::case::grid;
 use discrepancy::laboratory::{Laboratory, Stage};
-use protocol::job::{Observation, ObserveSpec};
+use protocol::job::{Observation, ObserveSpec, Refinement};
 use std::convert::Infallible;
+
+/// What discretisation does to the machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Numerics {
+    /// Nothing.
+    Exact,
+    /// The usual one adds a ripple to every gauge (MPa).
+    Ripple(f64),
+    /// It does so once an effect is on: MPa per size of the effect.
+    RippleOf(&'static str, f64),
+    /// No finer one completes.
+    NothingFiner,
+    /// None of shorter cylinders does.
+    NoShorterCylinders,
+}
+
+/// Waves of a ripple in a turn, and its size at each gauge.
+const RIPPLES: f64 = 17.0;
+const AT_GAUGES: [f64; 4] = [1.0, -0.7, 0.8, 0.5];
+
+/// Adds a ripple to the gauges (MPa).
+pub(crate) fn ripple(gauges: &mut [Vec<f64>], size: f64) {
+    for (gauge, share) in gauges.iter_mut().zip(AT_GAUGES) {
+        for (y, angle) in gauge.iter_mut().zip(grid()) {
+            *y += size * share * (RIPPLES * angle + 0.7).cos();
+        }
+    }
+}
 
 /// A laboratory that simulates at once; some of its runs may be lost, and its effects may go by
 /// other names.
@@ -12,6 +41,7 @@ pub(crate) struct AtOnce<'a> {
     lost_every: u64,
     /// Names that are used outside, with the machine's own.
     labels: &'a [(String, String)],
+    numerics: Numerics,
     runs: u64,
     /// Runs that were lost.
     pub(crate) lost: u64,
@@ -22,11 +52,13 @@ impl<'a> AtOnce<'a> {
         machine: &'a Machine,
         lost_every: u64,
         labels: &'a [(String, String)],
+        numerics: Numerics,
     ) -> Self {
         Self {
             machine,
             lost_every,
             labels,
+            numerics,
             runs: 0,
             lost: 0,
         }
@@ -44,7 +76,20 @@ impl<'a> AtOnce<'a> {
                 effect.id.clone_from(own);
             }
         }
-        Some(self.machine.observe(&spec))
+        let shorter = spec.refinement.cylinder_length_m.is_some();
+        let ripples = match self.numerics {
+            Numerics::NothingFiner if spec.refinement != Refinement::default() => return None,
+            Numerics::NoShorterCylinders if shorter => return None,
+            Numerics::Ripple(size) if !shorter => size,
+            Numerics::RippleOf(id, size) if !shorter => {
+                let own = spec.effects.iter().find(|e| e.id == id);
+                size * own.map_or(0.0, |e| e.parameters[0].1)
+            }
+            _ => 0.0,
+        };
+        let mut seen = self.machine.observe(&spec);
+        ripple(&mut seen.gauge_mpa, ripples);
+        Some(seen)
     }
 }
 

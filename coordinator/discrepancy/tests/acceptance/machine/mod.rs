@@ -10,7 +10,7 @@ mod lags;
 pub(crate) mod library;
 mod turn;
 
-pub(crate) use at_once::AtOnce;
+pub(crate) use at_once::{AtOnce, Numerics, ripple};
 
 use crate::case::{ORDERS, SAMPLES, SPEED, card, grid};
 use drive::{Drive, Warp, drive};

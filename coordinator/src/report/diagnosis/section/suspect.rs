@@ -26,6 +26,11 @@ fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
         @if let Some(generics) = tables::generics(first) { (markup(&generics)) }
         @if let Some(id) = &diagnosis.generic {
             p { "The widest margin has " (words::generic(subject, id)) ": no name comes near it." }
+        } @else if let Some(force) = &diagnosis.force {
+            p {
+                "The widest margin has " (words::generic(subject, &force.id))
+                ", and it is only suspected."
+            }
         }
         @if let Some(pairs) = tables::look_alikes(subject) { (markup(&pairs)) }
         @if let Some(limits) = tables::limits(subject) {

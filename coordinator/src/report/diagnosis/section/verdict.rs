@@ -24,8 +24,8 @@ fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
         @if let Some(reason) = &diagnosis.reason { p { "The reason: " (reason) "." } }
         @if !diagnosis.effects.is_empty() {
             ul {
-                @for effect in &diagnosis.effects {
-                    li { b { (effect.id) } ": " (words::sizes(subject, effect)) }
+                @for (label, sizes) in words::effects(subject) {
+                    li { b { (label) } ": " (sizes) }
                 }
             }
         }

@@ -9,8 +9,11 @@ use protocol::announce::{ParameterDescriptor, Role};
 
 /// Parameters of the effects of the answer.
 pub(in crate::report::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    // a suspect without a verdict is no answer
+    words::added(diagnosis).next()?;
     let mut rows = Vec::new();
-    for effect in &subject.diagnosed.diagnosis.effects {
+    for effect in &diagnosis.effects {
         rows.push(Row::Group(format!("{} ({})", effect.title, effect.id)));
         for (name, unit, value, ci95) in &effect.parameters {
             let known = words::parameter(subject, &effect.id, name);

@@ -4,46 +4,74 @@ use crate::report::diagnosis::Subject;
 use crate::report::diagnosis::words::{self, quantity};
 use crate::report::number::{NONE, count, duration, fixed};
 use crate::report::table::{Row, Table};
+use discrepancy::record::Source;
+use discrepancy::stage::preflight::Preflight;
 
-/// How far the discretisation moves each channel.
+/// How far the discretisation moves each channel, at the recalibrated model and at the answer.
 pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
-    let preflight = subject.diagnosed.diagnosis.preflight.as_ref()?;
+    let diagnosis = &subject.diagnosed.diagnosis;
     let record = words::calibrated(subject)?;
-    let rows = record.channels.iter().enumerate().map(|(c, source)| {
-        let of = |values: &[f64]| {
-            values
-                .get(c)
-                .map_or_else(|| NONE.to_owned(), |value| quantity(*value, source.unit()))
-        };
-        row(
-            source.name(),
-            [
-                of(&preflight.rms),
-                of(&preflight.rms_left),
-                of(&preflight.standard_error),
-            ],
-        )
-    });
-    let mut made = table(
-        "Numerical check: the finer model less the one that is fitted, root mean square",
-        [
-            "",
-            "difference",
-            "after recalibration",
-            "standard error of the mean",
-        ],
-        rows.collect(),
+    let checks = [
+        ("the recalibrated model", diagnosis.preflight.as_ref()),
+        ("the answer", diagnosis.preflight_after.as_ref()),
+    ];
+    let mut rows = Vec::new();
+    let mut notes = Vec::new();
+    for (name, check) in checks {
+        let Some(check) = check else { continue };
+        rows.push(Row::Group(name.to_owned()));
+        let each = record.channels.iter().enumerate();
+        rows.extend(each.map(|(c, source)| channel(check, c, *source)));
+        notes.push(format!(
+            "{name}: at most {} of the standard error is left{}.",
+            if check.ratio().is_finite() {
+                format!("{}\u{a0}×", fixed(check.ratio(), 2))
+            } else {
+                "an unknown multiple".to_owned()
+            },
+            if check.whole {
+                ""
+            } else {
+                ", refined one thing at a time"
+            }
+        ));
+    }
+    notes.push(
+        "What recalibration leaves of the difference counts as noise in every test, so that no effect is \
+         named for what a coarser rope does; a name must be believed with that of the answer as well."
+            .to_owned(),
     );
-    made.notes = vec![format!(
-        "What recalibration leaves of the difference is at most {} of the standard error; it counts as \
-         noise in every test, so that no effect is named for what a coarser rope does.",
-        if preflight.ratio().is_finite() {
-            format!("{}\u{a0}×", fixed(preflight.ratio(), 2))
-        } else {
-            "an unknown multiple".to_owned()
-        }
-    )];
-    Some(made)
+    (!rows.is_empty()).then(|| {
+        let mut made = table(
+            "Numerical check: the finer model less the one that is fitted, root mean square",
+            [
+                "",
+                "difference",
+                "after recalibration",
+                "standard error of the mean",
+            ],
+            rows,
+        );
+        made.notes = notes;
+        made
+    })
+}
+
+/// One channel of a check.
+fn channel(check: &Preflight, c: usize, source: Source) -> Row {
+    let of = |values: &[f64]| {
+        values
+            .get(c)
+            .map_or_else(|| NONE.to_owned(), |value| quantity(*value, source.unit()))
+    };
+    row(
+        source.name(),
+        [
+            of(&check.rms),
+            of(&check.rms_left),
+            of(&check.standard_error),
+        ],
+    )
 }
 
 /// What each stage cost.

@@ -27,6 +27,13 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
         rows.push(Row::Group(format!("the best rejected rival, {id}")));
         rows.extend(rival.iter().map(|row| gap(subject, row, true)));
     }
+    if let Some(force) = &diagnosis.force {
+        rows.push(Row::Group(format!(
+            "the force without a cause, {}",
+            force.id
+        )));
+        rows.extend(force.rows.iter().map(|row| gap(subject, row, true)));
+    }
     (!rows.is_empty()).then(|| {
         let mut made = table(
             "The gap before and after",
@@ -36,7 +43,7 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
         made.notes = vec![
             "Gap: mean over the gauges of the squared residual above the noise of the averaged record, \
              over the variance of the measured curve; means removed. Interval: the cycles drawn again \
-             1000 times, before and after on the same draw."
+             1000 times, before and after on the same draw, less the scatter of the draws themselves."
                 .to_owned(),
             "A gap that closes does not prove a name: a wrong effect often closes most of it, which is \
              why the rival stands beside it."

@@ -1,0 +1,109 @@
+//! What the discretisation of the tool's model does must not be named, must be said, and must not turn
+//! good answers over.
+use crate::machine::Numerics;
+use crate::strata::{named, planted};
+use crate::trial::{Setup, diagnosed, line};
+use crate::truth::Truth;
+use discrepancy::diagnose::Diagnosis;
+use discrepancy::verdict::Verdict;
+
+fn with(numerics: Numerics) -> Setup {
+    Setup {
+        numerics,
+        ..Setup::default()
+    }
+}
+
+fn says(answer: &Diagnosis, what: &str) -> bool {
+    answer.notes.iter().any(|note| note.contains(what))
+}
+
+/// A ripple of the coarse model, about as large as the mean's own error: it is said, a healthy machine
+/// stays healthy, and a clear effect keeps its name.
+#[test]
+fn a_rough_model_is_said_to_be_rough_and_names_nothing() {
+    let rough = with(Numerics::Ripple(0.1));
+    let (healthy, _) = diagnosed(&Truth::healthy(8400), &rough);
+    assert_eq!(
+        healthy.verdict,
+        Verdict::NothingDetected,
+        "{}",
+        line(&healthy)
+    );
+    assert!(says(&healthy, "numerical error"), "{:?}", healthy.notes);
+    let ratio = healthy.preflight.as_ref().map_or(0.0, |p| p.ratio());
+    assert!((0.4..1.5).contains(&ratio), "{ratio}");
+
+    let truth = planted(Truth::healthy(8401), named()[1], 8.0);
+    let (ill, _) = diagnosed(&truth, &rough);
+    assert_eq!(ill.verdict, Verdict::Named, "{}", line(&ill));
+    assert_eq!(ill.effects[0].id, named()[1].id);
+    assert!(says(&ill, "numerical error"), "{:?}", ill.notes);
+    // the ratio at the answer is to the record's own error, not to that with the model's in it
+    let after = ill.preflight_after.as_ref().expect("a check of the answer");
+    assert!((0.4..1.5).contains(&after.ratio()), "{}", after.ratio());
+
+    // and a model that is fine enough is not spoken of
+    let (fine, _) = diagnosed(&truth, &with(Numerics::Exact));
+    assert!(!says(&fine, "numerical error"), "{:?}", fine.notes);
+}
+
+/// A ripple that nothing in the library makes, and that the coarse model makes when an effect is on: the
+/// effect explains the record perfectly, for a reason that a finer model does not know.
+#[test]
+fn a_name_that_rests_on_a_coarse_model_is_withdrawn() {
+    let id = "beam_inertia";
+    let setup = |numerics| Setup {
+        numerics,
+        ripple_mpa: 0.6,
+        ..Setup::default()
+    };
+    let (answer, _) = diagnosed(&Truth::healthy(8410), &setup(Numerics::RippleOf(id, 10.0)));
+    let said = line(&answer);
+    let best = answer.rounds[0].refits.first();
+    assert_eq!(best.map(|r| r.id.as_str()), Some(id), "{said}");
+    assert_eq!(answer.verdict, Verdict::Unresolved, "{said}");
+    let reason = answer.reason.as_deref().unwrap_or_default();
+    assert!(
+        reason.contains(id) && reason.contains("numerical error"),
+        "{reason}"
+    );
+    assert!(answer.effects.is_empty(), "{said}");
+    assert!(says(&answer, "numerical error"), "{:?}", answer.notes);
+}
+
+/// Without a finer model nothing is named; where it is only the cylinders that cannot be shorter, the
+/// rest of the check stands.
+#[test]
+fn without_a_finer_model_nothing_is_named() {
+    let truth = planted(Truth::healthy(8420), named()[1], 8.0);
+    let (blind, _) = diagnosed(&truth, &with(Numerics::NothingFiner));
+    assert!(blind.preflight.is_none() && blind.preflight_after.is_none());
+    assert_eq!(blind.verdict, Verdict::Unresolved, "{}", line(&blind));
+    let reason = blind.reason.as_deref().unwrap_or_default();
+    assert!(
+        reason.contains("no finer model") && reason.contains(&named()[1].id),
+        "{reason}"
+    );
+    assert!(
+        says(&blind, "the numerical error is unknown"),
+        "{:?}",
+        blind.notes
+    );
+    let added = |d: &Diagnosis| d.rounds.iter().any(|round| round.added.is_some());
+    assert!(!added(&blind));
+
+    let (partly, _) = diagnosed(&truth, &with(Numerics::NoShorterCylinders));
+    assert_eq!(partly.verdict, Verdict::Named, "{}", line(&partly));
+    assert!(partly.preflight.as_ref().is_some_and(|p| !p.whole));
+    assert!(says(&partly, "one at a time"), "{:?}", partly.notes);
+
+    // where nothing is claimed nothing is withdrawn
+    let (healthy, _) = diagnosed(&Truth::healthy(8421), &with(Numerics::NothingFiner));
+    assert_eq!(
+        healthy.verdict,
+        Verdict::NothingDetected,
+        "{}",
+        line(&healthy)
+    );
+}
