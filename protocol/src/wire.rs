@@ -17,6 +17,9 @@ use serde::{Serialize, de::DeserializeOwned};
 pub const VERSION: u8 = 4;
 /// The most a body may hold (bytes): a long simulation with its rope shapes fits.
 pub const BODY_LIMIT: usize = 16 << 20;
+/// What an outcome may gain at each of its stations: from its slot to its worker, to the coordinator,
+/// into the journal (bytes). What passes one must fit through the next.
+const ENVELOPE: usize = 64;
 /// Bytes before the body.
 pub const HEADER_BYTES: usize = 20;
 const MAGIC: [u8; 2] = *b"HH";
@@ -50,6 +53,16 @@ impl Kind {
             Self::FromWorker => 2,
             Self::ToSlot => 3,
             Self::FromSlot => 4,
+        }
+    }
+
+    /// The most that a body of this kind may hold (bytes). What comes from slots is written down in
+    /// the end, with more around it at each station.
+    pub const fn limit(self) -> usize {
+        match self {
+            Self::ToWorker | Self::ToSlot => BODY_LIMIT,
+            Self::FromWorker => BODY_LIMIT - ENVELOPE,
+            Self::FromSlot => BODY_LIMIT - 2 * ENVELOPE,
         }
     }
 }
@@ -134,7 +147,7 @@ pub struct Frame<'a> {
 /// encoded.
 pub fn encode<T: Serialize>(value: &T) -> Result<Vec<u8>, WireError> {
     let mut bytes = Vec::new();
-    append(&mut bytes, value)?;
+    append(&mut bytes, value, BODY_LIMIT)?;
     Ok(bytes)
 }
 
@@ -143,7 +156,7 @@ pub fn encode<T: Serialize>(value: &T) -> Result<Vec<u8>, WireError> {
 /// # Errors
 /// [`WireError::TooLong`], [`WireError::Malformed`] or [`WireError::Leftover`].
 pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, WireError> {
-    within_limit(bytes.len())?;
+    within(bytes.len(), BODY_LIMIT)?;
     let (value, used) = bincode::serde::decode_from_slice(bytes, config()).map_err(|error| {
         WireError::Malformed {
             reason: error.to_string(),
@@ -158,7 +171,7 @@ pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, WireError> {
 /// Encodes a value into a frame.
 ///
 /// # Errors
-/// As [`encode`].
+/// As [`encode`], with the limit of the kind.
 pub fn seal<T: Serialize>(kind: Kind, run: RunId, value: &T) -> Result<Vec<u8>, WireError> {
     let mut frame = Vec::with_capacity(256);
     frame.extend_from_slice(&MAGIC);
@@ -166,12 +179,12 @@ pub fn seal<T: Serialize>(kind: Kind, run: RunId, value: &T) -> Result<Vec<u8>, 
     frame.push(kind.number());
     frame.extend_from_slice(&run.0.to_le_bytes());
     frame.extend_from_slice(&[0; 8]);
-    append(&mut frame, value)?;
+    append(&mut frame, value, kind.limit())?;
     let body = frame.get(HEADER_BYTES..).unwrap_or_default();
     let crc = crc32fast::hash(body);
     let length = u32::try_from(body.len()).map_err(|_| WireError::TooLong {
         bytes: body.len(),
-        limit: BODY_LIMIT,
+        limit: kind.limit(),
     })?;
     frame[12..16].copy_from_slice(&length.to_le_bytes());
     frame[16..20].copy_from_slice(&crc.to_le_bytes());
@@ -245,16 +258,13 @@ fn check_header(kind: Kind, header: &[u8; HEADER_BYTES]) -> Result<usize, WireEr
         });
     }
     let length = word(header, 12) as usize;
-    within_limit(length)?;
+    within(length, kind.limit())?;
     Ok(length)
 }
 
-const fn within_limit(bytes: usize) -> Result<(), WireError> {
-    if bytes > BODY_LIMIT {
-        return Err(WireError::TooLong {
-            bytes,
-            limit: BODY_LIMIT,
-        });
+const fn within(bytes: usize, limit: usize) -> Result<(), WireError> {
+    if bytes > limit {
+        return Err(WireError::TooLong { bytes, limit });
     }
     Ok(())
 }
@@ -265,14 +275,14 @@ fn word(header: &[u8; HEADER_BYTES], at: usize) -> u32 {
     u32::from_le_bytes(bytes)
 }
 
-fn append<T: Serialize>(to: &mut Vec<u8>, value: &T) -> Result<(), WireError> {
+fn append<T: Serialize>(to: &mut Vec<u8>, value: &T, limit: usize) -> Result<(), WireError> {
     let before = to.len();
     bincode::serde::encode_into_std_write(value, to, config()).map_err(|error| {
         WireError::Malformed {
             reason: error.to_string(),
         }
     })?;
-    within_limit(to.len() - before)
+    within(to.len() - before, limit)
 }
 
 const fn config() -> impl bincode::config::Config {

@@ -2,8 +2,8 @@
 use proptest::{collection::vec, option, prelude::*};
 use protocol::{
     case::EffectSetting,
-    event::Event,
-    id::{AttemptId, ContentHash, JobId, RunId},
+    event::{Event, Finished},
+    id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Failure, Job, ObserveSpec, Outcome, Refinement, ScoreSpec},
     message::{Attempt, Beat, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
     wire::{self, Kind, WireError},
@@ -217,4 +217,48 @@ fn a_promise_of_more_than_there_is_is_refused() {
         wire::decode::<ToWorker>(&body),
         Err(WireError::Malformed { .. })
     ));
+}
+
+/// Found as a result that its worker could send and the journal could not hold: never stored, never
+/// acknowledged, it kept the run from ending.
+#[test]
+fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
+    let outcome = |bytes: usize| Outcome::Nothing(vec![0; bytes]);
+    let from_slot = |bytes| {
+        let message = FromSlot::Done(Box::new(outcome(bytes)));
+        wire::seal(Kind::FromSlot, RunId(0), &message)
+    };
+    let around = from_slot(0).unwrap().len() - wire::HEADER_BYTES;
+    let most = Kind::FromSlot.limit() - around;
+    assert!(from_slot(most).is_ok());
+    assert!(matches!(
+        from_slot(most + 1),
+        Err(WireError::TooLong { bytes, limit }) if bytes == limit + 1
+    ));
+    let attempt = Attempt {
+        job: JobId(u64::MAX),
+        attempt: AttemptId(u32::MAX),
+    };
+    let work = ContentHash([255; 32]);
+    let sent = |bytes| {
+        let done = Done {
+            attempt,
+            work,
+            wall_us: u64::MAX,
+            outcome: outcome(bytes),
+        };
+        wire::seal(Kind::FromWorker, RunId(1), &FromWorker::Done(Box::new(done)))
+    };
+    // what is not of ours may be longer than any slot's, up to the limit of its kind
+    let around = sent(0).unwrap().len() - wire::HEADER_BYTES;
+    let longest = Kind::FromWorker.limit() - around;
+    assert!(most <= longest && sent(longest).is_ok() && sent(longest + 1).is_err());
+    let event = Event::Finished(Box::new(Finished {
+        attempt,
+        work,
+        worker: Some(WorkerId(u64::MAX)),
+        wall_us: u64::MAX,
+        outcome: outcome(longest),
+    }));
+    assert!(wire::encode(&event).is_ok());
 }

@@ -46,12 +46,26 @@ pub fn serve(memory_mib: u64) -> io::Result<()> {
             ToSlot::Case(bytes) => prepared = Some(prepare(&bytes)),
             ToSlot::Run(job) => {
                 test_hook::before(&job);
-                let outcome = evaluate(prepared.as_ref(), &job);
-                stream::write(&mut out, Kind::FromSlot, &FromSlot::Done(Box::new(outcome)))?;
+                answer(&mut out, evaluate(prepared.as_ref(), &job))?;
             }
         }
     }
     Ok(())
+}
+
+/// Hands an outcome to the worker, or says that it is too long for that.
+fn answer(out: &mut impl io::Write, outcome: Outcome) -> io::Result<()> {
+    let say = |out: &mut _, outcome| {
+        stream::write(out, Kind::FromSlot, &FromSlot::Done(Box::new(outcome)))
+    };
+    match say(out, outcome) {
+        // nothing has been written of it
+        Err(error) if error.kind() == io::ErrorKind::InvalidData => {
+            let how = format!("its result cannot be handed in: {error}");
+            say(out, Outcome::Failed(Failure::Crashed { how }))
+        }
+        said => said,
+    }
 }
 
 #[expect(

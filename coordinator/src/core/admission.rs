@@ -22,13 +22,23 @@ const MOST_WORKERS: usize = 16 << 10;
 /// Refused workers that are remembered, so that each is spoken of once.
 const MOST_REFUSED: usize = 4096;
 
+/// Longest name of a machine, a build or a model (bytes).
+const MOST_NAME: usize = 255;
+
+/// Longest list of kinds of job, and of effects (bytes, encoded): ten times what ours have.
+const MOST_KINDS: usize = 4 << 10;
+const MOST_EFFECTS: usize = 1 << 20;
+
+/// How much of a text that cannot be trusted people are shown (characters).
+const MOST_SHOWN: usize = 200;
+
 /// This program's version.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// A worker introduces itself.
 pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
-    if let Some(reason) = objection(core, &announcement) {
-        let host = announcement.host;
+    if let Some(reason) = absurdity(&announcement).or_else(|| objection(core, &announcement)) {
+        let host = shown(&announcement.host);
         refuse(core, from, host, reason);
         return;
     }
@@ -60,6 +70,61 @@ fn refuse(core: &mut Core, worker: WorkerId, host: String, reason: String) {
         });
     }
     core.send(worker, ToWorker::Refused { reason });
+}
+
+/// A worker speaks another version of the wire: it is answered in ours, so that it can say why it
+/// does not work, and people are told once.
+pub(super) fn other_version(core: &mut Core, worker: WorkerId, version: u8) {
+    let is_member = core.members.contains_key(&worker);
+    if !is_member && core.refused.len() < MOST_REFUSED && core.refused.insert(worker) {
+        core.notice(Notice::OtherVersion { worker, version });
+    }
+    core.send(worker, ToWorker::Identify);
+}
+
+/// The beginning of a text of somebody else, without what a terminal would obey.
+pub(super) fn shown(text: &str) -> String {
+    let plain = text.chars().filter(|letter| !letter.is_control());
+    plain.take(MOST_SHOWN).collect()
+}
+
+/// What no worker of ours would say of itself; it is kept, shown and written down, so there is an
+/// end to it.
+fn absurdity(announcement: &Announcement) -> Option<String> {
+    let Announcement {
+        build,
+        model_digest,
+        host,
+        job_kinds,
+        effects,
+        ..
+    } = announcement;
+    for (field, text) in [
+        ("host", host),
+        ("build", build),
+        ("model_digest", model_digest),
+    ] {
+        if text.len() > MOST_NAME {
+            let bytes = text.len();
+            return Some(format!(
+                "{field} has {bytes} bytes, allowed are {MOST_NAME}"
+            ));
+        }
+        if text.chars().any(char::is_control) {
+            return Some(format!("{field} holds control characters"));
+        }
+    }
+    // what cannot be encoded came over no wire
+    let bytes = |encoded: Result<Vec<u8>, wire::WireError>| encoded.map_or(0, |it| it.len());
+    for (field, bytes, most) in [
+        ("job_kinds", bytes(wire::encode(job_kinds)), MOST_KINDS),
+        ("effects", bytes(wire::encode(effects)), MOST_EFFECTS),
+    ] {
+        if bytes > most {
+            return Some(format!("{field} has {bytes} bytes, allowed are {most}"));
+        }
+    }
+    None
 }
 
 fn objection(core: &Core, announcement: &Announcement) -> Option<String> {
@@ -157,7 +222,19 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
 
 /// Whether a worker can be given jobs; none if it has just been refused.
 pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<bool> {
-    let Some(proof) = beat.proof.filter(|_| beat.case == Some(core.options.case)) else {
+    let expected = core.options.case;
+    match beat.case {
+        None => return Some(false),
+        Some(case) if case != expected => {
+            let reason = format!(
+                "case is {case}, this run's is {expected}: it was told so and took another; use \
+                 the same build of horsehead-worker"
+            );
+            return expel(core, from, reason);
+        }
+        Some(_) => {}
+    }
+    let Some(proof) = beat.proof else {
         return Some(false);
     };
     let Some(expected) = core.options.proof else {
@@ -174,7 +251,12 @@ pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<b
          out differently on this machine; use the same build of horsehead-worker, or leave this \
          machine out"
     );
-    let member = membership::lose_refused(core, from)?;
-    refuse(core, from, member.announcement.host, reason);
+    expel(core, from, reason)
+}
+
+/// Refuses a worker that takes part already.
+fn expel(core: &mut Core, worker: WorkerId, reason: String) -> Option<bool> {
+    let member = membership::lose_refused(core, worker)?;
+    refuse(core, worker, member.announcement.host, reason);
     None
 }

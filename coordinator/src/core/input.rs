@@ -25,10 +25,17 @@ pub enum Input {
         /// What it said.
         message: FromWorker,
     },
-    /// A worker spoke of another run, or in words that cannot be read.
+    /// A worker spoke of another run.
     Stranger {
         /// Which.
         from: WorkerId,
+    },
+    /// A worker spoke in words of another version of the wire.
+    OtherVersion {
+        /// Which.
+        from: WorkerId,
+        /// The version.
+        version: u8,
     },
     /// The transport lost a worker.
     Gone {

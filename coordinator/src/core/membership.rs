@@ -28,6 +28,8 @@ pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: D
         FromWorker::Announce(announcement) => admission::announce(core, from, *announcement, now),
         FromWorker::Beat(beat) if known => beaten(core, from, &beat, now),
         FromWorker::Beat(_) => core.send(from, ToWorker::Identify),
+        // it differs from the others, and so may what it computes
+        FromWorker::Done(_) if core.refused.contains(&from) => {}
         FromWorker::Done(done) => {
             if !known {
                 core.send(from, ToWorker::Identify);
@@ -93,6 +95,7 @@ fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
 }
 
 fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {
+    let reason = admission::shown(&reason);
     let Some(member) = remove(core, worker, &reason, now) else {
         return;
     };

@@ -13,6 +13,7 @@
 mod account;
 mod admission;
 mod assign;
+mod early;
 mod input;
 mod job_set;
 mod membership;
@@ -38,7 +39,7 @@ use protocol::{
     event::{Account, Event, Spent, WorkerAccount},
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Job,
-    message::{Attempt, Done, ToWorker},
+    message::{Attempt, ToWorker},
     wire,
 };
 use state::{Member, Pending};
@@ -85,7 +86,7 @@ pub struct Core {
     storing: BTreeMap<JobId, Vec<(WorkerId, Attempt)>>,
     finished: JobSet,
     /// Results of jobs that were not submitted (yet).
-    early: BTreeMap<JobId, (WorkerId, Done)>,
+    early: early::Early,
     times: policy::Times,
     counts: Counts,
     last_call: Duration,
@@ -133,7 +134,7 @@ impl Core {
             suspects: BTreeSet::new(),
             storing: BTreeMap::new(),
             finished,
-            early: BTreeMap::new(),
+            early: early::Early::default(),
             times: policy::Times::default(),
             counts: Counts::default(),
             last_call: Duration::ZERO,
@@ -160,6 +161,9 @@ impl Core {
             Input::Submit { id, job } => self.submit(id, job, now),
             Input::Heard { from, message } => membership::heard(self, from, message, now),
             Input::Stranger { from } => self.send(from, ToWorker::Identify),
+            Input::OtherVersion { from, version } => {
+                admission::other_version(self, from, version);
+            }
             Input::Gone { worker } => membership::gone(self, worker, now),
             Input::Stored { jobs } => result::stored(self, jobs),
             Input::Slept { time } => membership::excuse(self, time, now),
@@ -285,7 +289,7 @@ impl Core {
         self.jobs.insert(id, pending);
         self.queue.insert(id);
         reconcile::adopt(self, id, now);
-        if let Some((from, done)) = self.early.remove(&id) {
+        if let Some((from, done)) = self.early.take(id) {
             result::done(self, from, done, now);
         }
     }

@@ -2,6 +2,7 @@
 use protocol::{
     id::{JobId, WorkerId},
     job::Failure,
+    wire,
 };
 use std::fmt;
 
@@ -44,6 +45,13 @@ pub enum Notice {
         host: String,
         /// Why.
         reason: String,
+    },
+    /// A worker speaks another version of the wire.
+    OtherVersion {
+        /// Which.
+        worker: WorkerId,
+        /// The version.
+        version: u8,
     },
     /// Jobs wait and nobody is there.
     NoWorker {
@@ -107,6 +115,10 @@ impl fmt::Display for Notice {
                 reason,
             } => {
                 write!(to, "worker {worker} on {host} was refused: {reason}")
+            }
+            Self::OtherVersion { worker, version } => {
+                let error = wire::WireError::Version { found: *version };
+                write!(to, "worker {worker} was refused: {error}")
             }
             Self::NoWorker { jobs, refused: 0 } => write!(
                 to,

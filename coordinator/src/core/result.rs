@@ -15,9 +15,6 @@ use protocol::{
 };
 use std::time::Duration;
 
-/// Results of jobs not (yet) submitted that are kept at most; workers repeat the others.
-const MOST_EARLY: usize = 4096;
-
 /// A worker brought a result.
 pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     let job = done.attempt.job;
@@ -37,8 +34,9 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         return;
     }
     let Some(pending) = core.jobs.get(&job) else {
-        if core.early.len() < MOST_EARLY {
-            core.early.insert(job, (from, done));
+        // of strangers nothing is kept: one of ours that is asked who it is says so and repeats it
+        if core.members.contains_key(&from) || core.options.expected.contains(&from) {
+            core.early.put(from, done);
         }
         return;
     };

@@ -118,7 +118,7 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
                             jobs.push(finished.job());
                         }
                     }
-                    // unreachable for what came over the wire, which has the same limit
+                    // unreachable for what came over the wire, which lets pass a little less
                     Err(error) => tracing::error!(%error, "an event cannot be recorded"),
                 }
             }

@@ -176,10 +176,8 @@ impl<L: CoordinatorEnd> Engine<L> {
                     Input::Stranger { from }
                 });
             }
-            Err(error @ WireError::Version { .. }) => {
-                tracing::warn!("worker {from}: {error}");
-                // in our version, so that the other end can say why it does not work
-                self.send(from, &ToWorker::Identify);
+            Err(WireError::Version { found: version }) => {
+                self.handle(Input::OtherVersion { from, version });
             }
             Err(error) => tracing::debug!(%from, %error, "a frame was dropped"),
         }

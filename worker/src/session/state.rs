@@ -143,13 +143,10 @@ impl State {
         }
         self.admitted = true;
         self.outbox.hurry();
-        let known = self.case.as_ref().is_some_and(|held| held.hash == case)
-            || self
-                .incoming
-                .as_ref()
-                .is_some_and(|incoming| incoming.hash() == case);
-        if !known {
-            self.incoming = Some(Incoming::new(case, case_bytes));
+        let held = self.case.as_ref().is_some_and(|held| held.hash == case);
+        let mut incoming = self.incoming.iter();
+        if held || !incoming.any(|incoming| incoming.hash() == case) {
+            self.incoming = (!held).then(|| Incoming::new(case, case_bytes));
             self.fetching.abort_all();
         }
         self.fetch(link);
@@ -271,6 +268,12 @@ impl State {
         self.last_work = now;
         let held = self.running.remove(&freed.slot);
         if freed.attempt == proof::ATTEMPT {
+            let of = held.map(|(_, case)| case);
+            if of != self.case.as_ref().map(|case| case.hash) {
+                // of a case that was left meanwhile: it proves nothing
+                self.fill();
+                return Step::Go;
+            }
             match Proof::of(freed.outcome) {
                 Ok(proof) => self.proof = proof,
                 Err(reason) => return Step::End(Ending::Refused(reason)),
@@ -331,10 +334,12 @@ impl State {
             tracing::error!("a slot is stuck: no sign of life is sent");
             return;
         }
+        let here = self.incoming.is_none();
         let beat = Beat {
             number: self.beats,
-            case: self.case.as_ref().map(|case| case.hash),
-            proof: self.proof.known(),
+            // what is held of an earlier run says nothing of this one
+            case: self.case.as_ref().map(|case| case.hash).filter(|_| here),
+            proof: self.proof.known().filter(|_| here),
             running: self
                 .running
                 .values()

@@ -46,7 +46,50 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
         effects: vec![effect("pivot_friction"), effect("rope_toe")],
         ..announcement("m")
     };
+    let long = || "x".repeat(256);
     let others = [
+        (
+            "host has 256 bytes, allowed are 255",
+            Announcement {
+                host: long(),
+                ..first()
+            },
+        ),
+        (
+            "host holds control characters",
+            Announcement {
+                host: "a\u{1b}[2J".to_owned(),
+                ..first()
+            },
+        ),
+        (
+            "build has 256 bytes",
+            Announcement {
+                build: long(),
+                ..first()
+            },
+        ),
+        (
+            "model_digest has 256 bytes",
+            Announcement {
+                model_digest: long(),
+                ..first()
+            },
+        ),
+        (
+            "job_kinds has 8008 bytes, allowed are 4096",
+            Announcement {
+                job_kinds: vec![String::new(); 1000],
+                ..first()
+            },
+        ),
+        (
+            "effects has",
+            Announcement {
+                effects: vec![effect(&"x".repeat(300_000)); 2],
+                ..first()
+            },
+        ),
         (
             "protocol is 99, this coordinator speaks",
             Announcement {
@@ -159,4 +202,123 @@ fn a_worker_that_changes_its_proof_loses_its_jobs() {
     scene.announce(3, 1, "m");
     prove(&mut scene, 3, [1; 32]);
     assert_eq!(scene.given().len(), 1);
+}
+
+/// Another case can only be a mistake: a worker on its way from one run to the next says that it has
+/// none.
+#[test]
+fn another_case_is_refused_at_once_and_by_name() {
+    let mut scene = Scene::new();
+    scene.announce(1, 1, "m");
+    scene.submit(0..1);
+    scene.hear(
+        1,
+        FromWorker::Beat(Beat {
+            case: Some(ContentHash([9; 32])),
+            proof: Some(PROOF),
+            ..Beat::default()
+        }),
+    );
+    let told = refusal(&scene, 1).unwrap();
+    assert!(told.starts_with("case is 0909"), "{told}");
+    assert!(told.contains("this run's is 0707"), "{told}");
+    assert_eq!(scene.given(), []);
+    assert_eq!(scene.core.snapshot(scene.now).workers.len(), 0);
+}
+
+/// Whoever differs may compute something else: what it had on its way counts for nothing.
+#[test]
+fn results_of_the_refused_are_not_accepted() {
+    let mut scene = Scene::new();
+    scene.announce(1, 1, "m");
+    prove(&mut scene, 1, [1; 32]);
+    scene.submit(0..1);
+    let (_, attempt) = scene.given()[0];
+    prove(&mut scene, 1, [2; 32]);
+    scene.finish(1, attempt);
+    assert_eq!(scene.delivered, []);
+    scene.announce(2, 1, "m");
+    prove(&mut scene, 2, [1; 32]);
+    let (_, attempt) = scene.given()[0];
+    scene.finish(2, attempt);
+    assert_eq!(scene.delivered.len(), 1);
+}
+
+#[test]
+fn another_version_of_the_wire_is_answered_each_time_and_told_once() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    for _ in 0..3 {
+        for worker in [1, 2] {
+            scene.tell(Input::OtherVersion {
+                from: WorkerId(worker),
+                version: 99,
+            });
+        }
+    }
+    let told: Vec<String> = scene.notices().iter().map(ToString::to_string).collect();
+    let told: Vec<&String> = told.iter().filter(|it| it.contains("version 99")).collect();
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(told[0].contains("use the same build"), "{told:?}");
+    let answer = Command::Send {
+        to: WorkerId(2),
+        message: ToWorker::Identify,
+    };
+    let answers = scene.other.iter().filter(|it| **it == answer);
+    assert_eq!(answers.count(), 3);
+    // somebody who speaks in the name of one of ours does it no harm
+    scene.submit(0..1);
+    let (_, attempt) = scene.given()[0];
+    scene.finish(1, attempt);
+    assert_eq!(scene.delivered.len(), 1);
+}
+
+/// A farewell is shown and written down, so there is an end to it.
+#[test]
+fn a_long_farewell_is_cut() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    let reason = format!("\u{1b}[31m{}", "x".repeat(100_000));
+    scene.hear(1, FromWorker::Leaving { reason });
+    let said = scene.notices().pop().unwrap().to_string();
+    assert!(said.len() < 300 && said.contains("[31mxxx"), "{said}");
+}
+
+/// What strangers hand in before its job exists is not kept, and of others' not without end: it
+/// would fill the memory.
+#[test]
+fn early_results_are_kept_of_members_and_up_to_a_budget() {
+    const LONG: usize = 10 << 20;
+    let early = |job: u64, bytes: usize| Done {
+        attempt: Attempt {
+            job: JobId(job),
+            attempt: AttemptId(1),
+        },
+        work: work_hash(&super::job(job)),
+        wall_us: 1,
+        outcome: Outcome::Nothing(vec![0; bytes]),
+    };
+    let mut scene = Scene::new();
+    scene.core.options.expected = [WorkerId(7)].into();
+    scene.hear(9, FromWorker::Done(Box::new(early(0, 1))));
+    assert_eq!(scene.core.early.bytes(), 0, "of a stranger");
+    scene.hear(7, FromWorker::Done(Box::new(early(1, 1))));
+    assert!(scene.core.early.bytes() > 0, "of one who is expected");
+    scene.join(1, 1);
+    for job in 10..20 {
+        scene.hear(1, FromWorker::Done(Box::new(early(job, LONG))));
+        // the same again costs nothing
+        scene.hear(1, FromWorker::Done(Box::new(early(job, LONG))));
+    }
+    let kept = early::MOST_BYTES / LONG;
+    let bytes = scene.core.early.bytes();
+    assert!((kept * LONG..=early::MOST_BYTES).contains(&bytes), "{bytes}");
+    scene.submit(0..2);
+    scene.submit(10..20);
+    let delivered: Vec<u64> = scene.delivered.iter().map(|(job, _)| *job).collect();
+    assert_eq!(delivered, [1, 10, 11, 12, 13, 14, 15]);
+    assert_eq!(scene.core.early.bytes(), 0);
+    // it repeats the others
+    scene.hear(1, FromWorker::Done(Box::new(early(16, LONG))));
+    assert_eq!(scene.delivered.len(), 8);
 }

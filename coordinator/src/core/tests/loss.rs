@@ -325,6 +325,7 @@ fn the_reason_of_a_loss_tells_an_end_from_a_silence() {
             Notice::Joined { .. }
             | Notice::Left { .. }
             | Notice::Refused { .. }
+            | Notice::OtherVersion { .. }
             | Notice::NoWorker { .. }
             | Notice::Quarantined { .. }
             | Notice::GivenUp { .. }

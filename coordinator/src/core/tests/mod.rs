@@ -4,7 +4,7 @@ use protocol::{
     announce::Announcement,
     id::AttemptId,
     job::{Failure, Outcome},
-    message::{Beat, FromWorker, Order},
+    message::{Beat, Done, FromWorker, Order},
 };
 
 mod accounting;
