@@ -1,17 +1,8 @@
-//! Sparse stiffness and mass of a mesh, and the factor that solves with them.
+//! Sparse stiffness and mass of a mesh.
 //!
 //! Both matrices are symmetric; the lower triangle is kept column by column, so that every sum runs
 //! in a fixed order. Knows nothing of rims, gauges or modes.
 use super::{ReductionError, element::Steel, mesh::Mesh};
-use faer::{
-    Side,
-    linalg::solvers::Solve,
-    mat::MatMut,
-    sparse::{
-        SparseColMatRef, SymbolicSparseColMatRef,
-        linalg::solvers::{Llt, SymbolicLlt},
-    },
-};
 use std::collections::BTreeSet;
 
 /// Which displacements are unknown, and their numbers.
@@ -99,6 +90,19 @@ impl Symmetric {
         product
     }
 
+    /// Where each column's entries begin, and the row of every entry.
+    pub(super) fn pattern(&self) -> (&[usize], &[usize]) {
+        (&self.starts, &self.rows)
+    }
+
+    /// Row, column and value of every entry.
+    pub(super) fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        (0..self.len()).flat_map(move |column| {
+            let range = self.starts[column]..self.starts[column + 1];
+            range.map(move |k| (self.rows[k], column, self.values[k]))
+        })
+    }
+
     fn add(&mut self, row: usize, column: usize, value: f64) {
         let (from, to) = (self.starts[column], self.starts[column + 1]);
         if let Ok(at) = self.rows[from..to].binary_search(&row) {
@@ -176,37 +180,5 @@ fn pattern(mesh: &Mesh, unknowns: &Unknowns) -> Symmetric {
         values: vec![0.0; rows.len()],
         starts,
         rows,
-    }
-}
-
-/// Cholesky factor of a positive definite matrix.
-#[derive(Debug)]
-pub(super) struct Factor {
-    factor: Llt<usize, f64>,
-    order: usize,
-}
-
-impl Factor {
-    /// Factors with a fill-reducing order of unknowns.
-    ///
-    /// # Errors
-    /// [`ReductionError::NotHeld`] if the matrix is not positive definite.
-    pub(super) fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
-        let order = matrix.len();
-        let symbolic =
-            SymbolicSparseColMatRef::new_checked(order, order, &matrix.starts, None, &matrix.rows);
-        let plan = SymbolicLlt::try_new(symbolic, Side::Lower)
-            .map_err(|_| ReductionError::TooLarge { unknowns: order })?;
-        let values = SparseColMatRef::new(symbolic, &matrix.values[..]);
-        let factor = Llt::try_new_with_symbolic(plan, values, Side::Lower)
-            .map_err(|_| ReductionError::NotHeld)?;
-        Ok(Self { factor, order })
-    }
-
-    /// Overwrites a right-hand side by its solution.
-    pub(super) fn solve(&self, vector: &mut [f64]) {
-        let order = self.order;
-        self.factor
-            .solve_in_place(MatMut::from_column_major_slice_mut(vector, order, 1));
     }
 }

@@ -5,6 +5,7 @@
 //! Plain numbers in SI units come in and go out; nothing here knows of files or of the machine.
 mod arc;
 mod assembly;
+mod cholesky;
 mod eigen;
 mod element;
 mod error;

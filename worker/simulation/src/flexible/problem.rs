@@ -4,7 +4,8 @@
 use super::{
     ReductionError,
     arc::{Rim, Station},
-    assembly::{Assembly, Factor, Unknowns},
+    assembly::{Assembly, Unknowns},
+    cholesky::Factor,
     eigen::lowest,
     element::Steel,
     mesh::{Half, Mesh},

@@ -1,10 +1,12 @@
 //! Bricks on bodies with known answers, and for every kind of element both halves against the whole.
+mod cholesky;
 mod halves;
 mod split;
 mod tetrahedra;
 
 use super::{
-    assembly::{Assembly, Factor, Symmetric, Unknowns},
+    assembly::{Assembly, Symmetric, Unknowns},
+    cholesky::Factor,
     eigen::{dot, lowest},
     *,
 };

@@ -1,0 +1,360 @@
+//! Sparse Cholesky factorisation with the same bits on every processor.
+//!
+//! faer finds the order of elimination and the supernodes, columns of the factor that share one
+//! pattern: whole numbers, alike everywhere. Its numeric kernels choose their instructions by the
+//! processor that they find, and a fused product rounds once where two instructions round twice. So
+//! the numbers are worked out here, in plain loops whose sums have one order: left-looking, supernode
+//! by supernode, every product in tiles of registers.
+use super::{ReductionError, assembly::Symmetric};
+use faer::{
+    Side,
+    sparse::{
+        SymbolicSparseColMatRef,
+        linalg::{
+            SupernodalThreshold,
+            cholesky::{
+                CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+                factorize_symbolic_cholesky,
+            },
+        },
+    },
+};
+use std::cmp::Ordering;
+
+/// Rows and columns of a tile.
+const TILE: usize = 4;
+/// Columns of a panel that are eliminated before the rest of the panel hears of them.
+const BLOCK: usize = 32;
+/// A pivot below this share of its diagonal entry is what rounding leaves of zero.
+const LEAST_PIVOT: f64 = 1e-12;
+
+/// Cholesky factor of a positive definite matrix.
+#[derive(Debug)]
+pub(super) struct Factor {
+    /// The unknown that is eliminated at each place; n.
+    order: Vec<usize>,
+    shape: Shape,
+    /// Panel by panel, column by column; entries above the diagonal are zero.
+    values: Vec<f64>,
+}
+
+/// Supernodes of a factor.
+#[derive(Debug)]
+struct Shape {
+    /// First column of each, and the number of columns; s + 1.
+    columns: Vec<usize>,
+    /// Where each one's rows begin, and the number of rows; s + 1.
+    row_starts: Vec<usize>,
+    /// Rows below each one's own columns, ascending.
+    rows: Vec<usize>,
+    /// Where each one's values begin, and the number of values; s + 1.
+    value_starts: Vec<usize>,
+}
+
+impl Shape {
+    const fn len(&self) -> usize {
+        self.columns.len() - 1
+    }
+
+    fn width(&self, node: usize) -> usize {
+        self.columns[node + 1] - self.columns[node]
+    }
+
+    fn rows(&self, node: usize) -> &[usize] {
+        &self.rows[self.row_starts[node]..self.row_starts[node + 1]]
+    }
+
+    fn height(&self, node: usize) -> usize {
+        self.width(node) + self.rows(node).len()
+    }
+
+    fn panel<'a>(&self, values: &'a [f64], node: usize) -> &'a [f64] {
+        &values[self.value_starts[node]..self.value_starts[node + 1]]
+    }
+
+    /// The supernode of every column; n.
+    fn owners(&self) -> Vec<usize> {
+        let owned = (0..self.len()).map(|node| std::iter::repeat_n(node, self.width(node)));
+        owned.flatten().collect()
+    }
+}
+
+impl Factor {
+    /// Factors with a fill-reducing order of unknowns.
+    ///
+    /// # Errors
+    /// [`ReductionError::NotHeld`] if the matrix is not positive definite,
+    /// [`ReductionError::TooLarge`] if its factor does not fit into memory.
+    pub(super) fn new(matrix: &Symmetric) -> Result<Self, ReductionError> {
+        let too_large = ReductionError::TooLarge {
+            unknowns: matrix.len(),
+        };
+        let plan = plan(matrix).ok_or(too_large.clone())?;
+        let order = plan.perm().map(|perm| perm.arrays().0.to_vec());
+        let order = order.unwrap_or_else(|| (0..matrix.len()).collect());
+        let SymbolicCholeskyRaw::Supernodal(nodes) = plan.raw() else {
+            return Err(too_large);
+        };
+        let shape = Shape {
+            columns: [nodes.supernode_begin(), &[matrix.len()]].concat(),
+            row_starts: nodes.col_ptr_for_row_idx().to_vec(),
+            rows: nodes.row_idx().to_vec(),
+            value_starts: nodes.col_ptr_for_val().to_vec(),
+        };
+        let mut factor = Self {
+            values: vec![0.0; nodes.len_val()],
+            order,
+            shape,
+        };
+        factor.scatter(matrix);
+        factor.eliminate()?;
+        Ok(factor)
+    }
+
+    /// Writes the matrix into the panels.
+    fn scatter(&mut self, matrix: &Symmetric) {
+        let Self {
+            order,
+            shape,
+            values,
+        } = self;
+        let mut places = vec![0; order.len()];
+        for (place, &unknown) in order.iter().enumerate() {
+            places[unknown] = place;
+        }
+        let owners = shape.owners();
+        for (row, column, value) in matrix.entries() {
+            let (row, column) = (places[row], places[column]);
+            let (row, column) = (row.max(column), row.min(column));
+            let node = owners[column];
+            let (first, width) = (shape.columns[node], shape.width(node));
+            let line = if row < first + width {
+                row - first
+            } else {
+                width + shape.rows(node).partition_point(|&r| r < row)
+            };
+            values[shape.value_starts[node] + (column - first) * shape.height(node) + line] = value;
+        }
+    }
+
+    /// Turns the matrix in the panels into its factor.
+    fn eliminate(&mut self) -> Result<(), ReductionError> {
+        let Self { shape, values, .. } = self;
+        let owners = shape.owners();
+        let least = least_pivots(shape, values);
+        // supernodes whose next rows are columns of this one; where those rows begin
+        let mut waiting: Vec<Vec<usize>> = vec![Vec::new(); shape.len()];
+        let mut next = vec![0; shape.len()];
+        let mut lines = vec![0; owners.len()];
+        let mut strips = Vec::new();
+        for node in 0..shape.len() {
+            let (first, width) = (shape.columns[node], shape.width(node));
+            let own = first..first + width;
+            for (line, row) in own.clone().chain(shape.rows(node).iter().copied()).enumerate() {
+                lines[row] = line;
+            }
+            let (before, rest) = values.split_at_mut(shape.value_starts[node]);
+            let panel = &mut rest[..shape.value_starts[node + 1] - shape.value_starts[node]];
+            let height = shape.height(node);
+            for earlier in std::mem::take(&mut waiting[node]) {
+                let rows = &shape.rows(earlier)[next[earlier]..];
+                let wide = rows.partition_point(|&row| row < own.end);
+                let earlier_height = shape.height(earlier);
+                let from = earlier_height - rows.len();
+                let source = shape.panel(before, earlier);
+                pack(source, earlier_height, from, &mut strips);
+                let depth = shape.width(earlier);
+                products(&strips, depth, (rows.len(), wide), |row, column, value| {
+                    panel[lines[rows[column]] * height + lines[rows[row]]] -= value;
+                });
+                if let Some(&row) = rows.get(wide) {
+                    next[earlier] += wide;
+                    waiting[owners[row]].push(earlier);
+                }
+            }
+            factor_panel(panel, &least[own], &mut strips)?;
+            if let Some(&row) = shape.rows(node).first() {
+                waiting[owners[row]].push(node);
+            }
+        }
+        Ok(())
+    }
+
+    /// Overwrites a right-hand side by its solution.
+    pub(super) fn solve(&self, vector: &mut [f64]) {
+        let Self {
+            order,
+            shape,
+            values,
+        } = self;
+        let mut x: Vec<f64> = order.iter().map(|&unknown| vector[unknown]).collect();
+        let mut below = Vec::new();
+        for node in 0..shape.len() {
+            let (rows, height) = (shape.rows(node), shape.height(node));
+            let own = &mut x[shape.columns[node]..shape.columns[node + 1]];
+            below.clear();
+            below.resize(rows.len(), 0.0);
+            for (k, column) in shape.panel(values, node).chunks_exact(height).enumerate() {
+                let value = own[k] / column[k];
+                own[k] = value;
+                let (inside, outside) = column.split_at(own.len());
+                subtract(&mut own[k + 1..], &inside[k + 1..], value);
+                subtract(&mut below, outside, value);
+            }
+            for (&row, change) in rows.iter().zip(&below) {
+                x[row] += change;
+            }
+        }
+        for node in (0..shape.len()).rev() {
+            let (rows, height) = (shape.rows(node), shape.height(node));
+            below.clear();
+            below.extend(rows.iter().map(|&row| x[row]));
+            let own = &mut x[shape.columns[node]..shape.columns[node + 1]];
+            let columns = shape.panel(values, node).chunks_exact(height);
+            for (k, column) in columns.enumerate().rev() {
+                let (inside, outside) = column.split_at(own.len());
+                let known = dot(&inside[k + 1..], &own[k + 1..]) + dot(outside, &below);
+                own[k] = (own[k] - known) / column[k];
+            }
+        }
+        for (&unknown, value) in order.iter().zip(&x) {
+            vector[unknown] = *value;
+        }
+    }
+}
+
+/// Order of elimination and supernodes; none if they do not fit into memory.
+fn plan(matrix: &Symmetric) -> Option<SymbolicCholesky<usize>> {
+    let (starts, rows) = matrix.pattern();
+    let order = matrix.len();
+    let pattern = SymbolicSparseColMatRef::new_checked(order, order, starts, None, rows);
+    let always = CholeskySymbolicParams {
+        supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+        ..CholeskySymbolicParams::default()
+    };
+    factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, always).ok()
+}
+
+/// Copies a panel's rows from `from` on in strips of [`TILE`] rows, each column by column, so that a
+/// product reads them in order; zeros fill the last one up.
+fn pack(panel: &[f64], height: usize, from: usize, strips: &mut Vec<f64>) {
+    let depth = panel.len() / height;
+    let count = (height - from).div_ceil(TILE);
+    strips.clear();
+    strips.resize(count * TILE * depth, 0.0);
+    for (at, column) in panel.chunks_exact(height).enumerate() {
+        for (strip, rows) in column[from..].chunks(TILE).enumerate() {
+            let begin = (strip * depth + at) * TILE;
+            strips[begin..begin + rows.len()].copy_from_slice(rows);
+        }
+    }
+}
+
+/// Hands every entry on and below the diagonal of `R S'` to `take`, with its row and column: R are the
+/// packed rows, S the first of them. `size` is the number of rows and of columns.
+fn products(
+    strips: &[f64],
+    depth: usize,
+    size: (usize, usize),
+    mut take: impl FnMut(usize, usize, f64),
+) {
+    let (tall, wide) = size;
+    let strips: Vec<&[f64]> = strips.chunks_exact(TILE * depth).collect();
+    for (below, right) in strips[..wide.div_ceil(TILE)].iter().enumerate() {
+        for (down, left) in strips.iter().enumerate().skip(below) {
+            for (j, products) in tile(left, right).iter().enumerate() {
+                let column = below * TILE + j;
+                for (i, product) in products.iter().enumerate() {
+                    let row = down * TILE + i;
+                    if column < wide && row < tall && row >= column {
+                        take(row, column, *product);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Products of two strips: columns of the right one's rows by the left one's rows, summed in order.
+fn tile(left: &[f64], right: &[f64]) -> [[f64; TILE]; TILE] {
+    let mut sums = [[0.0; TILE]; TILE];
+    let (left, _) = left.as_chunks::<TILE>();
+    let (right, _) = right.as_chunks::<TILE>();
+    for (left, right) in left.iter().zip(right) {
+        for (sums, b) in sums.iter_mut().zip(right) {
+            for (sum, a) in sums.iter_mut().zip(left) {
+                *sum += a * b;
+            }
+        }
+    }
+    sums
+}
+
+/// What the pivot of every column must exceed, of the matrix in the panels; n.
+fn least_pivots(shape: &Shape, values: &[f64]) -> Vec<f64> {
+    let mut least = Vec::new();
+    for node in 0..shape.len() {
+        let columns = shape.panel(values, node).chunks_exact(shape.height(node));
+        least.extend(columns.enumerate().map(|(k, column)| LEAST_PIVOT * column[k]));
+    }
+    least
+}
+
+/// Factors a panel that nothing else changes any more, if every pivot exceeds its `least`.
+fn factor_panel(
+    panel: &mut [f64],
+    least: &[f64],
+    strips: &mut Vec<f64>,
+) -> Result<(), ReductionError> {
+    let width = least.len();
+    let height = panel.len() / width;
+    for first in (0..width).step_by(BLOCK) {
+        let end = (first + BLOCK).min(width);
+        for k in first..end {
+            let (before, rest) = panel.split_at_mut(k * height);
+            let column = &mut rest[k..height];
+            for earlier in before[first * height..].chunks_exact(height) {
+                subtract(column, &earlier[k..], earlier[k]);
+            }
+            let pivot = column[0];
+            // not a number fails too
+            if pivot.partial_cmp(&least[k]) != Some(Ordering::Greater) {
+                return Err(ReductionError::NotHeld);
+            }
+            let root = pivot.sqrt();
+            for value in column.iter_mut() {
+                *value /= root;
+            }
+        }
+        if end < width {
+            let block = &panel[first * height..end * height];
+            pack(block, height, end, strips);
+            let size = (height - end, width - end);
+            products(strips, end - first, size, |row, column, value| {
+                panel[(end + column) * height + end + row] -= value;
+            });
+        }
+    }
+    Ok(())
+}
+
+/// `vector -= factor * column`, entry by entry.
+fn subtract(vector: &mut [f64], column: &[f64], factor: f64) {
+    for (entry, value) in vector.iter_mut().zip(column) {
+        *entry -= factor * value;
+    }
+}
+
+/// Inner product in [`TILE`] sums side by side, which are added in order.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (heads, tail) = a.as_chunks::<TILE>();
+    let (others, rest) = b.as_chunks::<TILE>();
+    let mut sums = [0.0; TILE];
+    for (a, b) in heads.iter().zip(others) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let last: f64 = tail.iter().zip(rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + last
+}
