@@ -16,13 +16,10 @@ use crate::{
 };
 use clap::Args;
 use discrepancy::{diagnose::Inputs, settings::Settings};
-use protocol::{announce::EffectDescriptor, case::Case, job::Refinement};
+use protocol::{announce::EffectDescriptor, job::Refinement};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{path::PathBuf, time::Instant};
 
 /// Find what the simulation is missing: where, which effect, how large, and the proof.
 #[derive(Debug, Args)]
