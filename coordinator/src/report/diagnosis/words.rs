@@ -292,8 +292,8 @@ pub(super) fn next(subject: &Subject<'_>) -> Vec<String> {
     match diagnosis.verdict {
         Verdict::Named => steps.push(
             "Look at that part of the machine. The entry below, appended to case.toml (or the same \
-             command with --add), makes the effect ordinary physics: every simulation has it, and a calibration fits the \
-             parameters beside it."
+             command with --add), makes the effect ordinary physics: every simulation has it, and a \
+             calibration fits the parameters beside it."
                 .to_owned(),
         ),
         Verdict::Ambiguous => {
