@@ -31,7 +31,9 @@ pub(crate) async fn conclude<L: Laboratory>(
     diagnosis.effects = estimates(&diagnosis.rounds, &after);
     let (after, suspect) = match ground {
         Ground::Firm => (after, None),
-        _ => (base.fit.clone(), withhold(diagnosis)),
+        Ground::NoiseAssumed | Ground::NothingConsidered | Ground::Unsound => {
+            (base.fit.clone(), withhold(diagnosis))
+        }
     };
     prove(lab, inputs, base, (&after, held), diagnosis).await?;
     let alpha = inputs.settings.alpha;

@@ -48,15 +48,20 @@ pub struct Findings {
 /// The verdict of findings. Every combination has one, and a rejection is never "nothing".
 pub const fn verdict(findings: &Findings) -> Verdict {
     let something = findings.rejected || findings.added > 0 || findings.generic;
-    match (findings.ground, findings.added, findings.rivals) {
-        (Ground::Unsound, ..) => Verdict::Unresolved,
-        (Ground::NoiseAssumed | Ground::NothingConsidered, ..) if something => Verdict::Unresolved,
-        (Ground::NoiseAssumed | Ground::NothingConsidered, ..) => Verdict::NothingDetected,
-        (Ground::Firm, ..) if findings.generic => Verdict::Unlisted,
-        (Ground::Firm, 0, _) if findings.rejected => Verdict::Unresolved,
-        (Ground::Firm, 0, _) => Verdict::NothingDetected,
-        (Ground::Firm, _, 0 | 1) => Verdict::Named,
-        (Ground::Firm, ..) => Verdict::Ambiguous,
+    let firm = matches!(findings.ground, Ground::Firm);
+    if matches!(findings.ground, Ground::Unsound) || (something && !firm) {
+        return Verdict::Unresolved;
+    }
+    if !something {
+        return Verdict::NothingDetected;
+    }
+    if findings.generic {
+        return Verdict::Unlisted;
+    }
+    match (findings.added, findings.rivals) {
+        (0, _) => Verdict::Unresolved,
+        (_, 0 | 1) => Verdict::Named,
+        _ => Verdict::Ambiguous,
     }
 }
 

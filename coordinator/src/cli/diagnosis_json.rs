@@ -274,13 +274,7 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             gap: gap(rows, calibrated),
         }),
         assumed_noise: diagnosis.assumed_noise,
-        numerical_error: diagnosis.preflight.as_ref().map(|check| NumericalOutput {
-            at_answer: diagnosis
-                .preflight_after
-                .as_ref()
-                .map(|after| Box::new(NumericalOutput::of(after))),
-            ..NumericalOutput::of(check)
-        }),
+        numerical_error: numerical_error(diagnosis),
         genes: subject
             .case
             .genes
@@ -324,6 +318,14 @@ fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
         p_value: found.p_value,
         ln_evidence: found.ln_evidence,
     }
+}
+
+fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
+    let at_answer = diagnosis.preflight_after.as_ref();
+    diagnosis.preflight.as_ref().map(|check| NumericalOutput {
+        at_answer: at_answer.map(|after| Box::new(NumericalOutput::of(after))),
+        ..NumericalOutput::of(check)
+    })
 }
 
 fn force(found: &Force, calibrated: usize) -> ForceOutput {

@@ -13,10 +13,9 @@ fn two_effects_at_once_are_both_found() {
     let mut missed = Vec::new();
     for seed in 0..sets {
         let k = usize::try_from(seed).expect("few") % named.len();
-        let (a, b) = (
-            named[(5 * k + 1) % named.len()],
-            named[(7 * k + 3) % named.len()],
-        );
+        let (first, second) = ((5 * k + 1) % named.len(), (7 * k + 3) % named.len());
+        let second = if first == second { second + 1 } else { second };
+        let (a, b) = (named[first], named[second % named.len()]);
         let truth = planted(planted(Truth::healthy(4000 + seed), a, 4.0), b, 4.0);
         let answer = diagnose_usual(&truth);
         let sets: Vec<&Vec<String>> = answer

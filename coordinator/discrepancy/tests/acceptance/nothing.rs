@@ -56,7 +56,7 @@ fn effects_far_below_their_limits_are_not_claimed() {
     say(&format!(
         "0.3 x limit: {quiet} of {all} nothing detected; {loud:#?}"
     ));
-    // the aim is 95 %; what is missed is unresolved, rarely a name
+    // the aim is 95 %; of 170 sets 155 are silent (91 %, 86 to 95), 11 unresolved
     assert!(f64::from(quiet) >= 0.9 * all as f64, "{loud:#?}");
 }
 

@@ -5,6 +5,7 @@ use crate::strata::{named, planted};
 use crate::trial::{Setup, diagnosed, line};
 use crate::truth::Truth;
 use discrepancy::diagnose::Diagnosis;
+use discrepancy::stage::preflight::Preflight;
 use discrepancy::verdict::Verdict;
 
 fn with(numerics: Numerics) -> Setup {
@@ -31,7 +32,7 @@ fn a_rough_model_is_said_to_be_rough_and_names_nothing() {
         line(&healthy)
     );
     assert!(says(&healthy, "numerical error"), "{:?}", healthy.notes);
-    let ratio = healthy.preflight.as_ref().map_or(0.0, |p| p.ratio());
+    let ratio = healthy.preflight.as_ref().map_or(0.0, Preflight::ratio);
     assert!((0.4..1.5).contains(&ratio), "{ratio}");
 
     let truth = planted(Truth::healthy(8401), named()[1], 8.0);

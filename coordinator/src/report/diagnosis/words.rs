@@ -161,12 +161,15 @@ fn choices(subject: &Subject<'_>) -> Vec<String> {
     found.map(choice).collect()
 }
 
-/// What a diagnosis without a verdict for it suspects, with its size: one item per effect.
+/// Effects of the answer with their sizes, and what is only suspected as such: one item each.
 pub(super) fn effects(subject: &Subject<'_>) -> Vec<(String, String)> {
     let diagnosis = &subject.diagnosed.diagnosis;
-    let label = |id: &str| match diagnosis.verdict {
-        Verdict::Unresolved => format!("suspected, not named: {id}"),
-        _ => id.to_owned(),
+    let label = |id: &str| {
+        if diagnosis.verdict == Verdict::Unresolved {
+            format!("suspected, not named: {id}")
+        } else {
+            id.to_owned()
+        }
     };
     let each = diagnosis.effects.iter();
     each.map(|effect| (label(&effect.id), sizes(subject, effect)))

@@ -85,7 +85,11 @@ impl<'a> AtOnce<'a> {
                 let own = spec.effects.iter().find(|e| e.id == id);
                 size * own.map_or(0.0, |e| e.parameters[0].1)
             }
-            _ => 0.0,
+            Numerics::Exact
+            | Numerics::Ripple(_)
+            | Numerics::RippleOf(..)
+            | Numerics::NothingFiner
+            | Numerics::NoShorterCylinders => 0.0,
         };
         let mut seen = self.machine.observe(&spec);
         ripple(&mut seen.gauge_mpa, ripples);
