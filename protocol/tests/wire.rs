@@ -247,7 +247,11 @@ fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
             wall_us: u64::MAX,
             outcome: outcome(bytes),
         };
-        wire::seal(Kind::FromWorker, RunId(1), &FromWorker::Done(Box::new(done)))
+        wire::seal(
+            Kind::FromWorker,
+            RunId(1),
+            &FromWorker::Done(Box::new(done)),
+        )
     };
     // what is not of ours may be longer than any slot's, up to the limit of its kind
     let around = sent(0).unwrap().len() - wire::HEADER_BYTES;

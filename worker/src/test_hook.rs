@@ -48,6 +48,10 @@ fn misbehave(behaviour: &str) {
             let for_ever = Duration::from_hours(24 * 365);
             thread::sleep(for_ever);
         }
+        // does not even sleep: it takes all the processor it can get
+        "spin" => loop {
+            std::hint::spin_loop();
+        },
         "allocate" => {
             // twice as much each time: no machine has room for long
             let mut held = vec![1_u8; 1 << 20];

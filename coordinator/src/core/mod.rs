@@ -105,6 +105,8 @@ pub struct Core {
     /// The journal cannot be written.
     paused: bool,
     accounted: Duration,
+    /// Nothing more is given out.
+    finishing: bool,
     closing: bool,
     out: Vec<Command>,
 }
@@ -147,6 +149,7 @@ impl Core {
             reunion: None,
             paused: false,
             accounted: Duration::ZERO,
+            finishing: false,
             closing: false,
             out: Vec::new(),
         }
@@ -176,6 +179,7 @@ impl Core {
                     self.account(now);
                 }
             }
+            Input::Finish => self.finishing = true,
             Input::Writable(writable) => self.paused = !writable,
             Input::Close => {
                 let members: Vec<WorkerId> = self.members.keys().copied().collect();
@@ -194,10 +198,10 @@ impl Core {
         mem::take(&mut self.out)
     }
 
-    /// Whether what comes of new orders can be written down: a disk that is full, or slower than the
+    /// Whether what comes of new orders is wanted and can be written down: a disk that is full, or slower than the
     /// workers, must not fill the memory instead.
     fn may_give_out(&self) -> bool {
-        !self.paused && self.storing.len() < self.options.policy.unstored
+        !self.paused && !self.finishing && self.storing.len() < self.options.policy.unstored
     }
 
     /// Whether idle slots wait for what others compute: everything asked for is given out.

@@ -312,7 +312,10 @@ fn early_results_are_kept_of_members_and_up_to_a_budget() {
     }
     let kept = early::MOST_BYTES / LONG;
     let bytes = scene.core.early.bytes();
-    assert!((kept * LONG..=early::MOST_BYTES).contains(&bytes), "{bytes}");
+    assert!(
+        (kept * LONG..=early::MOST_BYTES).contains(&bytes),
+        "{bytes}"
+    );
     scene.submit(0..2);
     scene.submit(10..20);
     let delivered: Vec<u64> = scene.delivered.iter().map(|(job, _)| *job).collect();
