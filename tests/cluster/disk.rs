@@ -21,6 +21,7 @@ use tests::process::{Process, free_locator, is_alive, wait_until};
 
 const LIMIT: Duration = Duration::from_mins(1);
 const JOBS: u64 = 400;
+const SKIPPED: &str = "skipped: this machine lets nobody mount a file system in a namespace";
 
 /// Mounts 200 KiB at `$0`, fills most of it and runs the program that follows; what it wrote is
 /// copied beside it, since the disk is gone with its processes.
@@ -50,12 +51,12 @@ struct OnSmallDisk {
 }
 
 impl OnSmallDisk {
-    /// Starts it for so many jobs; afterwards its run is copied to `copy` in `folder`.
+    /// Starts it for so many jobs, unless this machine has no such disks; afterwards its run is
+    /// copied to `copy` in `folder`.
     fn start(folder: &Path, locator: &str, jobs: u64, delay_ms: u32) -> Option<Self> {
         let small = folder.join("small");
         fs::create_dir(&small).unwrap();
         if !may_mount(&small) {
-            eprintln!("skipped: this machine lets nobody mount a file system in a namespace");
             return None;
         }
         let mut command = Command::new("unshare");
@@ -124,6 +125,7 @@ fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
     let locator = free_locator();
     let _worker = Process::worker(&locator, &["--slots", "2"]);
     let Some(run) = OnSmallDisk::start(folder.path(), &locator, JOBS, 0) else {
+        eprintln!("{SKIPPED}");
         return;
     };
     wait_until("it says that it pauses", LIMIT, || {
@@ -156,6 +158,7 @@ fn a_run_that_ends_on_a_full_disk_waits_for_room() {
     let _worker = Process::worker_with(&locator, &["--slots", &slots], &environment);
     // each slot has one and another waits: all are given out before the first is done
     let Some(run) = OnSmallDisk::start(folder.path(), &locator, 2 * SLOTS, 6000) else {
+        eprintln!("{SKIPPED}");
         return;
     };
     wait_until("the first jobs are begun", LIMIT, || trace.is_file());

@@ -188,8 +188,8 @@ impl Serialize for Raw {
 }
 
 /// A frame that is in order around a body that is not: it gets as far as the decoder.
-fn around(run: RunId, body: Vec<u8>) -> Vec<u8> {
-    let frame = wire::seal(Kind::FromWorker, run, &Raw(body.clone())).unwrap();
+fn around(run: RunId, body: &[u8]) -> Vec<u8> {
+    let frame = wire::seal(Kind::FromWorker, run, &Raw(body.to_vec())).unwrap();
     assert_eq!(wire::open(Kind::FromWorker, &frame).unwrap().body, body);
     frame
 }
@@ -197,7 +197,7 @@ fn around(run: RunId, body: Vec<u8>) -> Vec<u8> {
 /// What is thrown to the decoder fails there and not before.
 #[test]
 fn damaged_bodies_reach_the_decoder() {
-    let promise = around(RunId(1), endless());
+    let promise = around(RunId(1), &endless());
     let read = wire::unseal::<FromWorker>(Kind::FromWorker, &promise);
     assert!(
         matches!(read, Err(wire::WireError::Malformed { .. })),
@@ -231,14 +231,14 @@ fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u6
             2 => frame[3] = 200,
             3 => frame[at % good.len()] ^= 0x40,
             // promises a vector of more than there is memory for
-            4 => frame = around(run, endless()),
+            4 => frame = around(run, &endless()),
             // a body that is cut, and one with a flipped bit, in frames that know nothing of it
-            7 => frame = around(run, body[..at % body.len()].to_vec()),
+            7 => frame = around(run, &body[..at % body.len()]),
             8 => {
                 let mut body = body.clone();
                 let at = at % body.len();
                 body[at] ^= 1 << (thrown / 10 % 8);
-                frame = around(run, body);
+                frame = around(run, &body);
             }
             5 => frame = vec![0xff; at % 70_000],
             6 => frame.extend_from_slice(&good),

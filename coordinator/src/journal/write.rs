@@ -210,9 +210,7 @@ mod tests {
                 safe: 0,
             }
         }
-    }
 
-    impl State {
         fn mishap(&mut self) -> io::Result<()> {
             if self.bad > 0 {
                 self.bad -= 1;
