@@ -3,26 +3,31 @@
 //! It is mounted in a mount namespace, which only the test's own processes see. Where the machine
 //! does not allow that, the test says so and proves nothing; the writer's own tests inject the same
 //! failures.
+use coordinator::journal;
+use protocol::event::Event;
 use std::{
     fs,
-    io::{BufRead, BufReader, Read},
-    path::Path,
+    io::{BufRead, BufReader, Read, Write},
+    path::{Path, PathBuf},
     process::{Command, Stdio},
     sync::{
         Arc, Mutex,
         atomic::{AtomicUsize, Ordering},
     },
-    thread,
+    thread::{self, JoinHandle},
     time::Duration,
 };
-use tests::process::{Process, free_locator, wait_until};
+use tests::process::{Process, free_locator, is_alive, wait_until};
 
 const LIMIT: Duration = Duration::from_mins(1);
 const JOBS: u64 = 400;
+const SKIPPED: &str = "skipped: this machine lets nobody mount a file system in a namespace";
 
-/// Mounts 200 KiB at `$0`, fills most of it, then becomes the program that follows.
+/// Mounts 200 KiB at `$0`, fills most of it and runs the program that follows; what it wrote is
+/// copied beside it, since the disk is gone with its processes.
 const MOUNT: &str = "mount -t tmpfs -o size=200k tmpfs \"$0\" && \
-                     head -c 140000 /dev/zero > \"$0/ballast\" && exec \"$@\"";
+                     head -c 140000 /dev/zero > \"$0/ballast\" && \"$@\" && \
+                     if [ -d \"$0/run\" ]; then cp -r \"$0/run\" \"$0/../copy\"; fi";
 
 fn may_mount(folder: &Path) -> bool {
     let tried = Command::new("unshare")
@@ -34,72 +39,148 @@ fn may_mount(folder: &Path) -> bool {
     tried.is_ok_and(|status| status.success())
 }
 
+/// A coordinator whose run lies on a small disk, and everything that it says.
+struct OnSmallDisk {
+    process: Process,
+    /// The disk, seen from outside of the namespace.
+    disk: PathBuf,
+    results: Arc<AtomicUsize>,
+    said: Arc<Mutex<String>>,
+    reader: JoinHandle<String>,
+    listener: JoinHandle<()>,
+}
+
+impl OnSmallDisk {
+    /// Starts it for so many jobs, unless this machine has no such disks; afterwards its run is
+    /// copied to `copy` in `folder`.
+    fn start(folder: &Path, locator: &str, jobs: u64, delay_ms: u32) -> Option<Self> {
+        let small = folder.join("small");
+        fs::create_dir(&small).unwrap();
+        if !may_mount(&small) {
+            return None;
+        }
+        let mut command = Command::new("unshare");
+        command
+            .args(["--user", "--map-root-user", "--mount", "sh", "-c", MOUNT])
+            .arg(&small)
+            .arg(env!("CARGO_BIN_EXE_test-coordinator"))
+            .arg(small.join("run"))
+            .args([locator, &jobs.to_string(), &delay_ms.to_string(), "0"])
+            .stderr(Stdio::piped());
+        let mut process = Process::start(command);
+        let results = Arc::new(AtomicUsize::new(0));
+        let (counted, output) = (Arc::clone(&results), process.output());
+        let reader = thread::spawn(move || {
+            let mut last = String::new();
+            for line in BufReader::new(output).lines().map_while(Result::ok) {
+                counted.fetch_add(1, Ordering::Relaxed);
+                last = line;
+            }
+            last
+        });
+        let said = Arc::new(Mutex::new(String::new()));
+        let (heard, mut errors) = (Arc::clone(&said), process.errors());
+        let listener = thread::spawn(move || {
+            let mut part = [0; 4096];
+            while let Ok(length @ 1..) = errors.read(&mut part) {
+                let words = String::from_utf8_lossy(&part[..length]).into_owned();
+                heard.lock().unwrap().push_str(&words);
+            }
+        });
+        let pid = process.pid().as_raw_nonzero();
+        Some(Self {
+            disk: PathBuf::from(format!("/proc/{pid}/root{}", small.display())),
+            process,
+            results,
+            said,
+            reader,
+            listener,
+        })
+    }
+
+    fn says(&self, what: &str) -> bool {
+        self.said.lock().unwrap().contains(what)
+    }
+
+    fn results(&self) -> u64 {
+        self.results.load(Ordering::Relaxed) as u64
+    }
+
+    fn make_room(&self) {
+        fs::remove_file(self.disk.join("ballast")).unwrap();
+    }
+
+    /// Its last line, once it has come to a good end.
+    fn end(mut self) -> String {
+        let last = self.reader.join().unwrap();
+        assert_eq!(self.process.wait(LIMIT), Some(0));
+        self.listener.join().unwrap();
+        last
+    }
+}
+
 #[test]
 fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
     let folder = tempfile::tempdir().unwrap();
-    let small = folder.path().join("small");
-    fs::create_dir(&small).unwrap();
-    if !may_mount(&small) {
-        eprintln!("skipped: this machine lets nobody mount a file system in a namespace");
-        return;
-    }
     let locator = free_locator();
     let _worker = Process::worker(&locator, &["--slots", "2"]);
-    let mut command = Command::new("unshare");
-    command
-        .args(["--user", "--map-root-user", "--mount", "sh", "-c", MOUNT])
-        .arg(&small)
-        .arg(env!("CARGO_BIN_EXE_test-coordinator"))
-        .arg(small.join("run"))
-        .args([&locator, &JOBS.to_string(), "0", "0"])
-        .stderr(Stdio::piped());
-    let mut process = Process::start(command);
-    let results = Arc::new(AtomicUsize::new(0));
-    let (counted, output) = (Arc::clone(&results), process.output());
-    let reader = thread::spawn(move || {
-        let mut last = String::new();
-        for line in BufReader::new(output).lines().map_while(Result::ok) {
-            counted.fetch_add(1, Ordering::Relaxed);
-            last = line;
-        }
-        last
+    let Some(run) = OnSmallDisk::start(folder.path(), &locator, JOBS, 0) else {
+        eprintln!("{SKIPPED}");
+        return;
+    };
+    wait_until("it says that it pauses", LIMIT, || {
+        run.says("the run pauses")
     });
-    let said = Arc::new(Mutex::new(String::new()));
-    let (heard, mut errors) = (Arc::clone(&said), process.errors());
-    let listener = thread::spawn(move || {
-        let mut part = [0; 4096];
-        while let Ok(length @ 1..) = errors.read(&mut part) {
-            heard
-                .lock()
-                .unwrap()
-                .push_str(&String::from_utf8_lossy(&part[..length]));
-        }
-    });
-    let says = |what: &str| said.lock().unwrap().contains(what);
-    wait_until("it says that it pauses", LIMIT, || says("the run pauses"));
     thread::sleep(Duration::from_secs(1));
-    let paused = results.load(Ordering::Relaxed);
+    let paused = run.results();
     thread::sleep(Duration::from_millis(1500));
-    assert_eq!(
-        results.load(Ordering::Relaxed),
-        paused,
-        "nothing goes on meanwhile"
-    );
-    assert!((paused as u64) < JOBS, "the disk was too large: {paused}");
-    // room, seen from outside of the namespace
-    let inside = format!(
-        "/proc/{}/root{}",
-        process.pid().as_raw_nonzero(),
-        small.display()
-    );
-    fs::remove_file(Path::new(&inside).join("ballast")).unwrap();
-    wait_until("it goes on", LIMIT, || says("the run goes on"));
-    wait_until("it is done", LIMIT, || {
-        results.load(Ordering::Relaxed) as u64 > JOBS
-    });
-    let last = reader.join().unwrap();
+    assert_eq!(run.results(), paused, "nothing goes on meanwhile");
+    assert!(paused < JOBS, "the disk was too large: {paused}");
+    run.make_room();
+    wait_until("it goes on", LIMIT, || run.says("the run goes on"));
+    wait_until("it is done", LIMIT, || run.results() > JOBS);
+    let last = run.end();
     assert!(last.starts_with("done repeated 0 "), "{last}");
-    assert_eq!(process.wait(LIMIT), Some(0));
-    listener.join().unwrap();
     eprintln!("paused after {paused} of {JOBS} results");
+}
+
+/// Workers forget their results when a run ends. Found as a coordinator that waited a second for a
+/// full disk, told its workers that all is over, and left without its last results.
+#[test]
+fn a_run_that_ends_on_a_full_disk_waits_for_room() {
+    const SLOTS: u64 = 20;
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let trace = folder.path().join("trace");
+    let path = trace.display().to_string();
+    let environment = [("HORSEHEAD_TEST_TRACE", path.as_str())];
+    let slots = SLOTS.to_string();
+    let _worker = Process::worker_with(&locator, &["--slots", &slots], &environment);
+    // each slot has one and another waits: all are given out before the first is done
+    let Some(run) = OnSmallDisk::start(folder.path(), &locator, 2 * SLOTS, 6000) else {
+        eprintln!("{SKIPPED}");
+        return;
+    };
+    wait_until("the first jobs are begun", LIMIT, || trace.is_file());
+    // to the last byte; what the journal has of its last block holds some results and not all
+    let mut filler = fs::File::create(run.disk.join("filler")).unwrap();
+    while filler.write_all(&[0; 512]).is_ok() {}
+    wait_until("it comes to its end", LIMIT, || {
+        run.says("the run ends once its last")
+    });
+    assert_eq!(run.results(), 2 * SLOTS, "all results are there");
+    thread::sleep(Duration::from_secs(3));
+    assert!(is_alive(run.process.pid()), "it left without its results");
+    run.make_room();
+    let last = run.end();
+    assert!(last.starts_with("done repeated 0 "), "{last}");
+    let mut stored = 0;
+    journal::fold(
+        &folder.path().join("copy").join(journal::FILE),
+        |_, event| {
+            stored += u64::from(matches!(event, Event::Finished(_)));
+        },
+    )
+    .unwrap();
+    assert_eq!(stored, 2 * SLOTS);
 }

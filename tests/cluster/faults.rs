@@ -48,6 +48,8 @@ async fn local_workers_do_all_jobs_and_are_gone_afterwards() {
         spent.useful_us > 0 && spent.useful_us < spent.connected_us,
         "{spent:?}"
     );
+    let share = spent.sum_us() as f64 / spent.connected_us as f64;
+    assert!((share - 1.0).abs() < 0.01, "{share} of {spent:?}");
     // tests beside this one have slots too, for as long as they run
     wait_until("the slots are gone", Duration::from_mins(1), || {
         slots.iter().all(|slot| !is_alive(*slot))

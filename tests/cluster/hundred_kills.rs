@@ -1,7 +1,7 @@
 //! A coordinator that is killed a hundred times, at random instants, and the same command again.
 //!
 //! `HORSEHEAD_TEST_KILLS` sets how many kills there are (default 100).
-use coordinator::journal;
+use coordinator::{journal, runtime::Dispatch};
 use protocol::{event::Event, id::draw};
 use rustix::process::Signal;
 use std::{
@@ -15,15 +15,23 @@ use std::{
     thread,
     time::{Duration, Instant},
 };
-use tests::process::{Process, children, is_alive, wait_until};
+use tests::{
+    process::{Process, children, free_locator, is_alive, wait_until},
+    search_run::SearchRun,
+};
 
 const LIMIT: Duration = Duration::from_mins(2);
 
 fn coordinator(run_dir: &Path, seed: u64, trace: &Path) -> Process {
+    coordinator_at("none", 2, run_dir, seed, trace)
+}
+
+/// One that listens, too, or has no workers of its own.
+fn coordinator_at(locator: &str, local: usize, run_dir: &Path, seed: u64, trace: &Path) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
     command
         .arg(run_dir)
-        .args(["none", &format!("search:{seed}"), "1", "2"])
+        .args([locator, &format!("search:{seed}"), "1", &local.to_string()])
         .env("HORSEHEAD_TEST_TRACE", trace);
     Process::start(command)
 }
@@ -162,4 +170,97 @@ fn killed_a_hundred_times_it_loses_and_repeats_nothing_that_was_recorded() {
         kill_runs(wanted - wanted / 2, 1..) + half.join().unwrap()
     });
     eprintln!("{wanted} kills in {runs} runs took {:?}", started.elapsed());
+}
+
+/// Lines that a coordinator writes, as they come; they end with it.
+fn lines_of(process: &mut Process) -> mpsc::Receiver<String> {
+    let (lines, heard) = mpsc::channel();
+    let output = process.output();
+    thread::spawn(move || {
+        for line in BufReader::new(output).lines().map_while(Result::ok) {
+            // who waits for no more has killed it
+            drop(lines.send(line));
+        }
+    });
+    heard
+}
+
+/// A worker that outlives every process of its coordinator begins each job once in all of them: what
+/// it computes and what it has finished when one dies counts in the next.
+#[test]
+fn a_worker_that_outlives_fifteen_coordinators_does_every_job_once() {
+    const KILLS: usize = 15;
+    const SEED: u64 = 5000;
+    let folder = tempfile::tempdir().unwrap();
+    let (trace, elsewhere) = (folder.path().join("trace"), folder.path().join("elsewhere"));
+    let (run_dir, whole) = (folder.path().join("run"), folder.path().join("whole"));
+    let locator = free_locator();
+    let path = trace.display().to_string();
+    // alone, so that no other one has reason to take a job from it
+    let environment = [("HORSEHEAD_TEST_TRACE", path.as_str())];
+    let worker = Process::worker_with(&locator, &["--slots", "3"], &environment);
+    let started = Instant::now();
+    for kill in 0..KILLS {
+        let mut process = coordinator_at(&locator, 0, &run_dir, SEED, &trace);
+        let heard = lines_of(&mut process);
+        let random = draw("outlive", kill as u128);
+        // some at its start, others in the middle of work
+        let mut fresh = if kill % 5 == 4 { 0 } else { 1 + random % 30 };
+        while fresh > 0 {
+            let line = heard.recv_timeout(LIMIT).unwrap();
+            assert!(!line.starts_with("done"), "it ended before kill {kill}");
+            fresh -= u64::from(line.ends_with(" false"));
+        }
+        thread::sleep(Duration::from_micros(random / 64 % 4000));
+        process.signal(Signal::KILL);
+        process.wait(LIMIT);
+    }
+    for (place, locator, local, trace) in [
+        (&run_dir, locator.as_str(), 0, &trace),
+        (&whole, "none", 2, &elsewhere),
+    ] {
+        let mut process = coordinator_at(locator, local, place, SEED, trace);
+        for _line in lines_of(&mut process) {}
+        assert_eq!(process.wait(LIMIT), Some(0));
+    }
+    eprintln!("{KILLS} kills took {:?}", started.elapsed());
+    let log = |place: &Path| fs::read_to_string(place.join("log")).unwrap();
+    assert_eq!(log(&run_dir), log(&whole));
+    assert_eq!(recorded(&run_dir), recorded(&whole));
+    let mut begun = begun(&trace);
+    begun.sort_unstable();
+    let every: Vec<u64> = (0..log(&whole).lines().count() as u64).collect();
+    assert_eq!(begun, every, "each job is begun once");
+    drop(worker);
+}
+
+/// The search without generations on real workers, one, three and seven of them, each with three
+/// that are killed on the way: the same log.
+#[tokio::test(flavor = "multi_thread")]
+async fn one_three_and_seven_workers_of_which_some_are_killed_make_the_same_log() {
+    let mut logs = BTreeSet::new();
+    for count in [1, 3, 7] {
+        let folder = tempfile::tempdir().unwrap();
+        let locator = free_locator();
+        let options = tests::options(folder.path(), Some(&locator), 0);
+        let mut dispatch = Dispatch::open(options).await.unwrap();
+        let start = || Process::worker(&locator, &["--slots", "1"]);
+        let mut workers: Vec<Process> = (0..count).map(|_| start()).collect();
+        let mut search = SearchRun::of(4, 77, 5);
+        search
+            .run(&mut dispatch, |results| {
+                if [20, 50, 80].contains(&results) {
+                    // killed when dropped
+                    workers.remove(0);
+                    workers.push(start());
+                }
+            })
+            .await;
+        let last = dispatch.close().await.unwrap().last;
+        assert_eq!(last.failed, 0);
+        // one that had not joined yet is no loss
+        assert!((1..=3).contains(&last.lost), "{last:?}");
+        logs.insert(search.log());
+    }
+    assert_eq!(logs.len(), 1, "{logs:?}");
 }

@@ -1,5 +1,5 @@
 //! Slots: jobs that never return, slots that crash, and a link that misbehaves.
-use super::{OWN_SLOTS, collect, submit};
+use super::OWN_SLOTS;
 use coordinator::runtime::Dispatch;
 use link::memory::{Faults, Hub};
 use protocol::{
@@ -13,8 +13,9 @@ use std::{
     time::{Duration, Instant},
 };
 use tests::{
-    expect_results, options,
+    options,
     process::{children, command_line, is_alive, wait_until, worker_program},
+    search_run::SearchRun,
 };
 use tokio::sync::mpsc::unbounded_channel;
 use worker::{
@@ -121,13 +122,8 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     });
 }
 
-async fn over_memory(
-    faults: Faults,
-    jobs: u64,
-) -> (
-    Vec<(JobId, protocol::job::Outcome)>,
-    coordinator::runtime::Summary,
-) {
+/// Runs a search over a link of this process; its log.
+async fn over_memory(faults: Faults) -> (String, coordinator::runtime::Summary) {
     let folder = tempfile::tempdir().unwrap();
     let mut hub = None;
     let made = Dispatch::over(&options(folder.path(), None, 0), |_, blob| {
@@ -153,11 +149,8 @@ async fn over_memory(
             tokio::time::sleep(LIMIT),
         )));
     }
-    submit(&mut dispatch, jobs, 1);
-    let results = collect(&mut dispatch, usize::try_from(jobs).unwrap(), LIMIT)
-        .await
-        .unwrap();
-    expect_results(&results, jobs);
+    let mut search = SearchRun::of(3, 5, 1);
+    search.run(&mut dispatch, |_| {}).await;
     let summary = dispatch.close().await.unwrap();
     for worker in workers {
         let ending = worker.await.unwrap().unwrap();
@@ -166,14 +159,16 @@ async fn over_memory(
             "{ending:?}"
         );
     }
-    (results.into_iter().collect(), summary)
+    (search.log(), summary)
 }
 
-/// A fifth of all messages lost, a fifth doubled, all in disorder: the same results.
+/// A fifth of all messages lost, a fifth doubled, all in disorder: the same search, to the last bit of
+/// every individual.
 #[tokio::test(flavor = "multi_thread")]
 async fn a_link_that_loses_doubles_and_reorders_changes_nothing() {
     let _turn = OWN_SLOTS.lock().await;
-    let (clean, summary) = over_memory(Faults::NONE, 100).await;
+    let (clean, summary) = over_memory(Faults::NONE).await;
+    assert!(clean.lines().count() > 80, "{clean}");
     assert_eq!((summary.last.repeated, summary.last.duplicates), (0, 0));
     for seed in [1, 2] {
         let delay = Duration::from_millis(30);
@@ -183,7 +178,7 @@ async fn a_link_that_loses_doubles_and_reorders_changes_nothing() {
             duplication: 0.2,
             delay,
         };
-        let (faulty, summary) = over_memory(faults, 100).await;
+        let (faulty, summary) = over_memory(faults).await;
         assert_eq!(faulty, clean, "seed {seed}");
         assert!(
             summary.last.duplicates > 0,

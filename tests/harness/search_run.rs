@@ -1,6 +1,10 @@
 //! A search without physics, for runs that are killed: its fitness is the length of what workers
 //! send back, so that it really depends on them, and its log has a digest.
-use protocol::job::{Job, Outcome};
+use coordinator::runtime::Dispatch;
+use protocol::{
+    id::JobId,
+    job::{Job, Outcome},
+};
 use search::{
     space::Space,
     strategy::{
@@ -9,6 +13,10 @@ use search::{
     },
     test_function::SPHERE,
 };
+use std::time::Duration;
+
+/// How long a result may take.
+const PATIENCE: Duration = Duration::from_mins(1);
 
 /// A search whose every individual is one short job.
 pub struct SearchRun {
@@ -23,11 +31,19 @@ impl SearchRun {
     /// # Panics
     /// Never: the settings lie within their range.
     pub fn new(seed: u64, delay_ms: u32) -> Self {
+        Self::of(26, seed, delay_ms)
+    }
+
+    /// The same with another number of individuals: twenty and some 26 times `generations`.
+    ///
+    /// # Panics
+    /// Never: the settings lie within their range.
+    pub fn of(generations: u32, seed: u64, delay_ms: u32) -> Self {
         let settings = Settings::Window(WindowSettings {
             window: 16,
             memetic: MemeticSettings {
                 population: 20,
-                generations: 26,
+                generations,
                 crossover_trials: 3,
                 mutation_trials: 3,
                 ..MemeticSettings::paper()
@@ -37,6 +53,24 @@ impl SearchRun {
         Self {
             strategy: settings.build(&space, seed).expect("valid settings"),
             delay_ms,
+        }
+    }
+
+    /// Has it done; `each` is called with the number of results after each of them.
+    ///
+    /// # Panics
+    /// If the run cannot go on, or nothing comes for a minute.
+    pub async fn run(&mut self, dispatch: &mut Dispatch, mut each: impl FnMut(usize)) {
+        let mut results = 0;
+        while self.strategy.finished().is_none() {
+            for (id, job) in self.ask() {
+                dispatch.submit(JobId(id), job).expect("an open run");
+            }
+            let completed = tokio::time::timeout(PATIENCE, dispatch.next()).await;
+            let completed = completed.expect("a result in time").expect("an open run");
+            self.tell(completed.id.0, &completed.outcome);
+            results += 1;
+            each(results);
         }
     }
 

@@ -22,7 +22,7 @@ const BEGUN: usize = 300;
 const IDLE: usize = 5000;
 
 /// First datagrams of as many different QUIC handshakes, as clients of the bus send them.
-async fn first_datagrams(count: usize) -> Vec<Vec<u8>> {
+pub(super) async fn first_datagrams(count: usize) -> Vec<Vec<u8>> {
     let mut tls = rustls::ClientConfig::builder_with_provider(Arc::new(
         rustls::crypto::ring::default_provider(),
     ))

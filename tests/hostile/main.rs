@@ -7,6 +7,7 @@
     clippy::panic,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
+mod bytes;
 mod idle;
 mod words;
 

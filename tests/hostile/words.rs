@@ -10,6 +10,7 @@ use protocol::{
     name::WorkerName,
     wire::{self, Kind},
 };
+use serde::{Serialize, Serializer, ser::SerializeTuple};
 use std::{
     collections::BTreeMap,
     sync::{
@@ -172,15 +173,56 @@ async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
     dispatch.close().await.unwrap();
 }
 
+/// A body as it is, to be sealed with a checksum that fits it.
+struct Raw(Vec<u8>);
+
+impl Serialize for Raw {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        // a tuple is nothing but its members, one after the other
+        let mut tuple = to.serialize_tuple(self.0.len())?;
+        for byte in &self.0 {
+            tuple.serialize_element(byte)?;
+        }
+        tuple.end()
+    }
+}
+
+/// A frame that is in order around a body that is not: it gets as far as the decoder.
+fn around(run: RunId, body: &[u8]) -> Vec<u8> {
+    let frame = wire::seal(Kind::FromWorker, run, &Raw(body.to_vec())).unwrap();
+    assert_eq!(wire::open(Kind::FromWorker, &frame).unwrap().body, body);
+    frame
+}
+
+/// What is thrown to the decoder fails there and not before.
+#[test]
+fn damaged_bodies_reach_the_decoder() {
+    let promise = around(RunId(1), &endless());
+    let read = wire::unseal::<FromWorker>(Kind::FromWorker, &promise);
+    assert!(
+        matches!(read, Err(wire::WireError::Malformed { .. })),
+        "{read:?}"
+    );
+}
+
+/// A heartbeat that promises a list longer than there is memory for.
+fn endless() -> Vec<u8> {
+    let mut body = wire::encode(&FromWorker::Beat(Beat::default())).unwrap();
+    let end = body.len();
+    body[end - 8..].fill(0xff);
+    body
+}
+
 /// Rubbish of every kind, as fast as it goes; how much was thrown.
 fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u64 {
     let good = FromWorker::Announce(Box::new(announcement(digest)));
+    let body = wire::encode(&good).unwrap();
     let good = wire::seal(Kind::FromWorker, run, &good).unwrap();
     let mut thrown = 0_u64;
     while !stop.load(Ordering::Relaxed) {
         let at = usize::try_from(thrown).unwrap_or(0);
         let mut frame = good.clone();
-        match thrown % 8 {
+        match thrown % 10 {
             // half a frame
             0 => frame.truncate(at % good.len()),
             // a length that nobody can mean
@@ -189,14 +231,14 @@ fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u6
             2 => frame[3] = 200,
             3 => frame[at % good.len()] ^= 0x40,
             // promises a vector of more than there is memory for
-            4 => {
-                let absurd = FromWorker::Beat(Beat::default());
-                let mut body = wire::encode(&absurd).unwrap();
-                let end = body.len();
-                body[end - 8..].fill(0xff);
-                frame = wire::seal(Kind::FromWorker, run, &()).unwrap();
-                frame.extend_from_slice(&body);
-                frame[12..16].copy_from_slice(&u32::try_from(body.len()).unwrap().to_le_bytes());
+            4 => frame = around(run, &endless()),
+            // a body that is cut, and one with a flipped bit, in frames that know nothing of it
+            7 => frame = around(run, &body[..at % body.len()]),
+            8 => {
+                let mut body = body.clone();
+                let at = at % body.len();
+                body[at] ^= 1 << (thrown / 10 % 8);
+                frame = around(run, &body);
             }
             5 => frame = vec![0xff; at % 70_000],
             6 => frame.extend_from_slice(&good),
@@ -283,7 +325,6 @@ async fn forged_and_repeated_results_are_not_believed() {
     for n in 0..200 {
         dispatch.submit(JobId(n), tests::job(n, 5)).unwrap();
     }
-    let other_case = ContentHash::of(b"another case");
     for round in 0..20_u64 {
         for n in 0..200 {
             let done = Done {
@@ -300,7 +341,6 @@ async fn forged_and_repeated_results_are_not_believed() {
         }
         let beat = Beat {
             number: round,
-            case: Some(other_case),
             ..Beat::default()
         };
         peer.say(run, Lane::Control, &FromWorker::Beat(beat));
@@ -317,8 +357,18 @@ async fn forged_and_repeated_results_are_not_believed() {
         !heard
             .iter()
             .any(|(_, message)| matches!(message, ToWorker::Run(_))),
-        "a worker with another case was given a job"
+        "a worker without the case was given a job"
     );
+    let beat = FromWorker::Beat(Beat {
+        case: Some(ContentHash::of(b"another case")),
+        ..Beat::default()
+    });
+    wait_until("another case is refused", LIMIT, || {
+        peer.say(run, Lane::Control, &beat);
+        std::thread::sleep(Duration::from_millis(20));
+        let heard = peer.heard.lock().unwrap();
+        heard.iter().any(|(_, it)| refusal_of("case is")(it))
+    });
     peer.session.close().await.unwrap();
     dispatch.close().await.unwrap();
 }

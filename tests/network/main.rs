@@ -243,6 +243,43 @@ fn a_worker_that_was_cut_off_is_replaced_and_comes_back() {
     drop((cut_off, stays));
 }
 
+/// Over QUIC nothing tells of the end of a process: one that is killed is as silent as one that is
+/// frozen.
+#[test]
+fn workers_that_are_killed_and_frozen_over_quic_are_replaced_within_six_seconds() {
+    let _alone = alone();
+    // three workers of two slots, a quarter of a second each: 24 jobs a second at first
+    let Some(mut stage) = Stage::set(300, 250) else {
+        return;
+    };
+    let victims = [Signal::KILL, Signal::STOP].map(|how| (how, stage.worker("worker-01", PORT, 2)));
+    let stays = stage.worker("worker-02", PORT, 2);
+    stage.until("all work", |state| state.workers == 3 && state.done > 12);
+    let mut before = 0;
+    for (left, (how, victim)) in [2, 1].into_iter().zip(&victims) {
+        victim.signal(*how);
+        let at = Instant::now();
+        let lost = stage.until("its jobs are offered again", |state| {
+            state.repeated > before
+        });
+        let replaced = at.elapsed();
+        eprintln!("{how:?}: offered again after {replaced:?}");
+        assert_eq!((lost.workers, lost.lost), (left, 3 - left));
+        assert!(
+            replaced < Duration::from_secs(6),
+            "{how:?}: offered again after {replaced:?}"
+        );
+        before = stage
+            .until("they are given out", |state| state.done > lost.done)
+            .repeated;
+    }
+    let end = stage.end();
+    assert_eq!((end.done, end.lost), (300, 2));
+    // of each two in its slots and two that waited
+    assert!(end.repeated <= 8, "{end:?}");
+    drop((victims, stays));
+}
+
 /// Four busy programs for every core: slow, but nobody is taken for lost, for much longer than anyone
 /// may be silent.
 #[test]

@@ -12,7 +12,8 @@ use tests::{
     expect_results,
     keys::{make, raw_session},
     process::{
-        Process, coordinator_program, free_locator, free_quic_locator, wait_until, worker_program,
+        Process, children, coordinator_program, free_locator, free_quic_locator, wait_until,
+        worker_program,
     },
 };
 
@@ -244,4 +245,41 @@ fn a_worker_says_what_keeps_it_from_its_coordinator() {
         process.signal(rustix::process::Signal::TERM);
         assert_eq!(process.wait(LIMIT), Some(0), "{said}");
     }
+}
+
+/// What a worker shows of itself at its most talkative, to whoever may read logs and process lists.
+#[tokio::test(flavor = "multi_thread")]
+async fn a_worker_keeps_its_key_to_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let keys = folder.path().join("keys");
+    make(&keys, &[]);
+    let locator = free_quic_locator();
+    let options = options(&folder.path().join("run"), &locator, &keys, 0);
+    let mut dispatch = Dispatch::open(options).await.unwrap();
+    let tls = keys.join("worker-01");
+    let mut command = worker(&locator, Some(tls.clone()), &["--slots", "1"]);
+    command.env("HORSEHEAD_LOG", "debug");
+    let log = folder.path().join("worker.log");
+    let process = Process::logged(command, &log);
+    let results = compute(&mut dispatch, 20, 1).await;
+    expect_results(&results, 20);
+    let key = fs::read_to_string(tls.join(link::keys::WORKER[1])).unwrap();
+    let secrets: Vec<&str> = key.lines().filter(|it| !it.starts_with("-----")).collect();
+    assert!(!secrets.is_empty(), "{key}");
+    let mut shown = vec![fs::read_to_string(&log).unwrap()];
+    assert!(shown[0].contains("DEBUG"), "{}", shown[0]);
+    for pid in [process.pid()].into_iter().chain(children(process.pid())) {
+        for what in ["cmdline", "environ"] {
+            let path = format!("/proc/{}/{what}", pid.as_raw_nonzero());
+            shown.push(String::from_utf8_lossy(&fs::read(path).unwrap()).into_owned());
+        }
+    }
+    assert!(shown.len() >= 5, "the worker and its slot");
+    for (text, secret) in shown
+        .iter()
+        .flat_map(|text| secrets.iter().map(move |it| (text, it)))
+    {
+        assert!(!text.contains(secret), "a key in {text}");
+    }
+    dispatch.close().await.unwrap();
 }

@@ -12,6 +12,8 @@ use std::{env, fs::OpenOptions, io::Write, process::Command, thread, time::Durat
 const MISBEHAVE: &str = "HORSEHEAD_TEST_MISBEHAVE";
 /// Where slots note what they begin.
 const TRACE: &str = "HORSEHEAD_TEST_TRACE";
+/// Longer than anybody waits.
+const FOR_EVER: Duration = Duration::from_hours(24 * 365);
 
 /// To be called before a job is done.
 pub(crate) fn before(job: &Job) {
@@ -44,10 +46,9 @@ pub(crate) fn before(job: &Job) {
 fn misbehave(behaviour: &str) {
     match behaviour {
         "abort" => std::process::abort(),
-        "hang" => {
-            let for_ever = Duration::from_hours(24 * 365);
-            thread::sleep(for_ever);
-        }
+        "hang" => thread::sleep(FOR_EVER),
+        // does not even sleep: it takes all the processor it can get
+        "spin" => burn(FOR_EVER),
         "allocate" => {
             // twice as much each time: no machine has room for long
             let mut held = vec![1_u8; 1 << 20];
@@ -57,12 +58,7 @@ fn misbehave(behaviour: &str) {
             }
         }
         // computes for a tenth of a second, as a thread that has the processor for itself would
-        "burn" => {
-            let until = computed().saturating_add(Duration::from_millis(100));
-            while computed() < until {
-                std::hint::spin_loop();
-            }
-        }
+        "burn" => burn(Duration::from_millis(100)),
         // a process that leaves the slot's group and session, then an endless job
         "orphan" => {
             let started = Command::new("setsid").args(["sleep", "1000"]).spawn();
@@ -79,6 +75,14 @@ fn misbehave(behaviour: &str) {
             misbehave("hang");
         }
         other => tracing::error!("{MISBEHAVE} has no behaviour {other}"),
+    }
+}
+
+/// Computes until this thread has had so much processor time.
+fn burn(time: Duration) {
+    let until = computed().saturating_add(time);
+    while computed() < until {
+        std::hint::spin_loop();
     }
 }
 

@@ -5,6 +5,7 @@ use super::{
 use crate::runtime::{self, BenchPlan, Crew, SilentPlan};
 use clap::{Args, Subcommand};
 use link::locator::Locator;
+use std::path::PathBuf;
 
 /// Measure what the machinery costs, or what accuracy costs.
 #[derive(Debug, Args)]
@@ -20,6 +21,7 @@ enum What {
 Examples:
   horsehead bench dispatch --workers 2 --jobs 20000
   horsehead bench dispatch --connections 512
+  horsehead bench dispatch --connections 64 --tls keys
   horsehead bench dispatch --sessions 512 --jobs 1000000 --result-bytes 300
   horsehead bench dispatch --silent 5000
 
@@ -36,6 +38,11 @@ Examples:
         /// TCP on loopback: no slots, the rest is real.
         #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_CONNECTIONS", value_parser = clap::value_parser!(u32).range(1..=1900))]
         connections: Option<u32>,
+        /// Have those connections come over QUIC instead of TCP, with the certificate of `worker-01` of
+        /// this folder of `horsehead keys new DIR --host 127.0.0.1`; nothing without --connections or
+        /// with --silent.
+        #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+        tls: Option<PathBuf>,
         /// Jobs to do.
         #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
         jobs: u64,
@@ -67,6 +74,9 @@ Example:
         /// How many.
         #[arg(value_name = "N")]
         sessions: usize,
+        /// Key material of a worker.
+        #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+        tls: Option<PathBuf>,
     },
     /// Hold connections that say nothing, for `bench dispatch --silent`, until standard input ends.
     #[command(hide = true, after_help = format!("\
@@ -91,12 +101,16 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             workers,
             sessions,
             connections,
+            tls,
             jobs,
             result_bytes,
             silent,
             turns,
             output: OutputChoice { output },
         } => {
+            let tls = tls
+                .clone()
+                .filter(|_| connections.is_some() && silent.is_none());
             let (crew, workers, of_what) = match (sessions, connections) {
                 (Some(sessions), _) => (
                     Crew::Sessions,
@@ -106,7 +120,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 (None, Some(connections)) => (
                     Crew::Connections,
                     *connections,
-                    "sessions of another process (TCP on loopback)",
+                    match &tls {
+                        Some(_) => "sessions of another process (QUIC on loopback)",
+                        None => "sessions of another process (TCP on loopback)",
+                    },
                 ),
                 (None, None) => (
                     Crew::Processes,
@@ -124,12 +141,16 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                     turns: *turns as usize,
                 }),
             };
-            dispatch(plan, of_what, *output)
+            dispatch(plan, tls, of_what, *output)
         }
         What::Integrators(arguments) => integrators::run(arguments),
         What::Box(arguments) => whole_box::run(arguments),
-        What::Sessions { connect, sessions } => {
-            bus::block_on(async { Ok(runtime::connect(connect, *sessions).await?) })
+        What::Sessions {
+            connect,
+            sessions,
+            tls,
+        } => {
+            bus::block_on(async { Ok(runtime::connect(connect, *sessions, tls.as_deref()).await?) })
         }
         What::Silent {
             connect,
@@ -138,12 +159,17 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
 }
 
-fn dispatch(plan: BenchPlan, of_what: &str, output: Output) -> anyhow::Result<()> {
+fn dispatch(
+    plan: BenchPlan,
+    tls: Option<PathBuf>,
+    of_what: &str,
+    output: Output,
+) -> anyhow::Result<()> {
     if output == Output::Table {
         let (jobs, workers) = (plan.jobs, plan.workers);
         output::tell(&format!("{jobs} no-op jobs on {workers} {of_what}"));
     }
-    let result = bus::block_on(bus::bench(plan))?;
+    let result = bus::block_on(bus::bench(plan, tls))?;
     let table = || {
         let mut text = format!(
             "{} workers   joined within {:.2} s\n\

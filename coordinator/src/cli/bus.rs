@@ -233,12 +233,15 @@ pub(super) fn in_scratch<T>(
     })
 }
 
-/// Measures the dispatcher with no-op jobs, in a scratch folder.
-pub(super) async fn bench(plan: BenchPlan) -> anyhow::Result<BenchOutput> {
+/// Measures the dispatcher with no-op jobs, in a scratch folder; with key material, over QUIC.
+pub(super) async fn bench(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchOutput> {
     let scratch = tempfile::tempdir()?;
     let options = Options {
         run_dir: scratch.path().to_owned(),
-        door: Door::default(),
+        door: Door {
+            tls,
+            ..Door::default()
+        },
         local_workers: 0,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),

@@ -10,9 +10,8 @@ pub(super) fn listen() -> Stop {
     tokio::spawn(async move {
         signal().await;
         output::tell("stopping; once more to stop at once");
-        if sender.send(true).is_err() {
-            return;
-        }
+        // whoever listened may be busy ending the run, which may have to wait for a full disk
+        sender.send_replace(true);
         signal().await;
         leave();
     });

@@ -56,6 +56,8 @@ pub enum Input {
     },
     /// Time has passed.
     Tick,
+    /// Nothing more is to be given out; what is accepted is still written.
+    Finish,
     /// The run is over.
     Close,
 }

@@ -1,6 +1,6 @@
 //! Who takes part, and who is lost.
 use super::{
-    Core,
+    Core, Phase,
     account::{self, Clocks, Use},
     admission, assign,
     input::Command,
@@ -24,7 +24,7 @@ pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: D
         .map(|member| member.heard = now)
         .is_some();
     match message {
-        FromWorker::Announce(_) if core.closing => {}
+        FromWorker::Announce(_) if core.phase == Phase::Closed => {}
         FromWorker::Announce(announcement) => admission::announce(core, from, *announcement, now),
         FromWorker::Beat(beat) if known => beaten(core, from, &beat, now),
         FromWorker::Beat(_) => core.send(from, ToWorker::Identify),
@@ -36,7 +36,7 @@ pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: D
             }
             result::done(core, from, *done, now);
         }
-        FromWorker::Leaving { reason } if known => leave(core, from, reason, now),
+        FromWorker::Leaving { reason } if known => leave(core, from, &reason, now),
         FromWorker::Leaving { .. } => {}
     }
 }
@@ -94,8 +94,8 @@ fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
     }
 }
 
-fn leave(core: &mut Core, worker: WorkerId, reason: String, now: Duration) {
-    let reason = admission::shown(&reason);
+fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
+    let reason = admission::shown(reason);
     let Some(member) = remove(core, worker, &reason, now) else {
         return;
     };

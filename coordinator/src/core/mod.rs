@@ -105,8 +105,19 @@ pub struct Core {
     /// The journal cannot be written.
     paused: bool,
     accounted: Duration,
-    closing: bool,
+    phase: Phase,
     out: Vec<Command>,
+}
+
+/// How far a run has come in this process.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Jobs are given out.
+    Open,
+    /// Nothing more is given out; what is accepted is still written.
+    Finishing,
+    /// Workers have been told of the end.
+    Closed,
 }
 
 /// Running totals.
@@ -147,7 +158,7 @@ impl Core {
             reunion: None,
             paused: false,
             accounted: Duration::ZERO,
-            closing: false,
+            phase: Phase::Open,
             out: Vec::new(),
         }
     }
@@ -176,6 +187,7 @@ impl Core {
                     self.account(now);
                 }
             }
+            Input::Finish => self.phase = Phase::Finishing,
             Input::Writable(writable) => self.paused = !writable,
             Input::Close => {
                 let members: Vec<WorkerId> = self.members.keys().copied().collect();
@@ -183,10 +195,10 @@ impl Core {
                     self.send(to, ToWorker::Ended);
                 }
                 self.account(now);
-                self.closing = true;
+                self.phase = Phase::Closed;
             }
         }
-        if !self.closing && self.may_give_out() && membership::is_complete(self, now) {
+        if self.may_give_out() && membership::is_complete(self, now) {
             assign::assign(self, now);
         }
         let waits = self.clocks_wait();
@@ -194,10 +206,12 @@ impl Core {
         mem::take(&mut self.out)
     }
 
-    /// Whether what comes of new orders can be written down: a disk that is full, or slower than the
+    /// Whether what comes of new orders is wanted and can be written down: a disk that is full, or slower than the
     /// workers, must not fill the memory instead.
     fn may_give_out(&self) -> bool {
-        !self.paused && self.storing.len() < self.options.policy.unstored
+        !self.paused
+            && self.phase == Phase::Open
+            && self.storing.len() < self.options.policy.unstored
     }
 
     /// Whether idle slots wait for what others compute: everything asked for is given out.

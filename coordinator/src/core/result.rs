@@ -34,8 +34,11 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         return;
     }
     let Some(pending) = core.jobs.get(&job) else {
-        // of strangers nothing is kept: one of ours that is asked who it is says so and repeats it
-        if core.members.contains_key(&from) || core.options.expected.contains(&from) {
+        // nothing of strangers is kept, unless they may be workers of an earlier process
+        if core.members.contains_key(&from)
+            || core.options.expected.contains(&from)
+            || core.options.epoch > 1
+        {
             core.early.put(from, done);
         }
         return;

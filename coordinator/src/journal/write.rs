@@ -195,9 +195,22 @@ mod tests {
         /// Flushes and cuts that fail before one succeeds.
         bad: usize,
         attempts: usize,
+        /// Bytes that a power failure would leave.
+        safe: usize,
     }
 
     impl State {
+        /// Takes this much, and so many mishaps happen.
+        fn with(room: usize, bad: usize) -> Self {
+            Self {
+                bytes: Vec::new(),
+                room,
+                bad,
+                attempts: 0,
+                safe: 0,
+            }
+        }
+
         fn mishap(&mut self) -> io::Result<()> {
             if self.bad > 0 {
                 self.bad -= 1;
@@ -221,13 +234,18 @@ mod tests {
         }
 
         fn flush(&mut self) -> io::Result<()> {
-            self.0.lock().unwrap().mishap()
+            let mut state = self.0.lock().unwrap();
+            state.mishap()?;
+            state.safe = state.bytes.len();
+            Ok(())
         }
 
         fn cut(&mut self, length: u64) -> io::Result<()> {
             let mut state = self.0.lock().unwrap();
             state.mishap()?;
-            state.bytes.truncate(usize::try_from(length).unwrap());
+            let length = usize::try_from(length).unwrap();
+            assert!(length >= state.safe, "what was safe is cut off");
+            state.bytes.truncate(length);
             Ok(())
         }
 
@@ -252,9 +270,15 @@ mod tests {
         let (shared, closing) = (disk.clone(), Arc::new(AtomicBool::new(false)));
         let (mut heard, flag) = (Vec::new(), Arc::clone(&closing));
         let said = |what: Appended| {
-            if matches!(what, Appended::Paused(_)) {
-                relief(&mut shared.0.lock().unwrap(), &flag);
+            let mut state = shared.0.lock().unwrap();
+            match &what {
+                Appended::Paused(_) => relief(&mut state, &flag),
+                Appended::Stored(_) => {
+                    assert_eq!(state.safe, state.bytes.len(), "told before it is safe");
+                }
+                Appended::Resumed | Appended::Deleted => {}
             }
+            drop(state);
             heard.push(what);
         };
         let mut writer = Writer::new(disk.clone(), 0, said, closing);
@@ -276,12 +300,7 @@ mod tests {
         let expected = whole(4);
         for room in 0..expected.len() {
             for bad in 0..4 {
-                let state = State {
-                    bytes: Vec::new(),
-                    room,
-                    bad,
-                    attempts: 0,
-                };
+                let state = State::with(room, bad);
                 let (bytes, heard) = written(4, state, |state, _| state.room = usize::MAX);
                 assert_eq!(bytes, expected, "room {room}, {bad} mishaps");
                 assert!(
@@ -296,14 +315,26 @@ mod tests {
         }
     }
 
+    /// All bytes are taken, and then they cannot be made safe: nobody may be told that they are.
+    #[test]
+    fn what_is_written_and_not_flushed_is_not_stored() {
+        for bad in 1..5 {
+            let (bytes, heard) = written(4, State::with(usize::MAX, bad), |_, _| {});
+            assert_eq!(bytes, whole(4), "{bad} mishaps");
+            assert!(
+                matches!(
+                    &heard[..],
+                    [Appended::Paused(_), Appended::Resumed, Appended::Stored(jobs)]
+                        if jobs.len() == 4
+                ),
+                "{bad} mishaps: {heard:?}"
+            );
+        }
+    }
+
     #[test]
     fn a_run_that_ends_while_the_disk_is_full_leaves_whole_records_and_acknowledges_nothing() {
-        let state = State {
-            bytes: Vec::new(),
-            room: whole(4).len() - 1,
-            bad: 0,
-            attempts: 0,
-        };
+        let state = State::with(whole(4).len() - 1, 0);
         let (bytes, heard) = written(4, state, |_, closing| {
             closing.store(true, Ordering::Relaxed);
         });

@@ -7,6 +7,7 @@ pub use sessions::connect;
 pub use silent::{SilentPlan, SilentResult, keep_silent};
 
 use super::{Dispatch, DispatchError, DispatchOptions};
+use link::locator::Locator;
 use protocol::{id::JobId, job::Job};
 use sessions::{Connections, Sessions};
 use std::{
@@ -25,6 +26,8 @@ const AHEAD: u64 = 4;
 const ROUND: u64 = 16;
 /// How long workers may take to join before it is measured with those that are there.
 const JOINING: Duration = Duration::from_mins(3);
+/// Folder of the certificate that sessions of the bus show, within that of the coordinator.
+const WORKER: &str = "worker-01";
 /// Parts of the measurement whose cost is compared.
 const PARTS: u64 = 10;
 
@@ -33,7 +36,8 @@ const PARTS: u64 = 10;
 pub enum Crew {
     /// Worker processes with one slot process each, over TCP on loopback.
     Processes,
-    /// Sessions of one other process, over TCP on loopback: all is real but the slots.
+    /// Sessions of one other process, over TCP on loopback, or QUIC if the run has key material: all
+    /// is real but the slots.
     Connections,
     /// Sessions of one thread of this process, over the memory link: frames, core and journal are
     /// the real ones, transport and slots are not there.
@@ -97,10 +101,15 @@ pub async fn bench(
             (Dispatch::open(options).await?, Running::Local)
         }
         Crew::Connections => {
-            options.listen = Some("tcp/127.0.0.1:0".to_owned());
+            let any = match options.tls {
+                Some(_) => "quic/127.0.0.1:0",
+                None => "tcp/127.0.0.1:0",
+            };
+            options.listen = Some(Locator::parse(any)?.with_free_port()?.to_string());
+            let tls = options.tls.as_ref().map(|folder| folder.join(WORKER));
             let dispatch = Dispatch::open(options).await?;
             let at = dispatch.listening().into_iter().next().unwrap_or_default();
-            let connections = Connections::start(plan.workers, &at);
+            let connections = Connections::start(plan.workers, &at, tls.as_deref());
             let connections = connections.map_err(DispatchError::Start)?;
             (dispatch, Running::Connections(connections))
         }

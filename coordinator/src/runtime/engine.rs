@@ -18,6 +18,7 @@ use protocol::{
     wire::{self, Kind, WireError},
 };
 use std::{
+    mem,
     sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
 };
@@ -32,7 +33,7 @@ const TICK: Duration = Duration::from_millis(250);
 const FRESH: Duration = Duration::from_millis(20);
 /// Most messages that are read before the core looks at its clocks.
 const MOST_WAITING: usize = 1 << 16;
-/// How long the last results may take to reach the disk at the end.
+/// How long the last results may take to reach the disk at the end, if it is not full.
 const LAST_WRITE: Duration = Duration::from_secs(1);
 
 /// What the owner of a run asks for.
@@ -56,6 +57,8 @@ pub(super) struct Engine<L> {
     begun: Instant,
     sleep: Sleep,
     replayed: u64,
+    /// The journal cannot be written.
+    paused: bool,
     /// When the snapshot has to be renewed because something happened.
     stale_at: Option<tokio::time::Instant>,
 }
@@ -90,6 +93,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             begun,
             sleep: Sleep::since_now(),
             replayed: 0,
+            paused: false,
             stale_at: None,
         }
     }
@@ -187,6 +191,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         match appended {
             Appended::Stored(jobs) => self.handle(Input::Stored { jobs }),
             Appended::Paused(why) => {
+                self.paused = true;
                 self.handle(Input::Writable(false));
                 tracing::error!(
                     "the journal cannot be written ({why}): the run pauses, results wait, nothing \
@@ -198,6 +203,7 @@ impl<L: CoordinatorEnd> Engine<L> {
                 self.give(Err(self.journal.deleted().into()));
             }
             Appended::Resumed => {
+                self.paused = false;
                 self.handle(Input::Writable(true));
                 tracing::warn!("the journal is written again: the run goes on");
             }
@@ -276,18 +282,46 @@ impl<L: CoordinatorEnd> Engine<L> {
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
 
-    async fn close(mut self) -> Summary {
-        let wait = async {
-            while self.core.unstored() > 0 {
-                let Some(appended) = self.said.recv().await else {
-                    break;
-                };
-                self.appended(appended);
+    /// Waits until the last results are in the journal: as long as it takes where the disk is full,
+    /// since a worker that is told of the end forgets what it has.
+    async fn write_last(&mut self) {
+        let mut until = tokio::time::Instant::now() + LAST_WRITE;
+        let mut ticks = interval(TICK);
+        let mut told = false;
+        while self.core.unstored() > 0 {
+            if self.paused && !mem::replace(&mut told, true) {
+                tracing::error!(
+                    "the run ends once its last {} results are written: make room on the disk. It \
+                     can be ended without them, by asking twice; then workers keep them for the \
+                     next start of the run, and what they do not bring is computed again",
+                    self.core.unstored()
+                );
             }
-        };
-        if timeout(LAST_WRITE, wait).await.is_err() {
-            tracing::warn!("the last results did not reach the journal; they are computed again");
+            tokio::select! {
+                appended = self.said.recv() => {
+                    let Some(appended) = appended else { return };
+                    self.appended(appended);
+                    until = tokio::time::Instant::now() + LAST_WRITE;
+                }
+                // nobody may come to count as silent, or stand in a queue, meanwhile
+                Some(heard) = self.link.receive() => self.hear(heard),
+                _ = ticks.tick() => {
+                    self.handle(Input::Tick);
+                    self.show();
+                }
+                () = tokio::time::sleep_until(until), if !self.paused => {
+                    tracing::warn!(
+                        "the last results did not reach the journal; they are computed again"
+                    );
+                    return;
+                }
+            }
         }
+    }
+
+    async fn close(mut self) -> Summary {
+        self.handle(Input::Finish);
+        self.write_last().await;
         self.handle(Input::Close);
         self.record(Event::Closed);
         let now = self.begun.elapsed();

@@ -224,8 +224,9 @@ impl Dispatch {
             .clone()
     }
 
-    /// Ends the run: workers are told, local ones ended, the journal closed; within 3 s. The same
-    /// run can be opened again later.
+    /// Ends the run: workers are told, local ones ended, the journal closed; within 3 s, unless the
+    /// disk is full: it waits for room, since workers forget their results at the end of a run. The
+    /// same run can be opened again later.
     ///
     /// # Errors
     /// [`DispatchError::Closed`] if the runtime broke down before.

@@ -155,14 +155,6 @@ impl Failure {
             Self::Misconfigured { .. } => "misconfigured",
         }
     }
-
-    /// Whether another attempt, on another worker, may succeed.
-    pub const fn is_retryable(&self) -> bool {
-        match self {
-            Self::Deadline { .. } | Self::Crashed { .. } | Self::Lost { .. } => true,
-            Self::Refused { .. } | Self::Misconfigured { .. } => false,
-        }
-    }
 }
 
 impl fmt::Display for Failure {

@@ -32,64 +32,83 @@ fn refusal(scene: &Scene, id: u64) -> Option<String> {
     Some(told)
 }
 
-#[test]
-fn whoever_differs_is_refused_by_the_name_of_the_field() {
-    let effect = |id: &str| protocol::announce::EffectDescriptor {
+fn effect(id: &str) -> protocol::announce::EffectDescriptor {
+    protocol::announce::EffectDescriptor {
         id: id.to_owned(),
         title: id.to_owned(),
         joint: "saddle".to_owned(),
         place: protocol::announce::Place::Dynamics,
         generic: false,
         parameters: Vec::new(),
-    };
-    let first = || Announcement {
-        effects: vec![effect("pivot_friction"), effect("rope_toe")],
-        ..announcement("m")
-    };
+    }
+}
+
+/// What nobody of ours would say is kept by nobody: it would fill the memory, or a terminal.
+#[test]
+fn absurd_announcements_are_refused_by_the_name_of_the_field() {
     let long = || "x".repeat(256);
-    let others = [
+    let absurd = [
         (
             "host has 256 bytes, allowed are 255",
             Announcement {
                 host: long(),
-                ..first()
+                ..announcement("m")
             },
         ),
         (
             "host holds control characters",
             Announcement {
                 host: "a\u{1b}[2J".to_owned(),
-                ..first()
+                ..announcement("m")
             },
         ),
         (
             "build has 256 bytes",
             Announcement {
                 build: long(),
-                ..first()
+                ..announcement("m")
             },
         ),
         (
             "model_digest has 256 bytes",
             Announcement {
                 model_digest: long(),
-                ..first()
+                ..announcement("m")
             },
         ),
         (
             "job_kinds has 8008 bytes, allowed are 4096",
             Announcement {
                 job_kinds: vec![String::new(); 1000],
-                ..first()
+                ..announcement("m")
             },
         ),
         (
             "effects has",
             Announcement {
                 effects: vec![effect(&"x".repeat(300_000)); 2],
-                ..first()
+                ..announcement("m")
             },
         ),
+    ];
+    let mut scene = Scene::new();
+    for (id, (reason, announcement)) in (2..).zip(absurd) {
+        scene.hear(id, FromWorker::Announce(Box::new(announcement)));
+        let told = refusal(&scene, id).unwrap();
+        assert!(told.starts_with(reason), "{told}");
+    }
+    assert_eq!(scene.core.snapshot(scene.now).workers.len(), 0);
+    let said: String = scene.notices().iter().map(ToString::to_string).collect();
+    assert!(said.len() < 6 * 500 && !said.contains('\u{1b}'), "{said}");
+}
+
+#[test]
+fn whoever_differs_is_refused_by_the_name_of_the_field() {
+    let first = || Announcement {
+        effects: vec![effect("pivot_friction"), effect("rope_toe")],
+        ..announcement("m")
+    };
+    let others = [
         (
             "protocol is 99, this coordinator speaks",
             Announcement {

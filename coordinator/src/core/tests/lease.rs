@@ -118,6 +118,25 @@ fn while_the_journal_cannot_be_written_nothing_is_given_out() {
     assert_eq!(scene.acknowledged, [(WorkerId(1), attempt)]);
 }
 
+/// A run that ends waits for its disk, and begins nothing meanwhile.
+#[test]
+fn a_run_that_is_to_end_gives_nothing_out_and_still_takes_what_comes() {
+    let mut scene = Scene::new();
+    scene.join(1, 1);
+    scene.submit(0..4);
+    let given = scene.given();
+    scene.tell(Input::Writable(false));
+    scene.tell(Input::Finish);
+    scene.finish(1, given[0].1);
+    scene.tell(Input::Writable(true));
+    scene.wait(10, &[1]);
+    assert_eq!(scene.core.unstored(), 1);
+    scene.stored();
+    assert_eq!(scene.acknowledged, [(WorkerId(1), given[0].1)]);
+    scene.finish(1, given[1].1);
+    assert_eq!((scene.given(), scene.delivered.len()), (Vec::new(), 2));
+}
+
 #[test]
 fn people_are_told_once_that_nobody_is_there() {
     let mut scene = Scene::new();

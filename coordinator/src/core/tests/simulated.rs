@@ -23,6 +23,7 @@ pub(super) enum Fault {
     Thaw,
 }
 
+#[derive(Clone)]
 enum What {
     Up(WorkerId, FromWorker),
     Down(WorkerId, ToWorker),
@@ -45,6 +46,10 @@ pub(super) struct Setting {
     pub(super) slow_one_in: u64,
     /// Longest delay of a message.
     pub(super) delay: Duration,
+    /// Share of messages that are lost \[1\].
+    pub(super) loss: f64,
+    /// Share of messages that arrive twice \[1\].
+    pub(super) duplication: f64,
     /// Jobs that take their worker with them as soon as they are begun.
     pub(super) killers: &'static [u64],
 }
@@ -58,6 +63,8 @@ impl Setting {
             spread: 0.3,
             slow_one_in: 0,
             delay: Duration::from_millis(2),
+            loss: 0.0,
+            duplication: 0.0,
             killers: &[],
         }
     }
@@ -130,8 +137,17 @@ impl Cluster {
         self.events.insert((self.now + delay, self.sequence), what);
     }
 
-    /// On its way for a time of its own.
+    /// On its way for a time of its own, which puts it out of order; lost or doubled, perhaps.
     fn send(&mut self, what: What) {
+        let first = self.sequence;
+        if self.unit(2, first) < self.setting.loss {
+            self.sequence += 1;
+            return;
+        }
+        if self.unit(3, first) < self.setting.duplication {
+            let delay = self.setting.delay.mul_f64(self.unit(1, self.sequence));
+            self.at(delay, what.clone());
+        }
         let delay = self.setting.delay.mul_f64(self.unit(1, self.sequence));
         self.at(delay, what);
     }

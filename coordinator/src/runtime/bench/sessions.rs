@@ -7,6 +7,7 @@
 use crate::core::work_hash;
 use link::{
     Blob, LinkError, WorkerEnd,
+    keys::{Keys, Role},
     locator::Locator,
     memory::{Faults, Hub, MemoryCoordinator},
     zenoh::ZenohWorker,
@@ -21,6 +22,7 @@ use protocol::{
 };
 use std::{
     env, io,
+    path::Path,
     process::{Child, Command, Stdio},
     sync::Arc,
     thread,
@@ -89,13 +91,17 @@ impl Drop for Sessions {
 pub(super) struct Connections(Child);
 
 impl Connections {
-    /// Starts this program again, with so many sessions that dial an address.
-    pub(super) fn start(count: usize, connect: &str) -> io::Result<Self> {
-        let child = Command::new(env::current_exe()?)
-            .args(["bench", "sessions", connect, &count.to_string()])
-            .stdin(Stdio::null())
-            .spawn()?;
-        Ok(Self(child))
+    /// Starts this program again, with so many sessions that dial an address, with the key material
+    /// of a worker's folder if it takes any.
+    pub(super) fn start(count: usize, connect: &str, tls: Option<&Path>) -> io::Result<Self> {
+        let mut command = Command::new(env::current_exe()?);
+        command.args(["bench", "sessions", connect, &count.to_string()]);
+        // not what this process was told
+        command.env_remove("HORSEHEAD_TLS");
+        if let Some(folder) = tls {
+            command.arg("--tls").arg(folder);
+        }
+        Ok(Self(command.stdin(Stdio::null()).spawn()?))
     }
 }
 
@@ -107,19 +113,23 @@ impl Drop for Connections {
     }
 }
 
-/// Dials an address with so many sessions and serves until all have been told to end.
+/// Dials an address with so many sessions and serves until all have been told to end; with the key
+/// material of a worker's folder where certificates are asked for.
 ///
 /// # Errors
-/// The first connection that cannot be opened, and why trying again does not help.
-pub async fn connect(to: &Locator, count: usize) -> Result<(), LinkError> {
+/// What is wrong with the key material; the first connection that cannot be opened, and why trying
+/// again does not help.
+pub async fn connect(to: &Locator, count: usize, tls: Option<&Path>) -> Result<(), LinkError> {
+    let keys = tls.map(|folder| Keys::read(folder, Role::Worker));
+    let keys = keys.transpose()?.map(Arc::new);
     let opening = Arc::new(Semaphore::new(OPENING));
     let mut sessions = JoinSet::new();
     for process in 1..=count as u64 {
-        let (to, opening) = (to.clone(), Arc::clone(&opening));
+        let (to, opening, keys) = (to.clone(), Arc::clone(&opening), keys.clone());
         sessions.spawn(async move {
             let place = opening.acquire().await;
             let link = loop {
-                match ZenohWorker::open(&to, None, process).await {
+                match ZenohWorker::open(&to, keys.as_deref(), process).await {
                     Ok(link) => break link,
                     Err(error) if error.may_pass() => sleep(AGAIN).await,
                     Err(error) => return Err(error),
