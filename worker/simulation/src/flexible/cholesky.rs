@@ -150,7 +150,11 @@ impl Factor {
         for node in 0..shape.len() {
             let (first, width) = (shape.columns[node], shape.width(node));
             let own = first..first + width;
-            for (line, row) in own.clone().chain(shape.rows(node).iter().copied()).enumerate() {
+            for (line, row) in own
+                .clone()
+                .chain(shape.rows(node).iter().copied())
+                .enumerate()
+            {
                 lines[row] = line;
             }
             let (before, rest) = values.split_at_mut(shape.value_starts[node]);
@@ -295,7 +299,11 @@ fn least_pivots(shape: &Shape, values: &[f64]) -> Vec<f64> {
     let mut least = Vec::new();
     for node in 0..shape.len() {
         let columns = shape.panel(values, node).chunks_exact(shape.height(node));
-        least.extend(columns.enumerate().map(|(k, column)| LEAST_PIVOT * column[k]));
+        least.extend(
+            columns
+                .enumerate()
+                .map(|(k, column)| LEAST_PIVOT * column[k]),
+        );
     }
     least
 }

@@ -44,6 +44,9 @@ fn solutions_are_those_of_faer_and_of_the_matrix() {
         let (exact, other) = (apart(&ours, &known), apart(&ours, &theirs));
         let order = unknowns.len();
         eprintln!("{order} unknowns: {exact:.1e} from the solution, {other:.1e} from faer's");
-        assert!(exact < 1e-11 && other < 1e-11, "{counts:?}: {exact} {other}");
+        assert!(
+            exact < 1e-11 && other < 1e-11,
+            "{counts:?}: {exact} {other}"
+        );
     }
 }
