@@ -119,7 +119,7 @@ fn energy_ledger_tightens_with_step_and_tolerance() {
                 (result.stored - gained).abs() / work.input
             });
             let method = method.name();
-            eprintln!("{name} {method}: {defects:.1e?}");
+            eprintln!("{name} {method}: {defects:?}");
             assert!(defects[0] < 3e-4, "{name} {method}: {defects:?}");
             for pair in defects.windows(2) {
                 let tighter = pair[1] < 0.5 * pair[0] || pair[1] < 5e-6;
@@ -185,7 +185,7 @@ fn kinematics_agree_with_the_table_to_its_last_digit() {
             *worst = worst.max(error.abs());
         }
     }
-    eprintln!("{worst:.1e?}; bottom dead centre {offset:.1e} deg");
+    eprintln!("{worst:?}; bottom dead centre {offset:.1e} deg");
     assert!(worst[0] < 8e-6, "beam {} deg", worst[0]);
     // 5e-7 m, and 0.48 times the first pin angle's 5e-6 deg on an arm of 3.6 m
     assert!(worst[1] < 6.6e-7, "stroke {} m", worst[1]);

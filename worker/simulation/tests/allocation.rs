@@ -59,7 +59,6 @@ fn a_step_allocates_nothing_and_a_run_little() {
         );
         // the energy at the recorded revolution's start is one momentum vector
         let in_steps = blocks.last - blocks.first.unwrap();
-        eprintln!("{name}: {in_steps} in the steps, {} bytes", stats.max_bytes);
         assert!(in_steps <= 1, "{name}: {in_steps} allocations in the steps");
         assert!(
             stats.max_bytes < 32 << 20,
