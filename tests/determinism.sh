@@ -1,6 +1,7 @@
 #!/bin/sh
-# The reference run's digest in several builds: optimisation levels of the dynamics and instruction
-# sets. Every build must reproduce the one in worker/simulation/tests/numerics/determinism.rs.
+# Digests of the reference run and of a head's reduction in several builds: optimisation levels of the
+# dynamics and instruction sets. Every build must reproduce those in
+# worker/simulation/tests/numerics/determinism.rs.
 # Builds go to target/determinism and take some minutes the first time. Run from anywhere:
 #   tests/determinism.sh
 set -eu
@@ -9,7 +10,7 @@ export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-target}/determinism"
 check() {
     level=$1 flags=$2 tests=${3:-}
     echo "optimisation $level, ${flags:-instruction set of the default target}"
-    # sparse factors have no part in a run: they need not be fast here
+    # of these crates only whole numbers are used, for a small head: they need not be fast here
     RUSTFLAGS="$flags" cargo test --quiet -p simulation \
         --config "profile.dev.package.simulation.opt-level=$level" \
         --config "profile.dev.package.faer.opt-level=0" \
@@ -20,7 +21,7 @@ check() {
 }
 check 3 ""
 # a run is some sixty times slower there: threads and fused operations have been tried above
-check 0 "" every_build_reproduces_the_reference_run
+check 0 "" every_build_reproduces
 case "$(uname -m)" in
 x86_64)
     check 3 "-C target-cpu=x86-64-v2"

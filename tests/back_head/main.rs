@@ -10,7 +10,7 @@ use coordinator::{
     case::{self, mesh},
     study,
 };
-use protocol::job::ElementKind as ReadKind;
+use protocol::{case::Influence, job::ElementKind as ReadKind};
 use simulation::flexible::{ElementKind, Family, Gauge, Mesh, Reduction, Request, Steel, reduce};
 use std::{
     fs,
@@ -284,5 +284,98 @@ fn the_quasi_static_turn_is_the_published_one() {
                 row[1 + gauge]
             );
         }
+    }
+}
+
+/// Place and tension of the rope over the turn, as the kinematics table states them.
+fn table_turn() -> case::QuasiStatic {
+    let path = folder().join("../machine/kinematics_720.csv");
+    let text = fs::read_to_string(path).unwrap();
+    let rows = text.lines().filter(|line| !line.starts_with('#'));
+    let mut turn = case::QuasiStatic::default();
+    for row in rows {
+        let row: Vec<f64> = row.split(',').map(|x| x.parse().unwrap()).collect();
+        turn.turn_deg.push(row[0]);
+        turn.contact_deg.push(row[9]);
+        turn.tension_n.push(row[13]);
+    }
+    assert_eq!(turn.turn_deg.len(), 720);
+    turn
+}
+
+/// Lines of stress [Pa/N] as a case has them.
+fn lines(arc_deg: Vec<f64>, normal: &[Vec<f64>], tangential: &[Vec<f64>]) -> Influence {
+    let table = |rows: &[Vec<f64>]| {
+        let rows = rows.iter();
+        rows.map(|row| std::array::from_fn(|gauge| row[gauge] * 1e-6))
+            .collect()
+    };
+    Influence {
+        psi_deg: arc_deg,
+        normal_mpa_per_n: table(normal),
+        tangential_mpa_per_n: table(tangential),
+    }
+}
+
+fn half_range(curve: &[f64]) -> f64 {
+    let high = curve.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let low = curve.iter().copied().fold(f64::INFINITY, f64::min);
+    0.5 * (high - low)
+}
+
+/// The reduction's own lines under the table's tension are the published turn, to 1e-3 of the largest
+/// reading at every crank angle (1 % is asked for); its six lowest symmetric modes alone miss as much
+/// of it as is published: half-ranges of 12.69, 7.59, 15.63 and 9.43 MPa, within 1 %.
+#[test]
+fn own_lines_and_own_modes_give_the_published_half_ranges() {
+    let reduction = reduced(6, &[Family::Symmetric]);
+    let arc_deg = numbers(&table("back_head_modes.json")["arc_deg"]);
+    let turn = table_turn();
+    let wrapped = study::wrapped_turn(&turn, 125.0);
+    let exact = wrapped.exact(&lines(
+        arc_deg.clone(),
+        &reduction.normal_influence,
+        &reduction.tangential_influence,
+    ));
+    // a force moves mode k by f_k / w_k^2, and that reads s_k
+    let modal = |shape: &dyn Fn(usize, usize) -> f64| -> Vec<Vec<f64>> {
+        let reading = |station: usize, gauge: usize| {
+            let modes = reduction.modes.iter().enumerate();
+            let each = modes.map(|(k, mode)| {
+                mode.gauge_stress[gauge] * shape(k, station) / mode.frequency.powi(2)
+            });
+            each.sum::<f64>()
+        };
+        let stations = 0..arc_deg.len();
+        stations
+            .map(|station| (0..4).map(|gauge| reading(station, gauge)).collect())
+            .collect()
+    };
+    let alone = wrapped.exact(&lines(
+        arc_deg.clone(),
+        &modal(&|k, station| -reduction.modes[k].radial[station]),
+        &modal(&|k, station| reduction.modes[k].tangential[station]),
+    ));
+    let published = rows("back_head_quasistatic_5rpm.csv");
+    let largest = published
+        .iter()
+        .flat_map(|row| &row[1..])
+        .fold(0.0_f64, |most, x| most.max(x.abs()));
+    for gauge in 0..4 {
+        let pairs = exact[gauge].iter().zip(&published);
+        let worst = pairs.fold(0.0_f64, |most, (ours, row)| {
+            most.max((ours - row[1 + gauge]).abs())
+        });
+        let (all, six) = (half_range(&exact[gauge]), half_range(&alone[gauge]));
+        eprintln!(
+            "gauge {}: {worst:.1e} MPa apart, half-range {all:.3}, by six modes {six:.3}",
+            gauge + 1
+        );
+        assert!(
+            worst < 1e-3 * largest,
+            "gauge {gauge}: {worst} of {largest}"
+        );
+        assert!((all - [12.76, 8.34, 17.71, 9.03][gauge]).abs() < 0.006);
+        assert!((six / [12.69, 7.59, 15.63, 9.43][gauge] - 1.0).abs() < 0.01);
     }
 }

@@ -20,9 +20,11 @@ pub(super) struct ReadHead {
     pub(super) provenance: head::Provenance,
     /// With the content hash of its file.
     pub(super) mesh: Option<(mesh::Mesh, String)>,
+    /// Content hash of all that a reduction depends on; none without a mesh.
+    pub(super) source_blake3: Option<String>,
     /// Two ropes in place of one, with what the head answers to a pair.
     pub(super) twins: Option<TwinRopes>,
-    /// The tables were computed from another mesh, or do not fit together.
+    /// The tables were computed from something else, or do not fit together.
     pub(super) stale: Option<CaseError>,
 }
 
@@ -41,6 +43,7 @@ pub(super) fn read(
         head,
         provenance,
         mesh: None,
+        source_blake3: None,
         twins: None,
         stale: None,
     };
@@ -53,11 +56,20 @@ pub(super) fn read(
             let mass = (modes_file.as_path(), read.head.mass_kg);
             mesh::check_mass(&path, &mesh, flexible.density_kg_m3, mass)?;
         }
+        let source = source_hash(&hash, file, &read);
+        if read.stale.is_none() {
+            let stated = read.provenance.source_blake3.as_deref();
+            read.stale = mesh::check_source(&modes_file, &source, stated).err();
+        }
+        read.source_blake3 = Some(source);
         read.mesh = Some((mesh, hash));
     }
     if let Some(entry) = &file.twin_ropes {
-        let hash = read.mesh.as_ref().map(|(_, hash)| hash.as_str());
-        let pair = twin::read(folder, entry, &read.head, hash)?;
+        let hashes = twin::Hashes {
+            mesh: read.mesh.as_ref().map(|(_, hash)| hash.as_str()),
+            source: read.source_blake3.as_deref(),
+        };
+        let pair = twin::read(folder, entry, &read.head, hashes)?;
         read.twins = Some(pair.twins);
         read.stale = read.stale.or(pair.unfit);
     }
@@ -76,6 +88,31 @@ pub(super) fn read(
     Ok(read)
 }
 
+/// Content hash of all that a reduction depends on: mesh, material, arc, stations, gauges.
+fn source_hash(mesh: &str, file: &CaseFile, read: &ReadHead) -> String {
+    let flexible = &file.flexible_head;
+    let mut hasher = blake3::Hasher::new();
+    hasher.update(mesh.as_bytes());
+    let mut take = |numbers: &[f64]| {
+        for number in numbers {
+            hasher.update(&number.to_le_bytes());
+        }
+    };
+    take(&[
+        flexible.young_gpa,
+        flexible.poisson,
+        flexible.density_kg_m3,
+        file.back_head.center_x_m,
+        file.back_head.center_y_m,
+    ]);
+    for gauge in read.provenance.gauges.iter().flatten() {
+        take(&gauge.position_m);
+        take(&[gauge.length_m]);
+    }
+    take(&read.head.arc_deg);
+    hasher.finalize().to_hex().to_string()
+}
+
 /// What a reduction of the back head starts from, and where its tables are kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeadSource {
@@ -83,6 +120,8 @@ pub struct HeadSource {
     pub mesh: mesh::Mesh,
     /// Content hash of its file, in hexadecimal digits.
     pub mesh_blake3: String,
+    /// Content hash of all that the reduction depends on.
+    pub source_blake3: String,
     /// Young's modulus \[Pa\].
     pub young_pa: f64,
     /// Poisson's ratio \[1\].
@@ -91,7 +130,7 @@ pub struct HeadSource {
     pub density_kg_m3: f64,
     /// Where stress is read.
     pub gauges: [HeadGauge; 4],
-    /// Whether the case's tables are missing or were computed from another mesh.
+    /// Whether the case's tables are missing or were computed from something else.
     pub stale: bool,
     /// The file of the modes.
     pub modes_file: PathBuf,
@@ -107,7 +146,7 @@ pub struct HeadSource {
 /// As [`super::load`]; a case without mesh or gauge places.
 pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
     let (loaded, read, (flexible, twins)) = resolve(folder, &Overrides::default())?;
-    let Some((mesh, mesh_blake3)) = read.mesh else {
+    let (Some((mesh, mesh_blake3)), Some(source_blake3)) = (read.mesh, read.source_blake3) else {
         return Err(damaged(
             &folder.join("case.toml"),
             "`flexible_head` names no mesh_file: there is nothing to reduce",
@@ -125,6 +164,7 @@ pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
     let source = HeadSource {
         mesh,
         mesh_blake3,
+        source_blake3,
         young_pa: flexible.young_gpa * 1e9,
         poisson: flexible.poisson,
         density_kg_m3: flexible.density_kg_m3,

@@ -28,6 +28,8 @@ struct ModesFile {
     gauges: Option<BTreeMap<String, GaugePlace>>,
     /// Content of the mesh file that the tables were computed from; absent where they were not.
     mesh_blake3: Option<String>,
+    /// Content of all that the reduction depends on; absent where the tables were not reduced here.
+    source_blake3: Option<String>,
 }
 
 /// Place of a gauge in the modes file.
@@ -50,6 +52,8 @@ pub(super) struct Provenance {
     pub(super) gauges: Option<[HeadGauge; 4]>,
     /// Content hash of the mesh they were computed from.
     pub(super) mesh_blake3: Option<String>,
+    /// Content hash of all that they were computed from.
+    pub(super) source_blake3: Option<String>,
 }
 
 impl Provenance {
@@ -65,6 +69,7 @@ impl Provenance {
         Self {
             gauges: four(),
             mesh_blake3: file.mesh_blake3.clone(),
+            source_blake3: file.source_blake3.clone(),
         }
     }
 }

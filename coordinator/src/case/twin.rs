@@ -23,6 +23,8 @@ const MOST_MODES: usize = 24;
 pub(crate) struct TwinFile {
     /// Content of the mesh file that they were computed from.
     pub(crate) mesh_blake3: Option<String>,
+    /// Content of all that the reduction depended on.
+    pub(crate) source_blake3: Option<String>,
     /// The program that did.
     pub(crate) made_by: Option<String>,
     pub(crate) offset_m: f64,
@@ -72,6 +74,15 @@ pub(super) fn check(document: &Document, case: &CaseFile) -> Result<(), CaseErro
     )
 }
 
+/// What the head's tables must have been computed from; none without a mesh.
+#[derive(Clone, Copy)]
+pub(super) struct Hashes<'a> {
+    /// Content of the mesh file.
+    pub(super) mesh: Option<&'a str>,
+    /// Content of all that the reduction depends on.
+    pub(super) source: Option<&'a str>,
+}
+
 /// Reads the tables of a pair.
 ///
 /// # Errors
@@ -80,7 +91,7 @@ pub(super) fn read(
     folder: &Path,
     entry: &TwinRopesEntry,
     plane: &ModalHead,
-    mesh_blake3: Option<&str>,
+    hashes: Hashes<'_>,
 ) -> Result<Read, CaseError> {
     let path = folder.join(&entry.head_file);
     let with = |head| TwinRopes {
@@ -104,7 +115,11 @@ pub(super) fn read(
     let tables: TwinFile = document::json(&path, &bytes)?;
     check_shapes(&path, &tables)?;
     let unfit = check_fit(&path, &tables, entry, plane)
-        .and_then(|()| mesh::check_twin_hash(&path, mesh_blake3, tables.mesh_blake3.as_deref()))
+        .and_then(|()| mesh::check_twin_hash(&path, hashes.mesh, tables.mesh_blake3.as_deref()))
+        .and_then(|()| match hashes.source {
+            Some(hash) => mesh::check_source(&path, hash, tables.source_blake3.as_deref()),
+            None => Ok(()),
+        })
         .err();
     Ok(Read {
         twins: with(tables.into_head()),

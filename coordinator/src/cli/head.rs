@@ -2,7 +2,7 @@
 use super::{EXIT_CODES, OutputChoice, bus, condition, head_files, json, output, problem::Usage};
 use crate::{
     case::{self, HeadSource, QuasiStatic},
-    report::table,
+    report::{self, chart::HeadPicture, table},
     study,
 };
 use anyhow::Context as _;
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
-  horsehead head cases/cyjs10-5-37hb
+  horsehead head cases/cyjs10-5-37hb --out pictures
   horsehead head cases/cyjs10-5-37hb --family both --modes 24 --vtu pictures
   horsehead head my-case --write
 
@@ -48,6 +48,9 @@ pub(super) struct Arguments {
     /// Folder for `head.vtu`: all modes, and displacement and stress under the largest tension.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_VTU")]
     vtu: Option<PathBuf>,
+    /// Folder for `head_modes.svg`: the rope arc's deflection in every mode.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
+    out: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
 }
@@ -115,6 +118,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.vtu {
         written.push(head_files::write_vtu(folder, &spec.mesh, &head)?);
     }
+    if let Some(folder) = &arguments.out {
+        let picture = picture(&case, &source, &head);
+        written.push(report::write_head_modes(folder, &picture)?);
+    }
     if arguments.write {
         written.extend(head_files::write_tables(&case, &source, &head)?);
     }
@@ -133,6 +140,24 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         format!("{modes}\n{}{pair}", table::text(&statics, styled))
     };
     output::print(arguments.output.output, tables, &object)
+}
+
+/// What is drawn of a reduced head.
+fn picture<'a>(case: &Case, source: &'a HeadSource, head: &'a ReducedHead) -> HeadPicture<'a> {
+    HeadPicture {
+        center_m: [case.back_head.center_x_m, case.back_head.center_y_m],
+        radius_m: case.back_head.radius_m,
+        nodes_m: &source.mesh.nodes_m,
+        pins: ["pin_a", "pin_b"].map(|pin| surface(&source.mesh, pin)),
+        gauges: &source.gauges,
+        arc_deg: &head.influence.psi_deg,
+        modes: &head.modes,
+    }
+}
+
+/// Nodes of a mesh's surface; none of one that it lacks.
+fn surface<'a>(read: &'a case::mesh::Mesh, name: &str) -> &'a [usize] {
+    read.surfaces.get(name).map_or(&[], Vec::as_slice)
 }
 
 /// The rope at its largest tension.
@@ -181,8 +206,7 @@ fn mesh(read: &case::mesh::Mesh) -> HeadMesh {
         reason = "a mesh of four billion nodes does not fit into memory"
     )]
     let indices = |nodes: &[usize]| nodes.iter().map(|&node| node as u32).collect::<Vec<u32>>();
-    let surface = |name: &str| read.surfaces.get(name).map_or(&[][..], Vec::as_slice);
-    let mut held = [surface("pin_a"), surface("pin_b")].concat();
+    let mut held = [surface(read, "pin_a"), surface(read, "pin_b")].concat();
     held.sort_unstable();
     held.dedup();
     let elements = read.volumes.get(case::mesh::VOLUME);
@@ -191,7 +215,7 @@ fn mesh(read: &case::mesh::Mesh) -> HeadMesh {
         kind: read.kind,
         elements: indices(elements.map_or(&[], Vec::as_slice)),
         held: indices(&held),
-        rope_surface: indices(surface("rope_surface")),
+        rope_surface: indices(surface(read, "rope_surface")),
         half: read.half,
     }
 }

@@ -21,6 +21,7 @@ use std::{
 #[derive(Debug, Serialize)]
 struct ModesFile<'a> {
     mesh_blake3: &'a str,
+    source_blake3: &'a str,
     made_by: &'static str,
     frequencies_hz: Vec<f64>,
     family: Vec<ModeFamily>,
@@ -56,6 +57,7 @@ pub(super) fn write_tables(
     };
     let file = ModesFile {
         mesh_blake3: &source.mesh_blake3,
+        source_blake3: &source.source_blake3,
         made_by: super::bus::PROGRAM,
         frequencies_hz: head.modes.iter().map(|m| m.frequency_hz).collect(),
         family: head.modes.iter().map(|m| m.family).collect(),
@@ -105,6 +107,7 @@ fn twin_file(source: &HeadSource, offset_m: f64, tables: &TwinHead) -> TwinFile 
     let tables = tables.clone();
     TwinFile {
         mesh_blake3: Some(source.mesh_blake3.clone()),
+        source_blake3: Some(source.source_blake3.clone()),
         made_by: Some(super::bus::PROGRAM.to_owned()),
         offset_m,
         frequencies_hz: tables.frequencies_hz,

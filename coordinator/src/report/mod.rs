@@ -139,6 +139,18 @@ pub fn write_work_precision(
     ])
 }
 
+/// Writes `head_modes.svg` into a folder, which is made if it does not exist. Returns its path.
+///
+/// # Errors
+/// [`ReportError`] when the figure cannot be drawn or the file cannot be written.
+pub fn write_head_modes(
+    folder: &Path,
+    picture: &chart::HeadPicture<'_>,
+) -> Result<PathBuf, ReportError> {
+    let figure = chart::head_modes(picture)?;
+    write(folder, &format!("{}.svg", figure.name), &figure.svg)
+}
+
 /// Writes `box.csv` into a folder, which is made if it does not exist: individuals of the box of genes
 /// and how they ended. Returns its path.
 ///

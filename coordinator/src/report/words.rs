@@ -4,7 +4,7 @@
 use super::data::{Calibration, ConditionResult};
 use super::number::{figure, percent, unit};
 use protocol::case::{Case, Gene, Integrator};
-use protocol::job::{ChannelScore, PhysicsFailure, Reached, Verdict};
+use protocol::job::{ChannelScore, ModeFamily, PhysicsFailure, Reached, Verdict};
 
 /// What to know of records that come from no test.
 pub(super) const SYNTHETIC: &str = "The gauge records of this case are synthetic: they were \
@@ -20,6 +20,14 @@ pub fn failure(kind: PhysicsFailure) -> &'static str {
         PhysicsFailure::TumbledCylinder => "a rope cylinder turned over",
         PhysicsFailure::StepUnderflow => "the step size fell below its limit",
         PhysicsFailure::Budget => "the iteration budget was used up",
+    }
+}
+
+/// A family of modes.
+pub const fn mode_family(family: ModeFamily) -> &'static str {
+    match family {
+        ModeFamily::Symmetric => "symmetric",
+        ModeFamily::Antisymmetric => "antisymmetric",
     }
 }
 

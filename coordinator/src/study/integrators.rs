@@ -1,5 +1,5 @@
 //! Accuracy of the gauge curves against work, for every method of integration, and what a fixed step
-//! would cost.
+//! costs.
 //!
 //! Two runs of different fourth-order methods at a hundredth of the usual tolerance are the truth;
 //! where they differ, nothing can be resolved. A method is run along a ladder of tolerances and
@@ -8,7 +8,7 @@
 use super::{Evaluator, Stop, StudyError, calibrate::or_stop};
 use protocol::{
     case::Integrator,
-    job::{Counters, Integration, Job, Reached, SimulateSpec, Simulation, Verdict},
+    job::{Counters, Integration, Job, SimulateSpec, Simulation, Verdict},
 };
 
 /// Tolerance and longest step \[s\], from coarse to fine.
@@ -30,11 +30,13 @@ const TRUTH: (f64, f64) = (1e-3, 2e-3);
 /// Newton iterations that one point may take: ten of the most expensive ordinary ones.
 const BUDGET: u64 = 120_000;
 
-/// The fixed step that the paper's program was given \[s\].
-const FIXED_STEP: f64 = 1e-5;
-
-/// Newton iterations after which the two runs that price it end.
-const STRETCHES: [u64; 2] = [2_000, 10_000];
+/// The step that the paper's program was given, throughout.
+const FIXED: Integration = Integration {
+    integrator: Integrator::Bdf,
+    longest_step_s: 1e-5,
+    tolerance: ANYTHING,
+    budget: Some(u64::MAX),
+};
 
 /// A tolerance that rejects no step.
 const ANYTHING: f64 = 1e12;
@@ -50,6 +52,9 @@ pub struct WorkPlan {
     pub methods: Vec<Integrator>,
     /// How many levels of the ladder, from the coarse end; 0 for the whole of it.
     pub levels: usize,
+    /// Whether the reference paper's fixed step is run too, whole: it takes as long as hundreds of
+    /// ordinary runs.
+    pub fixed: bool,
 }
 
 /// One run.
@@ -74,30 +79,18 @@ pub struct WorkPoint {
     pub energy_error: f64,
 }
 
-/// The price of a fixed step, from a stretch at its beginning.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct FixedPrice {
-    /// Step \[s\].
-    pub step_s: f64,
-    /// Steps that were measured.
-    pub steps: u64,
-    /// Wall time that they took \[s\].
-    pub wall_s: f64,
-    /// Newton iterations that they took.
-    pub iterations: u64,
-    /// Share of the simulated time that they cover \[1\].
-    pub share: f64,
-}
-
-impl FixedPrice {
-    /// Wall time of the whole run, extrapolated \[s\].
-    pub fn whole_s(&self) -> f64 {
-        self.wall_s / self.share
-    }
-
-    /// Newton iterations of the whole run, extrapolated.
-    pub fn whole_iterations(&self) -> f64 {
-        self.iterations as f64 / self.share
+impl WorkPoint {
+    fn new(integration: &Integration, simulation: &Simulation, truth: &Simulation) -> Self {
+        Self {
+            integrator: integration.integrator,
+            tolerance: integration.tolerance,
+            longest_step_s: integration.longest_step_s,
+            verdict: simulation.verdict,
+            counters: simulation.counters,
+            wall_s: simulation.wall_s,
+            error: worst_gauge(simulation, truth),
+            energy_error: simulation.energy.relative_error,
+        }
     }
 }
 
@@ -108,8 +101,8 @@ pub struct WorkPrecision {
     pub resolution: f64,
     /// Method by method, from the coarse end of the ladder.
     pub points: Vec<WorkPoint>,
-    /// The paper's kind of step; none if the stretch could not be run.
-    pub fixed: Option<FixedPrice>,
+    /// The paper's kind of step, over the whole run; none unless asked for.
+    pub fixed: Option<WorkPoint>,
 }
 
 impl WorkPrecision {
@@ -151,6 +144,12 @@ pub async fn work_precision<E: Evaluator>(
         stop,
         next: 0,
     };
+    // first, while no quantile of short runs sets a deadline yet
+    let fixed = if plan.fixed {
+        Some(runner.run(FIXED).await?)
+    } else {
+        None
+    };
     let (tolerance, step) = TRUTH;
     let truth = runner.whole(Integrator::Rodas4, tolerance, step).await?;
     let second = runner.whole(Integrator::Esdirk4, tolerance, step).await?;
@@ -170,21 +169,12 @@ pub async fn work_precision<E: Evaluator>(
                 budget: Some(BUDGET),
             };
             let simulation = runner.run(integration).await?;
-            let point = WorkPoint {
-                integrator,
-                tolerance,
-                longest_step_s,
-                verdict: simulation.verdict,
-                counters: simulation.counters,
-                wall_s: simulation.wall_s,
-                error: worst_gauge(&simulation, &truth),
-                energy_error: simulation.energy.relative_error,
-            };
+            let point = WorkPoint::new(&integration, &simulation, &truth);
             done(&point);
             points.push(point);
         }
     }
-    let fixed = runner.fixed().await?;
+    let fixed = fixed.map(|simulation| WorkPoint::new(&FIXED, &simulation, &truth));
     Ok(WorkPrecision {
         resolution,
         points,
@@ -232,44 +222,6 @@ impl<E: Evaluator> Runner<'_, E> {
             Verdict::Complete => Ok(simulation),
             Verdict::Failed { kind, .. } => Err(StudyError::NoTruth { kind }),
         }
-    }
-
-    /// Two stretches of different length: their difference is free of the way to equilibrium.
-    async fn fixed(&mut self) -> Result<Option<FixedPrice>, StudyError> {
-        let mut ends = Vec::new();
-        for budget in STRETCHES {
-            let integration = Integration {
-                integrator: Integrator::Bdf,
-                longest_step_s: FIXED_STEP,
-                tolerance: ANYTHING,
-                budget: Some(budget),
-            };
-            ends.push(self.run(integration).await?);
-        }
-        let [short, long] = ends.as_slice() else {
-            return Ok(None);
-        };
-        let reached = |simulation: &Simulation| match simulation.verdict {
-            Verdict::Failed {
-                reached: Reached::TimeFraction(share),
-                ..
-            } => Some(share),
-            Verdict::Failed { .. } | Verdict::Complete => None,
-        };
-        let (Some(first), Some(last)) = (reached(short), reached(long)) else {
-            return Ok(None);
-        };
-        let price = FixedPrice {
-            step_s: FIXED_STEP,
-            steps: long.counters.steps.saturating_sub(short.counters.steps),
-            wall_s: long.wall_s - short.wall_s,
-            iterations: long
-                .counters
-                .newton_iterations
-                .saturating_sub(short.counters.newton_iterations),
-            share: last - first,
-        };
-        Ok((price.share > 0.0 && price.wall_s > 0.0).then_some(price))
     }
 }
 
@@ -328,18 +280,5 @@ mod tests {
         };
         let front = all.front(Integrator::Esdirk4, |p| p.counters.newton_iterations as f64);
         assert_eq!(front, [(400.0, 0.2), (500.0, 0.1), (800.0, 0.02)]);
-    }
-
-    #[test]
-    fn a_stretch_is_scaled_to_the_whole_run() {
-        let price = FixedPrice {
-            step_s: 1e-5,
-            steps: 4_000,
-            wall_s: 0.5,
-            iterations: 8_000,
-            share: 0.0025,
-        };
-        assert!((price.whole_s() - 200.0).abs() < 1e-9);
-        assert!((price.whole_iterations() - 3.2e6).abs() < 1e-3);
     }
 }

@@ -26,7 +26,7 @@ pub use evaluator::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus};
 pub use head::{
     HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, reduce_head, wrapped_turn,
 };
-pub use integrators::{FixedPrice, WorkPlan, WorkPoint, WorkPrecision, work_precision};
+pub use integrators::{WorkPlan, WorkPoint, WorkPrecision, work_precision};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 pub use recorded::Recorded;

@@ -175,6 +175,22 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "tables of another steel, arc or gauges",
+        |c| {
+            c.replace(
+                MODES,
+                "{\"frequencies_hz\"",
+                "{\"source_blake3\": \"00ff\", \"frequencies_hz\"",
+            );
+        },
+        &[
+            "back_head_modes.json",
+            "source_blake3 is 00ff",
+            "material, arc or gauges",
+            "head CASE --write",
+        ],
+    ),
+    (
         "stiffness in another unit",
         |c| {
             c.replace(

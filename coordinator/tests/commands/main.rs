@@ -39,7 +39,9 @@ fn number(value: &Value) -> f64 {
 fn head_reduces_the_shipped_mesh_and_draws_it() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().to_str().unwrap();
-    let object = json(&["head", "CASE", "--modes", "3", "--vtu", folder]);
+    let object = json(&[
+        "head", "CASE", "--modes", "3", "--vtu", folder, "--out", folder,
+    ]);
     let modes = object["modes"].as_array().unwrap();
     assert_eq!(modes.len(), 3);
     for mode in modes {
@@ -64,10 +66,15 @@ fn head_reduces_the_shipped_mesh_and_draws_it() {
         "{fields}"
     );
     assert!(picture.contains("stress"));
+    let shapes = fs::read_to_string(scratch.path().join("head_modes.svg")).unwrap();
+    for mode in modes {
+        let label = format!("{:.1} Hz", number(&mode["frequency_hz"]));
+        assert!(shapes.contains(&label), "{label}");
+    }
 }
 
-/// Methods side by side: every run complete, the more accurate method more accurate, the price of
-/// the fixed step far above any other, figure and table written.
+/// Methods side by side: every run complete, the more accurate method more accurate, figure and table
+/// written; the fixed step, which takes a minute, only when it is asked for.
 #[test]
 fn bench_integrators_measures_error_and_work() {
     let scratch = tempfile::tempdir().unwrap();
@@ -92,13 +99,7 @@ fn bench_integrators_measures_error_and_work() {
         rodas < coarse && finer < rodas && finer < 0.01,
         "{points:?}"
     );
-    let fixed = &object["fixed_step"];
-    let dearest = points
-        .iter()
-        .map(|p| number(&p["wall_s"]))
-        .fold(0.0, f64::max);
-    assert!(number(&fixed["steps_measured"]) > 1000.0);
-    assert!(number(&fixed["wall_s_extrapolated"]) > 10.0 * dearest);
+    assert!(object["fixed_step"].is_null());
     let svg = fs::read_to_string(scratch.path().join("integrators.svg")).unwrap();
     assert!(svg.contains("RODAS4") && svg.contains("wall time"));
     let rows = fs::read_to_string(scratch.path().join("integrators.csv")).unwrap();

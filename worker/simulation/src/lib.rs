@@ -7,7 +7,8 @@
 //! `M(q) a = Q(q, v, t)`
 //!
 //! in the rod angle, the suspension height, the beam angle, the modal coordinates of the back head
-//! and six coordinates per rope cylinder.
+//! and the coordinates of every rope cylinder: three of a rope in the plane of the machine, six of
+//! one that may leave it ([`model`] chooses).
 #![expect(
     non_snake_case,
     reason = "notation of mechanics: R_WB is a rotation, r_wb would be another thing"

@@ -59,6 +59,27 @@ impl Mesh {
 const ANOTHER: &str =
     "the tables belong to another mesh: `horsehead head CASE --write` computes them again";
 
+/// What to do about tables of another steel, arc or place of gauges.
+const CHANGED: &str = "material, arc or gauges have changed since the tables were computed: \
+                       `horsehead head CASE --write` computes them again";
+
+/// The tables were computed from all that a reduction depends on as it now stands, as far as they say.
+///
+/// # Errors
+/// They name another content.
+pub(super) fn check_source(path: &Path, hash: &str, stated: Option<&str>) -> Result<(), CaseError> {
+    match stated {
+        Some(stated) if stated != hash => Err(contradiction(
+            path,
+            "source_blake3",
+            stated,
+            format!("mesh, material, arc and gauges have {hash}"),
+            CHANGED,
+        )),
+        Some(_) | None => Ok(()),
+    }
+}
+
 /// The tables were computed from this mesh, as far as they say.
 ///
 /// # Errors

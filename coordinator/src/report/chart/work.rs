@@ -96,10 +96,10 @@ pub fn work_precision(all: &WorkPrecision) -> Result<Figure, ChartError> {
 fn caption(title: &str, all: &WorkPrecision) -> String {
     let fixed = all.fixed.as_ref().map_or_else(String::new, |fixed| {
         format!(
-            " A fixed step of {:e} s would take {}, extrapolated from {} steps.",
-            fixed.step_s,
-            duration(fixed.whole_s()),
-            fixed.steps
+            " A fixed step of {:e} s takes {} for {} steps.",
+            fixed.longest_step_s,
+            duration(fixed.wall_s),
+            fixed.counters.steps
         )
     });
     format!(

@@ -1,20 +1,17 @@
 //! A reduced back head in numbers: its modes beside the case's, and what they alone would show.
 use super::{Row, Table};
+use crate::report::words::mode_family;
 use crate::{
     report::number::{NONE, fixed, percent},
     study::HeadComparison,
 };
 use protocol::case::TwinHead;
-use protocol::job::{ModeFamily, ReducedHead};
+use protocol::job::ReducedHead;
 
 /// Modes, one row each, beside the most similar ones of the case's table.
 pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
     let rows = (1..).zip(head.modes.iter().zip(&comparison.modes));
     let rows = rows.map(|(number, (mode, found))| {
-        let family = match mode.family {
-            ModeFamily::Symmetric => "symmetric",
-            ModeFamily::Antisymmetric => "antisymmetric",
-        };
         let of_table = found.table.map_or_else(
             || [NONE, NONE, NONE].map(str::to_owned),
             |(hz, mac)| {
@@ -24,7 +21,7 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
         );
         let [hz, difference, mac] = of_table;
         let cells = [
-            family.to_owned(),
+            mode_family(mode.family).to_owned(),
             fixed(mode.frequency_hz, 2),
             hz,
             difference,

@@ -1,6 +1,6 @@
 //! Methods of integration side by side.
 use super::{Label, Row, Table};
-use crate::report::number::{NONE, count, duration, figure};
+use crate::report::number::{NONE, count, duration};
 use crate::report::words::{integrator_name, verdict};
 use crate::study::{WorkPoint, WorkPrecision};
 use protocol::{case::Integrator, job::Verdict};
@@ -21,22 +21,15 @@ pub fn work_precision(all: &WorkPrecision) -> Table {
         rows.push(Row::Group(integrator_name(integrator).to_owned()));
         let good = own.iter().filter(|p| p.error.is_some_and(|e| e < 0.01));
         let cheapest = good.min_by(|a, b| a.wall_s.total_cmp(&b.wall_s)).copied();
-        rows.extend(own.iter().map(|point| row(point, cheapest == Some(*point))));
+        rows.extend(own.iter().map(|point| {
+            let mark = if cheapest == Some(*point) { " *" } else { "" };
+            let limits = format!("{}, {} s{mark}", point.tolerance, point.longest_step_s);
+            row(limits, point)
+        }));
     }
     if let Some(fixed) = &all.fixed {
-        rows.push(Row::Group("bdf, fixed step, extrapolated".to_owned()));
-        rows.push(Row::Values(
-            Label::Text(format!("{:e} s", fixed.step_s)),
-            vec![
-                figure(fixed.steps as f64 / fixed.share),
-                NONE.to_owned(),
-                figure(fixed.whole_iterations()),
-                NONE.to_owned(),
-                duration(fixed.whole_s()),
-                NONE.to_owned(),
-                NONE.to_owned(),
-            ],
-        ));
+        rows.push(Row::Group("bdf, fixed step".to_owned()));
+        rows.push(row(format!("{:e} s", fixed.longest_step_s), fixed));
     }
     let head = [
         "tolerance, longest step",
@@ -56,19 +49,15 @@ pub fn work_precision(all: &WorkPrecision) -> Table {
     }
 }
 
-fn row(point: &WorkPoint, best: bool) -> Row {
+fn row(limits: String, point: &WorkPoint) -> Row {
     let counters = &point.counters;
-    let mark = if best { " *" } else { "" };
     let error = match (point.error, point.verdict) {
         (Some(error), _) => format!("{:.3} %", 100.0 * error),
         (None, Verdict::Complete) => NONE.to_owned(),
         (None, failed) => verdict(&failed),
     };
     Row::Values(
-        Label::Text(format!(
-            "{}, {} s{mark}",
-            point.tolerance, point.longest_step_s
-        )),
+        Label::Text(limits),
         vec![
             count(counters.steps),
             count(counters.rejected_steps),
@@ -82,7 +71,7 @@ fn row(point: &WorkPoint, best: bool) -> Row {
 }
 
 fn notes(all: &WorkPrecision) -> Vec<String> {
-    let mut notes = vec![
+    vec![
         format!(
             "error: root mean square difference to a converged run, over the range of the worst \
              gauge; two converged runs are {:.1e} apart.",
@@ -90,15 +79,5 @@ fn notes(all: &WorkPrecision) -> Vec<String> {
         ),
         "*: the fastest run of a method with an error below 1 %.".to_owned(),
         "iterations: a stage of rodas4, one linear solution, counts as one.".to_owned(),
-    ];
-    if let Some(fixed) = &all.fixed {
-        notes.push(format!(
-            "fixed step: extrapolated from {} steps at the beginning of the run, {:.2} % of it, with \
-             {:.2} iterations a step.",
-            fixed.steps,
-            100.0 * fixed.share,
-            fixed.iterations as f64 / fixed.steps.max(1) as f64
-        ));
-    }
-    notes
+    ]
 }

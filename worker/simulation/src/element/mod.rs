@@ -59,7 +59,7 @@ pub static CATALOGUE: [ElementInfo; 2] = [
     },
     ElementInfo {
         name: "stop",
-        summary: "One-sided contact of a point with a plane.",
+        summary: "One-sided contact of a point with a plane; a model of the arcs' contact, for proofs.",
         reference: "paper, Eqs. 4 and 6",
         example: || Box::new(example_stop()),
         conservative: || Box::new(example_stop()),

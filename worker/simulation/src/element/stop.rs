@@ -2,8 +2,9 @@
 //!
 //! `F_I = f e` with the axis `e` of J, `f` of [`Impact`] at the penetration `-e.d` and its rate
 //! `-e.V`, `d = r_I - r_J`, `V = v_I - v_J - w_J x d`. The force acts at the point, so that
-//! `T_I = rho_I x F_I` and `T_J = -(r_I - p_J) x F_I`. What the machine's arcs do to a cylinder is
-//! locally this.
+//! `T_I = rho_I x F_I` and `T_J = -(r_I - p_J) x F_I`. The machine has none: what its arcs do to a
+//! cylinder is locally this, worked out for the whole chain in [`crate::model`]. Here the contract of
+//! all elements is put to a one-sided law.
 use super::bushing::{LinkLoad, LinkTangent, Marker};
 use super::{ForceElement, impact::Impact};
 use nalgebra::{Matrix3, Vector3};

@@ -39,12 +39,4 @@ impl State {
             a: vec![0.0; n],
         }
     }
-
-    /// Overwrites this state without allocating.
-    pub fn copy_from(&mut self, other: &Self) {
-        self.t = other.t;
-        self.q.copy_from_slice(&other.q);
-        self.v.copy_from_slice(&other.v);
-        self.a.copy_from_slice(&other.a);
-    }
 }

@@ -184,3 +184,46 @@ fn predict(stage: &Stage<'_>, q: &mut [f64], v: &[f64], a: &mut [f64]) {
         a[i] = (v[i] - stage.base_v[i]) / stage.d;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first stage, a coefficient that moved by more than a quarter, slow convergence and a
+    /// failure want a new factorisation; nothing else does.
+    #[test]
+    fn a_factorisation_is_kept_while_it_serves() {
+        let mut policy = RefactorPolicy::default();
+        assert!(policy.wants(100.0));
+        policy.made(100.0);
+        for gamma in [75.1, 100.0, 124.9] {
+            assert!(!policy.wants(gamma), "{gamma}");
+        }
+        for gamma in [74.9, 125.1] {
+            assert!(policy.wants(gamma), "{gamma}");
+        }
+        policy.observed(RefactorPolicy::SLOW);
+        assert!(!policy.wants(100.0));
+        policy.observed(1.01 * RefactorPolicy::SLOW);
+        assert!(policy.wants(100.0));
+        policy.made(100.0);
+        assert!(!policy.wants(100.0));
+        policy.spoiled();
+        assert!(policy.wants(100.0));
+    }
+
+    /// Where the factorisation is for `made` and inertia (gamma squared) and stiffness weigh alike, the
+    /// factor makes the error of a correction the same for both, of opposite sign.
+    #[test]
+    fn a_correction_is_scaled_for_another_coefficient() {
+        let mut policy = RefactorPolicy::default();
+        assert_eq!(policy.relaxation(3.0).to_bits(), 1.0_f64.to_bits());
+        policy.made(100.0);
+        for gamma in [80.0_f64, 100.0, 120.0] {
+            let relax = policy.relaxation(gamma);
+            let inertia = 1.0 - relax * (gamma / 100.0).powi(2);
+            let stiffness = 1.0 - relax;
+            assert!((inertia + stiffness).abs() < 1e-12, "{gamma}: {relax}");
+        }
+    }
+}

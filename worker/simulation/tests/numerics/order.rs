@@ -5,6 +5,7 @@ use crate::rope::*;
 use simulation::element::bushing::Bushing;
 use simulation::integrator::bdf::Bdf;
 use simulation::integrator::method::{CATALOGUE, Method};
+use simulation::integrator::step_control::StepControl;
 use simulation::integrator::stepper::Stepper;
 use simulation::integrator::tableau::ESDIRK4;
 use simulation::integrator::{State, dense::interpolate};
@@ -245,6 +246,75 @@ fn order_survives_steps_of_changing_size() {
         let errors = [200, 400, 800].map(|steps| uneven(method, steps));
         judge(&format!("{method:?}, uneven"), order, &errors);
     }
+}
+
+/// The formula of order 2 from a known past, with steps of 1.3 and 0.7 in turn: its points lie as
+/// unevenly as in a run that changes its step.
+#[test]
+fn order_2_of_backward_differentiation_survives_uneven_steps() {
+    let errors = [200, 400, 800].map(|steps| {
+        let h = 1.0 / f64::from(steps);
+        let past = [0.0, 0.7, 2.0].map(|back| Forced::exact(0.3 - back * h));
+        let mut system = System::new(Forced);
+        let mut method = Bdf::continuing(2, &past, TIGHT);
+        let mut from = past[0].clone();
+        let mut to = from.clone();
+        for k in 0..steps {
+            let h = if k % 2 == 0 { 1.3 * h } else { 0.7 * h };
+            method.step(&mut system, &from, h, &mut to).unwrap();
+            method.accept(&system.equations, &to);
+            std::mem::swap(&mut from, &mut to);
+        }
+        assert_eq!(method.order(), 2);
+        largest_difference(&from.q, &Forced::exact(1.3).q)
+    });
+    judge("bdf of order 2, uneven", 2, &errors);
+}
+
+/// Steps that follow a small error, and the highest order that was chosen.
+fn chosen(highest: usize) -> (usize, usize) {
+    let tolerance = 1e-6;
+    let mut system = System::new(Forced);
+    // Newton's method leaves 3e-9, far below the error that is aimed at
+    let mut method = Bdf::new(highest, 6, 1e-3);
+    let mut from = Forced::exact(0.3);
+    let mut to = from.clone();
+    let (mut h, mut steps, mut most) = (1e-4, 0, 1);
+    while from.t < 2.3 {
+        let done = method.step(&mut system, &from, h, &mut to).unwrap();
+        let control = StepControl {
+            order: Stepper::<Forced>::error_order(&method),
+            tolerance,
+            longest: 1.0,
+            shortest: 0.0,
+        };
+        if done.error > tolerance {
+            Stepper::<Forced>::reject(&mut method);
+            h *= control.factor(done.error).min(0.7);
+            continue;
+        }
+        method.accept(&system.equations, &to);
+        h = Stepper::<Forced>::next(&mut method, &control, h, done.error);
+        std::mem::swap(&mut from, &mut to);
+        steps += 1;
+        most = most.max(method.order());
+    }
+    let error = largest_difference(&from.q, &Forced::exact(from.t).q);
+    eprintln!("up to order {highest}: {steps} steps, order {most}, error {error:.1e}");
+    assert!(error < 1e-3, "up to order {highest}: {error}");
+    (steps, most)
+}
+
+/// Where higher orders pay they are chosen, never above the cap, and steps become fewer.
+#[test]
+fn backward_differentiation_chooses_the_order_that_pays() {
+    let [first, second, fifth] = [1, 2, 5].map(chosen);
+    assert_eq!([first.1, second.1], [1, 2]);
+    assert!((3..=5).contains(&fifth.1), "order {}", fifth.1);
+    assert!(
+        2 * second.0 < first.0 && 2 * fifth.0 < second.0,
+        "{first:?} {second:?} {fifth:?}"
+    );
 }
 
 /// The dense output between two exact states errs with the fourth power of their distance.

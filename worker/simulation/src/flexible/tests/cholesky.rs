@@ -42,8 +42,6 @@ fn solutions_are_those_of_faer_and_of_the_matrix() {
             pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()))
         };
         let (exact, other) = (apart(&ours, &known), apart(&ours, &theirs));
-        let order = unknowns.len();
-        eprintln!("{order} unknowns: {exact:.1e} from the solution, {other:.1e} from faer's");
         assert!(
             exact < 1e-11 && other < 1e-11,
             "{counts:?}: {exact} {other}"
