@@ -71,10 +71,13 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
         let (digest, cluster) = run(&settings, cluster);
         assert_eq!(digest, expected, "{workers} workers, {loss} lost");
         let snapshot = cluster.core.snapshot(cluster.now);
-        // where many messages are lost, now and then somebody is not heard for four seconds
-        let killed = (snapshot.lost == 10 || loss > 0.0) && snapshot.lost >= 10;
+        // where many messages are lost, one may be killed before it has joined, another not be heard
+        let killed = snapshot.lost == 10 || (loss > 0.0 && snapshot.lost > 5);
         assert!(killed && snapshot.repeated > 0, "{snapshot:?}");
-        assert_eq!(snapshot.duplicates > 0, loss > 0.0, "{snapshot:?}");
+        assert!(
+            duplication == 0.0 || snapshot.duplicates > 0,
+            "{snapshot:?}"
+        );
     }
     let (other, _) = run(&self::settings(25, 12), Cluster::new(Setting::even(3)));
     assert_ne!(other, expected, "the window is part of what decides");
