@@ -111,42 +111,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         target.loaded = earlier.as_begun(target.loaded)?;
     }
     let has_own = target.loaded.effects.len() < stated;
-    let case = &target.loaded.case;
-    let notes: Vec<String> = target
-        .loaded
-        .notes
-        .iter()
-        .map(ToString::to_string)
-        .collect();
-    for note in &notes {
+    for note in &target.loaded.notes {
         output::tell(&format!("note: {note}"));
     }
-    let manifest = Manifest {
-        kind: DIAGNOSE.to_owned(),
-        format: run_folder::format(),
-        program: bus::PROGRAM.to_owned(),
-        command: command_line(),
-        preset: String::new(),
-        seed: arguments.seed,
-        settings: Decides {
-            thresholds: Settings {
-                rounds: usize::from(arguments.rounds),
-                without: arguments.without.clone(),
-                ..Settings::default()
-            },
-            start: target.start.clone(),
-        },
-        case_folder: std::path::absolute(&target.folder)?,
-        measured: target
-            .measured
-            .as_ref()
-            .unwrap_or(&target.folder)
-            .display()
-            .to_string(),
-        synthetic: target.loaded.synthetic,
-        notes,
-        wall_s: 0.0,
-    };
+    let case = &target.loaded.case;
+    let manifest = manifest(arguments, &target)?;
     let begun = RunFolder::begin(&path, &manifest, case)?;
     let (diagnosed, library) =
         experiment(arguments, &manifest, &begun, &target).inspect_err(|error| {
@@ -183,6 +152,41 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         answer.add(&file)?;
     }
     answer.print(arguments.output.output, &object)
+}
+
+/// What decides the diagnosis, and how it was asked for.
+fn manifest(arguments: &Arguments, target: &Target) -> anyhow::Result<Manifest<Decides>> {
+    Ok(Manifest {
+        kind: DIAGNOSE.to_owned(),
+        format: run_folder::format(),
+        program: bus::PROGRAM.to_owned(),
+        command: command_line(),
+        preset: String::new(),
+        seed: arguments.seed,
+        settings: Decides {
+            thresholds: Settings {
+                rounds: usize::from(arguments.rounds),
+                without: arguments.without.clone(),
+                ..Settings::default()
+            },
+            start: target.start.clone(),
+        },
+        case_folder: std::path::absolute(&target.folder)?,
+        measured: target
+            .measured
+            .as_ref()
+            .unwrap_or(&target.folder)
+            .display()
+            .to_string(),
+        synthetic: target.loaded.synthetic,
+        notes: target
+            .loaded
+            .notes
+            .iter()
+            .map(ToString::to_string)
+            .collect(),
+        wall_s: 0.0,
+    })
 }
 
 /// The case, and where the recalibration starts.
