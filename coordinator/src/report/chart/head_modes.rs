@@ -19,8 +19,8 @@ const LABEL: f64 = 22.0;
 const DEFLECTION: f64 = 0.09;
 /// Modes that move the arc by less than this share of the liveliest one do not move the rope.
 const INERT: f64 = 1e-6;
-/// Angles into which the outline is sorted, over a turn.
-const ANGLES: usize = 360;
+/// Layers from bottom to top into which the outline is sorted: coarser than a mesh.
+const LAYERS: usize = 40;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
@@ -93,35 +93,47 @@ fn on_arc(picture: &HeadPicture<'_>, deg: f64, [radial, tangential]: [f64; 2]) -
     )
 }
 
-/// The head's outline as seen from the arc's centre: the farthest nodes forth, the nearest back.
+/// The head's outline: in each of some layers, lowest first, its rightmost node, and back
+/// its leftmost.
 fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
-    let mut reach = [None::<(f64, f64)>; ANGLES];
-    let [x, y] = picture.center_m;
-    for node in picture.nodes_m {
-        let (dx, dy) = (node[0] - x, node[1] - y);
-        let share = dy.atan2(dx).rem_euclid(std::f64::consts::TAU) / std::f64::consts::TAU;
+    let height = |node: &[f64; 3]| node[1];
+    let low = picture
+        .nodes_m
+        .iter()
+        .map(height)
+        .fold(f64::INFINITY, f64::min);
+    let high = picture
+        .nodes_m
+        .iter()
+        .map(height)
+        .fold(f64::NEG_INFINITY, f64::max);
+    let mut layers = [None::<((f64, f64), (f64, f64))>; LAYERS];
+    for &[x, y, _] in picture.nodes_m {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a share of a turn"
+            reason = "a share of the height"
         )]
-        let at = (share * ANGLES as f64) as usize;
-        if let Some(reach) = reach.get_mut(at % ANGLES) {
-            let radius = dx.hypot(dy);
-            let (near, far) = reach.unwrap_or((radius, radius));
-            *reach = Some((near.min(radius), far.max(radius)));
+        let at = ((y - low) / (high - low) * LAYERS as f64) as usize;
+        if let Some(layer) = layers.get_mut(at.min(LAYERS - 1)) {
+            let (mut left, mut right) = layer.unwrap_or(((x, y), (x, y)));
+            if x < left.0 {
+                left = (x, y);
+            }
+            if x > right.0 {
+                right = (x, y);
+            }
+            *layer = Some((left, right));
         }
     }
-    let known = reach.iter().enumerate();
-    let known = known.filter_map(|(at, reach)| {
-        let (sin, cos) = ((at as f64 + 0.5) / ANGLES as f64 * std::f64::consts::TAU).sin_cos();
-        let point = move |radius: f64| (x + radius * cos, y + radius * sin);
-        reach.map(|(near, far)| (point(near), point(far)))
-    });
-    let known: Vec<_> = known.collect();
-    let forth = known.iter().map(|(_, far)| *far);
+    let known: Vec<_> = layers.into_iter().flatten().collect();
+    let ends = picture.nodes_m.iter().map(|&[x, y, _]| (x, y));
+    let by_height = |a: &(f64, f64), b: &(f64, f64)| a.1.total_cmp(&b.1);
+    let (lowest, highest) = (ends.clone().min_by(by_height), ends.max_by(by_height));
+    let forth = known.iter().map(|(_, right)| *right);
+    let forth = lowest.into_iter().chain(forth).chain(highest);
     forth
-        .chain(known.iter().rev().map(|(near, _)| *near))
+        .chain(known.iter().rev().map(|(left, _)| *left))
         .collect()
 }
 
