@@ -1,6 +1,6 @@
 //! A diagnosis that is killed, gone on with, told again, added to the case and simulated: always the
 //! same numbers.
-use crate::coarse::{Trial, run};
+use crate::coarse::{FRICTION, Trial, run};
 use serde_json::Value;
 use std::{fs, path::Path, process::Stdio, thread::sleep, time::Duration};
 
@@ -41,18 +41,7 @@ fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
 
 #[test]
 fn what_is_found_is_told_again_added_and_simulated_with_the_same_numbers() {
-    let trial = Trial::make(&[
-        "--seed",
-        "2",
-        "--stratum",
-        "single",
-        "--effect",
-        "pivot_friction",
-        "--times",
-        "5",
-        "--noise",
-        "4",
-    ]);
+    let trial = Trial::make(&FRICTION);
     // killed on the way
     let mut first = trial.diagnose(WITHOUT);
     let mut first = first.stdout(Stdio::null()).spawn().expect("it starts");

@@ -78,6 +78,20 @@ beam_inertia,post_compliance,head_profile_wear,head_damping,rope_stretch,rope_to
 counterweight_phase,crank_angle_offset,pin_clearance,twin_rope_inequality,gauge_cross_talk,gauge_gain,\
 amplifier_lag";
 
+/// What to make where the saddle's friction is hidden, five times its typical size.
+pub(crate) const FRICTION: [&str; 10] = [
+    "--seed",
+    "2",
+    "--stratum",
+    "single",
+    "--effect",
+    "pivot_friction",
+    "--times",
+    "5",
+    "--noise",
+    "4",
+];
+
 /// A set of records that hides something, with a case that is asked about it.
 pub(crate) struct Trial {
     scratch: tempfile::TempDir,

@@ -7,7 +7,7 @@
 mod again;
 mod coarse;
 
-use coarse::{Trial, WITHOUT, run, truth};
+use coarse::{FRICTION, Trial, WITHOUT, run, truth};
 use std::{fs, process::Command};
 
 /// Makes one set, diagnoses it, opens the answer: the verdict's words and the table.
@@ -37,18 +37,7 @@ fn trial(arguments: &[&str]) -> (serde_json::Value, String) {
 
 #[test]
 fn a_strong_friction_is_named() {
-    let (verdict, table) = trial(&[
-        "--seed",
-        "2",
-        "--stratum",
-        "single",
-        "--effect",
-        "pivot_friction",
-        "--times",
-        "5",
-        "--noise",
-        "4",
-    ]);
+    let (verdict, table) = trial(&FRICTION);
     eprintln!("{table}");
     let named = &verdict["effects"][0];
     assert_eq!(verdict["verdict"], "named", "{verdict}");
