@@ -11,6 +11,7 @@ use super::{
     *,
 };
 use crate::math::elementary::sin_cos;
+use nalgebra::DMatrix;
 
 const STEEL: Steel = Steel {
     young: 206.0e9,
@@ -218,6 +219,43 @@ fn cantilever(mesh: &Mesh) -> [f64; 4] {
         }
     }
     std::array::from_fn(|k| modes.eigenvalues[k].sqrt() / beam[k])
+}
+
+/// Held modes with their participation, and a rotation of the whole, are a bar that turns freely about its
+/// end: what couples the head's modes to the beam is right.
+#[test]
+fn held_modes_that_turn_with_their_base_ring_like_a_hinged_bar() {
+    let [length, height, width] = CANTILEVER;
+    let origin = [0.0, -0.5 * height, -0.5 * width];
+    let mesh = bricks([40, 2, 2], CANTILEVER, origin, |x| x);
+    let modes = reduce(&request(&mesh, &[], &[Family::Symmetric]))
+        .unwrap()
+        .modes;
+    let section = STEEL.density * height * width;
+    let inertia = section * length * (length * length + 0.25 * height * height) / 3.0;
+    let size = modes.len() + 1;
+    let mass = DMatrix::from_fn(size, size, |i, j| match (i.min(j), i.max(j)) {
+        (0, 0) => inertia,
+        (0, k) => modes[k - 1].participation[2],
+        (i, j) => f64::from(u8::from(i == j)),
+    });
+    let stiffness = DMatrix::from_fn(size, size, |i, j| {
+        if i == j && i > 0 {
+            modes[i - 1].frequency.powi(2)
+        } else {
+            0.0
+        }
+    });
+    let root = mass.cholesky().unwrap().l().try_inverse().unwrap();
+    let mut found = (&root * stiffness * root.transpose()).symmetric_eigenvalues();
+    found.as_mut_slice().sort_by(f64::total_cmp);
+    // roots of tan x = tanh x
+    for (rate, root) in found.iter().skip(1).zip([3.926_602_31_f64, 7.068_582_75]) {
+        let bar =
+            root.powi(2) / length.powi(2) * (206.0e9 * height * height / 12.0 / 7850.0).sqrt();
+        let share = rate.sqrt() / bar;
+        assert!((0.98..1.01).contains(&share), "{share}");
+    }
 }
 
 fn request<'a>(mesh: &'a Mesh, gauges: &'a [Gauge], families: &'a [Family]) -> Request<'a> {
