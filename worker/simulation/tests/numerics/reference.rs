@@ -203,6 +203,21 @@ pub(crate) fn laid_on_drum(count: usize, wrap: f64) -> Vec<f64> {
     q
 }
 
+/// Tension, shear and moment that joint `j` of a rig gives the body before it, and the contact force of its
+/// cylinder.
+fn carried(system: &System<Rig>, law: &RopeLaw, q: &[f64], j: usize) -> [f64; 4] {
+    let state = &system.equations.state;
+    // on J acts the opposite of the load on I; J is the ground or the cylinder before
+    let load = &state.joints[j];
+    let angle = if j == 0 { 0.0 } else { q[6 * (j - 1) + 5] };
+    let (s, c) = angle.sin_cos();
+    let shear = -(load.force.y * c - load.force.x * s);
+    // T_J about the joint: bending stiffness times the turn, and the couple of d x F
+    let [_, bending] = law.bushing.rotational_stiffness;
+    let moment = bending * (q[6 * j + 5] - angle);
+    [state.tension(j), shear, moment, state.contact[j]]
+}
+
 /// A rope over a fixed drum, one contact point per cylinder as in both references: where every
 /// cylinder lies, what every joint carries and what every contact carries.
 #[test]
@@ -250,7 +265,6 @@ fn rope_on_a_drum_has_the_references_forces() {
             &drum_setup(&law, pull),
             laid_on_drum(60, 0.5 * std::f64::consts::PI),
         );
-        let state = &system.equations.state;
         let largest = |column: usize| {
             table(text)
                 .iter()
@@ -266,18 +280,7 @@ fn rope_on_a_drum_has_the_references_forces() {
                 .hypot(own[1] - row[2])
                 .max(0.05 * (own[5] - row[3]).abs());
             worst[0] = worst[0].max(distance);
-            // on J acts the opposite of the load on I; J is the ground or the cylinder before
-            let load = &state.joints[j];
-            let angle = if j == 0 { 0.0 } else { q[6 * (j - 1) + 5] };
-            let (s, c) = angle.sin_cos();
-            let shear = -(load.force.y * c - load.force.x * s);
-            let own_turn = own[5] - angle;
-            let moment = {
-                // T_J about the joint: bending stiffness times the turn, and the couple of d x F
-                let [_, k] = law.bushing.rotational_stiffness;
-                k * own_turn
-            };
-            let found = [state.tension(j), shear, moment, state.contact[j]];
+            let found = carried(&system, &law, &q, j);
             for k in 0..4 {
                 worst[1 + k] = worst[1 + k].max((found[k] - row[4 + k]).abs() / scales[k]);
             }
