@@ -15,7 +15,7 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 #[test]
 fn every_effect_is_named_at_three_times_its_limit() {
     let each = trials(3);
-    let (mut top, mut within, mut members) = (0, 0, 0);
+    let (mut top, mut within, mut members) = (0_u32, 0, 0);
     let (mut confusions, mut predicted) = (0, 0);
     let (mut covered, mut errors) = (0, Vec::new());
     let mut of_level = [(0, 0); NOISES.len()];
