@@ -59,7 +59,8 @@ pub(super) fn read(
         let source = source_hash(&hash, file, &read);
         if read.stale.is_none() {
             let stated = read.provenance.source_blake3.as_deref();
-            read.stale = mesh::check_source(&modes_file, &source, stated).err();
+            read.stale =
+                mesh::check_origin(&modes_file, mesh::Origin::Source, Some(&source), stated).err();
         }
         read.source_blake3 = Some(source);
         read.mesh = Some((mesh, hash));

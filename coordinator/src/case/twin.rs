@@ -115,10 +115,13 @@ pub(super) fn read(
     let tables: TwinFile = document::json(&path, &bytes)?;
     check_shapes(&path, &tables)?;
     let unfit = check_fit(&path, &tables, entry, plane)
-        .and_then(|()| mesh::check_twin_hash(&path, hashes.mesh, tables.mesh_blake3.as_deref()))
-        .and_then(|()| match hashes.source {
-            Some(hash) => mesh::check_source(&path, hash, tables.source_blake3.as_deref()),
-            None => Ok(()),
+        .and_then(|()| {
+            let stated = tables.mesh_blake3.as_deref();
+            mesh::check_origin(&path, mesh::Origin::Mesh, hashes.mesh, stated)
+        })
+        .and_then(|()| {
+            let stated = tables.source_blake3.as_deref();
+            mesh::check_origin(&path, mesh::Origin::Source, hashes.source, stated)
         })
         .err();
     Ok(Read {

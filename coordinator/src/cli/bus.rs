@@ -20,6 +20,7 @@ use protocol::{
     job::Job,
     wire,
 };
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Name and version of this program.
@@ -191,8 +192,9 @@ fn explain(error: &DispatchError) -> EvaluatorError {
     }
 }
 
-fn content_hash(case: &Case) -> anyhow::Result<ContentHash> {
-    Ok(ContentHash::of(&wire::encode(case)?))
+/// The name of some content.
+pub(super) fn content_hash(content: &impl Serialize) -> anyhow::Result<ContentHash> {
+    Ok(ContentHash::of(&wire::encode(content)?))
 }
 
 /// The name of a case's content, in hexadecimal digits.

@@ -44,7 +44,7 @@ impl Earlier {
             measured: replaced.then_some(own),
         };
         let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
-        if bus::case_hash(&loaded.case)? != bus::case_hash(&self.case)? {
+        if loaded.case != self.case {
             return Err(Usage {
                 message: format!(
                     "the case has changed since {} was made, and its records are read anew",

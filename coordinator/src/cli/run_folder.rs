@@ -3,10 +3,10 @@
 //! `run.json` and `case.json` make the folder independent of the case folder: `verify` and
 //! `report` need nothing else. The journal, which the dispatcher keeps in the same folder, holds
 //! every result.
-use super::problem::Usage;
+use super::{bus::content_hash, problem::Usage};
 use crate::journal;
 use anyhow::Context as _;
-use protocol::{case::Case, id::ContentHash, wire};
+use protocol::case::Case;
 use search::strategy::Settings;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
@@ -148,7 +148,7 @@ impl RunFolder {
                 let name = folder
                     .file_name()
                     .map_or_else(String::new, |name| format!("-{}", name.to_string_lossy()));
-                let hash = ContentHash::of(&wire::encode(&case.conditions)?).to_string();
+                let hash = content_hash(&case.conditions)?.to_string();
                 format!("{name}-{}", hash.get(..8).unwrap_or_default())
             }
         };

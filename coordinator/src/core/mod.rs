@@ -206,8 +206,8 @@ impl Core {
         mem::take(&mut self.out)
     }
 
-    /// Whether what comes of new orders is wanted and can be written down: a disk that is full, or slower than the
-    /// workers, must not fill the memory instead.
+    /// Whether what comes of new orders is wanted and can be written down: a disk that is full, or
+    /// slower than the workers, must not fill the memory instead.
     fn may_give_out(&self) -> bool {
         !self.paused
             && self.phase == Phase::Open

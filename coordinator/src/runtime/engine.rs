@@ -57,7 +57,7 @@ pub(super) struct Engine<L> {
     begun: Instant,
     sleep: Sleep,
     replayed: u64,
-    /// The journal cannot be written.
+    /// The journal cannot be written for now; one that was deleted is not worth waiting for.
     paused: bool,
     /// When the snapshot has to be renewed because something happened.
     stale_at: Option<tokio::time::Instant>,

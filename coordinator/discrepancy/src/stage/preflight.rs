@@ -151,9 +151,9 @@ fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
 }
 
 /// Simulates a fitted point more finely; what a fit (that one, or the one before an effect was added,
-/// for a size must not hide what it does not explain) can absorb is taken off. If the finer model fails, its cylinders and the rest of it are
-/// refined one at a time, and their differences added: so it is to first order. Nothing if that fails
-/// too.
+/// for a size must not hide what it does not explain) can absorb is taken off. If the finer model
+/// fails, its cylinders and the rest of it are refined one at a time, and their differences added: so
+/// it is to first order. Nothing if that fails too.
 ///
 /// # Errors
 /// Of the laboratory.

@@ -119,8 +119,8 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, noise): (&str
     size * size * distances(&signatures, &tangent)[(0, 1)] < APART
 }
 
-/// Acceptance 8, second half, over the levels of noise: the printed limit is within a factor 1.5 of the size that is detected
-/// in nine records of ten.
+/// Acceptance 8, second half, over the levels of noise: the printed limit is within a factor 1.5 of
+/// the size that is detected in nine records of ten.
 #[test]
 fn printed_limits_are_those_of_ninety_per_cent_power() {
     let each = trials(2);

@@ -59,25 +59,47 @@ impl Mesh {
 const ANOTHER: &str =
     "the tables belong to another mesh: `horsehead head CASE --write` computes them again";
 
-/// What to do about tables of another steel, arc or place of gauges.
-const CHANGED: &str = "material, arc or gauges have changed since the tables were computed: \
-                       `horsehead head CASE --write` computes them again";
+/// What tables of the head say that they were computed from, by its content hash.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin {
+    /// The mesh file.
+    Mesh,
+    /// All that a reduction depends on: mesh, material, arc, stations, gauges.
+    Source,
+}
 
-/// The tables were computed from all that a reduction depends on as it now stands, as far as they say.
+/// Tables were computed from what is there now, as far as that is known and they say so.
 ///
 /// # Errors
 /// They name another content.
-pub(super) fn check_source(path: &Path, hash: &str, stated: Option<&str>) -> Result<(), CaseError> {
-    match stated {
-        Some(stated) if stated != hash => Err(contradiction(
-            path,
-            "source_blake3",
-            stated,
-            format!("mesh, material, arc and gauges have {hash}"),
-            CHANGED,
-        )),
-        Some(_) | None => Ok(()),
+pub(super) fn check_origin(
+    path: &Path,
+    origin: Origin,
+    now: Option<&str>,
+    stated: Option<&str>,
+) -> Result<(), CaseError> {
+    let (Some(hash), Some(stated)) = (now, stated) else {
+        return Ok(());
+    };
+    if stated == hash {
+        return Ok(());
     }
+    let (field, has, remedy) = match origin {
+        Origin::Mesh => ("mesh_blake3", "flexible_head.mesh_file has", ANOTHER),
+        Origin::Source => (
+            "source_blake3",
+            "mesh, material, arc and gauges have",
+            "material, arc or gauges have changed since the tables were computed: `horsehead head CASE \
+             --write` computes them again",
+        ),
+    };
+    Err(contradiction(
+        path,
+        field,
+        stated,
+        format!("{has} {hash}"),
+        remedy,
+    ))
 }
 
 /// The tables were computed from this mesh, as far as they say.
@@ -99,27 +121,6 @@ pub(super) fn check_hash(
             ANOTHER,
         )),
         Some(_) | None => Ok(()),
-    }
-}
-
-/// The tables of a pair of ropes were computed from this mesh, as far as they say.
-///
-/// # Errors
-/// They name another content.
-pub(super) fn check_twin_hash(
-    path: &Path,
-    hash: Option<&str>,
-    stated: Option<&str>,
-) -> Result<(), CaseError> {
-    match (hash, stated) {
-        (Some(hash), Some(stated)) if stated != hash => Err(contradiction(
-            path,
-            "mesh_blake3",
-            stated,
-            format!("flexible_head.mesh_file has {hash}"),
-            ANOTHER,
-        )),
-        _ => Ok(()),
     }
 }
 

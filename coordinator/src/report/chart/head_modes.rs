@@ -96,17 +96,12 @@ fn on_arc(picture: &HeadPicture<'_>, deg: f64, [radial, tangential]: [f64; 2]) -
 /// The head's outline: in each of some layers, lowest first, its rightmost node, and back
 /// its leftmost.
 fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
-    let height = |node: &[f64; 3]| node[1];
-    let low = picture
-        .nodes_m
-        .iter()
-        .map(height)
-        .fold(f64::INFINITY, f64::min);
-    let high = picture
-        .nodes_m
-        .iter()
-        .map(height)
-        .fold(f64::NEG_INFINITY, f64::max);
+    let ends = picture.nodes_m.iter().map(|&[x, y, _]| (x, y));
+    let by_height = |a: &(f64, f64), b: &(f64, f64)| a.1.total_cmp(&b.1);
+    let (lowest, highest) = (ends.clone().min_by(by_height), ends.max_by(by_height));
+    let (Some(lowest), Some(highest)) = (lowest, highest) else {
+        return Vec::new();
+    };
     let mut layers = [None::<((f64, f64), (f64, f64))>; LAYERS];
     for &[x, y, _] in picture.nodes_m {
         #[expect(
@@ -114,7 +109,7 @@ fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
             clippy::cast_sign_loss,
             reason = "a share of the height"
         )]
-        let at = ((y - low) / (high - low) * LAYERS as f64) as usize;
+        let at = ((y - lowest.1) / (highest.1 - lowest.1) * LAYERS as f64) as usize;
         if let Some(layer) = layers.get_mut(at.min(LAYERS - 1)) {
             let (mut left, mut right) = layer.unwrap_or(((x, y), (x, y)));
             if x < left.0 {
@@ -127,14 +122,10 @@ fn outline(picture: &HeadPicture<'_>) -> Vec<(f64, f64)> {
         }
     }
     let known: Vec<_> = layers.into_iter().flatten().collect();
-    let ends = picture.nodes_m.iter().map(|&[x, y, _]| (x, y));
-    let by_height = |a: &(f64, f64), b: &(f64, f64)| a.1.total_cmp(&b.1);
-    let (lowest, highest) = (ends.clone().min_by(by_height), ends.max_by(by_height));
     let forth = known.iter().map(|(_, right)| *right);
-    let forth = lowest.into_iter().chain(forth).chain(highest);
-    forth
-        .chain(known.iter().rev().map(|(left, _)| *left))
-        .collect()
+    let back = known.iter().rev().map(|(left, _)| *left);
+    let forth = std::iter::once(lowest).chain(forth);
+    forth.chain([highest]).chain(back).collect()
 }
 
 /// The part of the plane that every picture shows.
@@ -211,12 +202,11 @@ impl Sheet<'_, '_> {
                 self.canvas.dot(place, 2.6, GUIDE)?;
             }
         }
-        for (number, gauge) in (1..).zip(picture.gauges) {
+        for (number, gauge) in (1_u32..).zip(picture.gauges) {
             let [x, y, _] = gauge.position_m;
             let place = self.at((x, y));
             self.canvas.dot(place, 1.8, BLUE)?;
             let lettering = Lettering::new(9.0, BLUE).at(HPos::Left, VPos::Bottom);
-            let number: i32 = number;
             self.canvas
                 .text((place.0 + 3.0, place.1), &number.to_string(), lettering)?;
         }
