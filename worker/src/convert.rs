@@ -244,6 +244,7 @@ pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
             damping: [value(GeneName::Cb1)?, value(GeneName::Cb23)?],
             rotational_stiffness: [value(GeneName::Kb4)?, value(GeneName::Kb56)?],
             rotational_damping: [value(GeneName::Cb4)?, value(GeneName::Cb56)?],
+            preload: case.ropes.preload_n,
         },
         contact: Impact {
             stiffness: value(GeneName::Kc)?,

@@ -92,6 +92,7 @@ fn check_rope_numbers(document: &Document, case: &CaseFile) -> Result<(), CaseEr
             case.flexible_head.density_kg_m3,
         ),
     ];
+    document.within("ropes.preload_n", ropes.preload_n, -1.0e6..=1.0e6, "N")?;
     document.within("ropes.diameter_m", ropes.diameter_m, 1.0e-3..=0.2, "m")?;
     document.all_within(&pitches, 1.0e-3..=1.0, "m")?;
     document.all_within(&counts, 2.0..=5000.0, "cylinders")?;

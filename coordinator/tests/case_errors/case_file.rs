@@ -40,6 +40,21 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "unknown variant `N/mm`", "did you mean `N/m`?"],
     ),
     (
+        "a preload beyond any rope",
+        |c| {
+            c.replace(
+                TOML,
+                "ends = \"half_pitch\"",
+                "preload_n = 1.0e9\nends = \"half_pitch\"",
+            );
+        },
+        &[
+            "case.toml",
+            "`ropes.preload_n` = 1000000000",
+            "-1e6 to 1e6 N",
+        ],
+    ),
+    (
         "an effect's value without unit",
         |c| c.effect("parameters = { moment = { value = 1500.0 } }"),
         &["case.toml", "missing field `unit`"],

@@ -123,6 +123,7 @@ pub(crate) fn case() -> Case {
             density_kg_m3: 7850.0,
             reference_length_m: 0.05,
             ends: RopeEnds::HalfPitch,
+            preload_n: 0.0,
             back_cylinders: 72,
             front_cylinders: 114,
         },

@@ -87,6 +87,9 @@ pub struct Ropes {
     pub reference_length_m: f64,
     /// Stiffness of the two end joints of a rope.
     pub ends: RopeEnds,
+    /// Preload of every joint: its pull where nothing is stretched \[N\]; 0 where none is stated.
+    #[serde(default)]
+    pub preload_n: f64,
     /// Cylinders between crossbeam and back head.
     pub back_cylinders: usize,
     /// Cylinders between front head and suspension point.

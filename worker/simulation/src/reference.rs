@@ -117,6 +117,7 @@ pub fn law() -> RopeLaw {
             damping: [5201.0, 4287.0],
             rotational_stiffness: [204.0 * deg, 308.0 * deg],
             rotational_damping: [45.0 * deg, 56.0 * deg],
+            preload: 0.0,
         },
         contact: Impact {
             stiffness: 4.01e8,

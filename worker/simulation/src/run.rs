@@ -202,7 +202,7 @@ fn revolve(
         let individual = &system.equations;
         if let Some(kind) = settings.limits.broken(
             individual.machine,
-            individual.ropes.joint.stiffness[0],
+            &individual.ropes.joint,
             &to.q,
             swing,
             &individual.scratch,

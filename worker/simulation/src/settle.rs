@@ -49,7 +49,7 @@ pub fn equilibrium(
     let individual = &system.equations;
     let broken = limits.broken(
         individual.machine,
-        individual.ropes.joint.stiffness[0],
+        &individual.ropes.joint,
         &q,
         swing,
         &individual.scratch,

@@ -1,4 +1,5 @@
 //! How a simulation ended; every run ends in one of these, none hangs or panics.
+use crate::element::bushing::Bushing;
 use crate::model::layout::Motion;
 use crate::model::{Machine, Scratch};
 
@@ -72,21 +73,19 @@ impl Default for Limits {
 impl Limits {
     /// The first limit that a state with loads in `scratch` breaks.
     ///
-    /// `swing` is the beam's range on the inextensible mechanism \[rad\].
+    /// `joint` is that between two cylinders; `swing` is the beam's range on the inextensible mechanism \[rad\].
     pub fn broken(
         &self,
         machine: &Machine,
-        joint_stiffness: f64,
+        joint: &Bushing,
         q: &[f64],
         swing: [f64; 2],
         scratch: &Scratch,
     ) -> Option<Failure> {
-        let longest = self.extension * machine.description.rope.pitch;
+        let most = joint.pull_at(self.extension * machine.description.rope.pitch);
         for state in &scratch.chains {
-            for joint in 0..state.joints.len() {
-                if state.tension(joint) > longest * joint_stiffness {
-                    return Some(Failure::OverstretchedRope);
-                }
+            if (0..state.joints.len()).any(|joint| state.tension(joint) > most) {
+                return Some(Failure::OverstretchedRope);
             }
         }
         if scratch.deepest() > self.penetration {

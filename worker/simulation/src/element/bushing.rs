@@ -1,13 +1,16 @@
 //! Six-component bushing between marker I and marker J (paper, Eqs. 1-3).
 //!
 //! In the frame of J with x along its axis `e`, the force and torque on I are
-//! `F = -K R - C V`, `T = -K Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. That isotropy
+//! `F = -K R - C V + F_0`, `T = -K Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. That isotropy
 //! across the axis means that only `e` is needed of J's frame, and the law can be written in
 //! world axes:
 //!
-//! `F_I = -[k2 d + c2 V + e ((k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`,
+//! `F_I = -[k2 d + c2 V + e (f0 + (k1 - k2) e.d + (c1 - c2) e.V)]`, `d = r_I - r_J`,
 //! `V = v_I - v_J - w_J x d`, and the same for the torque with the rotation vector `Theta` and
-//! `w = w_I - w_J`. On J acts `F_J = -F_I`, `T_J = -T_I - d x F_I` (Eq. 2).
+//! `w = w_I - w_J`. On J acts `F_J = -F_I`, `T_J = -T_I - d x F_I` (Eq. 2). Of Eq. 1's six preloads
+//! one is left, the tension `f0` along the axis: shear and bending ones would point in a direction
+//! across the rope, which has none, and a torque would turn cylinders out of the plane of a single
+//! rope, where nothing holds them (two ropes of opposite lay balance it).
 use super::ForceElement;
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
 use nalgebra::{Matrix3, Vector3};
@@ -26,6 +29,8 @@ pub struct Bushing {
     pub rotational_stiffness: [f64; 2],
     /// Torsional and bending damping `C_44`, `C_55 = C_66` [N m s/rad].
     pub rotational_damping: [f64; 2],
+    /// Preload: the pull at no deformation, positive where it draws the markers together \[N\].
+    pub preload: f64,
 }
 
 /// A marker: a frame fixed on a body, and the motion of that body.
@@ -107,7 +112,7 @@ struct Deformation {
 }
 
 impl Bushing {
-    /// The same bushing with every coefficient multiplied.
+    /// The same bushing with every stiffness and damping multiplied, under the same preload.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         Self {
@@ -115,7 +120,18 @@ impl Bushing {
             damping: self.damping.map(|x| x * factor),
             rotational_stiffness: self.rotational_stiffness.map(|x| x * factor),
             rotational_damping: self.rotational_damping.map(|x| x * factor),
+            preload: self.preload,
         }
+    }
+
+    /// Pull along the axis at an extension at rest \[N\].
+    pub fn pull_at(&self, extension: f64) -> f64 {
+        extension * self.stiffness[0] + self.preload
+    }
+
+    /// Extension along the axis under a tension at rest \[m\].
+    pub fn stretch(&self, tension: f64) -> f64 {
+        (tension - self.preload) / self.stiffness[0]
     }
 
     /// A revolute joint of the same axial coefficients: equally stiff in every direction, free to
@@ -127,6 +143,7 @@ impl Bushing {
             damping: [self.damping[0]; 2],
             rotational_stiffness: [0.0; 2],
             rotational_damping: [0.0; 2],
+            preload: self.preload,
         }
     }
 
@@ -175,7 +192,7 @@ impl Bushing {
         let [c4, c5] = self.rotational_damping;
         let Deformation { e, d, V, theta, w } = self.deformation(i, j);
         let damping = V * c2 + e * ((c1 - c2) * e.dot(&V));
-        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d)) + damping);
+        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d) + self.preload) + damping);
         let bending_damping = w * c5 + e * ((c4 - c5) * e.dot(&w));
         let torque = -(theta * k5 + e * ((k4 - k5) * e.dot(&theta)) + bending_damping);
         LinkLoad {
@@ -210,7 +227,8 @@ impl Bushing {
         let [k4, k5] = self.rotational_stiffness;
         let Deformation { e, d, theta, .. } = self.deformation(i, j);
         let (axial, twist) = (e.dot(&d), e.dot(&theta));
-        0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
+        self.preload * axial
+            + 0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
             + 0.5 * (k5 * theta.norm_squared() + (k4 - k5) * twist * twist)
     }
 
@@ -232,7 +250,7 @@ impl Bushing {
         let [k4, k5] = self.rotational_stiffness;
         let [c4, c5] = self.rotational_damping;
         let Deformation { e, d, V, theta, w } = self.deformation(i, j);
-        let mut pull = (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
+        let mut pull = self.preload + (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
         if let Some(further) = further {
             pull += further.force;
             k1 += further.by_extension;

@@ -177,6 +177,7 @@ fn a_further_pull_has_its_tangent() {
         damping: [0.9, 0.4],
         rotational_stiffness: [1.7, 2.3],
         rotational_damping: [0.6, 0.8],
+        preload: 0.35,
     };
     let loaded = |m: &[Marker; 2]| {
         let [x, rate] = element.extension(&m[0], &m[1]);

@@ -72,6 +72,7 @@ const fn example_bushing() -> Bushing {
         damping: [0.9, 0.4],
         rotational_stiffness: [1.7, 2.3],
         rotational_damping: [0.6, 0.8],
+        preload: 0.35,
     }
 }
 

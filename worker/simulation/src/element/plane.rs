@@ -123,7 +123,7 @@ impl Bushing {
         let Deformation { d, V, theta, w } = deformation(i, j);
         let e = j.axis;
         let damping = V * c2 + e * ((c1 - c2) * e.dot(&V));
-        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d)) + damping);
+        let force = -(d * k2 + e * ((k1 - k2) * e.dot(&d) + self.preload) + damping);
         let bending_damping = w * c5;
         let torque = -(theta * k5 + bending_damping);
         PlaneLoad {
@@ -147,7 +147,8 @@ impl Bushing {
         let [k1, k2] = self.stiffness;
         let Deformation { d, theta, .. } = deformation(i, j);
         let axial = j.axis.dot(&d);
-        0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
+        self.preload * axial
+            + 0.5 * (k2 * d.norm_squared() + (k1 - k2) * axial * axial)
             + 0.5 * self.rotational_stiffness[1] * theta * theta
     }
 
@@ -164,7 +165,7 @@ impl Bushing {
         let [mut k1, k2] = self.stiffness;
         let [mut c1, c2] = self.damping;
         let Deformation { d, V, w, .. } = deformation(i, j);
-        let mut pull = (k1 - k2) * j.axis.dot(&d) + (c1 - c2) * j.axis.dot(&V);
+        let mut pull = self.preload + (k1 - k2) * j.axis.dot(&d) + (c1 - c2) * j.axis.dot(&V);
         if let Some(further) = further {
             pull += further.force;
             k1 += further.by_extension;

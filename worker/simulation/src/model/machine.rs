@@ -221,7 +221,8 @@ impl Machine {
         let rope = &self.description.rope;
         let per_length = rope.reference_pitch / rope.pitch;
         let share = self.share();
-        let joint = law.bushing.scaled(per_length).scaled(share);
+        let mut joint = law.bushing.scaled(per_length).scaled(share);
+        joint.preload *= share;
         let [base, anchor] = self.ends(&joint);
         Ropes {
             joint,

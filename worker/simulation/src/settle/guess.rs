@@ -84,6 +84,8 @@ pub(super) fn rigid_position(machine: &Machine, pin: f64) -> Result<Position, Do
 struct Taut {
     radius: f64,
     extension: f64,
+    /// Extension without a pull \[m\]: below zero for a preloaded joint.
+    slack: f64,
 }
 
 impl Taut {
@@ -91,20 +93,23 @@ impl Taut {
         let d = &machine.description;
         let pitch = d.rope.pitch;
         let radius = [d.back_arc, d.front_arc][rope].radius;
+        let joint = &ropes.joint;
+        let slack = joint.stretch(0.0).max(-0.5 * pitch);
         let depth = ropes
             .contact
             .depth_under(tension * pitch / radius)
             .min(0.05);
         Self {
             radius: radius - depth,
-            extension: (tension / ropes.joint.stiffness[0]).clamp(0.0, 0.5 * pitch),
+            extension: joint.stretch(tension).min(0.5 * pitch).max(slack),
+            slack,
         }
     }
 
     /// The same rope with every joint drawn less.
     fn longer(self, by: f64) -> Self {
         Self {
-            extension: (self.extension - by).max(0.0),
+            extension: (self.extension - by).max(self.slack),
             ..self
         }
     }

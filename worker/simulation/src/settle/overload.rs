@@ -57,7 +57,7 @@ pub fn overload(
     let d = &machine.description;
     let pitch = d.rope.pitch;
     let tightest = tension[0].max(tension[1]);
-    let carried = limits.extension * pitch * ropes.joint.stiffness[0] / tightest;
+    let carried = ropes.joint.pull_at(limits.extension * pitch) / tightest;
     if carried < 1.0 {
         return Some((Failure::OverstretchedRope, carried.max(0.0)));
     }

@@ -60,6 +60,7 @@ fn swinging() -> (System<Rig>, State) {
         damping: [0.3, 0.2],
         rotational_stiffness: [0.02, 0.03],
         rotational_damping: [1e-5, 2e-5],
+        preload: 0.0,
     };
     let mut setup = cantilever(5, law);
     setup.gravity = V3::new(1.3, -9.81, 0.0);
@@ -77,6 +78,7 @@ fn tumbling() -> (System<Rig>, State) {
         damping: [0.1, 0.1],
         rotational_stiffness: [2e-3, 3e-3],
         rotational_damping: [1e-6, 2e-6],
+        preload: 0.0,
     };
     let mut setup = cantilever(3, law);
     setup.ends = [End::free(); 2];

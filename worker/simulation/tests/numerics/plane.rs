@@ -46,6 +46,38 @@ fn a_run_with_effects_in_the_plane_is_the_run_in_space() {
     }
 }
 
+/// Joints that pull by themselves, in the plane and in space; and what that is to a machine: another
+/// length of its back rope (the front rope's moves the suspension point alone). Cylinders that lie
+/// closer touch the head at other places, which leaves a fifteenth of the difference.
+#[test]
+fn a_preload_is_another_length_of_rope() {
+    let mut preloaded = recommended();
+    preloaded.bushing.preload = 4e4;
+    let plain = Machine::new(reference::description(), 2).unwrap();
+    assert_agreement(&plain, &preloaded, "preloaded");
+    let mut description = reference::description();
+    let rope = &description.rope;
+    // joints of coarser cylinders are softer and under the same preload
+    let joint = preloaded.bushing.scaled(rope.reference_pitch / rope.pitch);
+    description.rod.length += rope.back as f64 * joint.stretch(0.0);
+    let shorter = Machine::new(description, 2).unwrap();
+    let gauges = |machine: &Machine, law: &RopeLaw| {
+        let mut recorder = Recorder::gauges_only();
+        let result = simulate(machine, law, &RunSettings::default(), &mut recorder);
+        assert_eq!(result.verdict, Verdict::Complete);
+        recorder.curves.gauge
+    };
+    let apart = |a: &[Vec<f64>; 4], b: &[Vec<f64>; 4]| {
+        let pairs = a.iter().flatten().zip(b.iter().flatten());
+        pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    };
+    let other = gauges(&plain, &preloaded);
+    let left = apart(&other, &gauges(&shorter, &recommended()));
+    let whole = apart(&other, &gauges(&plain, &recommended()));
+    eprintln!("preload: {left:.3e} of {whole:.3e} Pa");
+    assert!(left < whole / 15.0, "{left} of {whole}");
+}
+
 fn assert_agreement(plane: &Machine, law: &RopeLaw, name: &str) {
     let space = plane.clone().in_space();
     assert!(plane.layout.len() * 19 < space.layout.len() * 10);

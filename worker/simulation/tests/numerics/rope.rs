@@ -23,6 +23,7 @@ pub(crate) fn recommended() -> RopeLaw {
             damping: [400.0, 400.0],
             rotational_stiffness: [110.0 * PER_DEGREE, 137.0 * PER_DEGREE],
             rotational_damping: [40.0 * PER_DEGREE, 40.0 * PER_DEGREE],
+            preload: 0.0,
         },
         contact: Impact {
             stiffness: 1.0e6,
@@ -41,6 +42,7 @@ pub(crate) fn optimised() -> RopeLaw {
             damping: [5201.0, 4287.0],
             rotational_stiffness: [204.0 * PER_DEGREE, 308.0 * PER_DEGREE],
             rotational_damping: [45.0 * PER_DEGREE, 56.0 * PER_DEGREE],
+            preload: 0.0,
         },
         contact: Impact {
             stiffness: 4.01e8,
@@ -69,6 +71,7 @@ pub(crate) fn string() -> Bushing {
         damping: [0.0; 2],
         rotational_stiffness: [1e-3, 1e-4],
         rotational_damping: [0.0; 2],
+        preload: 0.0,
     }
 }
 
