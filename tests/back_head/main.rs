@@ -98,6 +98,7 @@ fn reduced_from(mesh: &Mesh, modes: usize, families: &[Family]) -> Reduction {
         pair: None,
         modes,
         families,
+        patterns: &[],
         fields: false,
     })
     .unwrap()

@@ -201,6 +201,7 @@ fn a_mesh_by_gmsh_gives_what_another_program_gives() {
             pair: None,
             modes: 4,
             families: &[family],
+            patterns: &[],
             fields: false,
         })
         .unwrap();

@@ -27,16 +27,12 @@ pub(super) struct Arguments {
     /// Case folder, with `case.toml` in it.
     #[arg(value_name = "CASE")]
     case: PathBuf,
-    /// How many modes; as many as the case's table by default.
+    /// How many modes; as many as the case simulates by default.
     #[arg(long, value_name = "N", env = "HORSEHEAD_MODES")]
     modes: Option<usize>,
-    /// Which modes: a rope over the whole width drives only symmetric ones.
-    #[arg(
-        long,
-        value_enum,
-        default_value = "symmetric",
-        env = "HORSEHEAD_FAMILY"
-    )]
+    /// Which modes: those that couple most to the loads of a turn, or the lowest of a family. A rope
+    /// over the whole width drives only symmetric ones.
+    #[arg(long, value_enum, default_value = "coupled", env = "HORSEHEAD_FAMILY")]
     family: FamilyChoice,
     /// Condition whose load stands for the quasi-static turn; that of the objective by default.
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
@@ -58,6 +54,8 @@ pub(super) struct Arguments {
 /// Families of modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum FamilyChoice {
+    /// Of both, those that couple most to the wrapped rope and to the beam's motion.
+    Coupled,
     /// Sideways displacement changes sign across the middle.
     Symmetric,
     /// Displacement in the plane of motion changes sign.
@@ -71,7 +69,7 @@ impl FamilyChoice {
         match self {
             Self::Symmetric => vec![ModeFamily::Symmetric],
             Self::Antisymmetric => vec![ModeFamily::Antisymmetric],
-            Self::Both => vec![ModeFamily::Symmetric, ModeFamily::Antisymmetric],
+            Self::Coupled | Self::Both => vec![ModeFamily::Symmetric, ModeFamily::Antisymmetric],
         }
     }
 }
@@ -85,9 +83,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if source.stale {
         output::tell("note: tables of the case are missing or were computed for something else");
     }
-    let modes = arguments
-        .modes
-        .unwrap_or(case.modal_head.frequencies_hz.len());
+    let modes = arguments.modes.unwrap_or(case.run.modes);
     if !(1..=MOST_MODES).contains(&modes) {
         return Err(Usage {
             message: format!("{modes} modes cannot be computed"),
@@ -107,6 +103,9 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let turn = case::quasi_static(&case, &case.conditions[chosen])
         .context("the crank of this case cannot turn through")?;
     let mut spec = spec(&case, &source, modes, arguments.family.families());
+    if arguments.family == FamilyChoice::Coupled {
+        spec.patterns = patterns(&case, &turn);
+    }
     if arguments.vtu.is_some() {
         spec.fields = Some(hardest(&case, &turn));
     }
@@ -162,15 +161,37 @@ fn surface<'a>(read: &'a case::mesh::Mesh, name: &str) -> &'a [usize] {
 
 /// The rope at its largest tension.
 fn hardest(case: &Case, turn: &QuasiStatic) -> RopeWrap {
-    let places = turn.tension_n.iter().zip(&turn.contact_deg);
-    let (tension, leaves) = places
-        .max_by(|a, b| a.0.total_cmp(b.0))
-        .map_or((0.0, 0.0), |(tension, leaves)| (*tension, *leaves));
-    RopeWrap {
-        tension_n: tension,
+    let wraps = wraps(case, turn);
+    let most = wraps.max_by(|a, b| a.tension_n.total_cmp(&b.tension_n));
+    most.unwrap_or(RopeWrap {
+        tension_n: 0.0,
         anchor_deg: case.back_head.rope_anchor_deg,
-        leaves_deg: leaves,
-    }
+        leaves_deg: case.back_head.rope_anchor_deg,
+    })
+}
+
+/// The rope where it covers least, half and most of the arc that it ever covers.
+fn patterns(case: &Case, turn: &QuasiStatic) -> Vec<RopeWrap> {
+    let mut wraps: Vec<RopeWrap> = wraps(case, turn).collect();
+    wraps.sort_by(|a, b| a.leaves_deg.total_cmp(&b.leaves_deg));
+    let last = wraps.len().saturating_sub(1);
+    let places = [0, last / 2, last];
+    places
+        .iter()
+        .filter_map(|k| wraps.get(*k))
+        .copied()
+        .collect()
+}
+
+/// The rope at every crank angle.
+fn wraps(case: &Case, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
+    let anchor_deg = case.back_head.rope_anchor_deg;
+    let places = turn.tension_n.iter().zip(&turn.contact_deg);
+    places.map(move |(&tension_n, &leaves_deg)| RopeWrap {
+        tension_n,
+        anchor_deg,
+        leaves_deg,
+    })
 }
 
 /// The job that reduces a case's head at the stations of its present tables.
@@ -191,6 +212,7 @@ fn spec(
         probes_deg: Vec::new(),
         modes,
         families,
+        patterns: Vec::new(),
         pair: case.twin_ropes.as_ref().map(|twins| RopePair {
             offset_m: twins.offset_m,
             modes: twins.modes,

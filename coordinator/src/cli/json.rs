@@ -3,7 +3,7 @@
 use crate::study::{Curves, HeadComparison, simulation_digest};
 use protocol::{
     case::Case,
-    job::{Evaluation, ModeFamily, Reached, ReducedHead, Simulation, Verdict},
+    job::{Evaluation, LeftOutMode, ModeFamily, Reached, ReducedHead, Simulation, Verdict},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -160,6 +160,8 @@ pub(super) struct HeadOutput<'a> {
     /// Modes out of the plane (Hz); absent where there is one rope.
     #[serde(skip_serializing_if = "Option::is_none")]
     twin_modes_hz: Option<&'a [f64]>,
+    /// Modes that couple less to the loads of a turn; empty where they were not asked for.
+    left_out: &'a [LeftOutMode],
     /// Modes of the case's table that do not move the rope surface (Hz).
     inert_table_modes_hz: &'a [f64],
     /// By gauge number.
@@ -173,6 +175,8 @@ pub(super) struct HeadModeOutput {
     frequency_hz: f64,
     table_frequency_hz: Option<f64>,
     mac: Option<f64>,
+    /// Largest share of any load pattern's static energy; null where they were not asked for.
+    coupling: Option<f64>,
 }
 
 /// Statics of a gauge over the quasi-static turn.
@@ -208,9 +212,11 @@ pub(super) fn head<'a>(
                 frequency_hz: mode.frequency_hz,
                 table_frequency_hz: found.table.map(|(hz, _)| hz),
                 mac: found.table.map(|(_, mac)| mac),
+                coupling: head.coupled().then_some(mode.coupling),
             })
             .collect(),
         twin_modes_hz: head.twin.as_ref().map(|twin| &twin.frequencies_hz[..]),
+        left_out: &head.left_out,
         inert_table_modes_hz: &comparison.inert_hz,
         gauges: (0..4)
             .map(|gauge| {

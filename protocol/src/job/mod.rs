@@ -10,8 +10,8 @@ mod verdict;
 
 pub use observe::{Observation, ObserveSpec, Refinement};
 pub use reduce_head::{
-    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, ModeFamily, ReduceHeadSpec,
-    ReducedHead, RopePair, RopeWrap,
+    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily,
+    ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
 };
 pub use score::{ChannelScore, Evaluation, ScoreSpec};
 pub use simulate::{Energy, Integration, Motion, SimulateSpec, Simulation};

@@ -26,8 +26,11 @@ pub struct ReduceHeadSpec {
     pub probes_deg: Vec<f64>,
     /// Number of modes n.
     pub modes: usize,
-    /// Families of modes, the lowest of all are returned.
+    /// Families of modes to take them from.
     pub families: Vec<ModeFamily>,
+    /// Ropes as they lie in a turn: the modes that couple most to them and to the beam's motion are
+    /// returned. Without any, the lowest.
+    pub patterns: Vec<RopeWrap>,
     /// Two ropes on the head, where there are two: their tables are wanted as well.
     pub pair: Option<RopePair>,
     /// A static load whose field is wanted; with it the whole fields of all modes are returned.
@@ -124,6 +127,8 @@ pub struct RopePair {
 pub struct ReducedHead {
     /// Modes, lowest first; n.
     pub modes: Vec<HeadMode>,
+    /// Modes that couple less, lowest first; empty without patterns.
+    pub left_out: Vec<LeftOutMode>,
     /// Static gauge stress per newton at the stations.
     pub influence: Influence,
     /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
@@ -149,6 +154,13 @@ pub struct ReducedHead {
     pub fields: Option<HeadFields>,
 }
 
+impl ReducedHead {
+    /// Whether its modes were picked by how they couple to load patterns.
+    pub const fn coupled(&self) -> bool {
+        !self.left_out.is_empty()
+    }
+}
+
 /// One mode of unit modal mass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct HeadMode {
@@ -164,6 +176,19 @@ pub struct HeadMode {
     pub gauge_stress_mpa: [f64; 4],
     /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)`.
     pub participation: [f64; 3],
+    /// Largest share of any load pattern's static energy that it holds \[1\]; 0 without patterns.
+    pub coupling: f64,
+}
+
+/// A mode that was looked at and not returned.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LeftOutMode {
+    /// Its family.
+    pub family: ModeFamily,
+    /// Natural frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// Largest share of any load pattern's static energy that it would hold \[1\].
+    pub coupling: f64,
 }
 
 /// Fields over the whole mesh, for pictures: single precision.

@@ -1,7 +1,8 @@
 //! Reduces the back head of a job: plain data in, plain data out; the case plays no part.
 use protocol::case::{Influence, TwinHead};
 use protocol::job::{
-    ElementKind, Failure, HeadFields, HeadMode, ModeFamily, ReduceHeadSpec, ReducedHead, RopeWrap,
+    ElementKind, Failure, HeadFields, HeadMode, LeftOutMode, ModeFamily, ReduceHeadSpec,
+    ReducedHead, RopeWrap,
 };
 use simulation::flexible::{
     self, Family, Gauge, Mesh, Pair, Reduction, Request, Steel, SwayTables, Wrap, reduce,
@@ -41,6 +42,7 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         stations: &radians(&spec.arc_deg),
         probes: &radians(&spec.probes_deg),
         wrap: spec.fields.map(wrap),
+        patterns: &spec.patterns.iter().copied().map(wrap).collect::<Vec<_>>(),
         pair: spec.pair.map(|pair| Pair {
             offset: pair.offset_m,
             modes: pair.modes,
@@ -112,6 +114,13 @@ const fn family(family: ModeFamily) -> Family {
     }
 }
 
+const fn mode_family(family: Family) -> ModeFamily {
+    match family {
+        Family::Symmetric => ModeFamily::Symmetric,
+        Family::Antisymmetric => ModeFamily::Antisymmetric,
+    }
+}
+
 fn mesh(spec: &ReduceHeadSpec) -> Mesh {
     let indices = |nodes: &[u32]| nodes.iter().map(|&node| node as usize).collect();
     Mesh {
@@ -159,19 +168,24 @@ fn twin(spec: &ReduceHeadSpec, sway: &SwayTables) -> TwinHead {
 }
 
 fn assemble(spec: &ReduceHeadSpec, reduction: &Reduction, wall_s: f64) -> ReducedHead {
+    let hertz = |frequency: f64| frequency / std::f64::consts::TAU;
     let modes = reduction.modes.iter().map(|mode| HeadMode {
-        family: match mode.family {
-            Family::Symmetric => ModeFamily::Symmetric,
-            Family::Antisymmetric => ModeFamily::Antisymmetric,
-        },
-        frequency_hz: mode.frequency / std::f64::consts::TAU,
+        family: mode_family(mode.family),
+        frequency_hz: hertz(mode.frequency),
         radial: mode.radial.clone(),
         tangential: mode.tangential.clone(),
         gauge_stress_mpa: four(&mode.gauge_stress),
         participation: mode.participation,
+        coupling: mode.coupling,
+    });
+    let left_out = reduction.left_out.iter().map(|mode| LeftOutMode {
+        family: mode_family(mode.family),
+        frequency_hz: hertz(mode.frequency),
+        coupling: mode.coupling,
     });
     ReducedHead {
         modes: modes.collect(),
+        left_out: left_out.collect(),
         influence: Influence {
             psi_deg: spec.arc_deg.clone(),
             normal_mpa_per_n: table(&reduction.normal_influence),

@@ -268,6 +268,7 @@ mod tests {
             tangential: vec![0.0; 3],
             gauge_stress_mpa: [0.0; 4],
             participation: [0.0; 3],
+            coupling: 0.0,
         }
     }
 

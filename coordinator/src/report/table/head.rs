@@ -6,29 +6,71 @@ use crate::{
     study::HeadComparison,
 };
 use protocol::case::TwinHead;
-use protocol::job::ReducedHead;
+use protocol::job::{LeftOutMode, ReducedHead};
 
-/// Modes, one row each, beside the most similar ones of the case's table.
+/// What the last column says.
+const COUPLING: &str = "Coupling: largest share of the static energy under a load pattern that the \
+     mode holds. Patterns: the rope at its shortest, middle and longest wrap of the turn, and the \
+     beam's accelerations along x, along y and about the pivot. Those that couple most are taken.";
+
+/// Modes, one row each, beside the most similar ones of the case's table; then what was left out
+/// below the highest.
 pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
-    let rows = (1..).zip(head.modes.iter().zip(&comparison.modes));
-    let rows = rows.map(|(number, (mode, found))| {
-        let of_table = found.table.map_or_else(
+    let row = |label: String, family, hz, table: Option<(f64, f64)>, coupling: f64| {
+        let of_table = table.map_or_else(
             || [NONE, NONE, NONE].map(str::to_owned),
-            |(hz, mac)| {
-                let difference = 100.0 * (mode.frequency_hz / hz - 1.0);
-                [fixed(hz, 2), fixed(difference, 2), fixed(mac, 4)]
+            |(table_hz, mac)| {
+                let difference = 100.0 * (hz / table_hz - 1.0);
+                [fixed(table_hz, 2), fixed(difference, 2), fixed(mac, 4)]
             },
         );
-        let [hz, difference, mac] = of_table;
-        let cells = [
-            mode_family(mode.family).to_owned(),
-            fixed(mode.frequency_hz, 2),
-            hz,
-            difference,
-            mac,
-        ];
-        Row::new(format!("mode {number}"), cells)
+        let coupling = head.coupled().then(|| fixed(100.0 * coupling, 3));
+        let of_mode = [mode_family(family).to_owned(), fixed(hz, 2)];
+        let cells = of_mode.into_iter().chain(of_table);
+        Row::new(
+            label,
+            cells.chain([coupling.unwrap_or_else(|| NONE.to_owned())]),
+        )
+    };
+    let kept = (1..).zip(head.modes.iter().zip(&comparison.modes));
+    let kept = kept.map(|(number, (mode, found))| {
+        let label = format!("mode {number}");
+        row(
+            label,
+            mode.family,
+            mode.frequency_hz,
+            found.table,
+            mode.coupling,
+        )
     });
+    let (below, above) = left_out(head);
+    let beside = below.iter().map(|mode| {
+        let label = "left out".to_owned();
+        row(label, mode.family, mode.frequency_hz, None, mode.coupling)
+    });
+    Table {
+        title: "Modes of the back head, pin holes held".to_owned(),
+        head: [
+            "",
+            "family",
+            "Hz",
+            "table Hz",
+            "difference %",
+            "MAC",
+            "coupling %",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: kept.chain(beside).collect(),
+        notes: mode_notes(head, comparison, above),
+    }
+}
+
+fn mode_notes(
+    head: &ReducedHead,
+    comparison: &HeadComparison,
+    above: &[LeftOutMode],
+) -> Vec<String> {
     let mut notes = vec![format!(
         "MAC: modal assurance criterion of the shapes along the rope arc. Mass {} kg; {} unknown \
          displacements, {} solves.",
@@ -36,6 +78,19 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
         head.unknowns,
         head.lanczos_steps
     )];
+    if head.coupled() {
+        notes.push(COUPLING.to_owned());
+    }
+    if let (Some(first), Some(last)) = (above.first(), above.last()) {
+        let most = above.iter().fold(0.0_f64, |most, m| most.max(m.coupling));
+        notes.push(format!(
+            "Looked at and left out above them: {} from {} to {} Hz, coupling {} % at most.",
+            above.len(),
+            fixed(first.frequency_hz, 1),
+            fixed(last.frequency_hz, 1),
+            fixed(100.0 * most, 3)
+        ));
+    }
     if !comparison.inert_hz.is_empty() {
         let list: Vec<String> = comparison.inert_hz.iter().map(|hz| fixed(*hz, 1)).collect();
         notes.push(format!(
@@ -44,14 +99,16 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
             list.join(", ")
         ));
     }
-    Table {
-        title: "Modes of the back head, pin holes held".to_owned(),
-        head: ["", "family", "Hz", "table Hz", "difference %", "MAC"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.collect(),
-        notes,
-    }
+    notes
+}
+
+/// What was left out below the highest mode that was kept, and above it.
+fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
+    let highest = head.modes.last().map_or(0.0, |mode| mode.frequency_hz);
+    let below = head
+        .left_out
+        .partition_point(|mode| mode.frequency_hz < highest);
+    head.left_out.split_at(below)
 }
 
 /// Modes that a pair of ropes drives by pulling unequally, one row each: how far they move the rope at

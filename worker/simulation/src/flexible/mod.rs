@@ -6,6 +6,7 @@
 mod arc;
 mod assembly;
 mod cholesky;
+mod coupling;
 mod eigen;
 mod element;
 mod error;
@@ -17,6 +18,7 @@ mod sway;
 #[cfg(test)]
 mod tests;
 
+pub use coupling::LeftOut;
 pub use element::{ElementKind, Steel};
 pub use error::ReductionError;
 pub use gauge::Gauge;

@@ -6,6 +6,7 @@ use super::{
     arc::{Rim, Station},
     assembly::{Assembly, Unknowns},
     cholesky::Factor,
+    coupling::Patterns,
     eigen::lowest,
     element::Steel,
     mesh::{Half, Mesh},
@@ -33,7 +34,7 @@ pub(super) struct Problem<'a> {
     pub(super) assembly: Assembly,
     pub(super) factor: Factor,
     /// Consistent mass times the rigid motions, over all nodes of the half.
-    inertia: [Vec<[f64; 3]>; 3],
+    pub(super) inertia: [Vec<[f64; 3]>; 3],
 }
 
 impl<'a> Problem<'a> {
@@ -65,21 +66,24 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// Modes of this family, and the solves they took.
+    /// The lowest modes of this family, so many, and the solves they took.
     pub(super) fn modes(
         &self,
-        request: &Request<'_>,
+        (request, count): (&Request<'_>, usize),
+        patterns: Option<&Patterns>,
         stations: &[Station],
         rows: &[Row],
     ) -> Result<(Vec<Mode>, usize), ReductionError> {
-        let found = lowest(&self.assembly, &self.factor, request.modes)?;
+        let found = lowest(&self.assembly, &self.factor, count)?;
         let mode = |(value, shape): (&f64, &Vec<f64>)| {
-            self.mode(
-                request,
-                stations,
-                rows,
-                (value.sqrt(), self.unit_mass(shape)),
-            )
+            let (frequency, field) = (value.sqrt(), self.unit_mass(shape));
+            let coupling = patterns
+                .filter(|_| self.family == Family::Symmetric)
+                .map_or(0.0, |patterns| {
+                    patterns.shares(frequency, &field).fold(0.0, f64::max)
+                });
+            let mode = self.mode(request, stations, rows, (frequency, field));
+            Mode { coupling, ..mode }
         };
         let modes = found.eigenvalues.iter().zip(&found.shapes).map(mode);
         Ok((modes.collect(), found.steps))
@@ -128,10 +132,10 @@ impl<'a> Problem<'a> {
         let (field, gauge_stress) = self.signed(rows, field);
         // both halves together: double, or nothing
         let both = 1.0 + self.family.image()[0];
-        let participation = self.inertia.each_ref().map(|inertia| {
-            let work = inertia.iter().flatten().zip(field.iter().flatten());
-            both * work.map(|(m, u)| m * u).sum::<f64>()
-        });
+        let participation = self
+            .inertia
+            .each_ref()
+            .map(|inertia| both * dot(inertia, &field));
         let mean = |station: &Station, direction| 0.5 * both * station.mean(&field, direction);
         Mode {
             family: self.family,
@@ -140,6 +144,7 @@ impl<'a> Problem<'a> {
             tangential: stations.iter().map(|s| mean(s, s.tangential)).collect(),
             gauge_stress,
             participation,
+            coupling: 0.0,
             field: if request.fields {
                 self.half.unfold(&field, self.family.image())
             } else {
@@ -187,19 +192,10 @@ impl<'a> Problem<'a> {
             lines.iter().map(read).collect()
         };
         let inertia_stress = self.inertia.each_ref().map(|inertia| {
-            let read = |line: &Vec<[f64; 3]>| {
-                let work = inertia.iter().flatten().zip(line.iter().flatten());
-                -work.map(|(m, u)| m * u).sum::<f64>()
-            };
+            let read = |line: &Vec<[f64; 3]>| -dot(inertia, line);
             lines.iter().map(read).collect()
         });
-        let total = |inertia: usize, rigid: &[[f64; 3]]| {
-            let pairs = self.inertia[inertia].iter().flatten();
-            2.0 * pairs
-                .zip(rigid.iter().flatten())
-                .map(|(m, u)| m * u)
-                .sum::<f64>()
-        };
+        let total = |inertia: usize, rigid: &[[f64; 3]]| 2.0 * dot(&self.inertia[inertia], rigid);
         let [x, y, turn] = rigid(&self.half.mesh);
         let mass = total(0, &x);
         let (wrap_field, wrap_stress) = match &request.wrap {
@@ -208,6 +204,7 @@ impl<'a> Problem<'a> {
         };
         Ok(Reduction {
             modes: Vec::new(),
+            left_out: Vec::new(),
             normal_influence: stations.iter().map(|s| stress(s, s.radial, -1.0)).collect(),
             tangential_influence: stations
                 .iter()
@@ -227,7 +224,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Displacement of the half under a load on the half.
-    fn solve(&self, load: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(super) fn solve(&self, load: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut vector = self.unknowns.gather(load);
         self.factor.solve(&mut vector);
         self.unknowns.spread(&vector)
@@ -248,6 +245,23 @@ impl<'a> Problem<'a> {
         Ok(probes.iter().map(row).collect())
     }
 
+    /// Forces of a wrapped rope on the half.
+    pub(super) fn wrap_force(
+        &self,
+        rim: &Rim<'_>,
+        wrap: &Wrap,
+    ) -> Result<Vec<[f64; 3]>, ReductionError> {
+        let mut force = vec![[0.0; 3]; self.half.mesh.nodes.len()];
+        for (psi, share) in wrap.line(512) {
+            let station = rim.station(psi)?;
+            station.add_force(&mut force, station.radial, -0.5 * share);
+        }
+        let anchor = rim.station(wrap.anchor)?;
+        // the rope runs towards increasing psi and pulls its fixed end that way
+        anchor.add_force(&mut force, anchor.tangential, 0.5 * wrap.tension);
+        Ok(force)
+    }
+
     /// Displacement and stress of the whole mesh under a wrapped rope.
     fn wrapped(
         &self,
@@ -255,15 +269,8 @@ impl<'a> Problem<'a> {
         rim: &Rim<'_>,
         wrap: &Wrap,
     ) -> Result<Fields, ReductionError> {
-        let mut load = vec![[0.0; 3]; self.half.mesh.nodes.len()];
-        for (psi, share) in wrap.line(512) {
-            let station = rim.station(psi)?;
-            station.add_force(&mut load, station.radial, -0.5 * share);
-        }
-        let anchor = rim.station(wrap.anchor)?;
-        // the rope runs towards increasing psi and pulls its fixed end that way
-        anchor.add_force(&mut load, anchor.tangential, 0.5 * wrap.tension);
-        let field = self.half.unfold(&self.solve(&load), self.family.image());
+        let moved = self.solve(&self.wrap_force(rim, wrap)?);
+        let field = self.half.unfold(&moved, self.family.image());
         let stress = request.mesh.elements().map(|element| {
             let moved: Vec<[f64; 3]> = element.iter().map(|&node| field[node]).collect();
             let nodes = request.mesh.places(element);
@@ -273,6 +280,12 @@ impl<'a> Problem<'a> {
         let stress = stress.collect();
         Ok((field, stress))
     }
+}
+
+/// Sum of products of two fields.
+pub(super) fn dot(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
+    let pairs = a.iter().flatten().zip(b.iter().flatten());
+    pairs.map(|(a, b)| a * b).sum()
 }
 
 /// Consistent mass times fields over all nodes.

@@ -6,6 +6,7 @@
 use super::{
     ReductionError,
     arc::{Rim, Station},
+    coupling::{CANDIDATES, LeftOut, Patterns, pick},
     element::Steel,
     gauge::Gauge,
     mesh::{Half, Mesh},
@@ -53,8 +54,11 @@ pub struct Request<'a> {
     pub pair: Option<Pair>,
     /// Number of modes n.
     pub modes: usize,
-    /// Families to take them from, the lowest of all.
+    /// Families to take them from.
     pub families: &'a [Family],
+    /// Ropes as they lie in a turn: the modes that couple most to them and to the beam's motion are
+    /// taken. Without any, the lowest.
+    pub patterns: &'a [Wrap],
     /// Whether whole displacement fields are returned.
     pub fields: bool,
 }
@@ -86,6 +90,8 @@ pub struct Mode {
     pub gauge_stress: Vec<f64>,
     /// Integrals of density times `(phi_x, phi_y, x phi_y - y phi_x)`.
     pub participation: [f64; 3],
+    /// Largest share of any load pattern's static energy that it holds \[1\]; 0 without patterns.
+    pub coupling: f64,
     /// Displacement of every node of the whole mesh; empty unless asked for.
     pub field: Vec<[f64; 3]>,
 }
@@ -95,6 +101,8 @@ pub struct Mode {
 pub struct Reduction {
     /// Modes, lowest first; n.
     pub modes: Vec<Mode>,
+    /// Modes that couple less to the load patterns, lowest first; empty without patterns.
+    pub left_out: Vec<LeftOut>,
     /// Stress per newton of inward normal force [Pa/N], station by station; s x g.
     pub normal_influence: Vec<Vec<f64>>,
     /// Stress per newton of tangential force towards increasing psi; s x g.
@@ -134,6 +142,11 @@ pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
     let mut modes = Vec::new();
     let mut lanczos_steps = 0;
     let statics = Problem::new(request, &half, Family::Symmetric)?;
+    let patterns = match request.patterns {
+        [] => None,
+        ropes => Some(Patterns::new(&statics, &rim, ropes)?),
+    };
+    let count = request.modes * patterns.as_ref().map_or(1, |_| CANDIDATES);
     for &family in request.families {
         let other;
         let problem = if family == Family::Symmetric {
@@ -142,18 +155,25 @@ pub fn reduce(request: &Request<'_>) -> Result<Reduction, ReductionError> {
             other = Problem::new(request, &half, family)?;
             &other
         };
-        let (found, steps) = problem.modes(request, &stations, &rows)?;
+        let (found, steps) =
+            problem.modes((request, count), patterns.as_ref(), &stations, &rows)?;
         modes.extend(found);
         lanczos_steps += steps;
     }
-    modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-    modes.truncate(request.modes);
+    let (modes, left_out) = if patterns.is_some() {
+        pick(modes, request.modes)
+    } else {
+        modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+        modes.truncate(request.modes);
+        (modes, Vec::new())
+    };
     let mut reduction = statics.answer(request, &rim, &stations, &rows)?;
     if let Some(pair) = &request.pair {
         let problem = Problem::new(request, &half, Family::Antisymmetric)?;
         reduction.sway = Some(problem.sway(request, &rim, pair, &rows)?);
     }
     reduction.modes = modes;
+    reduction.left_out = left_out;
     reduction.lanczos_steps = lanczos_steps;
     Ok(reduction)
 }

@@ -94,6 +94,7 @@ fn reduced() -> Reduction {
         }),
         modes: 6,
         families: &[Family::Symmetric, Family::Antisymmetric],
+        patterns: &[],
         fields: false,
     })
     .unwrap()

@@ -1,5 +1,6 @@
 //! Bricks on bodies with known answers, and for every kind of element both halves against the whole.
 mod cholesky;
+mod coupling;
 mod halves;
 mod split;
 mod tetrahedra;
@@ -270,6 +271,7 @@ fn request<'a>(mesh: &'a Mesh, gauges: &'a [Gauge], families: &'a [Family]) -> R
         pair: None,
         modes: 8,
         families,
+        patterns: &[],
         fields: true,
     }
 }
