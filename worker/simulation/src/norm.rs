@@ -14,10 +14,10 @@ pub(crate) fn square(x: f64) -> f64 {
     x * x
 }
 
-/// The larger absolute value; not a number wins, so that it cannot hide.
+/// The larger of a norm and an absolute value; not a number wins, so that it cannot hide.
 pub(crate) fn worst(norm: f64, x: f64) -> f64 {
-    let x = x.abs();
-    if x <= norm { norm } else { x }
+    // the bits of positive numbers are ordered as they are, with what is no number above all
+    f64::from_bits(norm.to_bits().max(x.abs().to_bits()))
 }
 
 /// Largest change of cylinders' coordinates, in units of Newton's accuracy, or `norm` if that is
@@ -53,4 +53,27 @@ fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
         }
     }
     norms
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Signs do not count, and a value that is none stays in the norm whatever comes after it.
+    #[test]
+    fn the_worst_value_is_kept() {
+        assert_eq!(worst(1.0, -2.0).to_bits(), 2.0_f64.to_bits());
+        assert_eq!(worst(2.0, 1.0).to_bits(), 2.0_f64.to_bits());
+        assert_eq!(
+            worst(1.0, f64::NEG_INFINITY).to_bits(),
+            f64::INFINITY.to_bits()
+        );
+        assert!(worst(f64::INFINITY, f64::NAN).is_nan());
+        assert!(worst(-f64::NAN, f64::INFINITY).is_nan());
+        let mut change = [0.0; 12];
+        change[4] = f64::NAN;
+        change[8] = 1.0;
+        assert!(cylinders_newton(0.0, &change, 3).is_nan());
+        assert!(cylinders_error(0.0, &change, 6).is_nan());
+    }
 }

@@ -298,23 +298,63 @@ impl<const N: usize> Blocks<N> {
         let base = self.diagonal.len() * N;
         let (blocks, border) = x.split_at_mut(base);
         let (blocks, _) = blocks.as_chunks_mut::<N>();
-        let mut first = 0;
-        for &count in &self.chains {
-            let end = first + count;
-            let mut right = Column::<N>::zeros();
-            for b in first..end {
-                let y = product(&self.diagonal[b], &(Column::from(blocks[b]) - right));
-                blocks[b] = y.into();
-                right = product(&self.lower[b], &y);
-                let bottom = &self.bottom[b * m..b * m + self.filled[b]];
-                for (x, bottom) in border.iter_mut().zip(bottom) {
-                    *x -= bottom.dot(&y);
-                }
+        self.side_by_side(|[first, count], from, right| {
+            let b = first + from;
+            let y = product(&self.diagonal[b], &(Column::from(blocks[b]) - *right));
+            blocks[b] = y.into();
+            *right = product(&self.lower[b], &y);
+            from + 1 < count
+        });
+        for (b, y) in blocks.iter().enumerate() {
+            let bottom = &self.bottom[b * m..b * m + self.filled[b]];
+            let y = Column::from(*y);
+            for (x, bottom) in border.iter_mut().zip(bottom) {
+                *x -= bottom.dot(&y);
             }
-            first = end;
         }
         self.solve_corner(border);
-        self.substitute_back(blocks, border);
+        self.side_by_side(|[first, count], from, next| {
+            let b = first + count - 1 - from;
+            let mut y = Column::from(blocks[b]);
+            subtract_product(&self.upper[b], next, &mut y);
+            let right = &self.right[b * m..b * m + self.filled[b]];
+            for (x, right) in border.iter().zip(right) {
+                for i in 0..N {
+                    y[i] -= x * right[i];
+                }
+            }
+            blocks[b] = y.into();
+            *next = y;
+            from + 1 < count
+        });
+    }
+
+    /// Runs through the chains by twos, a block of one, then a block of the other: each block waits for
+    /// the one before it in its own chain, so one chain alone leaves most of a processor idle.
+    ///
+    /// `step` gets a chain's first block and length, how many of its blocks are done, and what the last
+    /// one handed on; it says whether there are more.
+    #[inline]
+    fn side_by_side(&self, mut step: impl FnMut([usize; 2], usize, &mut Column<N>) -> bool) {
+        let mut first = 0;
+        for pair in self.chains.chunks(2) {
+            let mut at = [[0; 2]; 2];
+            for (at, &count) in at.iter_mut().zip(pair) {
+                *at = [first, count];
+                first += count;
+            }
+            let mut handed = [Column::<N>::zeros(); 2];
+            let mut more = at.map(|[_, count]| count > 0);
+            let mut done = 0;
+            while more[0] || more[1] {
+                for k in 0..2 {
+                    if more[k] {
+                        more[k] = step(at[k], done, &mut handed[k]);
+                    }
+                }
+                done += 1;
+            }
+        }
     }
 
     fn solve_corner(&self, x: &mut [f64]) {
@@ -332,28 +372,6 @@ impl<const N: usize> Blocks<N> {
             for i in 0..k {
                 x[i] -= self.corner[k * m + i] * x[k];
             }
-        }
-    }
-
-    fn substitute_back(&self, blocks: &mut [[f64; N]], border: &[f64]) {
-        let m = self.border;
-        let mut end = self.diagonal.len();
-        for &count in self.chains.iter().rev() {
-            let first = end - count;
-            let mut next = Column::<N>::zeros();
-            for b in (first..end).rev() {
-                let mut y = Column::from(blocks[b]);
-                subtract_product(&self.upper[b], &next, &mut y);
-                let right = &self.right[b * m..b * m + self.filled[b]];
-                for (x, right) in border.iter().zip(right) {
-                    for i in 0..N {
-                        y[i] -= x * right[i];
-                    }
-                }
-                blocks[b] = y.into();
-                next = y;
-            }
-            end = first;
         }
     }
 }
