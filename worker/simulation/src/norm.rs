@@ -16,8 +16,8 @@ pub(crate) fn square(x: f64) -> f64 {
 
 /// The larger of a norm and an absolute value; not a number wins, so that it cannot hide.
 pub(crate) fn worst(norm: f64, x: f64) -> f64 {
-    // the bits of positive numbers are ordered as they are, with what is no number above all
-    f64::from_bits(norm.to_bits().max(x.abs().to_bits()))
+    let x = x.abs();
+    if norm < x || x.is_nan() { x } else { norm }
 }
 
 /// Largest change of cylinders' coordinates, in units of Newton's accuracy, or `norm` if that is
@@ -46,13 +46,24 @@ fn cylinders(norm: f64, x: &[f64], width: usize, [length, turn]: [f64; 2]) -> f6
 
 /// Largest absolute value of each of a cylinder's coordinates.
 fn largest<const W: usize>(x: &[f64]) -> [f64; W] {
-    let mut norms = [0.0; W];
-    for x in x.as_chunks::<W>().0 {
-        for k in 0..W {
-            norms[k] = worst(norms[k], x[k]);
+    // each comparison waits for the one before it: four of them side by side
+    const ROWS: usize = 4;
+    let mut norms = [[0.0; W]; ROWS];
+    let (fours, rest) = x.as_chunks::<W>().0.as_chunks::<ROWS>();
+    for four in fours {
+        for row in 0..ROWS {
+            for k in 0..W {
+                norms[row][k] = worst(norms[row][k], four[row][k]);
+            }
         }
     }
-    norms
+    let mut all = [0.0; W];
+    for x in norms.iter().chain(rest) {
+        for k in 0..W {
+            all[k] = worst(all[k], x[k]);
+        }
+    }
+    all
 }
 
 #[cfg(test)]
