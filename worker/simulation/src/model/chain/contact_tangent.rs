@@ -19,41 +19,43 @@ type V2 = Vector2<f64>;
 
 /// Coordinates that move a point of a cylinder: two, and one or two angles.
 const OWN: usize = 4;
-/// Coordinates of the border: the beam angle, then the modes.
+/// Most coordinates of the border: the beam angle, then the modes.
 const BORDER: usize = MAX_MODES + 1;
+/// Those of a usual head, whose sums are short enough to be unrolled.
+const FEW: usize = 8;
 
-/// One chain's contact while its tangent is added up.
-struct Tangent<'a> {
+/// One chain's contact while its tangent is added up; there is room for `B` coordinates of the border.
+struct Tangent<'a, const B: usize> {
     chain: &'a Chain,
     surface: &'a Surface<'a>,
     law: &'a Impact,
     gamma: f64,
     /// Coordinates of the border that take part.
     border: usize,
-    corner: [[f64; BORDER]; BORDER],
+    corner: [[f64; B]; B],
 }
 
 /// What the points of one cylinder add.
-struct Sums {
+struct Sums<const B: usize> {
     own: [[f64; OWN]; OWN],
     /// Rows of the cylinder, columns of the border.
-    right: [[f64; BORDER]; OWN],
+    right: [[f64; B]; OWN],
     /// Rows of the border, columns of the cylinder, transposed.
-    bottom: [[f64; BORDER]; OWN],
+    bottom: [[f64; B]; OWN],
 }
 
 /// A point's derivatives.
-struct Derivatives {
+struct Derivatives<const B: usize> {
     /// Of the penetration and of the force by the cylinder's coordinates.
     own: [f64; OWN],
     own_force: [f64; OWN],
     /// How those move the point.
     moved: [V2; OWN],
     /// Of the penetration and of the force by the border's coordinates.
-    gradient: [f64; BORDER],
-    force_by: [f64; BORDER],
+    gradient: [f64; B],
+    force_by: [f64; B],
     /// Slopes of the modes' shapes over the arc; the beam angle has none.
-    slope: [f64; BORDER],
+    slope: [f64; B],
 }
 
 #[expect(
@@ -70,13 +72,29 @@ impl Chain {
         gamma: f64,
         matrix: &mut Bordered,
     ) {
+        let border = matrix.border().min(surface.modes() + 1);
+        let on = (surface, law);
+        if border <= FEW {
+            self.add_tangent_within::<FEW>(on, state, gamma, (matrix, border));
+        } else {
+            self.add_tangent_within::<BORDER>(on, state, gamma, (matrix, border));
+        }
+    }
+
+    fn add_tangent_within<const B: usize>(
+        &self,
+        (surface, law): (&Surface<'_>, &Impact),
+        state: &ChainState,
+        gamma: f64,
+        (matrix, border): (&mut Bordered, usize),
+    ) {
         let mut tangent = Tangent {
             chain: self,
             surface,
             law,
             gamma,
-            border: matrix.border().min(surface.modes() + 1),
-            corner: [[0.0; BORDER]; BORDER],
+            border,
+            corner: [[0.0; B]; B],
         };
         for (j, pose) in state.poses.iter().enumerate() {
             tangent.add_cylinder(self.first + j, pose, matrix);
@@ -84,15 +102,15 @@ impl Chain {
         for (j, pose) in state.plane.iter().enumerate() {
             tangent.add_cylinder(self.first + j, pose, matrix);
         }
-        for row in 0..tangent.border {
-            for column in 0..tangent.border {
+        for row in 0..border {
+            for column in 0..border {
                 matrix.add_corner(row, column, tangent.corner[row][column]);
             }
         }
     }
 }
 
-impl Tangent<'_> {
+impl<const B: usize> Tangent<'_, B> {
     fn add_cylinder<const A: usize>(
         &mut self,
         block: usize,
@@ -105,8 +123,8 @@ impl Tangent<'_> {
         };
         let mut sums = Sums {
             own: [[0.0; OWN]; OWN],
-            right: [[0.0; BORDER]; OWN],
-            bottom: [[0.0; BORDER]; OWN],
+            right: [[0.0; B]; OWN],
+            bottom: [[0.0; B]; OWN],
         };
         let mut pressed = false;
         for &(place, share) in self.chain.contact_points {
@@ -137,7 +155,7 @@ impl Tangent<'_> {
         bearing: &Bearing,
         pose: &impl InPlane<A>,
         (along, share): (f64, f64),
-        sums: &mut Sums,
+        sums: &mut Sums<B>,
     ) -> bool {
         let surface = self.surface;
         let g = pose.center() + pose.axis() * along;
@@ -154,7 +172,7 @@ impl Tangent<'_> {
         at.by_penetration *= share;
         let curvature = surface.curvature(&touch);
         let point = self.derivatives(pose, along, (&velocity, &touch, &curvature), &at);
-        add_own::<A>(&point, &curvature, &at, sums);
+        add_own::<A, B>(&point, &curvature, &at, sums);
         for a in 0..A {
             for b in 0..A {
                 let bend = pose.axis_by_twice(a, b) * along;
@@ -172,15 +190,15 @@ impl Tangent<'_> {
         along: f64,
         (velocity, touch, curvature): (&V2, &Touch, &Curvature),
         at: &ImpactForce,
-    ) -> Derivatives {
+    ) -> Derivatives<B> {
         let surface = self.surface;
         let stiff = at.by_penetration + self.gamma * at.by_rate;
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let beam_rate = surface.beam[1];
         let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
-        let mut gradient = [0.0; BORDER];
-        let mut force_by = [0.0; BORDER];
-        let mut slope = [0.0; BORDER];
+        let mut gradient = [0.0; B];
+        let mut force_by = [0.0; B];
+        let mut slope = [0.0; B];
         let mut drift = 0.0;
         if let (Some(bend), Some(place)) = (&surface.bend, &touch.place) {
             let modes = 1..self.border;
@@ -224,10 +242,10 @@ impl Tangent<'_> {
 
     fn add_border<const A: usize>(
         &mut self,
-        point: &Derivatives,
+        point: &Derivatives<B>,
         curvature: &Curvature,
         force: f64,
-        sums: &mut Sums,
+        sums: &mut Sums<B>,
     ) {
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let Derivatives {
@@ -243,13 +261,14 @@ impl Tangent<'_> {
             let (right, bottom) = (&mut sums.right[r], &mut sums.bottom[r]);
             right[0] += own[r] * force_by[0] + force * curvature.mixed.dot(&moved[r]);
             bottom[0] += own_force[r] * gradient[0] + force * curvature.mixed.dot(&moved[r]);
-            for k in 1..self.border {
+            // beyond the border everything is zero
+            for k in 1..B {
                 right[k] += own[r] * force_by[k] + turned * slope[k];
                 bottom[k] += own_force[r] * gradient[k] + turned * slope[k];
             }
         }
         for (k, row) in self.corner[..self.border].iter_mut().enumerate() {
-            for (entry, force_by) in row[..self.border].iter_mut().zip(force_by) {
+            for (entry, force_by) in row.iter_mut().zip(force_by) {
                 *entry += gradient[k] * force_by;
             }
         }
@@ -263,11 +282,11 @@ impl Tangent<'_> {
 }
 
 /// Adds to a cylinder's own block, but for the bending of its axis.
-fn add_own<const A: usize>(
-    point: &Derivatives,
+fn add_own<const A: usize, const B: usize>(
+    point: &Derivatives<B>,
     curvature: &Curvature,
     at: &ImpactForce,
-    sums: &mut Sums,
+    sums: &mut Sums<B>,
 ) {
     let bends = curvature.point * at.force;
     for r in 0..2 + A {

@@ -48,6 +48,8 @@ impl Chain {
             force[at + 2] += torque;
             state.joints[joint] = load;
         }
+        // on the cylinder between two joints, in registers: what was stored a moment ago is slow to read
+        let mut carried = [force[0], force[1], force[2]];
         for joint in 1..self.count {
             let [i, j] = self.plane_markers(joint, &state.plane);
             let mut load = joints.inner.plane_load(&i, &j);
@@ -55,12 +57,12 @@ impl Chain {
                 load.add_pull((&i, &j), &pull);
             }
             let at = &mut force[(joint - 1) * 3..][..6];
-            at[0] -= load.force.x;
-            at[1] -= load.force.y;
-            at[2] += load.torque_j;
-            at[3] += load.force.x;
-            at[4] += load.force.y;
-            at[5] += load.torque_i;
+            at[0] = carried[0] - load.force.x;
+            at[1] = carried[1] - load.force.y;
+            at[2] = carried[2] + load.torque_j;
+            carried[0] = at[3] + load.force.x;
+            carried[1] = at[4] + load.force.y;
+            carried[2] = at[5] + load.torque_i;
             let kept = &mut state.joints[joint];
             kept.force.x = load.force.x;
             kept.force.y = load.force.y;
@@ -69,6 +71,7 @@ impl Chain {
             kept.axial = load.axial;
             kept.dissipated = load.dissipated;
         }
+        force[(self.count - 1) * 3..].copy_from_slice(&carried);
     }
 
     /// Subtracts the tangent of the joints between the cylinders.
