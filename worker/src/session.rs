@@ -8,12 +8,7 @@ use crate::{
     pool::{Pool, SlotOptions},
 };
 use link::WorkerEnd;
-use protocol::{
-    announce::Announcement,
-    id::WorkerId,
-    job::{Job, REDUCE_HEAD},
-    wire,
-};
+use protocol::{announce::Announcement, id::WorkerId, job::kind, wire};
 use state::{State, Step};
 use std::{
     future::Future,
@@ -114,11 +109,6 @@ fn announcement(slots: usize) -> Announcement {
     } else {
         "release"
     };
-    let nothing = Job::Nothing {
-        payload: Vec::new(),
-        reply_bytes: 0,
-        delay_ms: 0,
-    };
     Announcement {
         protocol: wire::VERSION,
         build: format!("{} {profile}", env!("CARGO_PKG_VERSION")),
@@ -131,16 +121,7 @@ fn announcement(slots: usize) -> Announcement {
         slots: u32::try_from(slots).unwrap_or(u32::MAX),
         cores: thread::available_parallelism()
             .map_or(0, |cores| u32::try_from(cores.get()).unwrap_or(u32::MAX)),
-        job_kinds: [
-            "score",
-            "simulate",
-            "observe",
-            Job::Describe.kind(),
-            REDUCE_HEAD,
-            nothing.kind(),
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+        job_kinds: kind::ALL.map(str::to_owned).to_vec(),
         effects: convert::effect::descriptors(),
     }
 }

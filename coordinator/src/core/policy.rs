@@ -11,7 +11,7 @@
 //!
 //! What is recorded is part of the run and never computed again; another build or another case may
 //! do better with the last two. If the first 8 jobs all fail, the run stops.
-use protocol::job::{Failure, REDUCE_HEAD};
+use protocol::job::{Failure, kind::REDUCE_HEAD};
 use std::{
     collections::{BTreeMap, VecDeque},
     time::Duration,

@@ -2,6 +2,7 @@
 //!
 //! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
 //! retried. [`Failure`] is infrastructure: the job could not be done.
+pub mod kind;
 mod observe;
 mod reduce_head;
 mod score;
@@ -46,19 +47,16 @@ pub enum Job {
     Observe(ObserveSpec),
 }
 
-/// Kind of the job that reduces a head: it takes minutes where others take seconds.
-pub const REDUCE_HEAD: &str = "reduce_head";
-
 impl Job {
     /// Name of the kind, as workers announce it.
     pub const fn kind(&self) -> &'static str {
         match self {
-            Self::Score(_) => "score",
-            Self::Simulate(_) => "simulate",
-            Self::Observe(_) => "observe",
-            Self::ReduceHead(_) => REDUCE_HEAD,
-            Self::Describe => "describe",
-            Self::Nothing { .. } => "nothing",
+            Self::Score(_) => kind::SCORE,
+            Self::Simulate(_) => kind::SIMULATE,
+            Self::Observe(_) => kind::OBSERVE,
+            Self::ReduceHead(_) => kind::REDUCE_HEAD,
+            Self::Describe => kind::DESCRIBE,
+            Self::Nothing { .. } => kind::NOTHING,
         }
     }
 }
@@ -86,12 +84,12 @@ impl Outcome {
     /// Name of the kind of job that it answers, as [`Job::kind`]; `failed` if it was not done.
     pub const fn kind(&self) -> &'static str {
         match self {
-            Self::Scored(_) => "score",
-            Self::Simulated(_) => "simulate",
-            Self::Observed(_) => "observe",
-            Self::HeadReduced(_) => REDUCE_HEAD,
-            Self::Described(_) => "describe",
-            Self::Nothing(_) => "nothing",
+            Self::Scored(_) => kind::SCORE,
+            Self::Simulated(_) => kind::SIMULATE,
+            Self::Observed(_) => kind::OBSERVE,
+            Self::HeadReduced(_) => kind::REDUCE_HEAD,
+            Self::Described(_) => kind::DESCRIBE,
+            Self::Nothing(_) => kind::NOTHING,
             Self::Failed(_) => "failed",
         }
     }

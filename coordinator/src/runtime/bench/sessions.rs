@@ -15,7 +15,7 @@ use link::{
 use protocol::{
     announce::Announcement,
     id::{ContentHash, RunId, WorkerId},
-    job::{Failure, Job, Outcome},
+    job::{Failure, Job, Outcome, kind},
     key::Lane,
     message::{Beat, Done, FromWorker, Order, ToWorker},
     wire::{self, Kind},
@@ -200,7 +200,7 @@ fn announce(id: WorkerId) -> FromWorker {
         pid: std::process::id(),
         slots: 1,
         cores: 1,
-        job_kinds: vec!["nothing".to_owned()],
+        job_kinds: vec![kind::NOTHING.to_owned()],
         effects: Vec::new(),
     }))
 }
