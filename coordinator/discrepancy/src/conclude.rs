@@ -76,19 +76,11 @@ fn ground(inputs: &Inputs, base: &Base, claims: bool, diagnosis: &Diagnosis) -> 
         Ground::Unsound
     } else if base.assumed {
         Ground::NoiseAssumed
-    } else if considered(inputs) == 0 {
+    } else if inputs.considered().all(|effect| effect.generic) {
         Ground::NothingConsidered
     } else {
         Ground::Firm
     }
-}
-
-/// Named effects that are considered.
-fn considered(inputs: &Inputs) -> usize {
-    let own = |effect: &&protocol::announce::EffectDescriptor| {
-        !effect.generic && !inputs.settings.without.contains(&effect.id)
-    };
-    inputs.library.iter().filter(own).count()
 }
 
 /// Takes what was added, or the force that beats every name, out of the answer; says what it was.

@@ -43,6 +43,15 @@ pub struct Inputs {
     pub settings: Settings,
 }
 
+impl Inputs {
+    /// The effects of the library that nobody has put aside.
+    pub(crate) fn considered(&self) -> impl Iterator<Item = &EffectDescriptor> {
+        let without = &self.settings.without;
+        let kept = |effect: &&EffectDescriptor| !without.contains(&effect.id);
+        self.library.iter().filter(kept)
+    }
+}
+
 /// A finished diagnosis.
 #[derive(Clone, Debug)]
 pub struct Diagnosis {

@@ -5,6 +5,7 @@ use crate::estimate::{QUANTILE, covariance};
 use crate::rounds::Round;
 use crate::stage::challenge::Challenger;
 use crate::stage::show::Row;
+use crate::stage::whereabouts;
 
 /// Such a force.
 #[derive(Clone, Debug)]
@@ -54,14 +55,8 @@ pub(crate) fn force(challenger: Challenger, before: &Fit, round: &Round) -> Forc
             let (u, v) = (a / amplitude, b / amplitude);
             let square =
                 u * u * variance(0, 0) + 2.0 * u * v * variance(0, 1) + v * v * variance(1, 1);
-            let is_sine = |k: usize| {
-                parts[k]
-                    .id
-                    .rsplit('.')
-                    .next()
-                    .is_some_and(|f| f.starts_with("sin"))
-            };
-            let (cosine, sine) = if is_sine(0) { (b, a) } else { (a, b) };
+            let sine_first = whereabouts::form(&parts[0].id).starts_with("sin");
+            let (cosine, sine) = if sine_first { (b, a) } else { (a, b) };
             (
                 amplitude,
                 square.sqrt(),
@@ -82,14 +77,7 @@ pub(crate) fn force(challenger: Challenger, before: &Fit, round: &Round) -> Forc
             .map(|part| part.joint.clone())
             .unwrap_or_default(),
         form: whole.map_or_else(
-            || {
-                challenger
-                    .id
-                    .rsplit('.')
-                    .next()
-                    .unwrap_or_default()
-                    .to_owned()
-            },
+            || whereabouts::form(&challenger.id).to_owned(),
             |order| format!("harmonic {order}"),
         ),
         unit: parts
@@ -109,5 +97,5 @@ pub(crate) fn force(challenger: Challenger, before: &Fit, round: &Round) -> Forc
 
 /// The order of a harmonic of the crank.
 fn order(id: &str) -> Option<usize> {
-    crate::stage::whereabouts::probe_order(id).filter(|order| *order > 0)
+    whereabouts::probe_order(id).filter(|order| *order > 0)
 }

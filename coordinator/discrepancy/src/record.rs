@@ -96,12 +96,19 @@ impl Record {
         (whole.part(0..n - held), whole.part(n - held..n))
     }
 
-    /// Variance of one cycle about the mean, by channel; zeros where nothing tells it.
+    /// Variance of one cycle about the mean, by channel, as stated or as seen; zeros where nothing tells
+    /// it.
     pub fn cycle_variance(&self) -> Vec<f64> {
-        let n = self.cycles.len();
-        if !self.stated.cycle_variance.is_empty() {
-            return self.stated.cycle_variance.clone();
+        if self.stated.cycle_variance.is_empty() {
+            self.scatter()
+        } else {
+            self.stated.cycle_variance.clone()
         }
+    }
+
+    /// Variance of these cycles about their mean, by channel; zeros for fewer than two.
+    pub(crate) fn scatter(&self) -> Vec<f64> {
+        let n = self.cycles.len();
         if n < 2 {
             return vec![0.0; self.channels.len()];
         }

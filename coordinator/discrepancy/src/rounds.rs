@@ -54,11 +54,8 @@ pub(crate) async fn rounds<L: Laboratory>(
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     let settings = &inputs.settings;
-    let considered = |effect: &&EffectDescriptor| !settings.without.contains(&effect.id);
     let (generic, named): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) = inputs
-        .library
-        .iter()
-        .filter(considered)
+        .considered()
         .cloned()
         .partition(|effect| effect.generic);
     let mut current = base.fit.clone();

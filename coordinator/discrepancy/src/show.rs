@@ -5,7 +5,7 @@
 //! `closed = 1 - g_after / g_before`; intervals by resampling the cycles, before and after on the
 //! same resample. A gap that closes does not prove a name: a wrong effect often closes most of it,
 //! which is why the best rejected rival is always shown beside.
-use crate::record::{Curves, Record, Source, Stated, mean_of, variance};
+use crate::record::{Curves, Record, Source, mean_of, variance};
 use search::random::{Phase, Stream, Streams};
 
 /// The gap before and after.
@@ -23,7 +23,7 @@ pub struct Closed {
 
 /// The gap over the gauges of a record; the mean of the channels' gaps, not below 0.
 pub fn gap(record: &Record, simulated: &Curves) -> f64 {
-    (mse(record, &record.mean(), simulated) - noise(record)).max(0.0)
+    Ruler::new(record).gap(simulated)
 }
 
 /// Before and after, with the interval.
@@ -40,15 +40,17 @@ pub fn closed(record: &Record, before: &Curves, after: &Curves) -> Closed {
             0.0
         }
     };
-    let mean = record.mean();
-    let gaps = [before, after].map(|curves| gap(record, curves));
+    let ruler = Ruler::new(record);
+    let gaps = [before, after].map(|curves| ruler.gap(curves));
     let interval = (record.cycles.len() >= 2).then(|| {
-        let noise = noise(record) + scatter_of_draws(record);
+        // that of the record's own cycles, whatever else tells its noise
+        let noise = ruler.noise + ruler.explained_by(&record.scatter());
         let streams = Streams::new(0x7368_6f77, 0);
         let mut draws: Vec<f64> = (0..DRAWS)
             .map(|draw| {
-                let drawn = drawn(record, &mean, &mut streams.at(0, Phase::Resample, draw));
-                let left = |curves| (mse(record, &drawn, curves) - noise).max(0.0);
+                let stream = &mut streams.at(0, Phase::Resample, draw);
+                let drawn = drawn(record, &ruler.mean, stream);
+                let left = |curves| (ruler.mse(&drawn, curves) - noise).max(0.0);
                 ratio([before, after].map(left))
             })
             .collect();
@@ -78,57 +80,62 @@ fn drawn(record: &Record, mean: &Curves, stream: &mut Stream) -> Curves {
     drawn
 }
 
-/// What the draws' own scatter adds to their squared residual, on average: that of the record's own
-/// cycles, whatever else tells its noise.
-fn scatter_of_draws(record: &Record) -> f64 {
-    let own = Record {
-        stated: Stated::default(),
-        ..record.clone()
-    };
-    noise(&own)
+/// What curves are held against: the mean of a record's gauges, in units of their variance.
+struct Ruler {
+    /// Number of cycles.
+    cycles: f64,
+    mean: Curves,
+    /// Gauges of the record, every channel where it has none; and their variances.
+    gauges: Vec<(usize, f64)>,
+    /// What the scatter between cycles explains of a squared residual.
+    noise: f64,
 }
 
-/// Gauges of a record; every channel where it has none.
-fn gauges(record: &Record) -> Vec<usize> {
-    let is_gauge = |c: &usize| matches!(record.channels[*c], Source::Gauge(_));
-    let gauges: Vec<usize> = (0..record.channels.len()).filter(is_gauge).collect();
-    if gauges.is_empty() {
-        (0..record.channels.len()).collect()
-    } else {
-        gauges
+impl Ruler {
+    fn new(record: &Record) -> Self {
+        let mean = record.mean();
+        let is_gauge = |c: &usize| matches!(record.channels[*c], Source::Gauge(_));
+        let mut channels: Vec<usize> = (0..record.channels.len()).filter(is_gauge).collect();
+        if channels.is_empty() {
+            channels = (0..record.channels.len()).collect();
+        }
+        let gauge = |c: usize| (c, variance(&mean[c]).max(f64::MIN_POSITIVE));
+        let mut ruler = Self {
+            cycles: record.cycles.len().max(1) as f64,
+            gauges: channels.into_iter().map(gauge).collect(),
+            mean,
+            noise: 0.0,
+        };
+        ruler.noise = ruler.explained_by(&record.cycle_variance());
+        ruler
     }
-}
 
-/// Mean over the gauges of a mean's squared residual over the record's variance.
-fn mse(record: &Record, mean: &Curves, simulated: &Curves) -> f64 {
-    let whole = record.mean();
-    let gauges = gauges(record);
-    let each = gauges.iter().map(|&c| {
-        let residual: Vec<f64> = mean[c]
-            .iter()
-            .zip(&simulated[c])
-            .map(|(y, s)| y - s)
-            .collect();
-        variance(&residual) / variance(&whole[c]).max(f64::MIN_POSITIVE)
-    });
-    each.sum::<f64>() / gauges.len().max(1) as f64
-}
+    fn gap(&self, simulated: &Curves) -> f64 {
+        (self.mse(&self.mean, simulated) - self.noise).max(0.0)
+    }
 
-/// What the scatter between cycles explains of it.
-fn noise(record: &Record) -> f64 {
-    let whole = record.mean();
-    let gauges = gauges(record);
-    let scatter = record.cycle_variance();
-    let cycles = record.cycles.len().max(1) as f64;
-    let each = gauges
-        .iter()
-        .map(|&c| scatter[c] / cycles / variance(&whole[c]).max(f64::MIN_POSITIVE));
-    each.sum::<f64>() / gauges.len().max(1) as f64
+    /// Mean over the gauges of a mean's squared residual over the record's variance.
+    fn mse(&self, mean: &Curves, simulated: &Curves) -> f64 {
+        let each = self.gauges.iter().map(|&(c, whole)| {
+            let pairs = mean[c].iter().zip(&simulated[c]);
+            let residual: Vec<f64> = pairs.map(|(y, s)| y - s).collect();
+            variance(&residual) / whole
+        });
+        each.sum::<f64>() / self.gauges.len().max(1) as f64
+    }
+
+    /// What a variance of single cycles, by channel, explains of it.
+    fn explained_by(&self, scatter: &[f64]) -> f64 {
+        let each = self.gauges.iter();
+        let each = each.map(|&(c, whole)| scatter[c] / self.cycles / whole);
+        each.sum::<f64>() / self.gauges.len().max(1) as f64
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::Stated;
 
     fn wave(amplitude: f64, phase: f64) -> Vec<f64> {
         (0..720)
@@ -170,7 +177,8 @@ mod tests {
         let (_, held) = record.split();
         let one = held.part(0..1);
         assert!(gap(&one, &vec![wave(10.0, 0.0)]) < 3e-4);
-        assert!(mse(&one, &one.cycles[0], &vec![wave(10.0, 0.0)]) > 1.5e-3);
+        let ruler = Ruler::new(&one);
+        assert!(ruler.mse(&one.cycles[0], &vec![wave(10.0, 0.0)]) > 1.5e-3);
         assert!(
             closed(
                 &record.part(0..1),

@@ -75,9 +75,14 @@ pub fn deviations(bench: &Bench, tangent: &Tangent) -> Vec<DVector<f64>> {
         .collect()
 }
 
+/// The form of a force without a cause: the last part of its identifier.
+pub fn form(id: &str) -> &str {
+    id.rsplit_once('.').map_or(id, |(_, form)| form)
+}
+
 /// The order of a periodic probe, from its identifier `probe.JOINT.cosH`, `.sinH` or `.const`.
 pub fn probe_order(id: &str) -> Option<usize> {
-    let form = id.rsplit('.').next()?;
+    let form = form(id);
     if form == "const" {
         return Some(0);
     }
