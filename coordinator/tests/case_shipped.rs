@@ -1,7 +1,7 @@
 //! The case that is shipped loads, and its figures are those its README states.
 use coordinator::case::{self, Overrides, mesh};
 use protocol::{
-    case::{GaugeTrace, GeneName, Offset},
+    case::{Coefficient, GaugeTrace, Gene, Offset},
     unit::Unit,
 };
 use std::{
@@ -30,8 +30,8 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
     let case = &loaded.case;
     assert_eq!(case.name, "CYJS10-5-37HB");
     assert_eq!(
-        case.genes.iter().map(|g| g.name).collect::<Vec<_>>(),
-        GeneName::ALL
+        case.genes.iter().map(Gene::label).collect::<Vec<_>>(),
+        Coefficient::ALL.map(Coefficient::as_str)
     );
     assert_eq!(case.objective.condition, case.condition("5rpm").unwrap());
     assert_eq!(case.objective.gauges, [(1, 1.0), (3, 1.0)]);
@@ -163,7 +163,7 @@ fn gene_files_are_read_in_the_units_of_the_case() {
             7.81e8, 2.26e8, 204.0, 308.0, 5201.0, 4287.0, 45.0, 56.0, 4.01e8, 1.02e3
         ]
     );
-    assert_eq!(case.genes[2].unit, Unit::NewtonMetrePerDegree);
+    assert_eq!(case.genes[2].unit(), Unit::NewtonMetrePerDegree.symbol());
 
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("genes.toml");

@@ -217,11 +217,11 @@ impl Summary {
             writeln!(
                 to,
                 "  {:<6} {:>10.3e} ({:.2e} .. {:.2e}) {}",
-                gene.name.as_str(),
+                gene.label(),
                 gene.recommended,
                 gene.lower,
                 gene.upper,
-                gene.unit.symbol()
+                gene.unit()
             )?;
         }
         if self.twin_ropes.is_none() {

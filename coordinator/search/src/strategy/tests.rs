@@ -139,7 +139,7 @@ fn bounds_are_never_left_and_the_recommended_individual_opens_a_quick_search() {
             }
         }
         if preset.name == "quick" {
-            for x in space.decades(&record.asked[0].genes) {
+            for x in space.point(&record.asked[0].genes) {
                 assert!(x.abs() < 5e-5, "{x}");
             }
         }
@@ -180,7 +180,7 @@ fn a_failure_is_never_best_beside_a_complete_run() {
         // failures with a fitness that beats everything, to prove that the flag decides
         let tell = |genes: &[f64]| {
             let told = SPHERE.tell(&space, genes);
-            let complete = space.decades(genes)[0] < 0.5;
+            let complete = space.point(genes)[0] < 0.5;
             Told {
                 fitness: if complete { told.fitness } else { -1.0 },
                 complete,
