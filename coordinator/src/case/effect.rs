@@ -177,10 +177,14 @@ fn check_parameter(
         if around && (low < high || !is_search) {
             continue;
         }
+        let apart = if is_search { "different " } else { "" };
         return Err(document.field(
             &way(key),
             format!("[{low}, {high}]"),
-            format!("two finite numbers around the value, {}", parameter.value),
+            format!(
+                "two {apart}finite numbers around the value, {}",
+                parameter.value
+            ),
             &format!("write the lower bound first, or leave {key} out"),
         ));
     }

@@ -1,5 +1,6 @@
 //! The report as a whole, from synthesised results: well-formed, self-contained, honest, small.
 mod diagnosis;
+mod effect_gene;
 mod geometry;
 mod numbers;
 mod sample;
