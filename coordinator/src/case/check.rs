@@ -213,10 +213,12 @@ impl Summary {
             ""
         };
         writeln!(to, "genes       recommended (lower .. upper){whose}")?;
+        let labels = self.genes.iter().map(|gene| gene.label().len());
+        let width = labels.fold(6, usize::max);
         for gene in &self.genes {
             writeln!(
                 to,
-                "  {:<6} {:>10.3e} ({:.2e} .. {:.2e}) {}",
+                "  {:<width$} {:>10.3e} ({:.2e} .. {:.2e}) {}",
                 gene.label(),
                 gene.recommended,
                 gene.lower,

@@ -99,7 +99,7 @@ struct Target {
 
 impl Target {
     /// Without what this very diagnosis has added to the case; the start is one of what is left.
-    fn as_begun(mut self, earlier: &Earlier) -> anyhow::Result<Self> {
+    fn without_found_by(mut self, earlier: &Earlier) -> anyhow::Result<Self> {
         let stated = self.loaded.case.genes.clone();
         self.loaded = earlier.as_begun(self.loaded)?;
         let left = &self.loaded.case.genes;
@@ -125,7 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let stated = target.loaded.effects.len();
     if let Ok(earlier) = Earlier::open(&path) {
-        target = target.as_begun(&earlier)?;
+        target = target.without_found_by(&earlier)?;
     }
     let has_own = target.loaded.effects.len() < stated;
     for note in &target.loaded.notes {
