@@ -1,7 +1,7 @@
 //! The case that is shipped loads, and its figures are those its README states.
 use coordinator::case::{self, Overrides, mesh};
 use protocol::{
-    case::{GaugeTrace, GeneName, Offset},
+    case::{Coefficient, GaugeTrace, Gene, Offset, Quantity},
     unit::Unit,
 };
 use std::{
@@ -30,8 +30,8 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
     let case = &loaded.case;
     assert_eq!(case.name, "CYJS10-5-37HB");
     assert_eq!(
-        case.genes.iter().map(|g| g.name).collect::<Vec<_>>(),
-        GeneName::ALL
+        case.genes.iter().map(Gene::label).collect::<Vec<_>>(),
+        Coefficient::ALL.map(Coefficient::as_str)
     );
     assert_eq!(case.objective.condition, case.condition("5rpm").unwrap());
     assert_eq!(case.objective.gauges, [(1, 1.0), (3, 1.0)]);
@@ -163,7 +163,7 @@ fn gene_files_are_read_in_the_units_of_the_case() {
             7.81e8, 2.26e8, 204.0, 308.0, 5201.0, 4287.0, 45.0, 56.0, 4.01e8, 1.02e3
         ]
     );
-    assert_eq!(case.genes[2].unit, Unit::NewtonMetrePerDegree);
+    assert_eq!(case.genes[2].unit(), Unit::NewtonMetrePerDegree.symbol());
 
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("genes.toml");
@@ -200,6 +200,74 @@ fn gene_files_are_read_in_the_units_of_the_case() {
         );
         assert!(message.contains("\nhelp: "), "{message}");
     }
+}
+
+/// A case that searches parameters of effects: their values go to a file and come back to the bit, zero
+/// and negative ones too; a file without them leaves them as the case has them.
+#[test]
+fn gene_files_hold_parameters_of_effects() {
+    let folder = shipped();
+    let mut case = case::load(&folder, &Overrides::default()).unwrap();
+    let sizes = [("drift_1", -0.3, 0.1 + 0.2), ("drift_3", 0.5, -1.0 / 3.0)];
+    for (parameter, recommended, _) in sizes {
+        case.genes.push(Gene {
+            quantity: Quantity::Effect {
+                id: "gauge_drift".to_owned(),
+                parameter: parameter.to_owned(),
+                unit: "MPa/rev".to_owned(),
+            },
+            recommended,
+            lower: -1.0,
+            upper: 1.0,
+        });
+    }
+    let mut values = case.recommended();
+    for (place, (_, _, value)) in (10..).zip(sizes) {
+        values[place] = value;
+    }
+    let scratch = tempfile::tempdir().unwrap();
+    let file = scratch.path().join("genes.toml");
+    let text = case::write_genes(&case, &values, "a test");
+    fs::write(&file, &text).unwrap();
+    let back = case::read_genes(&file, &case).unwrap();
+    let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&back), bits(&values));
+    let older = case::read_genes(&folder.join("recommended.toml"), &case).unwrap();
+    assert_eq!(bits(&older), bits(&case.recommended()));
+
+    let faults = [
+        (
+            text.replace("gauge_drift.drift_3", "gauge_drift.drft_3"),
+            "did you mean `gauge_drift.drift_3`?",
+        ),
+        (
+            text.replace("gauge_drift.drift_3", "a.b"),
+            "a parameter that the case searches: gauge_drift.drift_1, gauge_drift.drift_3",
+        ),
+        (text.replace("MPa/rev", "MPa"), "`gauge_drift.drift_1.unit`"),
+        (
+            text.replace("value = -3.333333333333333e-1", "value = nan"),
+            "`gauge_drift.drift_3.value` = NaN",
+        ),
+        (
+            text.replace("\"gauge_drift.drift_1\"", "gauge_drift.drift_1"),
+            "unknown field `gauge_drift`",
+        ),
+    ];
+    for (fault, expected) in faults {
+        assert_ne!(fault, text, "{expected}");
+        fs::write(&file, fault).unwrap();
+        let message = case::read_genes(&file, &case).unwrap_err().to_string();
+        assert!(
+            message.contains(expected) && message.contains("genes.toml"),
+            "{message}"
+        );
+        assert!(message.contains("\nhelp: "), "{message}");
+    }
+    case.genes.truncate(10);
+    fs::write(&file, &text).unwrap();
+    let message = case::read_genes(&file, &case).unwrap_err().to_string();
+    assert!(message.contains("the case searches none"), "{message}");
 }
 
 /// Nodes and elements as the crate mshio reads them; volume as the modes' mass says.

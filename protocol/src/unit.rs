@@ -5,7 +5,7 @@
 //! (`N m/deg`), so `value_si = value * 180 / pi` for those.
 use serde::{Deserialize, Serialize};
 
-/// A unit a gene may be declared in.
+/// A unit a coefficient may be declared in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unit {
     /// Translational stiffness [N/m].

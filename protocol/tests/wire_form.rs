@@ -6,8 +6,8 @@
 use protocol::{
     announce::{Place, Role, Sign},
     case::{
-        Case, GeneName, Integrator, Offset, RopeEnds, Smoothing, StressRecovery, TurnSense,
-        WeightAxes,
+        Case, Coefficient, Integrator, Offset, Quantity, RopeEnds, Smoothing, StressRecovery,
+        TurnSense, WeightAxes,
     },
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
@@ -31,7 +31,7 @@ fn form() -> String {
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case);
     trace!(Job Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
-    trace!(Place Role Sign Unit GeneName Integrator Offset RopeEnds Smoothing StressRecovery);
+    trace!(Place Role Sign Unit Coefficient Quantity Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense WeightAxes);
     let registry = tracer.registry().expect("every variant was seen");
     let mut text = format!("wire version {}\n", wire::VERSION);

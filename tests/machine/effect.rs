@@ -26,7 +26,8 @@ fn energy_ledger_closes_with_every_effect() {
         let sizes = d.parameters.iter().map(|p| (p.name, p.typical));
         let typical: Vec<(&str, f64)> = sizes.collect();
         let effect = EffectSetting::new(&d.id, &typical);
-        let machine = worker::convert::machine_with(&case, 0, &[effect]).unwrap();
+        let machine =
+            worker::convert::machine_with(&case, 0, (&case.recommended(), &[effect])).unwrap();
         let (result, _) = run(&machine, &law, &settings);
         let work = result.work;
         let gained = work.input - work.output - work.dissipated;

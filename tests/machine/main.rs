@@ -1,6 +1,7 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
 mod effect;
+mod gene;
 mod start;
 mod twins;
 

@@ -1,7 +1,7 @@
 //! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
 use super::{case, individuals};
 use coordinator::{case::QuasiStatic, study};
-use protocol::case::{Case, GeneName, WeightAxes};
+use protocol::case::{Case, Coefficient, WeightAxes};
 use simulation::{
     drive::Drive,
     integrator::State,
@@ -45,7 +45,10 @@ fn gauges_at_rest_read_exact_statics() {
     let machine = worker::convert::machine(&case, 0).unwrap();
     let settings = worker::convert::run_settings(&case);
     let [(_, recommended), (_, optimised)] = individuals(&case);
-    let contact = case.genes.iter().position(|gene| gene.name == GeneName::Kc);
+    let contact = case
+        .genes
+        .iter()
+        .position(|gene| gene.quantity.is(Coefficient::Kc));
     let mut stiff = recommended.clone();
     stiff[contact.unwrap()] *= 100.0;
     for (name, genes, most) in [

@@ -7,8 +7,8 @@ mod twins;
 pub use refinement::refined;
 
 use protocol::case::{
-    Case, Condition, EffectSetting, GeneName, Integrator, RopeEnds, Smoothing, StressRecovery,
-    TurnSense, WeightAxes, merged,
+    Case, Coefficient, Condition, EffectSetting, Integrator, Quantity, RopeEnds, Smoothing,
+    StressRecovery, TurnSense, WeightAxes, merged,
 };
 use protocol::job::{self, Counters, Failure};
 use simulation::element::{bushing::Bushing, impact::Impact};
@@ -22,25 +22,31 @@ use simulation::verdict;
 
 const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
 
-/// The machine of a case under one of its conditions, with the case's effects.
+/// The machine of a case under one of its conditions, with the case's effects as they are stated.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the field that cannot be built.
 pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
-    machine_with(case, condition, &[])
+    build(case, condition, &case.effects)
 }
 
-/// The same with a job's own effects, which replace those of the case that have their names.
+/// The machine of an individual: the case's effects have the values that its genes give them, and a
+/// job's own replace those of the case that have their names.
 ///
 /// # Errors
 /// As [`machine`]; an effect that is refused is named by its place in the merged list.
 pub fn machine_with(
     case: &Case,
     condition: usize,
-    effects: &[EffectSetting],
+    (genes, effects): (&[f64], &[EffectSetting]),
 ) -> Result<Machine, Failure> {
+    let own = effect::of_individual(case, genes)?;
+    build(case, condition, &merged(&own, effects))
+}
+
+fn build(case: &Case, condition: usize, effects: &[EffectSetting]) -> Result<Machine, Failure> {
     effect::check_units(&case.effects, &case.effect_units)?;
-    let selection = effect::selection(&merged(&case.effects, effects))?;
+    let selection = effect::selection(effects)?;
     let condition = case
         .conditions
         .get(condition)
@@ -212,25 +218,37 @@ fn card(condition: &Condition) -> Vec<f64> {
     }
 }
 
-/// The rope law of a gene vector in declared units.
+/// The genes of a case with the values of an individual.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when a gene is missing, surplus or not a positive number.
-pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
+/// [`Failure::Misconfigured`] when there are fewer or more values than genes.
+fn individual<'a>(
+    case: &'a Case,
+    genes: &'a [f64],
+) -> Result<impl Iterator<Item = (&'a Quantity, f64)> + Clone, Failure> {
     if genes.len() != case.genes.len() {
         return Err(misconfigured(
             "genes",
             format!("{} values for {} genes", genes.len(), case.genes.len()),
         ));
     }
-    let value = |name: GeneName| -> Result<f64, Failure> {
-        let found = case
-            .genes
-            .iter()
-            .zip(genes)
-            .find(|(gene, _)| gene.name == name);
+    let quantities = case.genes.iter().map(|gene| &gene.quantity);
+    Ok(quantities.zip(genes.iter().copied()))
+}
+
+/// The rope law of a gene vector in declared units.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] when a gene is missing, surplus or not a positive number.
+pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
+    let genes = individual(case, genes)?;
+    let value = |name: Coefficient| -> Result<f64, Failure> {
+        let found = genes.clone().find_map(|(quantity, value)| match quantity {
+            Quantity::Coefficient { name: own, unit } if *own == name => Some((*unit, value)),
+            Quantity::Coefficient { .. } | Quantity::Effect { .. } => None,
+        });
         match found {
-            Some((gene, &value)) if value > 0.0 && value.is_finite() => Ok(gene.unit.to_si(value)),
+            Some((unit, value)) if value > 0.0 && value.is_finite() => Ok(unit.to_si(value)),
             Some((_, value)) => Err(misconfigured(
                 name.as_str(),
                 format!("is {value}; it must be a positive number"),
@@ -240,16 +258,16 @@ pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
     };
     Ok(RopeLaw {
         bushing: Bushing {
-            stiffness: [value(GeneName::Kb1)?, value(GeneName::Kb23)?],
-            damping: [value(GeneName::Cb1)?, value(GeneName::Cb23)?],
-            rotational_stiffness: [value(GeneName::Kb4)?, value(GeneName::Kb56)?],
-            rotational_damping: [value(GeneName::Cb4)?, value(GeneName::Cb56)?],
+            stiffness: [value(Coefficient::Kb1)?, value(Coefficient::Kb23)?],
+            damping: [value(Coefficient::Cb1)?, value(Coefficient::Cb23)?],
+            rotational_stiffness: [value(Coefficient::Kb4)?, value(Coefficient::Kb56)?],
+            rotational_damping: [value(Coefficient::Cb4)?, value(Coefficient::Cb56)?],
             preload: case.ropes.preload_n,
         },
         contact: Impact {
-            stiffness: value(GeneName::Kc)?,
+            stiffness: value(Coefficient::Kc)?,
             exponent: case.contact.exponent,
-            damping: value(GeneName::Cc)?,
+            damping: value(Coefficient::Cc)?,
             full_damping_penetration: case.contact.full_damping_penetration_m,
         },
     })

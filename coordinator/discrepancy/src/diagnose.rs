@@ -31,7 +31,7 @@ pub struct Inputs {
     pub records: Vec<Record>,
     /// What the workers can simulate.
     pub library: Vec<EffectDescriptor>,
-    /// A calibrated point (decades), if there is one.
+    /// A calibrated point (coordinates of the space), if there is one.
     pub start: Option<Vec<f64>>,
     /// Discretisation of all experiments but that of the numerical check.
     pub usual: Refinement,

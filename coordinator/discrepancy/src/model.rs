@@ -1,18 +1,19 @@
 //! The model that is fitted: the case's genes, and the effects that have been added to it.
 //!
-//! A point is a vector of unknowns: genes in decades from their recommended values, then the
-//! parameters of each added effect in units of their physical scale, from their absent value. What an
-//! effect does is the workers' business; here it is a name with numbers.
+//! A point is a vector of unknowns: genes by their coordinates in the space, then the parameters of
+//! each added effect in units of their physical scale, from their absent value. What an effect does is
+//! the workers' business; here it is a name with numbers.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role, Sign};
 use protocol::case::EffectSetting;
 use protocol::job::{ObserveSpec, Refinement};
 use search::least_squares::{Prior, Variable};
 use search::space::Space;
 
-/// Prior standard deviation of a gene (decades): the recommended values of a manual are rarely off by
-/// more than a few of these.
+/// Prior standard deviation of a gene (coordinate): the recommended values of a manual are rarely off
+/// by more than a few of these decades. Parameters of the case's effects are hardly held by it: the
+/// whole interval that they are searched in is two long.
 const GENE_DEVIATION: f64 = 1.5;
-/// First difference step of a gene (decades).
+/// First difference step of a gene (coordinate).
 const GENE_STEP: f64 = 0.02;
 /// Prior standard deviation of a size, in units of its scale.
 const SIZE_DEVIATION: f64 = 2.0;

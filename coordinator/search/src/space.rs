@@ -1,10 +1,12 @@
-//! The box of genes, on a logarithmic scale.
+//! The box of genes.
 //!
-//! A point is given in *decades* from the recommended value, gene by gene:
-//! `value = recommended * 10^x`, so 0 is the recommended individual. Nothing here knows what a
-//! gene means; its unit only decides how far from the recommendation a first search may go.
+//! A point is given by a *coordinate* per gene, 0 at the recommended value. On a logarithmic axis it
+//! counts decades, `value = recommended * 10^x`; on a linear one, halves of the interval to search,
+//! `value = recommended + x * (upper - lower) / 2`, so that such an axis is about as long as the part
+//! of a coefficient's that matters, and the same steps suit both. Nothing here knows what a gene means;
+//! its unit only decides how far from the recommendation a first search may go.
 use protocol::{
-    case::{Gene, GeneName},
+    case::{Coefficient, Gene, Quantity, Scale},
     unit::Unit,
 };
 
@@ -15,14 +17,13 @@ pub enum SpaceError {
     /// The space has no axis.
     #[error("there is no gene to search")]
     Empty,
-    /// `0 < lower <= recommended <= upper` does not hold.
-    #[error(
-        "gene {name}: 0 < lower <= recommended <= upper must hold, \
-         but they are {lower}, {recommended}, {upper}"
-    )]
+    /// Bounds and recommendation are not ordered, or not positive on a logarithmic axis.
+    #[error("gene {name}: {rule} must hold, but they are {lower}, {recommended}, {upper}")]
     Bounds {
         /// Name of the gene.
         name: String,
+        /// What must hold.
+        rule: &'static str,
         /// Its lower bound, in its declared unit.
         lower: f64,
         /// Its recommended value.
@@ -36,28 +37,28 @@ pub enum SpaceError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
     /// Which gene.
-    pub name: GeneName,
+    pub quantity: Quantity,
     /// Recommended value [declared unit].
     pub recommended: f64,
     /// Smallest value [declared unit].
     pub lower: f64,
     /// Largest value [declared unit].
     pub upper: f64,
-    /// Trust interval about the recommendation, inside the bounds (decades).
+    /// Trust interval about the recommendation, inside the bounds (coordinate).
     pub trust: Interval,
 }
 
-/// A closed interval in decades from the recommended value.
+/// A closed interval of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Interval {
-    /// Lower end (decades).
+    /// Lower end (coordinate).
     pub from: f64,
-    /// Upper end (decades).
+    /// Upper end (coordinate).
     pub to: f64,
 }
 
 impl Interval {
-    /// Length (decades).
+    /// Length (coordinate).
     pub fn length(self) -> f64 {
         self.to - self.from
     }
@@ -79,22 +80,34 @@ impl Interval {
 }
 
 impl Axis {
-    /// The whole interval (decades).
+    /// The whole interval (coordinate).
     pub fn interval(&self) -> Interval {
         Interval {
-            from: libm::log10(self.lower / self.recommended),
-            to: libm::log10(self.upper / self.recommended),
+            from: self.coordinate(self.lower),
+            to: self.coordinate(self.upper),
         }
     }
 
-    /// The value at `x` decades, never outside the bounds.
+    /// The value at a coordinate, never outside the bounds.
     pub fn value(&self, x: f64) -> f64 {
-        (self.recommended * libm::exp10(x)).clamp(self.lower, self.upper)
+        let value = match self.quantity.scale() {
+            Scale::Logarithmic => self.recommended * libm::exp10(x),
+            Scale::Linear => self.recommended + self.half() * x,
+        };
+        value.clamp(self.lower, self.upper)
     }
 
-    /// How many decades a value lies from the recommended one.
-    pub fn decades(&self, value: f64) -> f64 {
-        libm::log10(value / self.recommended)
+    /// The coordinate of a value.
+    pub fn coordinate(&self, value: f64) -> f64 {
+        match self.quantity.scale() {
+            Scale::Logarithmic => libm::log10(value / self.recommended),
+            Scale::Linear => (value - self.recommended) / self.half(),
+        }
+    }
+
+    /// Half of the interval: the unit of a linear axis [declared unit].
+    fn half(&self) -> f64 {
+        0.5 * (self.upper - self.lower)
     }
 }
 
@@ -108,7 +121,8 @@ impl Space {
     /// The space of a case's genes, in their order.
     ///
     /// # Errors
-    /// If there is no gene, or bounds and recommendation of one are not positive and ordered.
+    /// If there is no gene, or bounds and recommendation of one are not ordered, or not positive on a
+    /// logarithmic axis.
     pub fn new(genes: &[Gene]) -> Result<Self, SpaceError> {
         if genes.is_empty() {
             return Err(SpaceError::Empty);
@@ -122,9 +136,9 @@ impl Space {
         &self.axes
     }
 
-    /// Position of a gene.
-    pub fn position(&self, name: GeneName) -> Option<usize> {
-        self.axes.iter().position(|axis| axis.name == name)
+    /// Position of a coefficient.
+    pub fn position(&self, name: Coefficient) -> Option<usize> {
+        self.axes.iter().position(|axis| axis.quantity.is(name))
     }
 
     /// Number of genes.
@@ -132,39 +146,53 @@ impl Space {
         self.axes.len()
     }
 
-    /// Values [declared units] of a point (decades); one per axis.
+    /// Values [declared units] of a point; one per axis.
     pub fn values(&self, point: &[f64]) -> Vec<f64> {
         let pairs = self.axes.iter().zip(point);
         pairs.map(|(axis, &x)| axis.value(x)).collect()
     }
 
-    /// The point (decades) of values [declared units].
-    pub fn decades(&self, values: &[f64]) -> Vec<f64> {
+    /// The point of values [declared units].
+    pub fn point(&self, values: &[f64]) -> Vec<f64> {
         let pairs = self.axes.iter().zip(values);
-        pairs.map(|(axis, &value)| axis.decades(value)).collect()
+        pairs.map(|(axis, &value)| axis.coordinate(value)).collect()
     }
 }
 
 fn axis(gene: &Gene) -> Result<Axis, SpaceError> {
-    let ordered = gene.lower > 0.0
-        && gene.lower <= gene.recommended
+    let inside = gene.lower <= gene.recommended
         && gene.recommended <= gene.upper
-        && gene.upper.is_finite();
-    if !ordered {
+        && (gene.upper - gene.lower).is_finite();
+    let (fits, rule) = match gene.scale() {
+        Scale::Logarithmic => (gene.lower > 0.0, "0 < lower <= recommended <= upper"),
+        Scale::Linear => (
+            gene.lower < gene.upper,
+            "lower <= recommended <= upper and lower < upper",
+        ),
+    };
+    if !(inside && fits) {
         return Err(SpaceError::Bounds {
-            name: gene.name.as_str().to_owned(),
+            name: gene.label(),
+            rule,
             lower: gene.lower,
             recommended: gene.recommended,
             upper: gene.upper,
         });
     }
     let mut axis = Axis {
-        name: gene.name,
+        quantity: gene.quantity.clone(),
         recommended: gene.recommended,
         lower: gene.lower,
         upper: gene.upper,
-        trust: trust(gene.unit),
+        trust: Interval {
+            from: f64::NEG_INFINITY,
+            to: f64::INFINITY,
+        },
     };
+    // what a case says of an effect's parameter is searched whole
+    if let Quantity::Coefficient { unit, .. } = gene.quantity {
+        axis.trust = trust(unit);
+    }
     axis.trust = axis.trust.within(axis.interval());
     Ok(axis)
 }
@@ -198,9 +226,17 @@ mod tests {
     use super::*;
 
     fn gene(lower: f64, recommended: f64, upper: f64) -> Gene {
+        let unit = Unit::NewtonPerMetre;
+        Gene::coefficient(Coefficient::Kb23, unit, recommended, [lower, upper])
+    }
+
+    fn linear(lower: f64, recommended: f64, upper: f64) -> Gene {
         Gene {
-            name: GeneName::Kb23,
-            unit: Unit::NewtonPerMetre,
+            quantity: Quantity::Effect {
+                id: "gauge_drift".to_owned(),
+                parameter: "drift_1".to_owned(),
+                unit: "MPa/rev".to_owned(),
+            },
             recommended,
             lower,
             upper,
@@ -208,14 +244,36 @@ mod tests {
     }
 
     #[test]
-    fn decades_and_values_are_inverse_and_stay_in_the_box() {
+    fn points_and_values_are_inverse_and_stay_in_the_box() {
         let space = Space::new(&[gene(3e4, 3e8, 3e12), gene(2.0, 5.0, 7.0)]).unwrap();
         assert_eq!(space.values(&[0.0, 0.0]), [3e8, 5.0]);
         let values = space.values(&[1.25, 0.1]);
-        for (back, x) in space.decades(&values).into_iter().zip([1.25, 0.1]) {
+        for (back, x) in space.point(&values).into_iter().zip([1.25, 0.1]) {
             assert!((back - x).abs() < 1e-12);
         }
         assert_eq!(space.values(&[9.0, -9.0]), [3e12, 2.0]);
+    }
+
+    #[test]
+    fn a_linear_axis_counts_halves_of_its_interval_and_may_be_negative() {
+        let space = Space::new(&[linear(-3.0, -1.0, 1.0), linear(0.0, 0.0, 0.5)]).unwrap();
+        assert_eq!(space.values(&[0.0, 0.0]), [-1.0, 0.0]);
+        assert_eq!(space.values(&[0.25, 1.0]), [-0.5, 0.25]);
+        assert_eq!(space.point(&[-0.5, 0.25]), [0.25, 1.0]);
+        assert_eq!(space.values(&[-9.0, 9.0]), [-3.0, 0.5]);
+        for (axis, [from, to]) in space.axes().iter().zip([[-1.0, 1.0], [0.0, 2.0]]) {
+            assert_eq!(axis.interval(), Interval { from, to });
+            assert_eq!(axis.trust, axis.interval());
+        }
+        for bad in [
+            linear(1.0, 1.0, 1.0),
+            linear(0.0, 2.0, 1.0),
+            linear(f64::NEG_INFINITY, 0.0, 1.0),
+            linear(-1.0, f64::NAN, 1.0),
+        ] {
+            let error = Space::new(&[bad]).unwrap_err().to_string();
+            assert!(error.starts_with("gene gauge_drift.drift_1:"), "{error}");
+        }
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! Functions with known minima, to hold strategies to.
 //!
-//! Points are in decades from the recommended value, over +-4 decades. All minima are 0.
+//! Points are coordinates of the space: decades from the recommended value, over +-4 of them. All minima are 0.
 use crate::{
     space::{Space, SpaceError},
     strategy::Told,
 };
-use protocol::case::{Gene, GeneName};
+use protocol::case::{Coefficient, Gene};
 
 /// What a function gives: the residual vector whose squared length is the fitness, or the grade of
 /// a point that fails.
@@ -16,7 +16,7 @@ type Value = Result<Vec<f64>, f64>;
 pub struct TestFunction {
     /// Its name.
     pub name: &'static str,
-    /// Where its minimum lies (decades); at most 10 genes.
+    /// Where its minimum lies (coordinate); at most 10 genes.
     pub optimum: &'static [f64],
     value: fn(&[f64], &[f64]) -> Value,
 }
@@ -65,17 +65,13 @@ impl TestFunction {
     /// # Panics
     /// Never: the bounds are ordered.
     pub fn space(&self) -> Space {
-        let gene = |(name, scale): (GeneName, f64)| Gene {
-            name,
-            unit: name.si_unit(),
-            recommended: scale,
-            lower: 1e-4 * scale,
-            upper: 1e4 * scale,
+        let gene = |(name, scale): (Coefficient, f64)| {
+            Gene::coefficient(name, name.si_unit(), scale, [1e-4 * scale, 1e4 * scale])
         };
         let scales = [
             3.14e8, 1.25e8, 110.0, 137.0, 400.0, 410.0, 40.0, 41.0, 1e6, 50.0,
         ];
-        let genes: Vec<Gene> = GeneName::ALL
+        let genes: Vec<Gene> = Coefficient::ALL
             .into_iter()
             .zip(scales)
             .take(self.optimum.len())
@@ -87,7 +83,7 @@ impl TestFunction {
 
     /// Its result at gene values [declared units of [`Self::space`]].
     pub fn tell(&self, space: &Space, genes: &[f64]) -> Told {
-        match (self.value)(&space.decades(genes), self.optimum) {
+        match (self.value)(&space.point(genes), self.optimum) {
             Ok(residual) => Told {
                 fitness: square(&residual),
                 complete: true,
@@ -102,7 +98,7 @@ impl TestFunction {
     /// Its residual vector at gene values [declared units of [`Self::space`]], whose squared length
     /// is the fitness; empty where it fails.
     pub fn residual(&self, space: &Space, genes: &[f64]) -> Vec<f64> {
-        (self.value)(&space.decades(genes), self.optimum).unwrap_or_default()
+        (self.value)(&space.point(genes), self.optimum).unwrap_or_default()
     }
 }
 

@@ -213,15 +213,17 @@ impl Summary {
             ""
         };
         writeln!(to, "genes       recommended (lower .. upper){whose}")?;
+        let labels = self.genes.iter().map(|gene| gene.label().len());
+        let width = labels.fold(6, usize::max);
         for gene in &self.genes {
             writeln!(
                 to,
-                "  {:<6} {:>10.3e} ({:.2e} .. {:.2e}) {}",
-                gene.name.as_str(),
+                "  {:<width$} {:>10.3e} ({:.2e} .. {:.2e}) {}",
+                gene.label(),
                 gene.recommended,
                 gene.lower,
                 gene.upper,
-                gene.unit.symbol()
+                gene.unit()
             )?;
         }
         if self.twin_ropes.is_none() {

@@ -1,7 +1,7 @@
 //! Recommended coefficients by formula: the elasticity of a rope (paper, Eq. 3) and the contact of two
 //! elastic bodies (paper, Eq. 5). Knows material and size, no bounds, and damping has no formula.
 use super::schema::CaseFile;
-use protocol::case::GeneName;
+use protocol::case::Coefficient;
 use serde::{
     Deserialize,
     de::{self, Visitor},
@@ -125,15 +125,15 @@ impl Bodies {
     }
 
     /// What a formula makes of a coefficient, in SI units; none where it says nothing of it.
-    pub(super) fn give(&self, formula: Formula, name: GeneName) -> Option<f64> {
+    pub(super) fn give(&self, formula: Formula, name: Coefficient) -> Option<f64> {
         match formula {
             Formula::Eq3 => self.eq3(name),
-            Formula::Hertz => (name == GeneName::Kc).then(|| self.hertz()).flatten(),
+            Formula::Hertz => (name == Coefficient::Kc).then(|| self.hertz()).flatten(),
         }
     }
 
     /// Stiffness of a joint as of a solid round bar [N/m, N.m/rad] (paper, Eq. 3).
-    fn eq3(&self, name: GeneName) -> Option<f64> {
+    fn eq3(&self, name: Coefficient) -> Option<f64> {
         let Self {
             diameter: d,
             length,
@@ -143,16 +143,16 @@ impl Bodies {
         let area = PI * d * d / 4.0;
         let second_moment = PI * d * d * d * d / 64.0;
         match name {
-            GeneName::Kb1 => Some(rope.young * area / length),
-            GeneName::Kb23 => Some(rope.shear() * area / length),
-            GeneName::Kb4 => Some(rope.shear() * 2.0 * second_moment / length),
-            GeneName::Kb56 => Some(rope.young * second_moment / length),
-            GeneName::Cb1
-            | GeneName::Cb23
-            | GeneName::Cb4
-            | GeneName::Cb56
-            | GeneName::Kc
-            | GeneName::Cc => None,
+            Coefficient::Kb1 => Some(rope.young * area / length),
+            Coefficient::Kb23 => Some(rope.shear() * area / length),
+            Coefficient::Kb4 => Some(rope.shear() * 2.0 * second_moment / length),
+            Coefficient::Kb56 => Some(rope.young * second_moment / length),
+            Coefficient::Cb1
+            | Coefficient::Cb23
+            | Coefficient::Cb4
+            | Coefficient::Cb56
+            | Coefficient::Kc
+            | Coefficient::Cc => None,
         }
     }
 
@@ -170,7 +170,7 @@ impl Bodies {
 #[cfg(test)]
 mod tests {
     use super::{Bodies, Elastic, Formula};
-    use protocol::{case::GeneName, unit::Unit};
+    use protocol::{case::Coefficient, unit::Unit};
 
     const STEEL: Elastic = Elastic {
         young: 200e9,
@@ -191,15 +191,15 @@ mod tests {
     fn eq_3_gives_the_papers_recommended_values() {
         let per_degree = Unit::NewtonMetrePerDegree.si_factor();
         for (name, printed) in [
-            (GeneName::Kb1, 3.14e8),
-            (GeneName::Kb23, 1.25e8),
-            (GeneName::Kb4, 110.0 / 4.0 * per_degree),
-            (GeneName::Kb56, 137.0 / 4.0 * per_degree),
+            (Coefficient::Kb1, 3.14e8),
+            (Coefficient::Kb23, 1.25e8),
+            (Coefficient::Kb4, 110.0 / 4.0 * per_degree),
+            (Coefficient::Kb56, 137.0 / 4.0 * per_degree),
         ] {
             let given = BODIES.give(Formula::Eq3, name).unwrap();
             assert!((given / printed - 1.0).abs() < 6e-3, "{name:?}: {given}");
         }
-        for name in [GeneName::Cb1, GeneName::Kc, GeneName::Cc] {
+        for name in [Coefficient::Cb1, Coefficient::Kc, Coefficient::Cc] {
             assert_eq!(BODIES.give(Formula::Eq3, name), None);
         }
     }
@@ -210,13 +210,13 @@ mod tests {
         let effective = 200e9 / (2.0 * (1.0 - 0.0625));
         let radius: f64 = 1.0 / (1.0 / 0.005 + 1.0 / 1.895);
         let expected = 4.0 / 3.0 * effective * radius.sqrt();
-        let given = BODIES.give(Formula::Hertz, GeneName::Kc).unwrap();
+        let given = BODIES.give(Formula::Hertz, Coefficient::Kc).unwrap();
         assert!((given / expected - 1.0).abs() < 1e-12, "{given}");
         let other = Bodies {
             exponent: 2.0,
             ..BODIES
         };
-        assert_eq!(other.give(Formula::Hertz, GeneName::Kc), None);
-        assert_eq!(BODIES.give(Formula::Hertz, GeneName::Kb1), None);
+        assert_eq!(other.give(Formula::Hertz, Coefficient::Kc), None);
+        assert_eq!(BODIES.give(Formula::Hertz, Coefficient::Kb1), None);
     }
 }

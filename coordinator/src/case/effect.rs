@@ -6,7 +6,10 @@ use super::{
     document::{Document, Step, nearest},
     error::CaseError,
 };
-use protocol::{case::EffectSetting, unit::EFFECT_UNITS};
+use protocol::{
+    case::{EffectSetting, Gene, Quantity},
+    unit::EFFECT_UNITS,
+};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -33,6 +36,8 @@ pub struct CaseParameter {
     pub unit: String,
     /// Interval that holds the value with 95 % confidence, if it was estimated.
     pub ci95: Option<[f64; 2]>,
+    /// Interval that a calibration searches; without one the parameter is no gene.
+    pub search: Option<[f64; 2]>,
 }
 
 /// Where an effect comes from: the diagnosis that named it.
@@ -69,6 +74,23 @@ impl CaseEffect {
     /// Units of its parameters, in the order of [`Self::setting`].
     pub fn units(&self) -> Vec<String> {
         self.parameters.values().map(|p| p.unit.clone()).collect()
+    }
+
+    /// Its parameters that are searched, in the order of [`Self::setting`].
+    pub fn genes(&self) -> impl Iterator<Item = Gene> {
+        self.parameters.iter().filter_map(|(name, p)| {
+            let [lower, upper] = p.search?;
+            Some(Gene {
+                quantity: Quantity::Effect {
+                    id: self.id.clone(),
+                    parameter: name.clone(),
+                    unit: p.unit.clone(),
+                },
+                recommended: p.value,
+                lower,
+                upper,
+            })
+        })
     }
 }
 
@@ -144,18 +166,29 @@ fn check_parameter(
             "correct the value; a worker knows its bounds",
         ));
     }
-    let Some([low, high]) = parameter.ci95 else {
-        return Ok(());
-    };
-    if low.is_finite() && high.is_finite() && (low..=high).contains(&parameter.value) {
-        return Ok(());
+    for (key, interval, is_search) in [
+        ("ci95", parameter.ci95, false),
+        ("search", parameter.search, true),
+    ] {
+        let Some([low, high]) = interval else {
+            continue;
+        };
+        let around = (low..=high).contains(&parameter.value) && (high - low).is_finite();
+        if around && (low < high || !is_search) {
+            continue;
+        }
+        let apart = if is_search { "different " } else { "" };
+        return Err(document.field(
+            &way(key),
+            format!("[{low}, {high}]"),
+            format!(
+                "two {apart}finite numbers around the value, {}",
+                parameter.value
+            ),
+            &format!("write the lower bound first, or leave {key} out"),
+        ));
     }
-    Err(document.field(
-        &way("ci95"),
-        format!("[{low}, {high}]"),
-        format!("two finite numbers around the value, {}", parameter.value),
-        "write the lower bound first, or leave ci95 out",
-    ))
+    Ok(())
 }
 
 /// `[[effects]]` tables as they are written in `case.toml`: reading them gives the same effects.
@@ -163,15 +196,18 @@ pub fn write_effects(effects: &[CaseEffect]) -> String {
     let mut text = String::new();
     for effect in effects {
         let parameters = effect.parameters.iter().map(|(name, p)| {
-            let interval = p
-                .ci95
-                .map(|[low, high]| format!(", ci95 = [{low:?}, {high:?}]"))
-                .unwrap_or_default();
+            let interval = |key: &str, interval: Option<[f64; 2]>| {
+                interval
+                    .map(|[low, high]| format!(", {key} = [{low:?}, {high:?}]"))
+                    .unwrap_or_default()
+            };
             format!(
-                "{} = {{ value = {:?}, unit = {}{interval} }}",
+                "{} = {{ value = {:?}, unit = {}{}{} }}",
                 key(name),
                 p.value,
-                quoted(&p.unit)
+                quoted(&p.unit),
+                interval("ci95", p.ci95),
+                interval("search", p.search)
             )
         });
         let parameters: Vec<String> = parameters.collect();
@@ -219,8 +255,8 @@ fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
 }
 
-/// A bare key where TOML allows it.
-fn key(name: &str) -> String {
+/// A key, bare where TOML allows it.
+pub(crate) fn key(name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     if !name.is_empty() && name.chars().all(bare) {
         name.to_owned()
@@ -244,6 +280,7 @@ mod tests {
             value,
             unit: "N.m".to_owned(),
             ci95,
+            search: ci95.map(|[low, high]| [2.0 * low, 0.1 + 2.0 * high]),
         };
         let effects = vec![
             CaseEffect {

@@ -1,31 +1,30 @@
-//! Genes: those a case declares, and files that give each a value.
+//! The coefficients of rope and contact that a case declares as genes.
 use super::{
     coefficient::{Bodies, Recommended},
     document::{Document, Step, units},
     error::CaseError,
-    schema::{GeneEntry, GeneTable, GeneValue},
+    schema::GeneTable,
 };
 use protocol::{
-    case::{Case, Gene, GeneName},
+    case::{Coefficient, Gene},
     unit::Unit,
 };
-use std::path::Path;
 
 /// Largest value of any coefficient, in SI units.
 const LARGEST: f64 = 1.0e30;
 
-/// The genes of a case, checked.
+/// The coefficients of a case, checked.
 ///
 /// # Errors
 /// A unit that does not fit, values that are not positive, bounds that exclude the recommended
 /// value, a formula that does not give this coefficient.
 pub(super) fn declared(
     document: &Document,
-    table: GeneTable<GeneEntry>,
+    table: GeneTable,
     bodies: &Bodies,
 ) -> Result<Vec<Gene>, CaseError> {
     let mut genes = Vec::new();
-    for (name, entry) in GeneName::ALL.into_iter().zip(table.into_array()) {
+    for (name, entry) in Coefficient::ALL.into_iter().zip(table.into_array()) {
         let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
         check_unit(document, &way("unit"), name, entry.unit)?;
         let recommended = match entry.recommended {
@@ -67,50 +66,17 @@ pub(super) fn declared(
                 "the bounds exclude the recommended value: widen them, or correct it",
             ));
         }
-        genes.push(Gene {
-            name,
-            unit: entry.unit,
-            recommended,
-            lower: entry.lower,
-            upper: entry.upper,
-        });
+        let bounds = [entry.lower, entry.upper];
+        genes.push(Gene::coefficient(name, entry.unit, recommended, bounds));
     }
     Ok(genes)
 }
 
-/// Reads a gene file, `kb1 = { value = 7.81e8, unit = "N/m" }` for every gene of the case; values
-/// are returned in the case's units and order. They may lie outside the bounds, which are those
-/// of the search.
-///
-/// # Errors
-/// A missing or unknown gene, a unit that does not fit, a value that is not positive.
-pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
-    let document = Document::read(path, "the gene file that was asked for")?;
-    let table: GeneTable<GeneValue> = document.parse()?;
-    let mut given = Vec::new();
-    for (name, entry) in GeneName::ALL.into_iter().zip(table.into_array()) {
-        let way = |key| [Step::Key(name.as_str()), Step::Key(key)];
-        check_unit(&document, &way("unit"), name, entry.unit)?;
-        check_value(&document, &way("value"), entry.value, entry.unit)?;
-        given.push((name, entry));
-    }
-    let wanted = case.genes.iter().filter_map(|gene| {
-        let (_, entry) = given.iter().find(|(name, _)| *name == gene.name)?;
-        // the same unit needs no conversion, which would cost the last digit
-        Some(if entry.unit == gene.unit {
-            entry.value
-        } else {
-            entry.unit.to_si(entry.value) / gene.unit.si_factor()
-        })
-    });
-    Ok(wanted.collect())
-}
-
 /// A coefficient's unit measures that kind of coefficient.
-fn check_unit(
+pub(super) fn check_unit(
     document: &Document,
     way: &[Step<'_>],
-    name: GeneName,
+    name: Coefficient,
     unit: Unit,
 ) -> Result<(), CaseError> {
     if unit.si() == name.si_unit() {
@@ -129,8 +95,8 @@ fn check_unit(
     ))
 }
 
-/// Genes are searched on a logarithmic scale: positive and finite.
-fn check_value(
+/// Coefficients are searched on a logarithmic scale: positive and finite.
+pub(super) fn check_value(
     document: &Document,
     way: &[Step<'_>],
     value: f64,

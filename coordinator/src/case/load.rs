@@ -14,7 +14,7 @@ use super::{
     schema::{CaseFile, ConditionEntry, FlexibleHead, ObjectiveEntry, Records, TwinRopesEntry},
 };
 use discrepancy::record::Record;
-use protocol::case::{Case, Condition, Objective, Smoothing};
+use protocol::case::{Case, Condition, Objective, Quantity, Smoothing};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -45,7 +45,7 @@ pub struct Loaded {
 
 impl Loaded {
     /// The case as it was when effects were found in it: without those whose provenance names it, by its
-    /// content hash, as their dataset.
+    /// content hash, as their dataset, and without their genes.
     #[must_use]
     pub fn without_found_in(mut self, dataset: &str) -> Self {
         let found = |effect: &CaseEffect| {
@@ -55,6 +55,11 @@ impl Loaded {
         self.effects.retain(|effect| !found(effect));
         self.case.effects = self.effects.iter().map(CaseEffect::setting).collect();
         self.case.effect_units = self.effects.iter().map(CaseEffect::units).collect();
+        let left = &self.case.effects;
+        self.case.genes.retain(|gene| match &gene.quantity {
+            Quantity::Coefficient { .. } => true,
+            Quantity::Effect { id, .. } => left.iter().any(|effect| effect.id == *id),
+        });
         self
     }
 }
@@ -123,7 +128,8 @@ pub(super) fn resolve(
         notes.extend(read.notes);
     }
     let bodies = Bodies::of(&file);
-    let genes = genes::declared(&document, file.genes, &bodies)?;
+    let mut genes = genes::declared(&document, file.genes, &bodies)?;
+    genes.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let case = Case {
         name: file.name,
         gravity_m_s2: file.gravity_m_s2,

@@ -12,6 +12,7 @@ mod effect;
 mod error;
 mod file;
 mod flexible;
+mod gene_file;
 mod genes;
 mod geometry;
 mod head;
@@ -28,7 +29,7 @@ pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, tem
 pub use effect::{CaseEffect, CaseParameter, Provenance, write_effects};
 pub use error::CaseError;
 pub use flexible::{HeadSource, load_head};
-pub use genes::read_genes;
+pub use gene_file::{read_genes, write_genes};
 pub use geometry::Envelope;
 pub use geometry::{QuasiStatic, quasi_static};
 pub(crate) use head::GaugePlace;

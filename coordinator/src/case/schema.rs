@@ -37,7 +37,7 @@ pub(super) struct CaseFile {
     /// What the machine has beside the above; nothing unless stated.
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
-    pub(super) genes: GeneTable<GeneEntry>,
+    pub(super) genes: GeneTable,
     pub(super) conditions: Vec<ConditionEntry>,
     pub(super) objective: ObjectiveEntry,
     pub(super) run: RunSettings,
@@ -131,25 +131,25 @@ const fn steel_poisson() -> f64 {
     0.3
 }
 
-/// One entry per gene; all are required.
+/// One entry per coefficient; all are required.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct GeneTable<T> {
-    pub(super) kb1: T,
-    pub(super) kb23: T,
-    pub(super) kb4: T,
-    pub(super) kb56: T,
-    pub(super) cb1: T,
-    pub(super) cb23: T,
-    pub(super) cb4: T,
-    pub(super) cb56: T,
-    pub(super) kc: T,
-    pub(super) cc: T,
+pub(super) struct GeneTable {
+    kb1: GeneEntry,
+    kb23: GeneEntry,
+    kb4: GeneEntry,
+    kb56: GeneEntry,
+    cb1: GeneEntry,
+    cb23: GeneEntry,
+    cb4: GeneEntry,
+    cb56: GeneEntry,
+    kc: GeneEntry,
+    cc: GeneEntry,
 }
 
-impl<T> GeneTable<T> {
+impl GeneTable {
     /// The entries in the order of the chromosome.
-    pub(super) fn into_array(self) -> [T; 10] {
+    pub(super) fn into_array(self) -> [GeneEntry; 10] {
         [
             self.kb1, self.kb23, self.kb4, self.kb56, self.cb1, self.cb23, self.cb4, self.cb56,
             self.kc, self.cc,
@@ -157,7 +157,7 @@ impl<T> GeneTable<T> {
     }
 }
 
-/// One gene of the case.
+/// One coefficient of the case.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct GeneEntry {
@@ -165,14 +165,6 @@ pub(super) struct GeneEntry {
     pub(super) recommended: Recommended,
     pub(super) lower: f64,
     pub(super) upper: f64,
-    pub(super) unit: Unit,
-}
-
-/// One gene of a gene file.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct GeneValue {
-    pub(super) value: f64,
     pub(super) unit: Unit,
 }
 

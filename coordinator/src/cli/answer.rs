@@ -1,9 +1,13 @@
 //! The files and the output of a finished diagnosis.
 use super::{
     Output, bus, diagnosis_json, output,
-    run_folder::{Manifest, RunFolder, gene_file},
+    run_folder::{Manifest, RunFolder},
 };
-use crate::{case::Loaded, report::diagnosis as report, study::Diagnosed};
+use crate::{
+    case::{Loaded, write_genes},
+    report::diagnosis as report,
+    study::Diagnosed,
+};
 use anyhow::Context as _;
 use protocol::announce::EffectDescriptor;
 use std::path::Path;
@@ -49,7 +53,7 @@ impl<S> Answer<'_, S> {
             return Ok(());
         };
         let about = format!("Parameters of {}", self.folder.path().display());
-        let genes = gene_file(&self.loaded.case, &fit.model.genes(fit.x()), &about);
+        let genes = write_genes(&self.loaded.case, &fit.model.genes(fit.x()), &about);
         self.folder.write("calibrated.toml", &genes)
     }
 

@@ -34,7 +34,7 @@ enum Action {
 struct CheckOutput<'a> {
     case: &'a str,
     conditions: Vec<&'a str>,
-    genes: Vec<&'static str>,
+    genes: Vec<String>,
     notes: Vec<String>,
 }
 
@@ -57,7 +57,7 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
         genes: summary
             .genes
             .iter()
-            .map(|gene| gene.name.as_str())
+            .map(protocol::case::Gene::label)
             .collect(),
         notes: summary.notes.iter().map(ToString::to_string).collect(),
     };

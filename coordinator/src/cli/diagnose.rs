@@ -93,7 +93,24 @@ struct Target {
     /// Folder of the records, where they replace the case's.
     measured: Option<PathBuf>,
     loaded: Loaded,
+    /// Values of the case's genes.
     start: Option<Vec<f64>>,
+}
+
+impl Target {
+    /// Without what this very diagnosis has added to the case; the start is one of what is left.
+    fn without_found_by(mut self, earlier: &Earlier) -> anyhow::Result<Self> {
+        let stated = self.loaded.case.genes.clone();
+        self.loaded = earlier.as_begun(self.loaded)?;
+        let left = &self.loaded.case.genes;
+        let kept = |values: Vec<f64>| {
+            let pairs = stated.iter().zip(values);
+            let kept = pairs.filter(|(gene, _)| left.contains(gene));
+            kept.map(|(_, value)| value).collect()
+        };
+        self.start = self.start.map(kept);
+        Ok(self)
+    }
 }
 
 /// Diagnoses from the record to the report.
@@ -108,7 +125,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let stated = target.loaded.effects.len();
     if let Ok(earlier) = Earlier::open(&path) {
-        target.loaded = earlier.as_begun(target.loaded)?;
+        target = target.without_found_by(&earlier)?;
     }
     let has_own = target.loaded.effects.len() < stated;
     for note in &target.loaded.notes {
@@ -326,7 +343,7 @@ fn inputs(
             .settings
             .start
             .as_ref()
-            .map(|genes| space.decades(genes)),
+            .map(|genes| space.point(genes)),
         space,
         records,
         library,

@@ -280,7 +280,7 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .genes
             .iter()
             .zip(genes)
-            .map(|(gene, value)| (gene.name.as_str().to_owned(), value))
+            .map(|(gene, value)| (gene.label(), value))
             .collect(),
         stages: subject
             .diagnosed

@@ -3,7 +3,7 @@ use super::{
     Door, Output, bus, export,
     json::{self, Both, CalibrateOutput},
     output,
-    run_folder::{Manifest, RunFolder, gene_file},
+    run_folder::{Manifest, RunFolder},
 };
 use crate::{
     account, journal,
@@ -195,7 +195,7 @@ pub(super) fn show(session: &Session<'_>, found: &Found, output: Output) -> anyh
         session.manifest.seed,
         calibration.provenance.digest
     );
-    let genes = gene_file(session.case, &found.calibrated.best.genes, &about);
+    let genes = crate::case::write_genes(session.case, &found.calibrated.best.genes, &about);
     folder.write("calibrated.toml", &genes)?;
     let mut files: Vec<String> = report::write_calibration(folder.path(), &calibration)?
         .iter()

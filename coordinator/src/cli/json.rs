@@ -22,7 +22,7 @@ pub(super) struct SimulateOutput<'a> {
     /// Work that was done.
     pub(super) counters: CountersOutput,
     /// Gene values by name.
-    pub(super) genes: BTreeMap<&'static str, GeneOutput>,
+    pub(super) genes: BTreeMap<String, GeneOutput>,
     /// Objective `MPa^2`; null without a record or a complete run.
     pub(super) objective: Option<f64>,
     /// Agreement by gauge number; empty without a record.
@@ -125,7 +125,7 @@ pub(super) struct EnergyOutput {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(super) struct GeneOutput {
     value: f64,
-    unit: &'static str,
+    unit: String,
     recommended: f64,
     lower: f64,
     upper: f64,
@@ -251,7 +251,7 @@ pub(super) struct CalibrateOutput<'a> {
     /// Wall time over all sessions (s).
     pub(super) wall_s: f64,
     /// The identified parameters by name.
-    pub(super) genes: BTreeMap<&'static str, GeneOutput>,
+    pub(super) genes: BTreeMap<String, GeneOutput>,
     /// Objective of both parameter sets `MPa^2`.
     pub(super) objective: Both<Option<f64>>,
     /// Agreement by gauge number, of both parameter sets, at the calibrated condition.
@@ -355,18 +355,18 @@ pub(super) struct RoundTrip {
 }
 
 /// Genes by name.
-pub(super) fn genes(case: &Case, values: &[f64]) -> BTreeMap<&'static str, GeneOutput> {
+pub(super) fn genes(case: &Case, values: &[f64]) -> BTreeMap<String, GeneOutput> {
     let pairs = case.genes.iter().zip(values);
     pairs
         .map(|(gene, &value)| {
             let output = GeneOutput {
                 value,
-                unit: gene.unit.symbol(),
+                unit: gene.unit().to_owned(),
                 recommended: gene.recommended,
                 lower: gene.lower,
                 upper: gene.upper,
             };
-            (gene.name.as_str(), output)
+            (gene.label(), output)
         })
         .collect()
 }

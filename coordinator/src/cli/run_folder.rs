@@ -413,18 +413,6 @@ pub(super) struct Begun {
     pub(super) wall_s: f64,
 }
 
-/// A gene file that `--genes` and the case loader read: one line per gene, exact values.
-pub(super) fn gene_file(case: &Case, values: &[f64], about: &str) -> String {
-    let mut text = format!("# {about}\n");
-    for (gene, value) in case.genes.iter().zip(values) {
-        let name = gene.name.as_str();
-        let unit = gene.unit.symbol();
-        let line = format!("{name:<4} = {{ value = {value:e}, unit = \"{unit}\" }}\n");
-        text.push_str(&line);
-    }
-    text
-}
-
 /// The command line as it was typed, quoted where a shell needs it.
 pub(super) fn command_line() -> String {
     let mut words = vec!["horsehead".to_owned()];

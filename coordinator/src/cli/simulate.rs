@@ -114,7 +114,7 @@ fn outside_bounds(case: &Case, genes: &[f64]) -> Vec<String> {
     genes
         .filter(|(gene, value)| !(gene.lower..=gene.upper).contains(value))
         .map(|(gene, value)| {
-            let (name, unit) = (gene.name.as_str(), gene.unit.symbol());
+            let (name, unit) = (gene.label(), gene.unit());
             let (lower, upper) = (gene.lower, gene.upper);
             format!(
                 "{name} = {value:e} {unit} lies outside the case's search bounds, {lower:e} to \

@@ -1,6 +1,6 @@
 //! Habits of the command line: help, run folders, gene files.
 use super::{
-    run_folder::{self, Manifest, RunFolder, gene_file},
+    run_folder::{self, Manifest, RunFolder},
     *,
 };
 use clap::CommandFactory as _;
@@ -167,7 +167,7 @@ fn calibrated_parameters_come_back_from_their_file_bit_for_bit() {
         .map(|(n, gene)| gene.recommended * (1.0 + f64::from(n) / 7.0))
         .collect();
     let file = scratch.path().join("calibrated.toml");
-    std::fs::write(&file, gene_file(&case, &values, "a test")).unwrap();
+    std::fs::write(&file, crate::case::write_genes(&case, &values, "a test")).unwrap();
     let back = crate::case::read_genes(&file, &case).unwrap();
     for (value, back) in values.iter().zip(&back) {
         assert_eq!(value.to_bits(), back.to_bits());

@@ -4,7 +4,7 @@
 use super::data::{ConditionResult, Run, SingleRun};
 use super::words::condition_name;
 use crate::study::{BoxPoint, WorkPrecision};
-use protocol::case::{Case, GaugeRecord};
+use protocol::case::{Case, GaugeRecord, Gene};
 use protocol::job::{Simulation, Verdict};
 use std::io::Write;
 
@@ -185,7 +185,7 @@ fn on_grid(record: &GaugeRecord, turn_deg: f64) -> Option<usize> {
 /// [`csv::Error`] when the writer fails.
 pub fn whole_box(to: impl Write, case: &Case, points: &[BoxPoint]) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
-    let genes = case.genes.iter().map(|gene| gene.name.as_str());
+    let genes: Vec<String> = case.genes.iter().map(Gene::label).collect();
     let rest = [
         "verdict",
         "load_fraction",
@@ -195,6 +195,7 @@ pub fn whole_box(to: impl Write, case: &Case, points: &[BoxPoint]) -> Result<(),
         "factorizations",
         "wall_s",
     ];
+    let genes = genes.iter().map(String::as_str);
     writer.write_record(std::iter::once("point").chain(genes).chain(rest))?;
     for (index, point) in points.iter().enumerate() {
         let counters = &point.counters;

@@ -2,8 +2,6 @@
 //!
 //! Plain text only: powers of ten use Unicode superscripts, the minus is a real minus sign.
 
-use protocol::unit::Unit;
-
 /// What stands where there is no value.
 pub(super) const NONE: &str = "–";
 
@@ -101,16 +99,31 @@ pub(super) fn ratio(of: f64, to: f64) -> String {
     }
 }
 
-/// A unit as print sets it.
-pub(super) const fn unit(unit: Unit) -> &'static str {
-    match unit {
-        Unit::NewtonPerMetre => "N/m",
-        Unit::NewtonMetrePerRadian => "N·m/rad",
-        Unit::NewtonMetrePerDegree => "N·m/deg",
-        Unit::NewtonSecondPerMetre => "N·s/m",
-        Unit::NewtonMetreSecondPerRadian => "N·m·s/rad",
-        Unit::NewtonMetreSecondPerDegree => "N·m·s/deg",
-        Unit::NewtonPerMetreToThreeHalves => "N/m¹·⁵",
+/// A unit as print sets it, from how files write it: `kg.m2` as `kg·m²`, `N/m^1.5` as `N/m¹·⁵`.
+pub(super) fn unit(symbol: &str) -> String {
+    let mut set = String::with_capacity(symbol.len() + 4);
+    let mut raised = false;
+    for c in symbol.chars() {
+        match (c, c.to_digit(10)) {
+            ('^', _) => raised = true,
+            ('.', _) => set.push('·'),
+            (_, Some(digit)) if raised => set.push_str(&superscript(digit.cast_signed())),
+            _ => {
+                // a digit behind a letter is its power, one in front is a number
+                raised = c.is_alphabetic();
+                set.push(c);
+            }
+        }
+    }
+    set
+}
+
+/// A value with its unit; the unit `1` is not written.
+pub(super) fn quantity(value: f64, symbol: &str) -> String {
+    match symbol {
+        _ if !value.is_finite() => NONE.to_owned(),
+        "" | "1" => figure(value),
+        _ => format!("{}{NO_BREAK}{}", figure(value), unit(symbol)),
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Says what the data say and no more; every sentence stands by itself.
 use super::data::{Calibration, ConditionResult};
-use super::number::{figure, percent, unit};
-use protocol::case::{Case, Gene, Integrator};
+use super::number::{figure, percent, quantity};
+use protocol::case::{Case, Gene, Integrator, Scale};
 use protocol::job::{ChannelScore, ModeFamily, PhysicsFailure, Reached, Verdict};
 
 /// What to know of records that come from no test.
@@ -258,13 +258,12 @@ pub fn warnings(calibration: &Calibration) -> Vec<String> {
         }
     }
     for (gene, &value) in case.genes.iter().zip(&calibration.optimised.genes) {
-        if let Some(side) = at_bound(gene.lower, gene.upper, value) {
+        if let Some(side) = at_bound(gene, value) {
             warnings.push(format!(
-                "{} ended at {} ({} {}): the optimum may lie outside.",
-                gene.name.as_str(),
+                "{} ended at {} ({}): the optimum may lie outside.",
+                gene.label(),
                 bound(gene, side),
-                figure(value),
-                unit(gene.unit)
+                quantity(value, gene.unit())
             ));
         }
     }
@@ -278,12 +277,16 @@ pub(super) fn bound(gene: &Gene, side: &str) -> String {
     } else {
         gene.upper
     };
-    format!("its {side} bound {} {}", figure(value), unit(gene.unit))
+    format!("its {side} bound {}", quantity(value, gene.unit()))
 }
 
-/// Which bound a value touches, within half a per cent of the interval's decades.
-pub(super) fn at_bound(lower: f64, upper: f64, value: f64) -> Option<&'static str> {
-    let share = (value / lower).ln() / (upper / lower).ln();
+/// Which bound a value touches, within half a per cent of the interval on the gene's scale.
+pub(super) fn at_bound(gene: &Gene, value: f64) -> Option<&'static str> {
+    let Gene { lower, upper, .. } = *gene;
+    let share = match gene.scale() {
+        Scale::Logarithmic => (value / lower).ln() / (upper / lower).ln(),
+        Scale::Linear => (value - lower) / (upper - lower),
+    };
     if share < 0.005 {
         Some("lower")
     } else if share > 0.995 {
@@ -302,7 +305,11 @@ pub(super) fn condition_name(case: &Case, condition: usize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{at_bound, change};
+    use super::{at_bound, bound, change};
+    use protocol::{
+        case::{Coefficient, Gene, Quantity},
+        unit::Unit,
+    };
 
     #[test]
     fn changes_are_said_with_their_direction() {
@@ -319,9 +326,25 @@ mod tests {
     }
 
     #[test]
-    fn bounds_are_noticed_on_the_logarithmic_axis() {
-        assert_eq!(at_bound(1e4, 1e12, 1e4), Some("lower"));
-        assert_eq!(at_bound(1e4, 1e12, 0.99e12), Some("upper"));
-        assert_eq!(at_bound(1e4, 1e12, 2e4), None);
+    fn bounds_are_noticed_on_the_scale_of_the_gene() {
+        let unit = Unit::NewtonPerMetre;
+        let stiffness = Gene::coefficient(Coefficient::Kb1, unit, 1e8, [1e4, 1e12]);
+        assert_eq!(at_bound(&stiffness, 1e4), Some("lower"));
+        assert_eq!(at_bound(&stiffness, 0.99e12), Some("upper"));
+        assert_eq!(at_bound(&stiffness, 2e4), None);
+        let size = Gene {
+            quantity: Quantity::Effect {
+                id: "load_offset".to_owned(),
+                parameter: "force".to_owned(),
+                unit: "N".to_owned(),
+            },
+            recommended: 0.0,
+            lower: -500.0,
+            upper: 1500.0,
+        };
+        assert_eq!(at_bound(&size, -499.0), Some("lower"));
+        assert_eq!(at_bound(&size, 0.0), None);
+        assert_eq!(at_bound(&size, 1400.0), None);
+        assert_eq!(bound(&size, "upper"), "its upper bound 1500\u{a0}N");
     }
 }

@@ -10,9 +10,10 @@ use super::{
 };
 use crate::journal::Damage;
 use protocol::{
-    case::{Case, Gene},
+    case::{Case, Gene, Quantity},
     event::{Spent, WorkerAccount},
     job::Counters,
+    unit::Unit,
 };
 
 /// Gauges of the machine.
@@ -80,33 +81,45 @@ fn run() -> Columns<Fact> {
 
 /// Name of the column of a gene, with its unit: `kb1_n_per_m`.
 fn gene_column(gene: &Gene) -> String {
-    let unit = gene.unit.symbol().to_lowercase();
+    let unit = gene.unit().to_lowercase();
     let unit = unit.replace('/', "_per_").replace(['.', '^'], "_");
-    format!("{}_{unit}", gene.name.as_str())
+    let name = gene.label().replace('.', "_");
+    format!("{name}_{unit}")
+}
+
+const fn coefficient_unit(gene: &Gene) -> Option<Unit> {
+    match gene.quantity {
+        Quantity::Coefficient { unit, .. } => Some(unit),
+        Quantity::Effect { .. } => None,
+    }
 }
 
 fn genes() -> Columns<Gene> {
     Columns::new()
         .text("gene", "its name in the case", |gene: &Gene| {
-            Some(gene.name.as_str().to_owned())
+            Some(gene.label())
         })
         .text("column", "its column in the table evaluations", |gene| {
             Some(gene_column(gene))
         })
         .text("unit", "unit that the case states it in", |gene| {
-            Some(gene.unit.symbol().to_owned())
+            Some(gene.unit().to_owned())
         })
         .real("recommended", "recommended value, in that unit", |gene| {
             Some(gene.recommended)
         })
         .real("lower", "smallest value to search", |gene| Some(gene.lower))
         .real("upper", "largest value to search", |gene| Some(gene.upper))
-        .text("si_unit", "its SI unit", |gene| {
-            Some(gene.unit.si().symbol().to_owned())
-        })
-        .real("si_factor", "what one of the unit is in SI", |gene| {
-            Some(gene.unit.si_factor())
-        })
+        .text(
+            "si_unit",
+            "its SI unit; none for a parameter of an effect",
+            |gene| Some(coefficient_unit(gene)?.si().symbol().to_owned()),
+        )
+        .real(
+            "si_factor",
+            "what one of the unit is in SI; none for a parameter of an effect",
+            |gene| Some(coefficient_unit(gene)?.si_factor()),
+        )
 }
 
 fn evaluations(case: &Case) -> Columns<Evaluated> {
@@ -132,7 +145,7 @@ fn evaluations(case: &Case) -> Columns<Evaluated> {
             |row| Some(row.effects as u64),
         );
     for (place, gene) in case.genes.iter().enumerate() {
-        let about = format!("gene {} [{}]", gene.name.as_str(), gene.unit.symbol());
+        let about = format!("gene {} [{}]", gene.label(), gene.unit());
         columns = columns.real(&gene_column(gene), &about, move |row| {
             row.genes.get(place).copied()
         });

@@ -14,8 +14,8 @@ pub struct BoxPlan {
     pub condition: usize,
     /// How many individuals.
     pub points: usize,
-    /// How far from the recommended value at most, within the case's bounds (decades); the bounds
-    /// alone where there is none.
+    /// How far from the recommended value at most, within the case's bounds (decades, of a
+    /// parameter of an effect halves of its interval); the bounds alone where there is none.
     pub decades: Option<f64>,
     /// Seed of the hypercube.
     pub seed: u64,

@@ -91,6 +91,55 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "an effect searched beside its value",
+        |c| {
+            c.effect(
+                "parameters = { moment = { value = 9.0, unit = \"N.m\", search = [10.0, 20.0] } }",
+            );
+        },
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.search` = [10, 20]",
+            "two different finite numbers around the value, 9",
+            "write the lower bound first, or leave search out",
+        ],
+    ),
+    (
+        "an effect searched from top to bottom",
+        |c| {
+            c.effect(
+                "parameters = { moment = { value = 9.0, unit = \"N.m\", search = [20, -1] } }",
+            );
+        },
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.search` = [20, -1]",
+        ],
+    ),
+    (
+        "an effect searched without end",
+        |c| {
+            c.effect(
+                "parameters = { moment = { value = 9.0, unit = \"N.m\", search = [0, inf] } }",
+            );
+        },
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.search` = [0, inf]",
+            "two different finite numbers",
+        ],
+    ),
+    (
+        "an effect searched where it is",
+        |c| {
+            c.effect("parameters = { moment = { value = 9.0, unit = \"N.m\", search = [9, 9] } }");
+        },
+        &[
+            "case.toml",
+            "`effects[0].parameters.moment.search` = [9, 9]",
+        ],
+    ),
+    (
         "an effect twice",
         |c| c.effect("\n[[effects]]\nid = \"pivot_friction\""),
         &["case.toml", "`effects[1].id`", "duplicate effect"],

@@ -11,7 +11,7 @@ mod spoilt;
 mod twins;
 
 use coordinator::case::{self, Overrides};
-use protocol::case::WeightAxes;
+use protocol::case::{Scale, WeightAxes};
 use spoilt::{Copy, MODES, RECORD, SHEET, TOML, assert_each_is_named, scaled};
 use std::fs;
 
@@ -149,6 +149,46 @@ fn the_weight_is_physical_unless_stated() {
     assert_eq!(axes(), WeightAxes::Exchanged);
     copy.replace(TOML, "weight_axes = \"exchanged\"", "");
     assert_eq!(axes(), WeightAxes::Physical);
+}
+
+/// A parameter with an interval to search is a gene, after the coefficients; without, it is fixed, and
+/// the case is what it was before there was such a thing. What a diagnosis of this case has added
+/// leaves it with its genes.
+#[test]
+fn a_parameter_with_an_interval_to_search_is_a_gene() {
+    let copy = Copy::new();
+    let text = fs::read_to_string(copy.path(TOML)).unwrap();
+    let with = |lines: &str| {
+        fs::write(copy.path(TOML), &text).unwrap();
+        copy.effect(lines);
+        case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap()
+    };
+    let moment = |more: &str| {
+        format!(
+            "parameters = {{ moment = {{ value = 9.0, unit = \"N.m\"{more} }}, \
+             creep = {{ value = 0.002, unit = \"rad/s\" }} }}\n\
+             provenance = {{ dataset = \"this one\" }}"
+        )
+    };
+    let fixed = with(&moment(""));
+    assert_eq!(fixed.case.genes.len(), 10);
+    let searched = with(&moment(", search = [-1.0, 20.0]"));
+    let [.., gene] = searched.case.genes.as_slice() else {
+        unreachable!("no genes");
+    };
+    assert_eq!(searched.case.genes.len(), 11);
+    assert_eq!(gene.label(), "pivot_friction.moment");
+    assert_eq!((gene.unit(), gene.scale()), ("N.m", Scale::Linear));
+    assert_eq!(
+        (gene.lower, gene.recommended, gene.upper),
+        (-1.0, 9.0, 20.0)
+    );
+    assert_eq!(searched.case.effects, fixed.case.effects);
+    let other = searched.clone().without_found_in("another one");
+    assert_eq!(other, searched);
+    let without = searched.without_found_in("this one").case;
+    assert_eq!(without.genes, fixed.case.genes);
+    assert!(without.effects.is_empty());
 }
 
 /// Eq. 3 and Eq. 5 in place of numbers, in the units of the genes.

@@ -1,5 +1,6 @@
 //! The report as a whole, from synthesised results: well-formed, self-contained, honest, small.
 mod diagnosis;
+mod effect_gene;
 mod geometry;
 mod numbers;
 mod sample;
@@ -166,7 +167,7 @@ fn a_calibration_is_written_with_its_data() {
     assert!(page.contains("What remains unexplained under condition 5rpm"));
     let text = words(&page);
     for gene in &calibration.case.genes {
-        assert!(text.contains(gene.name.as_str()), "{:?}", gene.name);
+        assert!(text.contains(&gene.label()), "{gene:?}");
     }
     for gauge in 1..=4 {
         assert!(text.contains(&format!("Gauge {gauge}")));
@@ -225,7 +226,7 @@ fn every_figure_of_a_calibration_is_well_formed() {
         .find(|figure| figure.name == "genes")
         .unwrap();
     for gene in &case.genes {
-        assert!(genes.svg.contains(gene.name.as_str()));
+        assert!(genes.svg.contains(&gene.label()));
     }
 }
 

@@ -4,9 +4,9 @@ use coordinator::report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, SingleRun, WorkerUse,
 };
 use protocol::case::{
-    BackHead, Beam, Case, Condition, Contact, Crank, FrontHead, GaugeRecord, GaugeTrace, Gene,
-    GeneName, Influence, LoadCard, ModalHead, Objective, Offset, Rod, RopeEnds, Ropes, RunSettings,
-    Smoothing, Suspension, TurnSense,
+    BackHead, Beam, Case, Coefficient, Condition, Contact, Crank, FrontHead, GaugeRecord,
+    GaugeTrace, Gene, Influence, LoadCard, ModalHead, Objective, Offset, Rod, RopeEnds, Ropes,
+    RunSettings, Smoothing, Suspension, TurnSense,
 };
 use protocol::event::Spent;
 use protocol::job::{
@@ -51,14 +51,9 @@ fn load_n(turn_deg: f64) -> f64 {
     1e3 * (57.553 + harmonics.sum::<f64>())
 }
 
-fn gene(name: GeneName, unit: Unit, recommended: f64) -> Gene {
-    Gene {
-        name,
-        unit,
-        recommended,
-        lower: 1e-4 * recommended,
-        upper: 1e4 * recommended,
-    }
+fn gene(name: Coefficient, unit: Unit, recommended: f64) -> Gene {
+    let bounds = [1e-4 * recommended, 1e4 * recommended];
+    Gene::coefficient(name, unit, recommended, bounds)
 }
 
 fn genes() -> Vec<Gene> {
@@ -68,16 +63,16 @@ fn genes() -> Vec<Gene> {
         NewtonSecondPerMetre as Damp,
     };
     vec![
-        gene(GeneName::Kb1, Stiff, 3.14e8),
-        gene(GeneName::Kb23, Stiff, 1.25e8),
-        gene(GeneName::Kb4, Bend, 110.0),
-        gene(GeneName::Kb56, Bend, 137.0),
-        gene(GeneName::Cb1, Damp, 400.0),
-        gene(GeneName::Cb23, Damp, 400.0),
-        gene(GeneName::Cb4, BendRate, 40.0),
-        gene(GeneName::Cb56, BendRate, 40.0),
-        gene(GeneName::Kc, Hertz, 1e6),
-        gene(GeneName::Cc, Damp, 50.0),
+        gene(Coefficient::Kb1, Stiff, 3.14e8),
+        gene(Coefficient::Kb23, Stiff, 1.25e8),
+        gene(Coefficient::Kb4, Bend, 110.0),
+        gene(Coefficient::Kb56, Bend, 137.0),
+        gene(Coefficient::Cb1, Damp, 400.0),
+        gene(Coefficient::Cb23, Damp, 400.0),
+        gene(Coefficient::Cb4, BendRate, 40.0),
+        gene(Coefficient::Cb56, BendRate, 40.0),
+        gene(Coefficient::Kc, Hertz, 1e6),
+        gene(Coefficient::Cc, Damp, 50.0),
     ]
 }
 

@@ -13,7 +13,7 @@ mod twin;
 
 pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
 pub use effect::{EffectSetting, merged};
-pub use gene::{Gene, GeneName};
+pub use gene::{Coefficient, Gene, Quantity, Scale};
 pub use head::{Influence, ModalHead, StressRecovery, WeightAxes};
 pub use machine::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
@@ -55,7 +55,8 @@ pub struct Case {
     /// Units in which the case states those numbers, effect by effect in the same order; a worker
     /// refuses one that is not its own. Empty where nobody stated any.
     pub effect_units: Vec<Vec<String>>,
-    /// The unknown numbers, in the order of every gene vector.
+    /// The unknown numbers, in the order of every gene vector: coefficients, then parameters of
+    /// [`Self::effects`], whose values there are the recommended ones.
     pub genes: Vec<Gene>,
     /// Working conditions with their records.
     pub conditions: Vec<Condition>,
@@ -146,5 +147,11 @@ impl Case {
     /// The recommended gene vector, in declared units.
     pub fn recommended(&self) -> Vec<f64> {
         self.genes.iter().map(|gene| gene.recommended).collect()
+    }
+
+    /// Whether parameters of effects are among the genes: then every individual is a machine of its
+    /// own.
+    pub fn has_effect_genes(&self) -> bool {
+        self.genes.iter().any(|gene| gene.quantity.is_of_effect())
     }
 }

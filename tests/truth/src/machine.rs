@@ -4,7 +4,7 @@ use crate::draw::Draw;
 use crate::law::Hidden;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
-use protocol::case::{Case, GeneName};
+use protocol::case::{Case, Coefficient};
 use protocol::job::{Failure, Refinement};
 use simulation::effect::{Effect, Selection};
 use simulation::integrator::method::Method;
@@ -49,32 +49,36 @@ impl Fineness {
 /// The middle of what coefficients are drawn about: Table 3 of the paper, optimised. Its axial damping,
 /// 5201 N.s/m, leaves the rope's swinging undamped for minutes; a steel rope loses some per cent a
 /// cycle, which is about this.
-const MIDDLE: [(GeneName, f64); 10] = [
-    (GeneName::Kb1, 7.81e8),
-    (GeneName::Kb23, 2.26e8),
-    (GeneName::Kb4, 204.0),
-    (GeneName::Kb56, 308.0),
-    (GeneName::Cb1, 1.0e6),
-    (GeneName::Cb23, 4287.0),
-    (GeneName::Cb4, 45.0),
-    (GeneName::Cb56, 56.0),
-    (GeneName::Kc, 4.01e8),
-    (GeneName::Cc, 1020.0),
+const MIDDLE: [(Coefficient, f64); 10] = [
+    (Coefficient::Kb1, 7.81e8),
+    (Coefficient::Kb23, 2.26e8),
+    (Coefficient::Kb4, 204.0),
+    (Coefficient::Kb56, 308.0),
+    (Coefficient::Cb1, 1.0e6),
+    (Coefficient::Cb23, 4287.0),
+    (Coefficient::Cb4, 45.0),
+    (Coefficient::Cb56, 56.0),
+    (Coefficient::Kc, 4.01e8),
+    (Coefficient::Cc, 1020.0),
 ];
 
 /// Standard deviation of the logarithm of a coefficient; cut at twice that.
 const SPREAD: f64 = 0.35;
 
-/// Coefficients of a rope nobody has a data sheet of, in the case's units and order.
+/// Coefficients of a rope nobody has a data sheet of, in the case's units and order; parameters of the
+/// case's effects are as the case has them.
 ///
 /// # Errors
 /// A case that lacks one of the ten.
 pub fn genes(case: &Case, draw: &mut Draw) -> anyhow::Result<Vec<f64>> {
     let genes = case.genes.iter().map(|gene| {
+        if gene.quantity.is_of_effect() {
+            return Ok(gene.recommended);
+        }
         let (_, middle) = MIDDLE
             .iter()
-            .find(|(name, _)| *name == gene.name)
-            .with_context(|| format!("no middle for {}", gene.name.as_str()))?;
+            .find(|(name, _)| gene.quantity.is(*name))
+            .with_context(|| format!("no middle for {}", gene.label()))?;
         let value = middle * libm::exp(SPREAD * draw.cut_normal());
         Ok(value.clamp(gene.lower, gene.upper))
     });

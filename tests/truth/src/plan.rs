@@ -224,9 +224,7 @@ pub fn make(case: &Case, order: &Order, folder: &Path, name: &str) -> anyhow::Re
         case: case.name.clone(),
         noise: order.noise,
         cycles: order.cycles,
-        genes: named
-            .map(|(gene, value)| (gene.name.as_str().to_owned(), *value))
-            .collect(),
+        genes: named.map(|(gene, value)| (gene.label(), *value)).collect(),
         effects: hidden.iter().map(AnswerEffect::of).collect(),
     })
 }

@@ -140,7 +140,7 @@ fn run_library(case: &Case, effect: &EffectSetting, values: &[f64]) -> Turn {
     };
     let case = worker::convert::refined(case, &finer).expect("the case fits");
     let law = worker::convert::rope_law(&case, values).expect("the case fits");
-    let machine = worker::convert::machine_with(&case, 0, std::slice::from_ref(effect))
+    let machine = worker::convert::machine_with(&case, 0, (values, std::slice::from_ref(effect)))
         .expect("the case fits");
     let settings = RunSettings {
         method: (&TR_BDF2).into(),

@@ -1,7 +1,7 @@
 //! Effects: their descriptions as they travel, and settings as the dynamics take them.
 use super::misconfigured;
 use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
-use protocol::case::EffectSetting;
+use protocol::case::{Case, EffectSetting, Quantity};
 use protocol::job::Failure;
 use simulation::effect::{self, Asked, Refused, Selection, catalogue};
 
@@ -92,6 +92,80 @@ pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<
         }
     }
     Ok(())
+}
+
+/// The case's effects with the values that an individual's genes give their parameters.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] when the values do not fit the genes, or a gene is a parameter of an
+/// effect that the case does not have.
+pub fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, Failure> {
+    let mut effects = case.effects.clone();
+    for (quantity, value) in super::individual(case, genes)? {
+        let Quantity::Effect { id, parameter, .. } = quantity else {
+            continue;
+        };
+        let Some(effect) = effects.iter_mut().find(|effect| effect.id == *id) else {
+            return Err(misconfigured(
+                &format!("genes.{}", quantity.label()),
+                format!("the case has no effect `{id}`"),
+            ));
+        };
+        match effect
+            .parameters
+            .iter_mut()
+            .find(|(name, _)| name == parameter)
+        {
+            Some((_, own)) => *own = value,
+            None => effect.parameters.push((parameter.clone(), value)),
+        }
+    }
+    Ok(effects)
+}
+
+/// The genes that are parameters of effects: the model has them, in that unit, and takes every value
+/// that a search may give them.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the first that does not fit.
+pub fn check_genes(case: &Case) -> Result<(), Failure> {
+    for (at, gene) in case.genes.iter().enumerate() {
+        let Quantity::Effect {
+            id,
+            parameter,
+            unit,
+        } = &gene.quantity
+        else {
+            continue;
+        };
+        for end in [gene.lower, gene.upper] {
+            let mut genes = case.recommended();
+            genes[at] = end;
+            selection(&of_individual(case, &genes)?)
+                .map_err(|failure| of_search(failure, &gene.label()))?;
+        }
+        let known = catalogue().iter().find(|d| d.id == *id);
+        let mut known = known.into_iter().flat_map(|d| d.parameters.iter());
+        let own = known.find(|p| p.name == parameter);
+        if let Some(own) = own.map(|p| p.unit.symbol()).filter(|own| own != unit) {
+            return Err(misconfigured(
+                &format!("genes.{}.unit", gene.label()),
+                format!("is \"{unit}\"; `{id}` takes it in {own}"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The same failure, said of the interval that a search may use.
+fn of_search(failure: Failure, label: &str) -> Failure {
+    if let Failure::Misconfigured { field, problem } = failure {
+        return misconfigured(
+            &format!("{field}.search"),
+            format!("of gene {label}: {problem}"),
+        );
+    }
+    failure
 }
 
 /// What is wrong, with what was probably meant.

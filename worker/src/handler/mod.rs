@@ -19,7 +19,7 @@ use std::{borrow::Cow, sync::OnceLock};
 #[derive(Debug)]
 pub struct Prepared {
     case: Case,
-    /// One machine per condition.
+    /// One machine per condition, with the case's effects as they are stated.
     machines: Vec<Machine>,
 }
 
@@ -32,6 +32,7 @@ impl Prepared {
         let machines = (0..case.conditions.len())
             .map(|condition| convert::machine(case, condition))
             .collect::<Result<_, _>>()?;
+        convert::effect::check_genes(case)?;
         Ok(Self {
             case: case.clone(),
             machines,
@@ -55,14 +56,16 @@ impl Prepared {
         outcome.unwrap_or_else(Outcome::Failed)
     }
 
-    /// The machine of a condition; one that a job's own effects ask for is built for that job.
+    /// The machine of a condition. Where genes are parameters of effects, every individual is a machine
+    /// of its own; so is one that a job's own effects ask for.
     fn machine_with(
         &self,
         condition: usize,
-        effects: &[EffectSetting],
+        individual: (&[f64], &[EffectSetting]),
     ) -> Result<Cow<'_, Machine>, Failure> {
-        if !effects.is_empty() {
-            return convert::machine_with(&self.case, condition, effects).map(Cow::Owned);
+        let (_, effects) = individual;
+        if !effects.is_empty() || self.case.has_effect_genes() {
+            return convert::machine_with(&self.case, condition, individual).map(Cow::Owned);
         }
         let machine = self.machines.get(condition).map(Cow::Borrowed);
         machine.ok_or_else(|| convert::no_condition(condition))

@@ -14,15 +14,12 @@ pub(super) fn run(prepared: &Prepared, spec: &ObserveSpec) -> Result<Observation
     let refined = convert::refined(&prepared.case, &spec.refinement)?;
     let law = convert::rope_law(&refined, &spec.genes)?;
     let settings = convert::run_settings(&refined);
+    let individual = (spec.genes.as_slice(), spec.effects.as_slice());
     let plain = refined == prepared.case;
     let machine = if plain {
-        prepared.machine_with(spec.condition, &spec.effects)?
+        prepared.machine_with(spec.condition, individual)?
     } else {
-        std::borrow::Cow::Owned(convert::machine_with(
-            &refined,
-            spec.condition,
-            &spec.effects,
-        )?)
+        std::borrow::Cow::Owned(convert::machine_with(&refined, spec.condition, individual)?)
     };
     let mut recorder = Recorder::everything(0);
     let result = simulate(&machine, &law, &settings, &mut recorder);

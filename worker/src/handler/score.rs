@@ -21,7 +21,7 @@ const FAILED_UNDER_LOAD: f64 = 1e7;
 pub(super) fn run(prepared: &Prepared, spec: &ScoreSpec) -> Result<Evaluation, Failure> {
     let law = convert::rope_law(&prepared.case, &spec.genes)?;
     let settings = convert::run_settings(&prepared.case);
-    let machine = prepared.machine_with(spec.condition, &spec.effects)?;
+    let machine = prepared.machine_with(spec.condition, (&spec.genes, &spec.effects))?;
     let mut recorder = Recorder::gauges_only();
     let result = simulate(&machine, &law, &settings, &mut recorder);
     let verdict = convert::verdict(&result.verdict);

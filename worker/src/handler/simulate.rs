@@ -28,7 +28,7 @@ pub(super) fn run(prepared: &Prepared, spec: &SimulateSpec) -> Result<Simulation
     } else {
         0
     };
-    let machine = prepared.machine_with(spec.condition, &spec.effects)?;
+    let machine = prepared.machine_with(spec.condition, (&spec.genes, &spec.effects))?;
     let mut recorder = Recorder::everything(shape_every);
     let started = Instant::now();
     let result = simulate(&machine, &law, &settings, &mut recorder);

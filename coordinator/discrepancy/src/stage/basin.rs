@@ -36,7 +36,7 @@ pub async fn enter<L: Laboratory>(
         }
         let points: Vec<Vec<f64>> = proposals
             .iter()
-            .map(|proposal| whole(model.space.decades(&proposal.genes)))
+            .map(|proposal| whole(model.space.point(&proposal.genes)))
             .collect();
         let points: Vec<(&Model, &[f64])> = points.iter().map(|x| (model, x.as_slice())).collect();
         let curves = bench.curves(lab, stage, &points).await?;

@@ -8,7 +8,7 @@
 use crate::bench::{Bench, Fit};
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::Model;
-use protocol::case::GeneName;
+use protocol::case::Coefficient;
 use search::least_squares::Settings;
 
 /// Damping over stiffness of a joint (s): 1 and 4 % of critical at the modes' 6 Hz, between which wire
@@ -49,7 +49,7 @@ pub async fn enter<L: Laboratory>(
         .filter_map(|(x, curves)| Some((bench.residual(&curves?).norm_squared(), x)))
         .collect();
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let Some(stiffness) = fit.model.space.position(GeneName::Kb1) else {
+    let Some(stiffness) = fit.model.space.position(Coefficient::Kb1) else {
         return Ok(None);
     };
     let mut starts: Vec<(Model, Vec<f64>)> = Vec::new();
@@ -94,10 +94,13 @@ pub async fn follow<L: Laboratory>(
 /// Lines along the stiffness through a point; none where the space lacks it.
 fn stations(model: &Model, x: &[f64]) -> Vec<Vec<f64>> {
     let space = &model.space;
-    let Some(stiffness) = space.position(GeneName::Kb1) else {
+    let Some(stiffness) = space.position(Coefficient::Kb1) else {
         return Vec::new();
     };
-    let (damping, contact) = (space.position(GeneName::Cb1), space.position(GeneName::Kc));
+    let (damping, contact) = (
+        space.position(Coefficient::Cb1),
+        space.position(Coefficient::Kc),
+    );
     let mut bases = vec![x.to_vec()];
     if let Some(contact) = contact {
         for shift in CONTACTS {
@@ -128,7 +131,7 @@ fn stations(model: &Model, x: &[f64]) -> Vec<Vec<f64>> {
                 station[stiffness] = *at;
                 if let Some(damping) = damping {
                     let own = &space.axes()[damping];
-                    let wanted = own.decades(time * axis.value(*at));
+                    let wanted = own.coordinate(time * axis.value(*at));
                     station[damping] = own.interval().clamp(wanted);
                 }
                 stations.push(station);

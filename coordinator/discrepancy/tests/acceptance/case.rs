@@ -1,7 +1,7 @@
 //! What both sides know: the data sheet of the stand-in machine. Its cards, its genes, its grid; no
 //! equation of motion.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
-use protocol::case::{Gene, GeneName};
+use protocol::case::{Coefficient, Gene};
 use protocol::unit::Unit;
 use search::space::Space;
 use std::f64::consts::TAU;
@@ -49,17 +49,12 @@ pub(crate) fn card(condition: usize, angle: f64) -> f64 {
 }
 
 /// A gene with bounds of two decades either way.
-fn gene(name: GeneName, unit: Unit, recommended: f64) -> Gene {
-    Gene {
-        name,
-        unit,
-        recommended,
-        lower: 0.01 * recommended,
-        upper: 100.0 * recommended,
-    }
+fn gene(name: Coefficient, unit: Unit, recommended: f64) -> Gene {
+    let bounds = [0.01 * recommended, 100.0 * recommended];
+    Gene::coefficient(name, unit, recommended, bounds)
 }
 
-/// Recommended genes, in the order of [`GeneName::ALL`].
+/// Recommended genes, in the order of [`Coefficient::ALL`].
 pub(crate) const RECOMMENDED: [f64; 10] =
     [3150.0, 345.0, 10.0, 1.0, 20.0, 2.0, 1.0, 1.0, 1500.0, 10.0];
 
@@ -67,7 +62,7 @@ pub(crate) const RECOMMENDED: [f64; 10] =
 pub(crate) fn space() -> Space {
     let stiffness = Unit::NewtonPerMetre;
     let damping = Unit::NewtonSecondPerMetre;
-    let genes: Vec<Gene> = GeneName::ALL
+    let genes: Vec<Gene> = Coefficient::ALL
         .iter()
         .zip(RECOMMENDED)
         .enumerate()

@@ -18,7 +18,7 @@ use discrepancy::stage::valley;
 use discrepancy::verdict::Verdict;
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
-use protocol::case::{Gene, GeneName};
+use protocol::case::{Coefficient, Gene};
 use protocol::job::{Counters, Observation, ObserveSpec, Refinement, Verdict as Ended};
 use protocol::unit::Unit;
 use search::least_squares;
@@ -51,17 +51,14 @@ struct Ringing {
 }
 
 fn space() -> Space {
-    let gene = |(name, unit, recommended): (GeneName, Unit, f64)| Gene {
-        name,
-        unit,
-        recommended,
-        lower: 0.01 * recommended,
-        upper: 100.0 * recommended,
+    let gene = |(name, unit, recommended): (Coefficient, Unit, f64)| {
+        let bounds = [0.01 * recommended, 100.0 * recommended];
+        Gene::coefficient(name, unit, recommended, bounds)
     };
     let genes = [
-        (GeneName::Kb1, Unit::NewtonPerMetre, 5e8),
-        (GeneName::Cb1, Unit::NewtonSecondPerMetre, 4e5),
-        (GeneName::Kc, Unit::NewtonPerMetreToThreeHalves, 3e8),
+        (Coefficient::Kb1, Unit::NewtonPerMetre, 5e8),
+        (Coefficient::Cb1, Unit::NewtonSecondPerMetre, 4e5),
+        (Coefficient::Kc, Unit::NewtonPerMetreToThreeHalves, 3e8),
     ];
     Space::new(&genes.map(gene)).expect("positive and ordered")
 }

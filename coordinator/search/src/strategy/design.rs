@@ -5,7 +5,7 @@ use crate::{
 };
 
 /// A Latin hypercube: along every axis each of the `count` equal parts of its interval holds
-/// exactly one point. Returns `count` points (decades); the same seed gives the same ones.
+/// exactly one point. Returns `count` points (coordinate); the same seed gives the same ones.
 pub fn latin_hypercube(intervals: &[Interval], count: usize, seed: u64) -> Vec<Vec<f64>> {
     hypercube(intervals, count, Streams::new(seed, 0))
 }

@@ -19,9 +19,9 @@ pub struct LevenbergSettings {
     pub starts: usize,
     /// Most Jacobians of each.
     pub iterations: u32,
-    /// How far two starts must lie apart in some gene (decades).
+    /// How far two starts must lie apart in some gene (coordinate).
     pub apart: f64,
-    /// First difference step (decades).
+    /// First difference step (coordinate).
     pub step: f64,
 }
 
@@ -78,7 +78,7 @@ impl Levenberg {
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
         let mut starts: Vec<(Vec<f64>, f64)> = Vec::new();
         for one in archive.ranked() {
-            let x = self.space.decades(&one.genes);
+            let x = self.space.point(&one.genes);
             let near = |(other, _): &(Vec<f64>, f64)| {
                 other
                     .iter()

@@ -22,7 +22,7 @@ pub struct RefineSettings {
     pub batch: usize,
     /// Number of rounds.
     pub rounds: u32,
-    /// First standard deviation, gene by gene (decades); 0 keeps a gene as it is.
+    /// First standard deviation, gene by gene (coordinate); 0 keeps a gene as it is.
     pub spread: Vec<f64>,
 }
 
@@ -62,7 +62,7 @@ pub struct Refine {
 
 /// The distribution, in moving genes only.
 struct State {
-    /// The point the refinement started from, all genes (decades).
+    /// The point the refinement started from, all genes (coordinate).
     base: Vec<f64>,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
@@ -97,7 +97,7 @@ impl Refine {
 
     fn begin(&self, archive: &Archive) -> Option<State> {
         let best = archive.best().filter(|best| best.told.survived())?;
-        let base = self.space.decades(&best.genes);
+        let base = self.space.point(&best.genes);
         let n = self.moving.len();
         let spread = self.moving.iter().map(|axis| self.settings.spread[*axis]);
         let factor = DMatrix::from_diagonal(&DVector::from_iterator(n, spread));

@@ -22,7 +22,7 @@ pub enum Center {
 pub struct Shift {
     /// Position of the gene in the case.
     pub gene: usize,
-    /// Offset from the point's value (decades).
+    /// Offset from the point's value (coordinate).
     pub by: f64,
 }
 
@@ -34,15 +34,15 @@ pub struct ScanSettings {
     pub gene: usize,
     /// What the grid is laid around.
     pub center: Center,
-    /// How far below the centre it begins (decades).
+    /// How far below the centre it begins (coordinate).
     pub below: f64,
-    /// How far above the centre it ends (decades).
+    /// How far above the centre it ends (coordinate).
     pub above: f64,
-    /// Spacing (decades); a valley narrower than twice this may be missed.
+    /// Spacing (coordinate); a valley narrower than twice this may be missed.
     pub step: f64,
     /// How many of the best points are scanned.
     pub points: usize,
-    /// How far apart those points are at least, in any gene but the scanned one (decades).
+    /// How far apart those points are at least, in any gene but the scanned one (coordinate).
     pub apart: f64,
     /// The lines through and beside each point, each with its shifts; at least one.
     pub lines: Vec<Vec<Shift>>,
@@ -114,11 +114,11 @@ impl Scan {
         })
     }
 
-    /// The best points that differ enough from each other (decades).
+    /// The best points that differ enough from each other (coordinate).
     fn bases(&self, archive: &Archive) -> Vec<Vec<f64>> {
         let mut bases: Vec<Vec<f64>> = Vec::new();
         for entry in archive.ranked() {
-            let point = self.space.decades(&entry.genes);
+            let point = self.space.point(&entry.genes);
             let far = |base: &Vec<f64>| {
                 let pairs = base.iter().zip(&point).enumerate();
                 let others = pairs.filter(|(axis, _)| *axis != self.settings.gene);

@@ -4,6 +4,10 @@ use crate::{
     random::{Phase, Stream, Streams},
     test_function::{self, RESONANCE, SPHERE, TestFunction},
 };
+use protocol::{
+    case::{Coefficient, Gene, Quantity},
+    unit::Unit,
+};
 use std::collections::BTreeMap;
 
 /// A function that strategies are held to.
@@ -139,7 +143,7 @@ fn bounds_are_never_left_and_the_recommended_individual_opens_a_quick_search() {
             }
         }
         if preset.name == "quick" {
-            for x in space.decades(&record.asked[0].genes) {
+            for x in space.point(&record.asked[0].genes) {
                 assert!(x.abs() < 5e-5, "{x}");
             }
         }
@@ -180,7 +184,7 @@ fn a_failure_is_never_best_beside_a_complete_run() {
         // failures with a fitness that beats everything, to prove that the flag decides
         let tell = |genes: &[f64]| {
             let told = SPHERE.tell(&space, genes);
-            let complete = space.decades(genes)[0] < 0.5;
+            let complete = space.point(genes)[0] < 0.5;
             Told {
                 fitness: if complete { told.fitness } else { -1.0 },
                 complete,
@@ -242,6 +246,55 @@ fn every_preset_finds_every_easy_minimum() {
         }
         let found = run_preset(preset, &test_function::RASTRIGIN, 21, None).best;
         assert!(found.fitness < 1.1, "{}: {}", preset.name, found.fitness);
+    }
+}
+
+/// Two coefficients beside two parameters of effects: one negative, one that begins at its lower bound.
+/// Every preset finds the minimum, and none leaves the bounds.
+#[test]
+fn linear_axes_are_searched_like_logarithmic_ones() {
+    let linear = |parameter: &str, recommended: f64, [lower, upper]: [f64; 2]| Gene {
+        quantity: Quantity::Effect {
+            id: "effect".to_owned(),
+            parameter: parameter.to_owned(),
+            unit: "N".to_owned(),
+        },
+        recommended,
+        lower,
+        upper,
+    };
+    let stiffness = |name| Gene::coefficient(name, Unit::NewtonPerMetre, 1e8, [1e4, 1e12]);
+    let space = Space::new(&[
+        stiffness(Coefficient::Kb1),
+        stiffness(Coefficient::Kb23),
+        linear("negative", -0.2, [-1.0, 0.2]),
+        linear("one-sided", 0.0, [0.0, 10.0]),
+    ])
+    .unwrap();
+    let function = SPHERE.moved(&[0.7, -0.3, -0.5, 0.9]);
+    let minimum = [1e8 * libm::exp10(0.7), 1e8 * libm::exp10(-0.3), -0.5, 4.5];
+    for preset in CATALOGUE {
+        let mut strategy = (preset.settings)(&space).build(&space, 21).unwrap();
+        let record = run_with(
+            strategy.as_mut(),
+            &|genes| function.tell(&space, genes),
+            &|genes| function.residual(&space, genes),
+            None,
+        );
+        for proposal in &record.asked {
+            for (value, axis) in proposal.genes.iter().zip(space.axes()) {
+                assert!((axis.lower..=axis.upper).contains(value), "{}", preset.name);
+            }
+        }
+        let enough = match preset.name {
+            "quick" => 0.01,
+            "least-squares" => 1e-4,
+            _ => 0.3,
+        };
+        let found = &record.best.genes;
+        for (x, wanted) in space.point(found).iter().zip(space.point(&minimum)) {
+            assert!((x - wanted).abs() < enough, "{}: {found:?}", preset.name);
+        }
     }
 }
 

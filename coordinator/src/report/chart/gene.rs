@@ -8,7 +8,7 @@ use crate::report::number::{figure, unit};
 use crate::report::table::meaning;
 use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::{HPos, VPos};
-use protocol::case::Gene;
+use protocol::case::{self, Gene, Quantity};
 
 const COLUMNS: usize = 5;
 const LEFT: f64 = 58.0;
@@ -64,7 +64,10 @@ pub fn genes(calibration: &Calibration) -> Result<Figure, ChartError> {
                 top: TOP + (index / COLUMNS) as f64 * ROW + 18.0,
                 width,
                 height: PLOT,
-                x: Scale::logarithmic([gene.lower, gene.upper]),
+                x: match gene.scale() {
+                    case::Scale::Logarithmic => Scale::logarithmic([gene.lower, gene.upper]),
+                    case::Scale::Linear => Scale::linear([gene.lower, gene.upper], 3.0),
+                },
                 y: fitness,
             };
             small(canvas, &panel, calibration, (index, gene), &chosen)?;
@@ -74,8 +77,13 @@ pub fn genes(calibration: &Calibration) -> Result<Figure, ChartError> {
     Ok(Figure {
         name: "genes".to_owned(),
         caption: format!(
-            "{title}: objective over the value of each gene, on logarithmic axes; every panel \
+            "{title}: objective over the value of each gene, on logarithmic axes{}; every panel \
              shows the same individuals. Individuals that failed are ticks along the upper edge{}.",
+            if calibration.case.has_effect_genes() {
+                " (linear ones for parameters of effects)"
+            } else {
+                ""
+            },
             if calibration.history.len() > MOST {
                 format!(
                     " (the best {ELITE} and an even selection of the others, {MOST} of {} in all)",
@@ -146,13 +154,17 @@ fn small(
     let name = Lettering::new(11.5, INK)
         .bold()
         .at(HPos::Left, VPos::Bottom);
-    canvas.text((panel.left, panel.top - 7.0), gene.name.as_str(), name)?;
+    let (heading, about) = match &gene.quantity {
+        Quantity::Coefficient { name, .. } => (name.as_str(), meaning(*name)),
+        Quantity::Effect { id, parameter, .. } => (parameter.as_str(), id.as_str()),
+    };
+    canvas.text((panel.left, panel.top - 7.0), heading, name)?;
     let right = Lettering::new(10.5, VERMILLION).at(HPos::Right, VPos::Bottom);
     let text = best.map_or_else(String::new, figure);
     canvas.text((panel.right(), panel.top - 7.0), &text, right)?;
     let first = index % COLUMNS == 0;
     panel.left_axis(canvas, first, if first { "objective [MPa²]" } else { "" })?;
-    let title = format!("{} [{}]", meaning(gene.name), unit(gene.unit));
+    let title = format!("{about} [{}]", unit(gene.unit()));
     panel.lower_axis(canvas, true, &title)
 }
 

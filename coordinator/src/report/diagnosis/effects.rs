@@ -2,6 +2,8 @@
 use super::Subject;
 use crate::case::{CaseEffect, CaseParameter, Provenance, write_effects};
 use discrepancy::diagnose::Estimate;
+use discrepancy::model::bounds;
+use protocol::announce::ParameterDescriptor;
 
 /// `[[effects]]` tables of the added effects, with intervals and where they come from, as a case file
 /// takes them; nothing if no effect was added.
@@ -17,14 +19,21 @@ pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
 }
 
 fn entry(subject: &Subject<'_>, found: &Estimate, (round, set): (u32, &[String])) -> CaseEffect {
+    let descriptor = subject.library.iter().find(|effect| effect.id == found.id);
     let parameters = found.parameters.iter().map(|(name, unit, value, ci95)| {
         let [low, high] = *ci95;
+        // a value at its bound has no interval around it
+        let ci95 =
+            (low.is_finite() && high.is_finite() && (low..=high).contains(value)).then_some(*ci95);
+        let mut known = descriptor.iter().flat_map(|effect| &effect.parameters);
+        let known = known.find(|p| p.name == *name);
         let parameter = CaseParameter {
             value: *value,
             unit: unit.clone(),
-            // a value at its bound has no interval around it
-            ci95: (low.is_finite() && high.is_finite() && (low..=high).contains(value))
-                .then_some(*ci95),
+            ci95,
+            search: ci95
+                .zip(known)
+                .and_then(|(ci95, known)| search(*value, ci95, known)),
         };
         (name.clone(), parameter)
     });
@@ -40,5 +49,54 @@ fn entry(subject: &Subject<'_>, found: &Estimate, (round, set): (u32, &[String])
             ln_evidence_gain: found.ln_evidence.is_finite().then_some(found.ln_evidence),
             round: Some(round),
         }),
+    }
+}
+
+/// How far a calibration searches from what was found: so many times the half of its 95 % interval, and
+/// at least this share of how far it lies from its absent value, since the interval holds for the
+/// diagnosis's channels and discretisation alone.
+const REACH: f64 = 5.0;
+const SHARE: f64 = 0.25;
+
+/// The interval that a calibration searches for a parameter; none where there is no room for one. One
+/// that the records do not size has no interval, and is left as it is.
+fn search(value: f64, [low, high]: [f64; 2], of: &ParameterDescriptor) -> Option<[f64; 2]> {
+    let half = (high - value).max(value - low);
+    let reach = (REACH * half).max(SHARE * (value - of.absent).abs());
+    let [least, most] = bounds(of).map(|scaled| of.absent + scaled * of.scale);
+    let interval @ [from, to] = [(value - reach).max(least), (value + reach).min(most)];
+    (from < to && (from..=to).contains(&value)).then_some(interval)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::search;
+    use protocol::announce::{ParameterDescriptor, Role, Sign};
+
+    #[test]
+    fn what_was_found_is_searched_within_the_bounds_of_the_effect() {
+        let friction = ParameterDescriptor {
+            name: "moment".to_owned(),
+            unit: "N.m".to_owned(),
+            role: Role::Size,
+            sign: Sign::Positive,
+            lower: -2000.0,
+            upper: 2000.0,
+            absent: 0.0,
+            typical: 500.0,
+            scale: 500.0,
+        };
+        let at = |value: f64, half: f64| search(value, [value - half, value + half], &friction);
+        assert_eq!(at(1000.0, 60.0), Some([700.0, 1300.0]));
+        // a narrow interval does not say that the model is that good
+        assert_eq!(at(1000.0, 1.0), Some([750.0, 1250.0]));
+        // friction does not drive, and no more than the model takes
+        assert_eq!(at(1000.0, 400.0), Some([0.0, 2000.0]));
+        assert_eq!(at(0.0, 0.0), None);
+        // the part of an interval that its bound leaves
+        assert_eq!(
+            search(1900.0, [1800.0, 2000.0], &friction),
+            Some([1400.0, 2000.0])
+        );
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Judges nothing: every number is the diagnosis' own.
 use super::Subject;
-use crate::report::number::{NONE, figure, fixed, percent};
+use crate::report::number::{NONE, figure, fixed, percent, quantity};
 use crate::report::words::condition_name;
 use discrepancy::diagnose::{Diagnosis, Estimate, Limit, Round};
 use discrepancy::record::{Record, Source};
@@ -22,15 +22,6 @@ pub(super) fn p_value(p: f64) -> String {
 /// Nats with one decimal, a whole number where they are many.
 pub(super) fn nats(value: f64) -> String {
     fixed(value, usize::from(value.abs() < 999.5))
-}
-
-/// A value with its unit; the unit `1` is not written.
-pub(super) fn quantity(value: f64, unit: &str) -> String {
-    match unit {
-        _ if !value.is_finite() => NONE.to_owned(),
-        "" | "1" => figure(value),
-        _ => format!("{}\u{a0}{}", figure(value), unit.replace('.', "·")),
-    }
 }
 
 /// An interval with its unit once.

@@ -3,7 +3,7 @@ use super::{Label, Row, Table};
 use crate::report::data::{Calibration, ConditionResult, Run};
 use crate::report::number::{NONE, figure, fixed, percent, ratio, unit};
 use crate::report::words::{self, condition_name};
-use protocol::case::{Case, GeneName};
+use protocol::case::{Case, Coefficient, Quantity};
 use protocol::job::{ChannelScore, Verdict};
 
 /// Definition that stands under every table with relative errors.
@@ -156,8 +156,14 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     let mut group = "";
     let genes = calibration.case.genes.iter().enumerate();
     for (index, gene) in genes {
-        let of_joint = !matches!(gene.name, GeneName::Kc | GeneName::Cc);
-        let name = if of_joint { "Rope joints" } else { "Contact" };
+        let name = match gene.quantity {
+            Quantity::Coefficient {
+                name: Coefficient::Kc | Coefficient::Cc,
+                ..
+            } => "Contact",
+            Quantity::Coefficient { .. } => "Rope joints",
+            Quantity::Effect { .. } => "Effects",
+        };
         if name != group {
             rows.push(Row::Group(name.to_owned()));
             group = name;
@@ -166,13 +172,13 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         let before = value(&calibration.recommended.genes);
         let after = value(&calibration.optimised.genes);
         let mut optimised = figure(after);
-        if words::at_bound(gene.lower, gene.upper, after).is_some() {
+        if words::at_bound(gene, after).is_some() {
             optimised.push_str(" *");
         }
         rows.push(Row::Values(
-            Label::Gene(gene.name),
+            Label::of(gene),
             vec![
-                unit(gene.unit).to_owned(),
+                unit(gene.unit()),
                 figure(before),
                 optimised,
                 ratio(after, before),
@@ -194,9 +200,9 @@ pub fn table_3(calibration: &Calibration) -> Table {
     let genes = case.genes.iter().zip(&calibration.optimised.genes);
     let bounds: Vec<String> = genes
         .filter_map(|(gene, &value)| {
-            let side = words::at_bound(gene.lower, gene.upper, value)?;
+            let side = words::at_bound(gene, value)?;
             let bound = words::bound(gene, side);
-            Some(format!("{} at {bound}", gene.name.as_str()))
+            Some(format!("{} at {bound}", gene.label()))
         })
         .collect();
     if !bounds.is_empty() {

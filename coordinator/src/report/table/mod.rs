@@ -19,7 +19,7 @@ pub use worker::{hosts, jobs, slot_time, workers};
 
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 use maud::{Markup, html};
-use protocol::case::GeneName;
+use protocol::case::{Coefficient, Gene, Quantity};
 
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,8 +61,8 @@ impl Table {
 pub enum Label {
     /// In words.
     Text(String),
-    /// A gene; with its symbol where the medium can set it.
-    Gene(GeneName),
+    /// A coefficient; with its symbol where the medium can set it.
+    Gene(Coefficient),
 }
 
 impl Row {
@@ -72,35 +72,45 @@ impl Row {
     }
 }
 
-/// What a gene is, in words.
-pub(super) const fn meaning(gene: GeneName) -> &'static str {
-    match gene {
-        GeneName::Kb1 => "axial stiffness",
-        GeneName::Kb23 => "shear stiffness",
-        GeneName::Kb4 => "torsional stiffness",
-        GeneName::Kb56 => "bending stiffness",
-        GeneName::Cb1 => "axial damping",
-        GeneName::Cb23 => "shear damping",
-        GeneName::Cb4 => "torsional damping",
-        GeneName::Cb56 => "bending damping",
-        GeneName::Kc => "contact stiffness",
-        GeneName::Cc => "contact damping",
+impl Label {
+    /// That of a gene; a parameter of an effect has no symbol.
+    pub(super) fn of(gene: &Gene) -> Self {
+        match gene.quantity {
+            Quantity::Coefficient { name, .. } => Self::Gene(name),
+            Quantity::Effect { .. } => Self::Text(gene.label()),
+        }
     }
 }
 
-/// Letter and index of a gene's symbol.
-pub(super) const fn symbol(gene: GeneName) -> (&'static str, &'static str) {
+/// What a coefficient is, in words.
+pub(super) const fn meaning(gene: Coefficient) -> &'static str {
     match gene {
-        GeneName::Kb1 => ("K", "b1"),
-        GeneName::Kb23 => ("K", "b23"),
-        GeneName::Kb4 => ("K", "b4"),
-        GeneName::Kb56 => ("K", "b56"),
-        GeneName::Cb1 => ("C", "b1"),
-        GeneName::Cb23 => ("C", "b23"),
-        GeneName::Cb4 => ("C", "b4"),
-        GeneName::Cb56 => ("C", "b56"),
-        GeneName::Kc => ("K", "c"),
-        GeneName::Cc => ("C", "c"),
+        Coefficient::Kb1 => "axial stiffness",
+        Coefficient::Kb23 => "shear stiffness",
+        Coefficient::Kb4 => "torsional stiffness",
+        Coefficient::Kb56 => "bending stiffness",
+        Coefficient::Cb1 => "axial damping",
+        Coefficient::Cb23 => "shear damping",
+        Coefficient::Cb4 => "torsional damping",
+        Coefficient::Cb56 => "bending damping",
+        Coefficient::Kc => "contact stiffness",
+        Coefficient::Cc => "contact damping",
+    }
+}
+
+/// Letter and index of a coefficient's symbol.
+pub(super) const fn symbol(gene: Coefficient) -> (&'static str, &'static str) {
+    match gene {
+        Coefficient::Kb1 => ("K", "b1"),
+        Coefficient::Kb23 => ("K", "b23"),
+        Coefficient::Kb4 => ("K", "b4"),
+        Coefficient::Kb56 => ("K", "b56"),
+        Coefficient::Cb1 => ("C", "b1"),
+        Coefficient::Cb23 => ("C", "b23"),
+        Coefficient::Cb4 => ("C", "b4"),
+        Coefficient::Cb56 => ("C", "b56"),
+        Coefficient::Kc => ("K", "c"),
+        Coefficient::Cc => ("C", "c"),
     }
 }
 

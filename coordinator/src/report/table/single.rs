@@ -158,12 +158,8 @@ pub fn genes(run: &SingleRun) -> Table {
         rows: genes
             .map(|(gene, &value)| {
                 Row::Values(
-                    Label::Gene(gene.name),
-                    vec![
-                        unit(gene.unit).to_owned(),
-                        figure(value),
-                        figure(gene.recommended),
-                    ],
+                    Label::of(gene),
+                    vec![unit(gene.unit()), figure(value), figure(gene.recommended)],
                 )
             })
             .collect(),

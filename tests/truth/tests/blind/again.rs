@@ -69,6 +69,13 @@ fn what_is_found_is_told_again_added_and_simulated_with_the_same_numbers() {
     }
     let case = fs::read_to_string(trial.at("case/case.toml")).expect("a case");
     assert_eq!(case.matches("id = \"pivot_friction\"").count(), 1);
+    // the next calibration fits it: its size is a gene of the case, within an interval about it
+    let checked = run(&mut trial.horsehead(&["case", "check", "case", "--output", "json"]));
+    let checked: Value = serde_json::from_str(&checked).expect("an object");
+    let genes = checked["genes"].as_array().expect("genes");
+    assert!(genes.len() > 10, "{genes:?}");
+    assert!(genes.contains(&"pivot_friction.moment".into()), "{genes:?}");
+    assert!(case.contains(", search = ["), "{case}");
     assert_eq!(
         said(&run(
             &mut trial.horsehead(&["report", "run", "--output", "json"])

@@ -14,7 +14,7 @@ use super::{
 };
 
 /// How many modes of a family are looked at for each one that is asked for.
-pub(super) const CANDIDATES: usize = 2;
+pub(super) const CANDIDATES: usize = 4;
 
 /// A load on the half, and the product with the displacement under it.
 #[derive(Debug)]

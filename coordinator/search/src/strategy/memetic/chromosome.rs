@@ -13,7 +13,7 @@ pub(super) struct Chromosome(pub(super) Vec<u32>);
 #[derive(Clone, Debug)]
 pub(super) struct Codec {
     space: Space,
-    /// What the codes of each gene cover (decades).
+    /// What the codes of each gene cover (coordinate).
     intervals: Vec<Interval>,
     encoding: Encoding,
     scale: Scale,
@@ -88,7 +88,7 @@ impl Codec {
             .collect()
     }
 
-    /// The chromosome nearest to a point (decades).
+    /// The chromosome nearest to a point (coordinate).
     pub(super) fn encode(&self, point: &[f64]) -> Chromosome {
         let genes = point.iter().zip(&self.intervals).zip(self.space.axes());
         let codes = genes.map(|((&x, interval), axis)| {
@@ -172,7 +172,7 @@ mod tests {
             let (space, codec) = codec(encoding, Scale::Logarithmic);
             for x in [-4.0, -1.234, 0.0, 2.5, 4.0] {
                 let point = vec![x; space.dimension()];
-                let back = space.decades(&codec.decode(&codec.encode(&point)));
+                let back = space.point(&codec.decode(&codec.encode(&point)));
                 for y in back {
                     assert!((x - y).abs() < 0.62e-4, "{encoding:?}: {x} became {y}");
                 }

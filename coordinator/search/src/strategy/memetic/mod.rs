@@ -71,8 +71,8 @@ pub fn build(
 }
 
 impl Memetic {
-    /// The algorithm in the part of a space that `intervals` (decades) cover. The first members
-    /// of the initial population are the points of `start` (decades), the others are random.
+    /// The algorithm in the part of a space that `intervals` (coordinate) cover. The first members
+    /// of the initial population are the points of `start` (coordinate), the others are random.
     ///
     /// # Errors
     /// If a setting lies outside its range.

@@ -181,7 +181,7 @@ fn a_linear_scale_starts_in_the_highest_decade() {
     let first = &record.asked[..settings.population];
     let points = first
         .iter()
-        .flat_map(|proposal| space.decades(&proposal.genes));
+        .flat_map(|proposal| space.point(&proposal.genes));
     let high = points.filter(|x| *x > 3.0).count();
     assert!(
         high * 10 > settings.population * space.dimension() * 8,

@@ -19,7 +19,7 @@ use crate::{
     random::Streams,
     space::{Interval, Space},
 };
-use protocol::case::GeneName;
+use protocol::case::Coefficient;
 use serde::{Deserialize, Serialize};
 
 /// One part of the search, in order.
@@ -41,7 +41,7 @@ pub enum Part {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickSettings {
-    /// Where the memetic part searches, gene by gene, from the recommended value (decades).
+    /// Where the memetic part searches, gene by gene, from the recommended value (coordinate).
     pub trust: Vec<Interval>,
     /// What is done, in order.
     pub parts: Vec<Part>,
@@ -53,10 +53,10 @@ impl QuickSettings {
     /// with both: a soft contact can stand in for a soft rope, and then hides the valley.
     pub fn for_space(space: &Space) -> Self {
         let trust: Vec<Interval> = space.axes().iter().map(|axis| axis.trust).collect();
-        let gene = space.position(GeneName::Kb1).unwrap_or(0);
+        let gene = space.position(Coefficient::Kb1).unwrap_or(0);
         let shift = |name, by| space.position(name).map(|gene| Shift { gene, by });
-        let damping = shift(GeneName::Cb1, -0.8);
-        let contact = shift(GeneName::Kc, 1.5);
+        let damping = shift(Coefficient::Cb1, -0.8);
+        let contact = shift(Coefficient::Kc, 1.5);
         let mut lines: Vec<Vec<Shift>> = [
             [None, None],
             [damping, None],

@@ -1,8 +1,8 @@
 //! Numbers of the answer: parameters of its effects, and genes.
 use super::{row, table};
 use crate::report::diagnosis::Subject;
-use crate::report::diagnosis::words::{self, interval, quantity};
-use crate::report::number::{NONE, figure, unit};
+use crate::report::diagnosis::words::{self, interval};
+use crate::report::number::{NONE, figure, quantity};
 use crate::report::table::{Label, Row, Table};
 use crate::report::words::at_bound;
 use protocol::announce::{ParameterDescriptor, Role};
@@ -79,14 +79,14 @@ pub(in crate::report::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table
     let rows = subject.case.genes.iter().enumerate().map(|(k, gene)| {
         let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));
         let last = after.as_ref().unwrap_or(&before).get(k);
-        let edge = last.and_then(|v| at_bound(gene.lower, gene.upper, *v));
+        let edge = last.and_then(|v| at_bound(gene, *v));
         Row::Values(
-            Label::Gene(gene.name),
+            Label::of(gene),
             vec![
                 figure(gene.recommended),
                 of(before.get(k)),
                 of(after.as_ref().and_then(|after| after.get(k))),
-                interval([gene.lower, gene.upper], unit(gene.unit)),
+                interval([gene.lower, gene.upper], gene.unit()),
                 edge.map_or_else(String::new, |edge| format!("at its {edge} bound")),
             ],
         )

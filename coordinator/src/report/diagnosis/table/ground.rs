@@ -1,8 +1,8 @@
 //! What the diagnosis stands on and what it cost: numerical error, simulations.
 use super::{row, table};
 use crate::report::diagnosis::Subject;
-use crate::report::diagnosis::words::{self, quantity};
-use crate::report::number::{NONE, count, duration, fixed};
+use crate::report::diagnosis::words;
+use crate::report::number::{NONE, count, duration, fixed, quantity};
 use crate::report::table::{Row, Table};
 use discrepancy::record::Source;
 use discrepancy::stage::preflight::Preflight;

@@ -2,8 +2,8 @@
 use super::{row, table};
 use crate::report::diagnosis::Subject;
 use crate::report::diagnosis::judgement::{ranked, tempered};
-use crate::report::diagnosis::words::{self, nats, p_value, quantity};
-use crate::report::number::{NONE, figure, percent};
+use crate::report::diagnosis::words::{self, nats, p_value};
+use crate::report::number::{NONE, figure, percent, quantity};
 use crate::report::table::{Row, Table};
 use discrepancy::diagnose::Round;
 

@@ -1,0 +1,297 @@
+//! Genes that are parameters of the case's effects: what a worker makes of them, and a calibration that
+//! finds them.
+#![expect(
+    clippy::wildcard_enum_match_arm,
+    reason = "whatever else comes back is a failed test"
+)]
+use super::case;
+use coordinator::study::{
+    Calibrated, Completed, Crew, Evaluator, EvaluatorError, Observe, ProgressView, calibrate,
+};
+use protocol::case::{Case, EffectSetting, GaugeRecord, GaugeTrace, Gene, Quantity};
+use protocol::job::{
+    Failure, Job, Observation, ObserveSpec, Outcome, Refinement, ScoreSpec, SimulateSpec,
+};
+use search::space::Space;
+use search::strategy::{
+    Settings,
+    levenberg::LevenbergSettings,
+    memetic::MemeticSettings,
+    quick::{Part, QuickSettings},
+};
+use std::collections::VecDeque;
+use worker::handler::Prepared;
+
+fn gene((id, parameter): (&str, &str), unit: &str, [lower, upper]: [f64; 2], value: f64) -> Gene {
+    Gene {
+        quantity: Quantity::Effect {
+            id: id.to_owned(),
+            parameter: parameter.to_owned(),
+            unit: unit.to_owned(),
+        },
+        recommended: value,
+        lower,
+        upper,
+    }
+}
+
+/// The shipped machine with long cylinders and effects of these sizes, as a case that searches none.
+fn coarse(effects: &[EffectSetting]) -> Case {
+    let long = Refinement {
+        cylinder_length_m: Some(0.15),
+        ..Refinement::default()
+    };
+    let mut case = worker::convert::refined(&case(), &long).unwrap();
+    case.effects = effects.to_vec();
+    case
+}
+
+fn friction(moment: f64) -> EffectSetting {
+    EffectSetting::new("pivot_friction", &[("creep", 0.004), ("moment", moment)])
+}
+
+fn moment() -> Gene {
+    gene(("pivot_friction", "moment"), "N.m", [200.0, 4000.0], 1000.0)
+}
+
+/// The same case, which searches its friction.
+fn searched(case: &Case) -> Case {
+    let mut case = case.clone();
+    case.genes.push(moment());
+    case
+}
+
+/// Recommended coefficients and that friction.
+fn individual(case: &Case, moment: f64) -> Vec<f64> {
+    let mut genes = case.recommended();
+    genes[10] = moment;
+    genes
+}
+
+fn observed(prepared: &Prepared, genes: &[f64], effects: &[EffectSetting]) -> Observation {
+    let spec = ObserveSpec {
+        condition: 0,
+        genes: genes.to_vec(),
+        effects: effects.to_vec(),
+        refinement: Refinement::default(),
+    };
+    match prepared.evaluate(&Job::Observe(spec)) {
+        Outcome::Observed(observation) => observation,
+        other => unreachable!("{other:?}"),
+    }
+}
+
+/// Another value of the gene gives what the same value written into the case gives, to the bit, for
+/// every kind of job, and one individual leaves nothing behind for the next; at the case's value
+/// nothing changes. An effect of the job replaces the case's whole, its gene with it.
+#[test]
+fn a_gene_of_an_effect_is_that_value_in_the_case() {
+    let (stated, other) = (coarse(&[friction(1000.0)]), coarse(&[friction(1800.0)]));
+    let with_gene = Prepared::new(&searched(&stated)).unwrap();
+    let at = |moment: f64| individual(&searched(&stated), moment);
+    let fixed = [&stated, &other].map(|case| Prepared::new(case).unwrap());
+    let genes = stated.recommended();
+    let [low, high] = fixed
+        .each_ref()
+        .map(|prepared| observed(prepared, &genes, &[]));
+    assert_ne!(low.gauge_mpa, high.gauge_mpa);
+    for (moment, expected) in [(1800.0, &high), (1000.0, &low), (1800.0, &high)] {
+        assert_eq!(&observed(&with_gene, &at(moment), &[]), expected);
+    }
+    let jobs = |genes: Vec<f64>| {
+        let score = ScoreSpec {
+            condition: 0,
+            genes: genes.clone(),
+            effects: Vec::new(),
+            with_residual: true,
+        };
+        let simulate = SimulateSpec {
+            integration: None,
+            condition: 0,
+            genes,
+            effects: Vec::new(),
+            motion_step_deg: 0.0,
+        };
+        (Job::Score(score), Job::Simulate(simulate))
+    };
+    let (score, simulate) = jobs(genes.clone());
+    let (scored, simulated) = jobs(at(1800.0));
+    assert_eq!(with_gene.evaluate(&scored), fixed[1].evaluate(&score));
+    let curves = |outcome: Outcome| match outcome {
+        Outcome::Simulated(simulation) => (simulation.gauge_mpa, simulation.crank_torque_n_m),
+        other => unreachable!("{other:?}"),
+    };
+    assert_eq!(
+        curves(with_gene.evaluate(&simulated)),
+        curves(fixed[1].evaluate(&simulate))
+    );
+    let own = [EffectSetting::new("pivot_friction", &[("moment", 300.0)])];
+    assert_eq!(
+        observed(&with_gene, &at(1800.0), &own),
+        observed(&fixed[0], &genes, &own)
+    );
+}
+
+/// What cannot be simulated is refused by its field: before any individual where the interval to search
+/// is at fault, with the individual where its value is.
+#[test]
+fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
+    let refused = |failure: Failure| match failure {
+        Failure::Misconfigured { field, problem } => (field, problem),
+        other => unreachable!("{other:?}"),
+    };
+    let stated = coarse(&[friction(1000.0)]);
+    let faults = [
+        (
+            gene(("gauge_drift", "drift_1"), "MPa/rev", [0.0, 1.0], 0.5),
+            ("genes.gauge_drift.drift_1", "the case has no effect"),
+        ),
+        (
+            gene(("pivot_friction", "momment"), "N.m", [0.0, 1.0], 0.5),
+            (
+                "effects[0].parameters.momment.search",
+                "did you mean `moment`?",
+            ),
+        ),
+        (
+            gene(("pivot_friction", "moment"), "N.m", [-100.0, 2e3], 1e3),
+            (
+                "effects[0].parameters.moment.search",
+                "must lie between 0 and 30000 N.m",
+            ),
+        ),
+        (
+            gene(("pivot_friction", "viscous"), "N.m", [0.0, 2e3], 1e3),
+            ("genes.pivot_friction.viscous.unit", "takes it in N.m.s/rad"),
+        ),
+    ];
+    for (gene, (field, problem)) in faults {
+        let mut case = stated.clone();
+        case.genes.push(gene);
+        let (found, why) = refused(Prepared::new(&case).unwrap_err());
+        assert_eq!(found, field);
+        assert!(why.contains(problem), "{why}");
+    }
+    let case = searched(&stated);
+    let prepared = Prepared::new(&case).unwrap();
+    for (genes, field) in [
+        (individual(&case, -1.0), "effects[0].parameters.moment"),
+        (individual(&case, f64::NAN), "effects[0].parameters.moment"),
+        (stated.recommended(), "genes"),
+    ] {
+        let job = Job::Score(ScoreSpec {
+            condition: 0,
+            genes,
+            effects: Vec::new(),
+            with_residual: false,
+        });
+        let Outcome::Failed(failure) = prepared.evaluate(&job) else {
+            unreachable!("accepted")
+        };
+        assert_eq!(refused(failure).0, field);
+    }
+}
+
+/// Jobs done one after the other, as a slot does them.
+struct Here {
+    prepared: Prepared,
+    waiting: VecDeque<(u64, Job)>,
+}
+
+impl Evaluator for Here {
+    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError> {
+        self.waiting.push_back((id, job));
+        Ok(())
+    }
+
+    async fn next(&mut self) -> Result<Completed, EvaluatorError> {
+        let Some((id, job)) = self.waiting.pop_front() else {
+            return std::future::pending().await;
+        };
+        Ok(Completed {
+            id,
+            outcome: self.prepared.evaluate(&job),
+            replayed: false,
+        })
+    }
+
+    fn crew(&self) -> Crew {
+        Crew::default()
+    }
+}
+
+struct Unseen;
+
+impl Observe for Unseen {
+    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Crew) {}
+}
+
+fn calibrated(case: &Case, parts: Vec<Part>) -> Calibrated {
+    let space = Space::new(&case.genes).unwrap();
+    let trust = space.axes().iter().map(|axis| axis.trust).collect();
+    let settings = Settings::Quick(QuickSettings { trust, parts });
+    let mut strategy = settings.build(&space, 1).unwrap();
+    let mut here = Here {
+        prepared: Prepared::new(case).unwrap(),
+        waiting: VecDeque::new(),
+    };
+    let (_keep, mut stop) = tokio::sync::watch::channel(false);
+    let runtime = tokio::runtime::Builder::new_current_thread().build();
+    let mut unseen = Unseen;
+    let search = calibrate(&mut here, case, strategy.as_mut(), &mut unseen, &mut stop);
+    runtime.unwrap().block_on(search).unwrap()
+}
+
+/// The record is that of a machine with another friction, and with a late load card where the case has
+/// none. A hundred individuals find both among all coefficients.
+#[test]
+fn a_calibration_finds_the_sizes_of_effects() {
+    let late = |time: f64| EffectSetting::new("card_time_shift", &[("time", time)]);
+    let (hidden_moment, hidden_time) = (2500.0, -0.012);
+    let truth = coarse(&[friction(hidden_moment), late(hidden_time)]);
+    let seen = observed(&Prepared::new(&truth).unwrap(), &truth.recommended(), &[]);
+    let mut case = searched(&coarse(&[friction(1000.0), late(0.0)]));
+    let time = gene(("card_time_shift", "time"), "s", [-0.04, 0.04], 0.0);
+    case.genes.push(time);
+    let traces = (1..).zip(&seen.gauge_mpa).map(|(gauge, curve)| GaugeTrace {
+        gauge,
+        mean_mpa: curve.clone(),
+        spread_mpa: vec![0.0; curve.len()],
+    });
+    case.conditions[0].record = Some(GaugeRecord {
+        turn_deg: (0..720).map(|i| 0.5 * f64::from(i)).collect(),
+        cycles: 1,
+        gauges: traces.collect(),
+    });
+    let found = calibrated(
+        &case,
+        vec![
+            Part::Memetic(MemeticSettings {
+                population: 4,
+                generations: 1,
+                crossover_trials: 1,
+                mutation_trials: 1,
+                ..MemeticSettings::paper()
+            }),
+            Part::LeastSquares(LevenbergSettings {
+                starts: 1,
+                iterations: 5,
+                apart: 0.03,
+                step: 0.01,
+            }),
+        ],
+    );
+    let first = found.log.entries().next().unwrap().fitness;
+    let [.., moment, time] = found.best.genes[..] else {
+        unreachable!("no genes")
+    };
+    eprintln!(
+        "{} individuals: {first:.3e} to {:.3e} MPa2, friction {moment:.1} N.m, card {time:.5} s late",
+        found.log.len(),
+        found.best.fitness
+    );
+    assert!(found.log.len() < 150);
+    assert!(found.best.fitness < 0.01 * first);
+    assert!((moment - hidden_moment).abs() < 0.1 * (hidden_moment - 1000.0));
+    assert!((time - hidden_time).abs() < 0.1 * hidden_time.abs());
+}
