@@ -10,6 +10,7 @@ use crate::laboratory::Laboratory;
 use crate::record::Record;
 use crate::stage::establish::Base;
 use crate::stage::show;
+use crate::stage::whereabouts;
 use crate::verdict::{Findings, Ground, Verdict, verdict};
 
 /// A numerical error beyond this share of the record's standard error is said aloud.
@@ -36,6 +37,8 @@ pub(crate) async fn conclude<L: Laboratory>(
         }
     };
     prove(lab, inputs, base, (&after, held), diagnosis).await?;
+    let white = |fit| whereabouts::whiteness(&base.bench, fit, base.freedom);
+    diagnosis.whiteness = Some([&base.fit, &after].map(white));
     let alpha = inputs.settings.alpha;
     let names = diagnosis.rounds.first().is_some_and(|r| r.p_value < alpha);
     let misfit = !base.is_noise(

@@ -77,6 +77,8 @@ pub struct Diagnosis {
     pub before: Option<Fit>,
     /// The model of the answer.
     pub after: Option<Fit>,
+    /// Tail probability that what is left is white: by the recalibrated model, and by the answer.
+    pub whiteness: Option<[f64; 2]>,
     /// The gap of the answer by record.
     pub rows: Vec<Row>,
     /// The best rejected rival and its gap by record.
@@ -169,6 +171,7 @@ impl Diagnosis {
             look_alikes: Vec::new(),
             before: None,
             after: None,
+            whiteness: None,
             rows: Vec::new(),
             rival: None,
             generic: None,

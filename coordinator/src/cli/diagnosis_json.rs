@@ -34,12 +34,20 @@ pub(super) struct DiagnoseOutput {
     /// What would part those pairs, in their order.
     data_worth: Vec<WorthOutput>,
     gap: GapOutput,
+    whiteness: Option<WhitenessOutput>,
     rival: Option<RivalOutput>,
     assumed_noise: bool,
     numerical_error: Option<NumericalOutput>,
     genes: BTreeMap<String, f64>,
     stages: Vec<StageOutput>,
     wall_s: f64,
+}
+
+/// Tail probabilities that what is left is white noise.
+#[derive(Debug, Serialize)]
+struct WhitenessOutput {
+    p_before: f64,
+    p_after: f64,
 }
 
 /// An effect with its size.
@@ -118,6 +126,16 @@ struct JointOutput {
     ln_bayes: f64,
     /// Whether it is not told apart from the best.
     equivalent: bool,
+    /// Unit of the likeliest force, and its harmonics of the turn from bottom dead centre.
+    unit: String,
+    force: Vec<HarmonicOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct HarmonicOutput {
+    order: usize,
+    sine: bool,
+    amplitude: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -269,6 +287,9 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             })
             .collect(),
         gap: gap(&diagnosis.rows, calibrated),
+        whiteness: diagnosis
+            .whiteness
+            .map(|[p_before, p_after]| WhitenessOutput { p_before, p_after }),
         rival: diagnosis.rival.as_ref().map(|(id, rows)| RivalOutput {
             id: id.clone(),
             gap: gap(rows, calibrated),
@@ -411,6 +432,16 @@ fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
                 joint: joint.joint.clone(),
                 ln_bayes: joint.log_bayes,
                 equivalent: k < seen.equivalent,
+                unit: joint.unit.clone(),
+                force: joint
+                    .force
+                    .iter()
+                    .map(|part| HarmonicOutput {
+                        order: part.order,
+                        sine: part.sine,
+                        amplitude: part.amplitude,
+                    })
+                    .collect(),
             })
             .collect(),
     })

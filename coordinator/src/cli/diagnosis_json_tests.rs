@@ -90,6 +90,8 @@ fn full(verdict: Verdict) -> Diagnosis {
             joints: vec![joint::JointEvidence {
                 joint: "saddle".to_owned(),
                 log_bayes: f64::NEG_INFINITY,
+                force: Vec::new(),
+                unit: "N.m".to_owned(),
             }],
             equivalent: 1,
         }),

@@ -39,9 +39,8 @@ fn number(value: &Value) -> f64 {
 fn head_reduces_the_shipped_mesh_and_draws_it() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = scratch.path().to_str().unwrap();
-    let object = json(&[
-        "head", "CASE", "--modes", "3", "--vtu", folder, "--out", folder,
-    ]);
+    let symmetric = ["head", "CASE", "--modes", "3", "--family", "symmetric"];
+    let object = json(&[&symmetric[..], &["--vtu", folder, "--out", folder]].concat());
     let modes = object["modes"].as_array().unwrap();
     assert_eq!(modes.len(), 3);
     for mode in modes {
@@ -70,6 +69,27 @@ fn head_reduces_the_shipped_mesh_and_draws_it() {
     for mode in modes {
         let label = format!("{:.1} Hz", number(&mode["frequency_hz"]));
         assert!(shapes.contains(&label), "{label}");
+    }
+}
+
+/// Modes are picked by how they answer the loads of a turn, of which the strongest holds nearly all; what
+/// is left out is told, and couples less.
+#[test]
+fn head_picks_the_modes_that_couple() {
+    let object = json(&["head", "CASE", "--modes", "3"]);
+    let couplings = |list: &Value| -> Vec<f64> {
+        let modes = list.as_array().unwrap().iter();
+        modes.map(|mode| number(&mode["coupling"])).collect()
+    };
+    let (kept, left) = (couplings(&object["modes"]), couplings(&object["left_out"]));
+    let least = kept.iter().copied().fold(1.0, f64::min);
+    let most = left.iter().copied().fold(0.0, f64::max);
+    assert_eq!(kept.len(), 3);
+    assert!(least > most && most > 0.0, "{least} {most}");
+    assert!((0.97..1.0).contains(&kept.iter().copied().fold(0.0, f64::max)));
+    for mode in object["left_out"].as_array().unwrap() {
+        let symmetric = mode["family"] == "symmetric";
+        assert_eq!(number(&mode["coupling"]) > 0.0, symmetric, "{mode}");
     }
 }
 

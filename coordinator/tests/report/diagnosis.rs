@@ -172,6 +172,7 @@ fn a_force_without_a_cause_has_a_size_and_a_gap() {
         "amplitude 420 N (95 % interval 380 to 460 N)",
         "With that force, ",
         "the force without a cause, probe.back_head.sign",
+        "before, 0.310 after (calibration cycles",
     ] {
         assert!(text.contains(said), "{said} is not in\n{text}");
     }
@@ -208,6 +209,7 @@ fn the_folder_holds_the_figures_and_the_data_behind_them() {
         "figures/where_angle.svg",
         "figures/where_order.svg",
         "figures/where_joint.svg",
+        "figures/where_force.svg",
         "figures/proof_5rpm_gauge_1.svg",
         "figures/proof_4rpm_gauge_3.svg",
         "figures/proof_5rpm_crank_torque.svg",

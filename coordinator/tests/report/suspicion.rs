@@ -302,6 +302,12 @@ fn whereabouts() -> Where {
     let evidence = |joint: &str, log_bayes| joint::JointEvidence {
         joint: joint.to_owned(),
         log_bayes,
+        force: vec![joint::Harmonic {
+            order: 1,
+            sine: true,
+            amplitude: 800.0,
+        }],
+        unit: "N".to_owned(),
     };
     Where {
         angle: angle::AngleMap {
@@ -419,6 +425,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         rows: rows(&records, 0.2),
     });
     let diagnosis = Diagnosis {
+        whiteness: Some([1e-7, 0.31]),
         verdict,
         reason: (verdict == Verdict::Unresolved).then(|| "the likeliest is not enough".to_owned()),
         effects,

@@ -1,7 +1,7 @@
 //! The three maps of where simulation and measurement part.
 use crate::bench::{Bench, Fit};
 use crate::laboratory::{Laboratory, Stage};
-use crate::locate::{angle, joint, order};
+use crate::locate::{angle, joint, order, whiteness};
 use crate::model::{Model, absent};
 use crate::score::family_wise;
 use crate::settings::Settings;
@@ -34,6 +34,8 @@ impl Where {
     }
 }
 
+/// Share of false entries that a map may hold.
+const LEVEL: f64 = 0.05;
 /// Highest harmonic of the latent forces.
 const HARMONICS: usize = 5;
 
@@ -59,12 +61,20 @@ pub async fn look<L: Laboratory>(
             &deviations(bench, &tangent),
             (&bench.metric, &tangent),
             settings.draws,
-            0.05,
+            LEVEL,
         ),
-        order: order::map(residual, &bench.metric, &tangent, freedom, 0.05),
+        order: order::map(residual, &bench.metric, &tangent, freedom, LEVEL),
         equivalent: joint::indistinguishable(&joints, phi),
         joints,
     })
+}
+
+/// Tail probability that what a fit leaves is white.
+pub fn whiteness(bench: &Bench, fit: &Fit, freedom: f64) -> f64 {
+    let tangent = Tangent::new(fit.search.best(), fit.variables());
+    let residual = fit.search.settled_residual();
+    let map = order::map(&residual, &bench.metric, &tangent, freedom, LEVEL);
+    whiteness::p_value(&map, freedom)
 }
 
 /// What recalibration leaves of each cycle's deviation from the mean, whitened.
@@ -112,21 +122,35 @@ async fn latents<L: Laboratory>(
     let points: Vec<(&Model, &[f64])> = models.iter().map(|(m, x)| (m, x.as_slice())).collect();
     let curves = bench.curves(lab, Stage::Where, &points).await?;
     let base = bench.metric.whiten(&fit.curves);
-    let mut joints: BTreeMap<&str, (Vec<DVector<f64>>, Vec<usize>)> = BTreeMap::new();
+    let mut joints: BTreeMap<&str, Parts> = BTreeMap::new();
     for ((effect, order), curves) in probes.iter().zip(curves) {
-        let Some(curves) = curves else { continue };
-        let entry = joints.entry(effect.joint.as_str()).or_default();
-        entry.0.push(bench.metric.whiten(&curves) - &base);
-        entry.1.push(*order);
+        let (Some(curves), Some(own)) = (curves, effect.parameters.first()) else {
+            continue;
+        };
+        let parts = joints.entry(effect.joint.as_str()).or_default();
+        parts.unit.clone_from(&own.unit);
+        parts.columns.push(bench.metric.whiten(&curves) - &base);
+        parts.harmonics.push(joint::Harmonic {
+            order: *order,
+            sine: form(&effect.id).starts_with("sin"),
+            amplitude: own.typical - own.absent,
+        });
     }
-    Ok(joints
-        .into_iter()
-        .map(|(joint, (columns, orders))| joint::Latent {
-            joint: joint.to_owned(),
-            columns: DMatrix::from_columns(&columns),
-            orders,
-        })
-        .collect())
+    let latents = joints.into_iter().map(|(joint, parts)| joint::Latent {
+        joint: joint.to_owned(),
+        columns: DMatrix::from_columns(&parts.columns),
+        parts: parts.harmonics,
+        unit: parts.unit,
+    });
+    Ok(latents.collect())
+}
+
+/// What is gathered of one joint.
+#[derive(Default)]
+struct Parts {
+    columns: Vec<DVector<f64>>,
+    harmonics: Vec<joint::Harmonic>,
+    unit: String,
 }
 
 /// A fitted point with one effect at its typical size.

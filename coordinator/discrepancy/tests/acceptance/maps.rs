@@ -10,7 +10,7 @@ use discrepancy::noise::Noise;
 use discrepancy::record::{Curves, Record, mean_of};
 use discrepancy::score::score;
 use discrepancy::spectrum::Orders;
-use discrepancy::stage::whereabouts::{Where, probe_order};
+use discrepancy::stage::whereabouts::{Where, form, probe_order};
 use discrepancy::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
 use protocol::job::Refinement;
@@ -125,7 +125,7 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
 struct Forces {
     joint: String,
     changes: Vec<Curves>,
-    orders: Vec<usize>,
+    parts: Vec<joint::Harmonic>,
 }
 
 impl Forces {
@@ -134,7 +134,8 @@ impl Forces {
         joint::Latent {
             joint: self.joint.clone(),
             columns: DMatrix::from_columns(&columns),
-            orders: self.orders.clone(),
+            parts: self.parts.clone(),
+            unit: "1".to_owned(),
         }
     }
 }
@@ -155,12 +156,16 @@ fn latents(model: &Model, x: &[f64], at: &Curves) -> Vec<Forces> {
             all.push(Forces {
                 joint: effect.joint.clone(),
                 changes: Vec::new(),
-                orders: Vec::new(),
+                parts: Vec::new(),
             });
             all.len() - 1
         });
         all[k].changes.push(change);
-        all[k].orders.push(order);
+        all[k].parts.push(joint::Harmonic {
+            order,
+            sine: form(&effect.id).starts_with("sin"),
+            amplitude: effect.parameters[0].scale,
+        });
     }
     all
 }

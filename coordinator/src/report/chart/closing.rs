@@ -104,7 +104,7 @@ pub fn closing(of: &Closing<'_>) -> Result<Option<Figure>, ChartError> {
 }
 
 /// Strips of the residuals, on one scale, over the standard error of the measured mean.
-fn residuals(of: &Closing<'_>) -> Vec<Strip> {
+fn residuals(of: &Closing<'_>) -> Vec<Strip<'static>> {
     let mut all = vec![("without it", BLUE, of.before)];
     all.extend(of.after.map(|after| ("with it", VERMILLION, after)));
     all.extend(of.rival.map(|(_, rival)| ("with the rival", GREEN, rival)));

@@ -20,9 +20,9 @@ pub(super) struct Curve {
 }
 
 /// One strip.
-pub(super) struct Strip {
+pub(super) struct Strip<'a> {
     /// Title of its scale, with the unit.
-    pub title: &'static str,
+    pub title: &'a str,
     /// Height [px].
     pub height: f64,
     /// Curves, drawn in this order.
@@ -52,7 +52,7 @@ pub(super) fn curve(
 }
 
 /// A strip without a band.
-pub(super) fn strip(title: &'static str, height: f64, curves: Vec<Curve>) -> Strip {
+pub(super) const fn strip(title: &str, height: f64, curves: Vec<Curve>) -> Strip<'_> {
     Strip {
         title,
         height,
@@ -63,14 +63,14 @@ pub(super) fn strip(title: &'static str, height: f64, curves: Vec<Curve>) -> Str
 }
 
 /// Height of the whole figure [px].
-fn height(strips: &[Strip]) -> f64 {
+fn height(strips: &[Strip<'_>]) -> f64 {
     let heights: f64 = strips.iter().map(|strip| strip.height + GAP).sum();
     TOP + heights - GAP + FOOT
 }
 
 /// Left, right, upper and lower end of the crank axis, as shares of the figure's width and height:
 /// the place for a cursor.
-pub(super) fn span(strips: &[Strip]) -> [f64; 4] {
+pub(super) fn span(strips: &[Strip<'_>]) -> [f64; 4] {
     let height = height(strips);
     [
         LEFT / WIDTH,
@@ -85,7 +85,7 @@ pub(super) fn stack(
     name: impl Into<String>,
     title: &str,
     caption: String,
-    strips: &[Strip],
+    strips: &[Strip<'_>],
 ) -> Result<Figure, ChartError> {
     let width = WIDTH - LEFT - RIGHT;
     let svg = render((WIDTH, height(strips)), title, |canvas| {

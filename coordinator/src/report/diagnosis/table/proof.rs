@@ -49,8 +49,19 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
              why the rival stands beside it."
                 .to_owned(),
         ];
+        made.notes.extend(diagnosis.whiteness.map(whiteness));
         made
     })
+}
+
+/// Whether what is left lies where noise lies.
+fn whiteness([before, after]: [f64; 2]) -> String {
+    format!(
+        "Is what is left white, spread over the orders of the crank as noise is? p = {} before, {} after \
+         (calibration cycles, against their scatter).",
+        figure(before),
+        figure(after)
+    )
 }
 
 /// One row of it; without a change there is nothing after and nothing closed.
