@@ -4,6 +4,7 @@
 //! finer one), what was found is taken out of the answer again: it stays visible as a suspect, with its
 //! size and its nats, and the reason says what it would take to name it.
 use crate::bench::Fit;
+use crate::decide::widen;
 use crate::diagnose::{Diagnosis, Inputs};
 use crate::estimate::estimates;
 use crate::laboratory::Laboratory;
@@ -29,6 +30,14 @@ pub(crate) async fn conclude<L: Laboratory>(
 ) -> Result<(), L::Error> {
     let claims = !after.model.added.is_empty() || diagnosis.generic.is_some();
     let ground = ground(inputs, base, claims, diagnosis);
+    let noise = base.bench.metric.len() as f64;
+    if widen(&mut diagnosis.rounds, after.chi_squared(), noise) {
+        diagnosis.notes.push(format!(
+            "the answer leaves {:.1} times the noise, so its law is not quite that of the machine, and a \
+             law of its rivals need not be either: names that leave not much more stand in one set with it",
+            after.chi_squared() / noise
+        ));
+    }
     diagnosis.effects = estimates(&diagnosis.rounds, &after);
     let (after, suspect) = match ground {
         Ground::Firm => (after, None),

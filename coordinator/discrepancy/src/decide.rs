@@ -44,6 +44,38 @@ pub(crate) fn decide(
     Some(best.fit.clone())
 }
 
+/// Where an answer leaves so many times the noise, no law that was tried has the right shape.
+const ROUGH: f64 = 1.5;
+/// By how many times what the answer leaves a rival may leave more, there.
+const ALLOWANCE: f64 = 1.5;
+
+/// Sets of an answer whose laws do not have the right shape: the law under the right name may be off as
+/// well, and lose to another by as much as either of them leaves. Rivals that leave no more than that join
+/// the set. `left` is what the answer leaves, `noise` what noise alone would (squared lengths of the whitened
+/// residual). Says whether a set has grown.
+pub(crate) fn widen(rounds: &mut [Round], left: f64, noise: f64) -> bool {
+    let mut grown = false;
+    for round in rounds.iter_mut().filter(|round| round.added.is_some()) {
+        let lengths: Vec<f64> = round.refits.iter().map(|r| r.fit.chi_squared()).collect();
+        for k in near(&lengths, left, noise) {
+            let id = &round.refits[k].id;
+            if !round.set.contains(id) {
+                round.set.push(id.clone());
+                grown = true;
+            }
+        }
+    }
+    grown
+}
+
+/// Positions of refits, the best first, that leave no more than the best by what is allowed.
+fn near(lengths: &[f64], left: f64, noise: f64) -> Vec<usize> {
+    let rough = left >= ROUGH * noise;
+    let best = lengths.first().copied().unwrap_or(f64::NAN);
+    let more = |k: &usize| lengths[*k] - best <= ALLOWANCE * (left - noise);
+    (0..lengths.len()).filter(|k| rough && more(k)).collect()
+}
+
 /// Why a family's p-value and a gain of evidence (nats) are not enough, if they are not.
 fn doubt((p_value, alpha): (f64, f64), (gain, needed): (f64, f64)) -> Option<String> {
     let chance = format!("over the family p = {p_value:.1e}, above {alpha}");
@@ -59,6 +91,17 @@ fn doubt((p_value, alpha): (f64, f64), (gain, needed): (f64, f64)) -> Option<Str
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Beside an answer that reaches the noise nobody joins; beside one that leaves three times the noise,
+    /// whoever leaves not much more.
+    #[test]
+    fn rivals_join_where_no_law_has_the_right_shape() {
+        let lengths = [3000.0, 5900.0, 6100.0, 40_000.0];
+        assert_eq!(near(&lengths, 3000.0, 1000.0), [0, 1]);
+        assert!(near(&lengths, 1100.0, 1000.0).is_empty());
+        assert!(near(&[], 3000.0, 1000.0).is_empty());
+        assert_eq!(near(&[3000.0, f64::NAN], 3000.0, 1000.0), [0]);
+    }
 
     #[test]
     fn a_doubt_names_what_is_missing_and_only_that() {
