@@ -57,10 +57,10 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
 /// Whether what is left lies where noise lies.
 fn whiteness([before, after]: [f64; 2]) -> String {
     format!(
-        "Is what is left white, spread over the orders of the crank as noise is? p = {} before, {} after \
+        "Is what is left white, spread over the orders of the crank as noise is? p: {} before, {} after \
          (calibration cycles, against their scatter).",
-        figure(before),
-        figure(after)
+        words::p_value(before),
+        words::p_value(after)
     )
 }
 
