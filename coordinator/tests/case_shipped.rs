@@ -1,7 +1,7 @@
 //! The case that is shipped loads, and its figures are those its README states.
 use coordinator::case::{self, Overrides, mesh};
 use protocol::{
-    case::{Coefficient, GaugeTrace, Gene, Offset, Quantity},
+    case::{Case, Coefficient, GaugeTrace, Gene, Offset, Quantity},
     unit::Unit,
 };
 use std::{
@@ -192,14 +192,21 @@ fn gene_files_are_read_in_the_units_of_the_case() {
         ),
     ];
     for (fault, expected) in faults {
-        fs::write(&file, fault).unwrap();
-        let message = case::read_genes(&file, &case).unwrap_err().to_string();
-        assert!(
-            message.contains(expected) && message.contains("genes.toml"),
-            "{message}"
-        );
-        assert!(message.contains("\nhelp: "), "{message}");
+        assert_refused(&file, &case, &fault, expected);
     }
+}
+
+/// A faulty gene file is refused with what is wrong, its name and a remedy.
+fn assert_refused(file: &Path, case: &Case, fault: &str, expected: &str) {
+    fs::write(file, fault).expect("a file");
+    let message = case::read_genes(file, case)
+        .expect_err(expected)
+        .to_string();
+    assert!(
+        message.contains(expected) && message.contains("genes.toml"),
+        "{message}"
+    );
+    assert!(message.contains("\nhelp: "), "{message}");
 }
 
 /// A case that searches parameters of effects: their values go to a file and come back to the bit, zero
@@ -256,13 +263,7 @@ fn gene_files_hold_parameters_of_effects() {
     ];
     for (fault, expected) in faults {
         assert_ne!(fault, text, "{expected}");
-        fs::write(&file, fault).unwrap();
-        let message = case::read_genes(&file, &case).unwrap_err().to_string();
-        assert!(
-            message.contains(expected) && message.contains("genes.toml"),
-            "{message}"
-        );
-        assert!(message.contains("\nhelp: "), "{message}");
+        assert_refused(&file, &case, &fault, expected);
     }
     case.genes.truncate(10);
     fs::write(&file, &text).unwrap();

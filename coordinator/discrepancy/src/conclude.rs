@@ -8,6 +8,7 @@ use crate::decide::widen;
 use crate::diagnose::{Diagnosis, Inputs};
 use crate::estimate::estimates;
 use crate::laboratory::Laboratory;
+use crate::locate::whiteness::p_value;
 use crate::record::Record;
 use crate::stage::establish::Base;
 use crate::stage::show;
@@ -46,8 +47,14 @@ pub(crate) async fn conclude<L: Laboratory>(
         }
     };
     prove(lab, inputs, base, (&after, held), diagnosis).await?;
-    let white = |fit| whereabouts::whiteness(&base.bench, fit, base.freedom);
-    diagnosis.whiteness = Some([&base.fit, &after].map(white));
+    diagnosis.whiteness = diagnosis.whereabouts.as_ref().map(|seen| {
+        let before = p_value(&seen.order, base.freedom);
+        if after.model.added.is_empty() {
+            return [before; 2];
+        }
+        let left = whereabouts::orders(&base.bench, &after, base.freedom);
+        [before, p_value(&left, base.freedom)]
+    });
     let alpha = inputs.settings.alpha;
     let names = diagnosis.rounds.first().is_some_and(|r| r.p_value < alpha);
     let misfit = !base.is_noise(

@@ -55,7 +55,7 @@ pub(crate) fn force(challenger: Challenger, before: &Fit, round: &Round) -> Forc
             let (u, v) = (a / amplitude, b / amplitude);
             let square =
                 u * u * variance(0, 0) + 2.0 * u * v * variance(0, 1) + v * v * variance(1, 1);
-            let sine_first = whereabouts::form(&parts[0].id).starts_with("sin");
+            let sine_first = whereabouts::is_sine(&parts[0].id);
             let (cosine, sine) = if sine_first { (b, a) } else { (a, b) };
             (
                 amplitude,

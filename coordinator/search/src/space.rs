@@ -184,15 +184,15 @@ fn axis(gene: &Gene) -> Result<Axis, SpaceError> {
         recommended: gene.recommended,
         lower: gene.lower,
         upper: gene.upper,
-        trust: Interval {
-            from: f64::NEG_INFINITY,
-            to: f64::INFINITY,
+        trust: match gene.quantity {
+            Quantity::Coefficient { unit, .. } => trust(unit),
+            // what a case says of an effect's parameter is searched whole
+            Quantity::Effect { .. } => Interval {
+                from: f64::NEG_INFINITY,
+                to: f64::INFINITY,
+            },
         },
     };
-    // what a case says of an effect's parameter is searched whole
-    if let Quantity::Coefficient { unit, .. } = gene.quantity {
-        axis.trust = trust(unit);
-    }
     axis.trust = axis.trust.within(axis.interval());
     Ok(axis)
 }

@@ -1,7 +1,7 @@
 //! The three maps of where simulation and measurement part.
 use crate::bench::{Bench, Fit};
 use crate::laboratory::{Laboratory, Stage};
-use crate::locate::{angle, joint, order, whiteness};
+use crate::locate::{angle, joint, order};
 use crate::model::{Model, absent};
 use crate::score::family_wise;
 use crate::settings::Settings;
@@ -63,18 +63,17 @@ pub async fn look<L: Laboratory>(
             settings.draws,
             LEVEL,
         ),
-        order: order::map(residual, &bench.metric, &tangent, freedom, LEVEL),
+        order: orders(bench, fit, freedom),
         equivalent: joint::indistinguishable(&joints, phi),
         joints,
     })
 }
 
-/// Tail probability that what a fit leaves is white.
-pub fn whiteness(bench: &Bench, fit: &Fit, freedom: f64) -> f64 {
+/// The map by order alone of what a fit leaves; it takes no simulation.
+pub fn orders(bench: &Bench, fit: &Fit, freedom: f64) -> order::OrderMap {
     let tangent = Tangent::new(fit.search.best(), fit.variables());
     let residual = fit.search.settled_residual();
-    let map = order::map(&residual, &bench.metric, &tangent, freedom, LEVEL);
-    whiteness::p_value(&map, freedom)
+    order::map(&residual, &bench.metric, &tangent, freedom, LEVEL)
 }
 
 /// What recalibration leaves of each cycle's deviation from the mean, whitened.
@@ -88,6 +87,11 @@ pub fn deviations(bench: &Bench, tangent: &Tangent) -> Vec<DVector<f64>> {
 /// The form of a force without a cause: the last part of its identifier.
 pub fn form(id: &str) -> &str {
     id.rsplit_once('.').map_or(id, |(_, form)| form)
+}
+
+/// Whether a periodic probe is a sine.
+pub fn is_sine(id: &str) -> bool {
+    form(id).starts_with("sin")
 }
 
 /// The order of a periodic probe, from its identifier `probe.JOINT.cosH`, `.sinH` or `.const`.
@@ -132,7 +136,7 @@ async fn latents<L: Laboratory>(
         parts.columns.push(bench.metric.whiten(&curves) - &base);
         parts.harmonics.push(joint::Harmonic {
             order: *order,
-            sine: form(&effect.id).starts_with("sin"),
+            sine: is_sine(&effect.id),
             amplitude: own.typical - own.absent,
         });
     }

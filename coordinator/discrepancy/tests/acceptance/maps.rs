@@ -10,7 +10,7 @@ use discrepancy::noise::Noise;
 use discrepancy::record::{Curves, Record, mean_of};
 use discrepancy::score::score;
 use discrepancy::spectrum::Orders;
-use discrepancy::stage::whereabouts::{Where, form, probe_order};
+use discrepancy::stage::whereabouts::{Where, is_sine, probe_order};
 use discrepancy::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
 use protocol::job::Refinement;
@@ -163,7 +163,7 @@ fn latents(model: &Model, x: &[f64], at: &Curves) -> Vec<Forces> {
         all[k].changes.push(change);
         all[k].parts.push(joint::Harmonic {
             order,
-            sine: form(&effect.id).starts_with("sin"),
+            sine: is_sine(&effect.id),
             amplitude: effect.parameters[0].scale,
         });
     }

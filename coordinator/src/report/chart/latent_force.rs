@@ -8,15 +8,19 @@ const DRAWN: usize = 3;
 /// Spacing of the curves (deg).
 const STEP: usize = 2;
 
-/// Draws the forces at joints that are not told apart, the likeliest first, those that explain anything.
-/// None where no force does.
+/// Draws the forces at the first `equivalent` joints of a ranking, which are not told apart; those that
+/// explain anything. None where no force does.
 ///
 /// # Errors
 /// [`ChartError`] when the drawing library fails.
-pub fn latent_forces(set: &[JointEvidence]) -> Result<Option<Figure>, ChartError> {
+pub fn latent_forces(
+    ranked: &[JointEvidence],
+    equivalent: usize,
+) -> Result<Option<Figure>, ChartError> {
     let turn: Vec<f64> = (0..=360).step_by(STEP).map(f64::from).collect();
-    let drawn: Vec<(String, &JointEvidence)> = set
+    let drawn: Vec<(String, &JointEvidence)> = ranked
         .iter()
+        .take(equivalent)
         .filter(|one| one.log_bayes > 0.0 && !one.force.is_empty())
         .take(DRAWN)
         .map(|one| {

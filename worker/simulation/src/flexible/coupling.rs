@@ -9,7 +9,8 @@
 use super::{
     ReductionError,
     arc::Rim,
-    problem::{Problem, dot},
+    eigen::dot,
+    problem::Problem,
     reduction::{Family, Mode, Wrap},
 };
 
@@ -52,7 +53,7 @@ impl Patterns {
         let base = symmetric.inertia.iter().cloned().map(Ok);
         let pattern = |force: Result<Vec<[f64; 3]>, ReductionError>| {
             let force = force?;
-            let compliance = dot(&force, &symmetric.solve(&force));
+            let compliance = dot(force.as_flattened(), symmetric.solve(&force).as_flattened());
             Ok(Pattern { force, compliance })
         };
         wraps
@@ -66,7 +67,8 @@ impl Patterns {
     pub(super) fn shares(&self, frequency: f64, field: &[[f64; 3]]) -> impl Iterator<Item = f64> {
         self.0.iter().map(move |pattern| {
             // work and energy of both halves: (2 w)^2 over 2 c
-            2.0 * dot(field, &pattern.force).powi(2) / (frequency.powi(2) * pattern.compliance)
+            let work = dot(field.as_flattened(), pattern.force.as_flattened());
+            2.0 * work.powi(2) / (frequency.powi(2) * pattern.compliance)
         })
     }
 }

@@ -7,7 +7,7 @@ use super::{
     assembly::{Assembly, Unknowns},
     cholesky::Factor,
     coupling::Patterns,
-    eigen::lowest,
+    eigen::{dot, lowest},
     element::Steel,
     mesh::{Half, Mesh},
     reduction::{Family, Mode, Reduction, Request, Row, Wrap},
@@ -135,7 +135,7 @@ impl<'a> Problem<'a> {
         let participation = self
             .inertia
             .each_ref()
-            .map(|inertia| both * dot(inertia, &field));
+            .map(|inertia| both * dot(inertia.as_flattened(), field.as_flattened()));
         let mean = |station: &Station, direction| 0.5 * both * station.mean(&field, direction);
         Mode {
             family: self.family,
@@ -192,10 +192,12 @@ impl<'a> Problem<'a> {
             lines.iter().map(read).collect()
         };
         let inertia_stress = self.inertia.each_ref().map(|inertia| {
-            let read = |line: &Vec<[f64; 3]>| -dot(inertia, line);
+            let read = |line: &Vec<[f64; 3]>| -dot(inertia.as_flattened(), line.as_flattened());
             lines.iter().map(read).collect()
         });
-        let total = |inertia: usize, rigid: &[[f64; 3]]| 2.0 * dot(&self.inertia[inertia], rigid);
+        let total = |inertia: usize, rigid: &[[f64; 3]]| {
+            2.0 * dot(self.inertia[inertia].as_flattened(), rigid.as_flattened())
+        };
         let [x, y, turn] = rigid(&self.half.mesh);
         let mass = total(0, &x);
         let (wrap_field, wrap_stress) = match &request.wrap {
@@ -280,12 +282,6 @@ impl<'a> Problem<'a> {
         let stress = stress.collect();
         Ok((field, stress))
     }
-}
-
-/// Sum of products of two fields.
-pub(super) fn dot(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
-    let pairs = a.iter().flatten().zip(b.iter().flatten());
-    pairs.map(|(a, b)| a * b).sum()
 }
 
 /// Consistent mass times fields over all nodes.

@@ -82,8 +82,7 @@ pub(super) fn figures(subject: &Subject<'_>) -> Result<Figures, ReportError> {
         place.extend(chart::angle_map(&seen.angle, &channels)?);
         place.extend(chart::order_map(&seen.order, &channels, speed)?);
         place.extend(chart::joints(&seen.joints, seen.equivalent)?);
-        let set = seen.joints.iter().take(seen.equivalent).cloned();
-        place.extend(chart::latent_forces(&set.collect::<Vec<_>>())?);
+        place.extend(chart::latent_forces(&seen.joints, seen.equivalent)?);
     }
     let mut proof = Vec::new();
     for shown in shown(subject) {
