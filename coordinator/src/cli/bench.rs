@@ -2,7 +2,7 @@
 use super::{
     EXIT_CODES, Output, OutputChoice, bus, integrators, json::SilentOutput, output, whole_box,
 };
-use crate::runtime::{self, BenchPlan, Crew, SilentPlan};
+use crate::runtime::{self, BenchPlan, Crew, Silence, SilentPlan};
 use clap::{Args, Subcommand};
 use link::locator::Locator;
 use std::path::PathBuf;
@@ -24,6 +24,7 @@ Examples:
   horsehead bench dispatch --connections 64 --tls keys
   horsehead bench dispatch --sessions 512 --jobs 1000000 --result-bytes 300
   horsehead bench dispatch --silent 5000
+  horsehead bench dispatch --connections 64 --idle 900
 
 {EXIT_CODES}"))]
     Dispatch {
@@ -36,11 +37,11 @@ Examples:
         sessions: Option<u32>,
         /// Instead of processes, so many workers that are only sessions of one other process, over
         /// TCP on loopback: no slots, the rest is real.
-        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_CONNECTIONS", value_parser = clap::value_parser!(u32).range(1..=1900))]
+        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_CONNECTIONS", value_parser = clap::value_parser!(u32).range(1..=990))]
         connections: Option<u32>,
         /// Have those connections come over QUIC instead of TCP, with the certificate of `worker-01` of
         /// this folder of `horsehead keys new DIR --host 127.0.0.1`; nothing without --connections or
-        /// with --silent.
+        /// with --silent or --idle.
         #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
         tls: Option<PathBuf>,
         /// Jobs to do.
@@ -53,7 +54,11 @@ Examples:
         /// nothing and are opened again whenever the coordinator closes them.
         #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_SILENT", value_parser = clap::value_parser!(u32).range(1..=8000))]
         silent: Option<u32>,
-        /// How often, with --silent: 8 s without and 8 s with them each time.
+        /// The same with sessions of the bus that never announce themselves: the coordinator takes
+        /// 1,000 sessions in all.
+        #[arg(long, value_name = "N", conflicts_with_all = ["sessions", "silent"], env = "HORSEHEAD_IDLE", value_parser = clap::value_parser!(u32).range(1..=990))]
+        idle: Option<u32>,
+        /// How often, with --silent or --idle: 8 s without and 8 s with them each time.
         #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_TURNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
         turns: u32,
         #[command(flatten)]
@@ -78,7 +83,8 @@ Example:
         #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
         tls: Option<PathBuf>,
     },
-    /// Hold connections that say nothing, for `bench dispatch --silent`, until standard input ends.
+    /// Hold connections that say nothing, for `bench dispatch` with `--silent` or `--idle`, until
+    /// standard input ends.
     #[command(hide = true, after_help = format!("\
 Example:
   horsehead bench silent tcp/127.0.0.1:7447 5000
@@ -91,6 +97,9 @@ Example:
         /// How many.
         #[arg(value_name = "N")]
         connections: usize,
+        /// Open a session of the bus on each.
+        #[arg(long)]
+        opened: bool,
     },
 }
 
@@ -105,12 +114,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             jobs,
             result_bytes,
             silent,
+            idle,
             turns,
             output: OutputChoice { output },
         } => {
             let tls = tls
                 .clone()
-                .filter(|_| connections.is_some() && silent.is_none());
+                .filter(|_| connections.is_some() && silent.or(*idle).is_none());
             let (crew, workers, of_what) = match (sessions, connections) {
                 (Some(sessions), _) => (
                     Crew::Sessions,
@@ -136,7 +146,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
                 workers: workers as usize,
                 jobs: *jobs,
                 result_bytes: *result_bytes,
-                silent: silent.map(|connections| SilentPlan {
+                silent: silent.or(*idle).map(|connections| SilentPlan {
+                    silence: match idle {
+                        None => Silence::Connection,
+                        Some(_) => Silence::Session,
+                    },
                     connections: connections as usize,
                     turns: *turns as usize,
                 }),
@@ -155,7 +169,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         What::Silent {
             connect,
             connections,
-        } => bus::block_on(async { Ok(runtime::keep_silent(connect, *connections).await?) }),
+            opened,
+        } => {
+            let silence = if *opened {
+                Silence::Session
+            } else {
+                Silence::Connection
+            };
+            bus::block_on(async { Ok(runtime::keep_silent(connect, silence, *connections).await?) })
+        }
     }
 }
 
@@ -197,7 +219,7 @@ fn dispatch(
 fn beside(silent: &SilentOutput) -> String {
     let [smallest, largest] = silent.rate_ratio_range;
     format!(
-        "beside {} silent connections ({} held at least, {} opened again in {} blocks):\n\
+        "beside {} that say nothing ({} held at least, {} opened again in {} blocks):\n\
          throughput   {:>10.0} jobs/s, {:.0} without: {:.3} times, {smallest:.3} to {largest:.3}\n\
          coordinator  {:>10.2} times the CPU per job\n",
         silent.connections,

@@ -4,7 +4,7 @@ mod sessions;
 mod silent;
 
 pub use sessions::connect;
-pub use silent::{SilentPlan, SilentResult, keep_silent};
+pub use silent::{Silence, SilentPlan, SilentResult, keep_silent};
 
 use super::{Dispatch, DispatchError, DispatchOptions};
 use link::locator::Locator;

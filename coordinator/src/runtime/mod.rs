@@ -11,7 +11,7 @@ mod sleep;
 
 pub use crate::core::{Policy, Snapshot, WorkerSnapshot};
 pub use bench::{
-    BenchPlan, BenchResult, Crew, SilentPlan, SilentResult, bench, connect, keep_silent,
+    BenchPlan, BenchResult, Crew, Silence, SilentPlan, SilentResult, bench, connect, keep_silent,
 };
 pub use error::DispatchError;
 pub use protocol::event::{RunHeader, Spent};

@@ -1,10 +1,11 @@
-//! Peers that connect and never say a word: what they cost a coordinator at work, measured in
-//! blocks of the same run, in turn without and with them.
+//! Peers that connect and never say a word, or open a session of the bus and never announce
+//! themselves: what they cost a coordinator at work, measured in blocks of the same run, in turn
+//! without and with them.
 //!
 //! They are connections of one other process, which opens again whatever the coordinator closes.
 use super::{DispatchError, Load, cost};
 use crate::runtime::{Dispatch, allow_connections};
-use link::locator::Locator;
+use link::{WorkerEnd as _, locator::Locator, zenoh::ZenohWorker};
 use std::{
     env, fs,
     io::{self, BufRead as _, BufReader, Read as _, Write as _},
@@ -31,9 +32,21 @@ const OPENING: usize = 64;
 /// Pause before a connection that failed is tried again.
 const AGAIN: Duration = Duration::from_millis(50);
 
+/// How far peers go that say nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Silence {
+    /// They connect; the coordinator closes them when they have not opened a session in time.
+    Connection,
+    /// They open a session of the bus, which exchanges keep-alives for ever, and never announce
+    /// themselves.
+    Session,
+}
+
 /// Connections that say nothing, to be measured beside.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SilentPlan {
+    /// How far they go.
+    pub silence: Silence,
     /// How many.
     pub connections: usize,
     /// How often it is measured without and with them; once at least.
@@ -74,7 +87,11 @@ struct Block {
 pub(super) async fn measure(
     dispatch: &mut Dispatch,
     load: &mut Load,
-    SilentPlan { connections, turns }: SilentPlan,
+    SilentPlan {
+        silence,
+        connections,
+        turns,
+    }: SilentPlan,
 ) -> Result<SilentResult, DispatchError> {
     let turns = turns.max(1);
     let at = dispatch.listening().into_iter().next().unwrap_or_default();
@@ -83,7 +100,7 @@ pub(super) async fn measure(
     for _ in 0..turns {
         let own = open_files();
         let without = block(dispatch, load).await?;
-        let silent = Silent::start(connections, &at).map_err(DispatchError::Start)?;
+        let silent = Silent::start(silence, connections, &at).map_err(DispatchError::Start)?;
         let silent = silent.opened().await.map_err(DispatchError::Start)?;
         settle(|| open_files() >= own + connections).await;
         held = held.min(open_files().saturating_sub(own));
@@ -147,9 +164,13 @@ struct Silent {
 
 impl Silent {
     /// Starts this program again, with so many connections to an address.
-    fn start(count: usize, connect: &str) -> io::Result<Self> {
-        let mut process = Command::new(env::current_exe()?)
-            .args(["bench", "silent", connect, &count.to_string()])
+    fn start(silence: Silence, count: usize, connect: &str) -> io::Result<Self> {
+        let mut command = Command::new(env::current_exe()?);
+        command.args(["bench", "silent", connect, &count.to_string()]);
+        if silence == Silence::Session {
+            command.arg("--opened");
+        }
+        let mut process = command
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()?;
@@ -194,25 +215,24 @@ impl Drop for Silent {
     }
 }
 
-/// Holds so many connections to an address and says nothing, until standard input ends. One that is
-/// closed is opened again. Standard output has a line when all are open, and at the end how many
+/// Holds so many connections or sessions to an address, over TCP, and says nothing, until standard
+/// input ends. One that is closed is opened again. Standard output has a line when all are open, and at the end how many
 /// were opened again.
 ///
 /// # Errors
 /// If standard output cannot be written.
-pub async fn keep_silent(to: &Locator, count: usize) -> io::Result<()> {
+pub async fn keep_silent(to: &Locator, silence: Silence, count: usize) -> io::Result<()> {
     allow_connections();
-    let address = format!("{}:{}", to.bare_host(), to.port);
     let opening = Arc::new(Semaphore::new(OPENING));
     let (opened, all) = (Arc::new(AtomicU64::new(0)), Arc::new(Notify::new()));
     let mut connections = JoinSet::new();
-    for _ in 0..count {
-        let (address, opening) = (address.clone(), Arc::clone(&opening));
+    for process in 1..=count as u64 {
+        let (to, opening) = (to.clone(), Arc::clone(&opening));
         let (opened, all) = (Arc::clone(&opened), Arc::clone(&all));
         connections.spawn(async move {
             loop {
                 let place = opening.acquire().await;
-                let Ok(connection) = TcpStream::connect(&address).await else {
+                let Some(held) = Held::open(silence, &to, process).await else {
                     sleep(AGAIN).await;
                     continue;
                 };
@@ -220,7 +240,7 @@ pub async fn keep_silent(to: &Locator, count: usize) -> io::Result<()> {
                 if opened.fetch_add(1, Ordering::Relaxed) + 1 == count as u64 {
                     all.notify_one();
                 }
-                closed(&connection).await;
+                held.closed().await;
             }
         });
     }
@@ -236,15 +256,42 @@ pub async fn keep_silent(to: &Locator, count: usize) -> io::Result<()> {
     say(&opened.saturating_sub(count as u64).to_string())
 }
 
-/// Waits for the other end to close, whatever it says before.
-async fn closed(connection: &TcpStream) {
-    let mut piece = [0; 64];
-    while connection.readable().await.is_ok() {
-        match connection.try_read(&mut piece) {
-            Ok(0) => return,
-            Ok(_) => {}
-            Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
-            Err(_) => return,
+/// One peer that says nothing.
+enum Held {
+    Connection(TcpStream),
+    Session(Box<ZenohWorker>),
+}
+
+impl Held {
+    /// Connects, if the other end takes it.
+    async fn open(silence: Silence, to: &Locator, process: u64) -> Option<Self> {
+        match silence {
+            Silence::Connection => {
+                let address = format!("{}:{}", to.bare_host(), to.port);
+                Some(Self::Connection(TcpStream::connect(address).await.ok()?))
+            }
+            Silence::Session => {
+                let session = ZenohWorker::open(to, None, process).await.ok()?;
+                Some(Self::Session(Box::new(session)))
+            }
+        }
+    }
+
+    /// Waits for the other end to close, whatever it says before.
+    async fn closed(self) {
+        match self {
+            Self::Connection(connection) => {
+                let mut piece = [0; 64];
+                while connection.readable().await.is_ok() {
+                    match connection.try_read(&mut piece) {
+                        Ok(0) => return,
+                        Ok(_) => {}
+                        Err(error) if error.kind() == io::ErrorKind::WouldBlock => {}
+                        Err(_) => return,
+                    }
+                }
+            }
+            Self::Session(mut session) => while session.receive().await.is_some() {},
         }
     }
 }
