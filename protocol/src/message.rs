@@ -105,7 +105,7 @@ pub struct Done {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum ToSlot {
     /// The encoded case for all following jobs.
-    Case(#[serde(with = "crate::job::byte_string")] Vec<u8>),
+    Case(#[serde(with = "serde_bytes")] Vec<u8>),
     /// Do this.
     Run(Box<Job>),
 }

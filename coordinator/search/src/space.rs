@@ -31,6 +31,18 @@ pub enum SpaceError {
         /// Its upper bound.
         upper: f64,
     },
+    /// A search is to start outside the bounds of a gene.
+    #[error("gene {name}: the start, {start}, lies outside its bounds, {lower} to {upper}")]
+    Start {
+        /// Which.
+        name: String,
+        /// Where to start.
+        start: f64,
+        /// Its lower bound.
+        lower: f64,
+        /// Its upper bound.
+        upper: f64,
+    },
 }
 
 /// One gene: its interval, and the part of it in which models usually survive.
@@ -38,13 +50,13 @@ pub enum SpaceError {
 pub struct Axis {
     /// Which gene.
     pub quantity: Quantity,
-    /// Recommended value [declared unit].
-    pub recommended: f64,
+    /// Value at coordinate 0, the recommended one unless the search starts elsewhere [declared unit].
+    pub centre: f64,
     /// Smallest value [declared unit].
     pub lower: f64,
     /// Largest value [declared unit].
     pub upper: f64,
-    /// Trust interval about the recommendation, inside the bounds (coordinate).
+    /// Trust interval about the centre, inside the bounds (coordinate).
     pub trust: Interval,
 }
 
@@ -91,8 +103,8 @@ impl Axis {
     /// The value at a coordinate, never outside the bounds.
     pub fn value(&self, x: f64) -> f64 {
         let value = match self.quantity.scale() {
-            Scale::Logarithmic => self.recommended * libm::exp10(x),
-            Scale::Linear => self.recommended + self.half() * x,
+            Scale::Logarithmic => self.centre * libm::exp10(x),
+            Scale::Linear => self.centre + self.half() * x,
         };
         value.clamp(self.lower, self.upper)
     }
@@ -100,8 +112,8 @@ impl Axis {
     /// The coordinate of a value.
     pub fn coordinate(&self, value: f64) -> f64 {
         match self.quantity.scale() {
-            Scale::Logarithmic => libm::log10(value / self.recommended),
-            Scale::Linear => (value - self.recommended) / self.half(),
+            Scale::Logarithmic => libm::log10(value / self.centre),
+            Scale::Linear => (value - self.centre) / self.half(),
         }
     }
 
@@ -129,6 +141,29 @@ impl Space {
         }
         let axes = genes.iter().map(axis).collect::<Result<_, _>>()?;
         Ok(Self { axes })
+    }
+
+    /// The space of a case's genes about other values than the recommended ones [declared units], in
+    /// the order of the genes.
+    ///
+    /// # Errors
+    /// As [`Space::new`]; if a value lies outside its gene's bounds.
+    pub fn about(genes: &[Gene], centre: &[f64]) -> Result<Self, SpaceError> {
+        let moved = genes.iter().zip(centre).map(|(gene, &start)| {
+            if !(gene.lower..=gene.upper).contains(&start) {
+                return Err(SpaceError::Start {
+                    name: gene.label(),
+                    start,
+                    lower: gene.lower,
+                    upper: gene.upper,
+                });
+            }
+            Ok(Gene {
+                recommended: start,
+                ..gene.clone()
+            })
+        });
+        Self::new(&moved.collect::<Result<Vec<_>, _>>()?)
     }
 
     /// One axis per gene.
@@ -181,7 +216,7 @@ fn axis(gene: &Gene) -> Result<Axis, SpaceError> {
     }
     let mut axis = Axis {
         quantity: gene.quantity.clone(),
-        recommended: gene.recommended,
+        centre: gene.recommended,
         lower: gene.lower,
         upper: gene.upper,
         trust: match gene.quantity {
@@ -273,6 +308,22 @@ mod tests {
         ] {
             let error = Space::new(&[bad]).unwrap_err().to_string();
             assert!(error.starts_with("gene gauge_drift.drift_1:"), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_space_about_other_values_has_them_at_its_origin_and_keeps_its_bounds() {
+        let genes = [gene(3e4, 3e8, 3e12), linear(-3.0, -1.0, 1.0)];
+        let space = Space::about(&genes, &[6e9, 0.5]).unwrap();
+        assert_eq!(space.values(&[0.0, 0.0]), [6e9, 0.5]);
+        assert_eq!(space.values(&[9.0, -9.0]), [3e12, -3.0]);
+        for (outside, name) in [
+            ([2e4, 0.0], "kb23"),
+            ([3e8, f64::NAN], "gauge_drift.drift_1"),
+        ] {
+            let error = Space::about(&genes, &outside).unwrap_err().to_string();
+            let begins = format!("gene {name}: the start, ");
+            assert!(error.starts_with(&begins), "{error}");
         }
     }
 

@@ -1,7 +1,7 @@
 //! The files and the output of a finished diagnosis.
 use super::{
     Output, bus, diagnosis_json, output,
-    run_folder::{Manifest, RunFolder},
+    run_folder::{Manifest, RunFolder, quote},
 };
 use crate::{
     case::{Loaded, write_genes},
@@ -84,7 +84,20 @@ impl<S> Answer<'_, S> {
 
     /// Appends what was found to a case file, if anything was.
     pub(super) fn add(&self, file: &Path) -> anyhow::Result<()> {
-        report::effects_toml(&self.subject()?).map_or(Ok(()), |text| append(file, &text))
+        let Some(text) = report::effects_toml(&self.subject()?) else {
+            return Ok(());
+        };
+        append(file, &text)?;
+        let (case, found) = (
+            &self.manifest.case_folder,
+            self.folder.file("calibrated.toml"),
+        );
+        output::tell(&format!(
+            "to search it with everything else, from what was found:\n  horsehead calibrate {} --genes {}",
+            quote(&case.display().to_string()),
+            quote(&found.display().to_string()),
+        ));
+        Ok(())
     }
 }
 

@@ -98,7 +98,7 @@ Example:
         #[arg(value_name = "N")]
         connections: usize,
         /// Open a session of the bus on each.
-        #[arg(long)]
+        #[arg(long, env = "HORSEHEAD_OPENED")]
         opened: bool,
     },
 }

@@ -3,13 +3,14 @@ use super::{
     CaseChoice, Door, EXIT_CODES, LoadedCase, OutputChoice, bus, cores, interrupt, output,
     problem::Usage,
     progress::Display,
-    run_folder::{self, Begun, CALIBRATE, Manifest, RunFolder, command_line},
+    run_folder::{self, Begun, CALIBRATE, Manifest, RunFolder, Start, command_line},
 };
 use crate::{
     cli::finish::{self, Session},
     study::StudyError,
 };
 use clap::Args;
+use protocol::case::Case;
 use search::{
     space::Space,
     strategy::{CATALOGUE, Preset, Settings, memetic::window::WindowSettings, preset},
@@ -26,6 +27,7 @@ Examples:
   horsehead calibrate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen tcp/127.0.0.1:7447
   horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
+  horsehead calibrate cases/cyjs10-5-37hb --genes runs/cyjs10-5-37hb-diagnose-seed1/calibrated.toml
 
 Presets:
 {}
@@ -37,6 +39,10 @@ pub(super) struct Arguments {
     /// How to search; see below.
     #[arg(long, default_value = "quick", env = "HORSEHEAD_PRESET")]
     preset: String,
+    /// Gene file to search around instead of the recommended values, such as the `calibrated.toml` of
+    /// an earlier calibration or diagnosis.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
+    genes: Option<PathBuf>,
     /// Fixes every random choice: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
@@ -120,6 +126,17 @@ fn set_window(
     Ok(())
 }
 
+/// The space to search, about the recommended values or those of a start.
+fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Usage> {
+    run_folder::space(case, start).map_err(|error| Usage {
+        message: match start {
+            Some(start) => format!("{}: {error}", start.file.display()),
+            None => error.to_string(),
+        },
+        help: "choose values inside the bounds, or widen them in case.toml".to_owned(),
+    })
+}
+
 fn warn_of_lost_journal(folder: &Path) {
     output::tell(&format!(
         "warning: the journal of {} is gone or empty, and with it the results: the run begins \
@@ -136,7 +153,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         synthetic,
         notes,
     } = arguments.choice.load()?;
-    let space = Space::new(&case.genes)?;
+    let start = Start::read(arguments.genes.as_deref(), &case)?;
+    let space = searched(&case, start.as_ref())?;
     let preset = chosen_preset(&arguments.preset)?;
     let objective = case.conditions.get(case.objective.condition);
     if objective.is_none_or(|condition| condition.record.is_none()) {
@@ -163,6 +181,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         preset: preset.name.to_owned(),
         seed: arguments.seed,
         settings,
+        start,
         case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
         synthetic,

@@ -8,10 +8,10 @@ use super::{
     interrupt, output,
     problem::Usage,
     progress::StageDisplay,
-    run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, command_line},
+    run_folder::{self, Begun, CALIBRATE, DIAGNOSE, Manifest, RunFolder, Start, command_line},
 };
 use crate::{
-    case::{Loaded, Overrides, load_with_notes, read_genes},
+    case::{Loaded, Overrides, load_with_notes},
     study::{self, Diagnosed, Evaluator, StudyError},
 };
 use clap::Args;
@@ -80,8 +80,6 @@ pub(super) struct Arguments {
 pub(super) struct Decides {
     /// Thresholds.
     thresholds: Settings,
-    /// Where the recalibration starts (declared units), if that is known.
-    start: Option<Vec<f64>>,
 }
 
 impl run_folder::Decides for Decides {}
@@ -93,8 +91,8 @@ struct Target {
     /// Folder of the records, where they replace the case's.
     measured: Option<PathBuf>,
     loaded: Loaded,
-    /// Values of the case's genes.
-    start: Option<Vec<f64>>,
+    /// Where the recalibration starts, if that is known.
+    start: Option<Start>,
 }
 
 impl Target {
@@ -108,7 +106,10 @@ impl Target {
             let kept = pairs.filter(|(gene, _)| left.contains(gene));
             kept.map(|(_, value)| value).collect()
         };
-        self.start = self.start.map(kept);
+        self.start = self.start.map(|start| Start {
+            genes: kept(start.genes),
+            ..start
+        });
         Ok(self)
     }
 }
@@ -186,8 +187,8 @@ fn manifest(arguments: &Arguments, target: &Target) -> anyhow::Result<Manifest<D
                 without: arguments.without.clone(),
                 ..Settings::default()
             },
-            start: target.start.clone(),
         },
+        start: target.start.clone(),
         case_folder: std::path::absolute(&target.folder)?,
         measured: target
             .measured
@@ -249,9 +250,7 @@ fn target(arguments: &Arguments) -> anyhow::Result<Target> {
     };
     let loaded = load_with_notes(&folder, &overrides)?;
     let genes = arguments.genes.clone().or(genes);
-    let start = genes
-        .map(|file| read_genes(&file, &loaded.case))
-        .transpose()?;
+    let start = Start::read(genes.as_deref(), &loaded.case)?;
     Ok(Target {
         folder,
         measured,
@@ -339,11 +338,7 @@ fn inputs(
         .collect();
     let available = case.modal_head.frequencies_hz.len();
     Ok(Inputs {
-        start: manifest
-            .settings
-            .start
-            .as_ref()
-            .map(|genes| space.point(genes)),
+        start: manifest.start_genes().map(|genes| space.point(genes)),
         space,
         records,
         library,

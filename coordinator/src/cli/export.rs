@@ -181,12 +181,17 @@ fn facts<S: Serialize>(manifest: &Manifest<S>) -> anyhow::Result<Vec<(&'static s
         preset,
         seed,
         settings,
+        start,
         case_folder,
         measured,
         synthetic,
         notes,
         wall_s,
     } = manifest;
+    let start = start.as_ref().map_or_else(
+        || "recommended".to_owned(),
+        |start| start.file.display().to_string(),
+    );
     Ok(vec![
         ("kind", kind.clone()),
         ("program", program.clone()),
@@ -195,6 +200,7 @@ fn facts<S: Serialize>(manifest: &Manifest<S>) -> anyhow::Result<Vec<(&'static s
         ("preset", preset.clone()),
         ("seed", seed.to_string()),
         ("settings", serde_json::to_string(settings)?),
+        ("start", start),
         ("case_folder", case_folder.display().to_string()),
         ("measured", measured.clone()),
         (

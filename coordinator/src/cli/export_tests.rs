@@ -80,6 +80,7 @@ fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
         preset: "quick".to_owned(),
         seed: 3,
         settings: (preset("quick").unwrap().settings)(&space),
+        start: None,
         case_folder: folder.to_owned(),
         measured: "X".to_owned(),
         synthetic: false,

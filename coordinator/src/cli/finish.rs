@@ -18,10 +18,7 @@ use protocol::{
     event::WorkerAccount,
     job::{Counters, Evaluation},
 };
-use search::{
-    space::Space,
-    strategy::{Finish, Settings, Strategy},
-};
+use search::strategy::{Finish, Settings, Strategy};
 use std::{collections::BTreeMap, time::Instant};
 
 /// One session of a run.
@@ -106,7 +103,7 @@ pub(super) async fn repeat<E: Evaluator>(
 }
 
 fn strategy(case: &Case, manifest: &Manifest) -> anyhow::Result<Box<dyn Strategy>> {
-    let space = Space::new(&case.genes)?;
+    let space = manifest.space(case)?;
     let settings: &Settings = &manifest.settings;
     let built = settings.build(&space, manifest.seed);
     Ok(built.map_err(study::StudyError::from)?)

@@ -4,10 +4,13 @@
 //! `report` need nothing else. The journal, which the dispatcher keeps in the same folder, holds
 //! every result.
 use super::{bus::content_hash, problem::Usage};
-use crate::journal;
+use crate::{case::read_genes, journal};
 use anyhow::Context as _;
 use protocol::case::Case;
-use search::strategy::Settings;
+use search::{
+    space::{Space, SpaceError},
+    strategy::Settings,
+};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
     fs, io,
@@ -42,8 +45,11 @@ pub(super) struct Manifest<S = Settings> {
     pub(super) preset: String,
     /// Seed of every random choice.
     pub(super) seed: u64,
-    /// Everything that decides the result.
+    /// Everything that decides the result beside seed and start.
     pub(super) settings: S,
+    /// Where it starts, if not at the recommended values.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) start: Option<Start>,
     /// Where the case was read from.
     pub(super) case_folder: PathBuf,
     /// Where the records came from.
@@ -57,10 +63,52 @@ pub(super) struct Manifest<S = Settings> {
     pub(super) wall_s: f64,
 }
 
+/// Values of the case's genes that a run starts at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Start {
+    /// The gene file that they come from.
+    pub(super) file: PathBuf,
+    /// One value per gene [declared units].
+    pub(super) genes: Vec<f64>,
+}
+
+impl Start {
+    /// Reads a gene file, if there is one.
+    ///
+    /// # Errors
+    /// As [`read_genes`].
+    pub(super) fn read(file: Option<&Path>, case: &Case) -> anyhow::Result<Option<Self>> {
+        let read = |file: &Path| -> anyhow::Result<Self> {
+            Ok(Self {
+                file: std::path::absolute(file)?,
+                genes: read_genes(file, case)?,
+            })
+        };
+        file.map(read).transpose()
+    }
+}
+
 impl<S: Decides> Manifest<S> {
     /// What decides the result, as canonical JSON: the journal refuses to mix two of them.
     pub(super) fn settings_json(&self) -> anyhow::Result<String> {
-        Ok(serde_json::to_string(&(self.seed, &self.settings))?)
+        let Self { seed, settings, .. } = self;
+        Ok(match self.start_genes() {
+            None => serde_json::to_string(&(seed, settings))?,
+            Some(genes) => serde_json::to_string(&(seed, settings, genes))?,
+        })
+    }
+
+    /// Values of the case's genes that the run starts at, if not the recommended ones.
+    pub(super) fn start_genes(&self) -> Option<&[f64]> {
+        self.start.as_ref().map(|start| start.genes.as_slice())
+    }
+
+    /// The space that it searches.
+    ///
+    /// # Errors
+    /// As [`Space::new`] and [`Space::about`].
+    pub(super) fn space(&self, case: &Case) -> Result<Space, SpaceError> {
+        space(case, self.start.as_ref())
     }
 
     /// The command that goes on with the run in the folder where it lies now.
@@ -74,6 +122,9 @@ impl<S: Decides> Manifest<S> {
         let seed = self.seed.to_string();
         command.extend([" --seed ", &seed, " --run ", &word(folder)]);
         command.push_str(&self.settings.arguments());
+        if let Some(start) = &self.start {
+            command.extend([" --genes ", &word(&start.file)]);
+        }
         let measured = Path::new(&self.measured);
         let of_case = std::path::absolute(measured).is_ok_and(|path| path == self.case_folder)
             || self.case_folder.ends_with(measured);
@@ -82,6 +133,17 @@ impl<S: Decides> Manifest<S> {
             command.push_str(&quote(&self.measured));
         }
         command
+    }
+}
+
+/// The space of a case's genes, about the recommended values or those of a start.
+///
+/// # Errors
+/// As [`Space::new`] and [`Space::about`].
+pub(super) fn space(case: &Case, start: Option<&Start>) -> Result<Space, SpaceError> {
+    match start {
+        None => Space::new(&case.genes),
+        Some(start) => Space::about(&case.genes, &start.genes),
     }
 }
 
@@ -186,6 +248,8 @@ impl RunFolder {
                 "" => "its settings differ".to_owned(),
                 preset => format!("its search settings differ (it was begun with preset {preset})"),
             }
+        } else if earlier.start_genes() != manifest.start_genes() {
+            "it starts at other genes".to_owned()
         } else if earlier_case != *case {
             "its case or its records differ".to_owned()
         } else {
@@ -420,7 +484,8 @@ pub(super) fn command_line() -> String {
     words.join(" ")
 }
 
-fn quote(word: &str) -> String {
+/// A word as a shell takes it.
+pub(super) fn quote(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         return word.to_owned();

@@ -1,6 +1,6 @@
 //! Habits of the command line: help, run folders, gene files.
 use super::{
-    run_folder::{self, Manifest, RunFolder},
+    run_folder::{self, Manifest, RunFolder, Start},
     *,
 };
 use clap::CommandFactory as _;
@@ -20,12 +20,57 @@ fn manifest(case: &protocol::case::Case, seed: u64) -> Manifest {
         preset: "quick".to_owned(),
         seed,
         settings: (preset("quick").unwrap().settings)(&space),
+        start: None,
         case_folder: shipped(),
         measured: "X".to_owned(),
         synthetic: false,
         notes: Vec::new(),
         wall_s: 0.0,
     }
+}
+
+/// A start at other genes than the recommended ones.
+fn started(case: &protocol::case::Case) -> Start {
+    Start {
+        file: "found.toml".into(),
+        genes: case
+            .genes
+            .iter()
+            .map(|gene| 2.0 * gene.recommended)
+            .collect(),
+    }
+}
+
+#[test]
+fn a_run_keeps_the_genes_that_it_started_at() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = crate::case::load(&shipped(), &crate::case::Overrides::default()).unwrap();
+    let manifest = manifest(&case, 3);
+    let elsewhere = Manifest {
+        start: Some(started(&case)),
+        ..manifest.clone()
+    };
+    assert_ne!(
+        manifest.settings_json().unwrap(),
+        elsewhere.settings_json().unwrap()
+    );
+    let begun = RunFolder::begin(scratch.path(), &elsewhere, &case).unwrap();
+    begun.folder.spent(&elsewhere, &case, 0.0).unwrap();
+    RunFolder::begin(begun.folder.path(), &elsewhere, &case).unwrap();
+    let error = RunFolder::begin(begun.folder.path(), &manifest, &case).unwrap_err();
+    assert!(
+        error.to_string().ends_with("it starts at other genes"),
+        "{error}"
+    );
+    // what is computed again for a report begins there, too
+    let (_, kept, case) =
+        RunFolder::open::<search::strategy::Settings>(begun.folder.path(), run_folder::CALIBRATE)
+            .unwrap();
+    let origin = vec![0.0; case.genes.len()];
+    assert_eq!(
+        kept.space(&case).unwrap().values(&origin),
+        started(&case).genes
+    );
 }
 
 /// Every command, also those below others.
@@ -210,6 +255,15 @@ fn the_way_to_go_on_names_the_folder_in_hand() {
     let command = manifest.resume_command(Path::new("moved here/run"));
     assert!(
         command.ends_with("--preset quick --seed 3 --run 'moved here/run' --measured X"),
+        "{command}"
+    );
+    let started = Manifest {
+        start: Some(started(&case)),
+        ..manifest
+    };
+    let command = started.resume_command(Path::new("run"));
+    assert!(
+        command.ends_with("--seed 3 --run run --genes found.toml --measured X"),
         "{command}"
     );
     let words = [

@@ -36,7 +36,7 @@ pub enum Job {
     /// Do nothing, return at once: measures the bus.
     Nothing {
         /// Bytes that travel to the worker.
-        #[serde(with = "byte_string")]
+        #[serde(with = "serde_bytes")]
         payload: Vec<u8>,
         /// Bytes that travel back.
         reply_bytes: u32,
@@ -73,7 +73,7 @@ pub enum Outcome {
     /// Of [`Job::Describe`].
     Described(Vec<EffectDescriptor>),
     /// Of [`Job::Nothing`].
-    Nothing(#[serde(with = "byte_string")] Vec<u8>),
+    Nothing(#[serde(with = "serde_bytes")] Vec<u8>),
     /// The job could not be done.
     Failed(Failure),
     /// Of [`Job::Observe`].
@@ -166,18 +166,5 @@ impl fmt::Display for Failure {
             Self::Refused { reason } => write!(to, "the worker refused it: {reason}"),
             Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),
         }
-    }
-}
-
-/// `Vec<u8>` as a byte string rather than a sequence of numbers.
-pub(crate) mod byte_string {
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    pub(crate) fn serialize<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_bytes(bytes)
-    }
-
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {
-        Vec::<u8>::deserialize(from)
     }
 }
