@@ -7,12 +7,12 @@ use super::{
 use protocol::case::{LoadCard, Smoothing};
 use std::path::Path;
 
-/// Reads `turn_deg, polished_rod_load_n` and checks it.
+/// Reads `turn_deg, polished_rod_load_n` \[deg, N\] and checks it; `role` says in words what the file is.
 ///
 /// # Errors
 /// Not starting at 0, uneven steps, a last row at 360, loads of another unit (by magnitude),
 /// a jump between the last row and the first.
-pub(super) fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, CaseError> {
+pub fn read(path: &Path, smoothing: Smoothing, role: &str) -> Result<LoadCard, CaseError> {
     let bytes = file::read(path, role)?;
     let mut table = Table::read(path, &bytes, &["turn_deg", "polished_rod_load_n"])?;
     check_turn(path, &table)?;

@@ -25,6 +25,7 @@ mod schema;
 mod table;
 mod twin;
 
+pub use card::read as read_card;
 pub use check::{ConditionSummary, RecordSummary, Summary, check, check_with, template};
 pub use effect::{CaseEffect, CaseParameter, Provenance, write_effects};
 pub use error::CaseError;
