@@ -12,6 +12,7 @@ use crate::locate::whiteness::p_value;
 use crate::record::Record;
 use crate::stage::establish::Base;
 use crate::stage::show;
+use crate::stage::wander::wander;
 use crate::stage::whereabouts;
 use crate::verdict::{Findings, Ground, Verdict, verdict};
 
@@ -55,6 +56,11 @@ pub(crate) async fn conclude<L: Laboratory>(
         let left = whereabouts::orders(&base.bench, &after, base.freedom);
         [before, p_value(&left, base.freedom)]
     });
+    let others = inputs.records.get(1..).unwrap_or_default();
+    diagnosis.wander = wander(lab, (&base.bench, &base.fit), others).await?;
+    if !after.model.added.is_empty() {
+        diagnosis.wander_after = wander(lab, (&base.bench, &after), others).await?;
+    }
     let alpha = inputs.settings.alpha;
     let names = diagnosis.rounds.first().is_some_and(|r| r.p_value < alpha);
     let misfit = !base.is_noise(

@@ -5,6 +5,7 @@ pub use crate::estimate::{Estimate, Limit};
 use crate::evidence::misfit;
 pub use crate::force::Force;
 use crate::laboratory::Laboratory;
+use crate::locate::wander::Wander;
 use crate::model::Model;
 use crate::record::Record;
 pub use crate::rounds::Round;
@@ -79,6 +80,10 @@ pub struct Diagnosis {
     pub after: Option<Fit>,
     /// Tail probability that what is left is white: by the recalibrated model, and by the answer.
     pub whiteness: Option<[f64; 2]>,
+    /// How the parameters of the recalibrated model would have to wander.
+    pub wander: Vec<Wander>,
+    /// The same of the answer; empty where nothing was added.
+    pub wander_after: Vec<Wander>,
     /// The gap of the answer by record.
     pub rows: Vec<Row>,
     /// The best rejected rival and its gap by record.
@@ -172,6 +177,8 @@ impl Diagnosis {
             before: None,
             after: None,
             whiteness: None,
+            wander: Vec::new(),
+            wander_after: Vec::new(),
             rows: Vec::new(),
             rival: None,
             generic: None,

@@ -1,8 +1,10 @@
 //! The object that `horsehead diagnose --output json` prints: a contract, more may be added.
 use crate::report::diagnosis::Subject;
 use crate::study::Account;
-use discrepancy::diagnose::{Diagnosis, Estimate, Force};
+use discrepancy::bench::Fit;
+use discrepancy::diagnose::{Diagnosis, Estimate, Force, Limit};
 use discrepancy::laboratory::Stage;
+use discrepancy::locate::wander::{Part, Shift, Wander};
 use discrepancy::stage::preflight::Preflight;
 use discrepancy::stage::show::Row;
 use discrepancy::verdict::Verdict;
@@ -28,6 +30,7 @@ pub(super) struct DiagnoseOutput {
     rounds: Vec<RoundOutput>,
     #[serde(rename = "where")]
     whereabouts: Option<WhereOutput>,
+    wander: WanderedOutput,
     detection_limits: Vec<LimitOutput>,
     /// Pairs that this record cannot tell apart at three times their detection limits.
     inseparable: Vec<[String; 2]>,
@@ -136,6 +139,34 @@ struct HarmonicOutput {
     order: usize,
     sine: bool,
     amplitude: f64,
+}
+
+/// Genes that would have to wander under the recalibrated model, and under the answer; empty where
+/// nothing was added.
+#[derive(Debug, Serialize)]
+struct WanderedOutput {
+    before: Vec<WanderOutput>,
+    after: Vec<WanderOutput>,
+}
+
+/// A gene refitted alone on parts of the turn and under other conditions.
+#[derive(Debug, Serialize)]
+struct WanderOutput {
+    gene: String,
+    /// Share of what is left along the turn that it would take up [1].
+    explained: f64,
+    parts: Vec<PartOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct PartOutput {
+    /// Part of the turn; null for the whole turn under another condition.
+    sector_deg: Option<[f64; 2]>,
+    /// That condition.
+    condition: Option<String>,
+    /// The value that it would take (declared unit).
+    value: f64,
+    p_value: f64,
 }
 
 #[derive(Debug, Serialize)]
@@ -262,16 +293,8 @@ pub(super) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .map(|found| force(found, calibrated)),
         rounds: rounds(diagnosis),
         whereabouts: whereabouts(subject),
-        detection_limits: diagnosis
-            .limits
-            .iter()
-            .map(|limit| LimitOutput {
-                id: limit.id.clone(),
-                parameter: limit.parameter.clone(),
-                unit: limit.unit.clone(),
-                size: limit.size,
-            })
-            .collect(),
+        wander: wandered(subject),
+        detection_limits: diagnosis.limits.iter().map(limit).collect(),
         inseparable: diagnosis
             .look_alikes
             .iter()
@@ -445,6 +468,56 @@ fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
             })
             .collect(),
     })
+}
+
+fn limit(limit: &Limit) -> LimitOutput {
+    LimitOutput {
+        id: limit.id.clone(),
+        parameter: limit.parameter.clone(),
+        unit: limit.unit.clone(),
+        size: limit.size,
+    }
+}
+
+fn wandered(subject: &Subject<'_>) -> WanderedOutput {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    WanderedOutput {
+        before: wanders(subject, diagnosis.before.as_ref(), &diagnosis.wander),
+        after: wanders(subject, diagnosis.after.as_ref(), &diagnosis.wander_after),
+    }
+}
+
+fn wanders(subject: &Subject<'_>, fit: Option<&Fit>, all: &[Wander]) -> Vec<WanderOutput> {
+    let Some(fit) = fit else {
+        return Vec::new();
+    };
+    let genes = subject.case.genes.iter().zip(fit.model.space.axes());
+    let genes: Vec<_> = genes.zip(fit.x()).collect();
+    let of_gene = |wander: &Wander| {
+        let ((gene, axis), x) = genes.get(wander.unknown)?;
+        let condition = |index: usize| {
+            let of_case = subject.case.conditions.get(index);
+            of_case.map(|condition| condition.name.clone())
+        };
+        let part = |shift: &Shift| PartOutput {
+            sector_deg: match shift.part {
+                Part::Sector { from_deg, to_deg } => Some([from_deg, to_deg]),
+                Part::Condition(_) => None,
+            },
+            condition: match shift.part {
+                Part::Sector { .. } => None,
+                Part::Condition(index) => condition(index),
+            },
+            value: axis.value(**x + shift.by),
+            p_value: shift.p_value,
+        };
+        Some(WanderOutput {
+            gene: gene.label(),
+            explained: wander.explained,
+            parts: wander.shifts.iter().map(part).collect(),
+        })
+    };
+    all.iter().filter_map(of_gene).collect()
 }
 
 fn gap(rows: &[Row], calibrated: usize) -> GapOutput {

@@ -216,6 +216,48 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
     assert!(printed(full(Verdict::Named))["generic_force"].is_null());
 }
 
+/// Parts of the turn have angles, other conditions their name, and both a value.
+#[test]
+fn wandering_genes_have_their_values() {
+    let case = case();
+    let model = Model::plain(Space::new(&case.genes).unwrap());
+    let search = LeastSquares::new(model.variables(&[]), Settings::default());
+    let sector = Part::Sector {
+        from_deg: 90.0,
+        to_deg: 180.0,
+    };
+    let shift = |part, by| Shift {
+        part,
+        by,
+        p_value: 0.01,
+    };
+    let said = printed(Diagnosis {
+        before: Some(Fit {
+            model,
+            search,
+            curves: Vec::new(),
+        }),
+        wander: vec![Wander {
+            unknown: 1,
+            shifts: vec![shift(sector, 1.0), shift(Part::Condition(1), -1.0)],
+            explained: 0.25,
+        }],
+        ..full(Verdict::Named)
+    });
+    let first = &said["wander"]["before"][0];
+    assert_eq!(first["gene"], case.genes[1].label());
+    assert_eq!(first["explained"], 0.25);
+    let [turn, speed] = [&first["parts"][0], &first["parts"][1]];
+    assert_eq!(turn["sector_deg"], serde_json::json!([90.0, 180.0]));
+    assert!(turn["condition"].is_null() && speed["sector_deg"].is_null());
+    assert_eq!(speed["condition"], case.conditions[1].name);
+    for (part, factor) in [(turn, 10.0), (speed, 0.1)] {
+        let ratio = part["value"].as_f64().unwrap() / case.genes[1].recommended;
+        assert!((ratio / factor - 1.0).abs() < 1e-12, "{ratio}");
+    }
+    assert_eq!(said["wander"]["after"], serde_json::json!([]));
+}
+
 #[test]
 fn a_diagnosis_that_stopped_has_empty_lists_and_nulls() {
     let said = printed(bare(Verdict::Unresolved));

@@ -132,6 +132,31 @@ fn every_suspect_is_told_why_it_was_kept_or_dropped() {
     }
 }
 
+/// A parameter that must change along the turn stands with the value that it would take, before the
+/// answer; after it none does.
+#[test]
+fn parameters_that_would_have_to_wander_are_shown_with_their_values() {
+    let made = suspicion::diagnosis(Verdict::Named);
+    let before = made.diagnosed.diagnosis.before.as_ref().unwrap();
+    let value = before.model.genes(before.x())[0];
+    let whole = page(&made).replace('\u{a0}', " ");
+    let (_, section) = whole.split_once("would have to wander</h2>").unwrap();
+    let (section, _) = section.split_once("</section>").unwrap();
+    for said in ["90 to 180 deg", &made.case.conditions[1].name, "42"] {
+        assert!(section.contains(said), "{said} is not in\n{section}");
+    }
+    let cells: Vec<&str> = section.split("<td").collect();
+    // the digits before the power of ten
+    let shown = |value: f64| format!("{:.2}", value / 10_f64.powf(value.log10().floor()));
+    let bracketed = |cell: &&&str| cell.contains('(');
+    assert_eq!(cells.iter().filter(bracketed).count(), 4, "{section}");
+    let twice = cells
+        .iter()
+        .any(|cell| cell.contains(&shown(2.0 * value)) && !cell.contains('('));
+    assert!(twice, "{} in\n{section}", shown(2.0 * value));
+    assert!(section.contains("With the answer none would have to"));
+}
+
 #[test]
 fn what_is_not_known_is_said() {
     let nothing = words(&page(&suspicion::diagnosis(Verdict::NothingDetected)));

@@ -6,6 +6,7 @@ use coordinator::study::{Account, Diagnosed};
 use discrepancy::bench::Fit;
 use discrepancy::diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, Round};
 use discrepancy::laboratory::Stage;
+use discrepancy::locate::wander::{Part, Shift, Wander};
 use discrepancy::locate::{angle, joint, order};
 use discrepancy::model::Model;
 use discrepancy::record::{Curves, Record, Source, Stated};
@@ -439,6 +440,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
             cycles: 2.4,
             cycles_with_others: Some(0.6),
         }],
+        wander: vec![wander(1e-4)],
+        wander_after: vec![wander(0.6)],
         before: Some(before),
         after: Some(after),
         rows: rows(&records, if added { 0.1 } else { 1.0 }),
@@ -457,6 +460,25 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
             accounts: accounts(),
         },
         notes: vec!["The card of <5rpm> is no simultaneous measurement.".to_owned()],
+    }
+}
+
+/// The first gene, twice as large in the second quarter of the turn and elsewhere as it is.
+fn wander(p_value: f64) -> Wander {
+    let sector = |k: usize| Part::Sector {
+        from_deg: 90.0 * k as f64,
+        to_deg: 90.0 * (k + 1) as f64,
+    };
+    let parts = (0..4).map(sector).chain([Part::Condition(1)]);
+    let shift = |(k, part)| Shift {
+        part,
+        by: if k == 1 { 2.0_f64.log10() } else { 0.0 },
+        p_value: if k == 1 { p_value } else { 0.9 },
+    };
+    Wander {
+        unknown: 0,
+        shifts: parts.enumerate().map(shift).collect(),
+        explained: 0.42,
     }
 }
 

@@ -1,9 +1,10 @@
 //! Where simulation and measurement disagree: three maps, each with its own control of false alarms,
-//! and whether what is left lies anywhere at all.
+//! whether what is left lies anywhere at all, and which parameters would have to wander with it.
 //!
 //! They are hints for the eye. The named test is far sharper than any of them, and on a slow machine
 //! all forces along one load path look nearly alike, so joints come as sets.
 pub mod angle;
 pub mod joint;
 pub mod order;
+pub mod wander;
 pub mod whiteness;

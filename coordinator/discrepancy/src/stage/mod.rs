@@ -10,5 +10,6 @@ pub mod refit;
 pub mod show;
 pub mod suspect;
 pub mod valley;
+pub(crate) mod wander;
 pub mod whereabouts;
 pub mod worth;

@@ -9,7 +9,6 @@
     clippy::string_slice,
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    clippy::neg_cmp_op_on_partial_ord,
     clippy::repeat_vec_with_capacity,
     reason = "a stand-in machine with known, small numbers and ASCII names"
 )]

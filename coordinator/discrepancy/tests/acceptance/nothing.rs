@@ -31,7 +31,7 @@ fn healthy_machines_are_left_alone() {
 /// printed.
 #[test]
 fn effects_far_below_their_limits_are_not_claimed() {
-    let each = trials(2);
+    let each = trials(6);
     let mut quiet = 0;
     let mut loud = Vec::new();
     for (k, effect) in named().into_iter().enumerate() {
@@ -56,8 +56,8 @@ fn effects_far_below_their_limits_are_not_claimed() {
     say(&format!(
         "0.3 x limit: {quiet} of {all} nothing detected; {loud:#?}"
     ));
-    // the aim is 95 %; of 170 sets 155 are silent (91 %, 86 to 95), 11 unresolved
-    assert!(f64::from(quiet) >= 0.9 * all as f64, "{loud:#?}");
+    // the aim is 95 %, and what is measured lies close to it
+    assert!(f64::from(quiet) >= 0.92 * all as f64, "{loud:#?}");
 }
 
 /// With every named effect disabled a disagreement has no name, and is not said to be outside the

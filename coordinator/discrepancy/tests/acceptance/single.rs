@@ -1,6 +1,6 @@
 //! One effect at a time, at multiples of its printed limit.
-use crate::strata::{NOISES, limits, named, planted};
-use crate::trial::{diagnose_usual, line, say, trials};
+use crate::strata::{NOISES, limits, named, planted, planted_at};
+use crate::trial::{Setup, diagnose_usual, line, say, trials};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::Diagnosis;
 use discrepancy::isolability::{APART, distances};
@@ -48,7 +48,7 @@ fn every_effect_is_named_at_three_times_its_limit() {
             }
             for rival in first.iter().filter(|id| **id != effect.id) {
                 confusions += 1;
-                predicted += usize::from(expected(&answer, effect, (rival, truth.noise)));
+                predicted += usize::from(expected(&answer, effect, (rival, &truth)));
             }
         }
     }
@@ -102,7 +102,7 @@ fn size_of(answer: &Diagnosis, effect: &EffectDescriptor, truth: &Truth) -> (boo
 
 /// Whether the isolability matrix said that this rival could not be told from the effect at three
 /// times its limit.
-fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, noise): (&str, f64)) -> bool {
+fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str, &Truth)) -> bool {
     let Some(before) = &answer.before else {
         return false;
     };
@@ -112,7 +112,8 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, noise): (&str
         .filter_map(|id| suspects.iter().find(|s| s.effect.id == *id))
         .collect();
     let k = sizes(effect)[0];
-    let limit = limits(noise).iter().find(|l| l.id == effect.id);
+    let limits = limits(truth, &Setup::default());
+    let limit = limits.iter().find(|l| l.id == effect.id);
     let size = limit.map_or(f64::INFINITY, |l| 3.0 * l.size / effect.parameters[k].scale);
     let signatures: Vec<_> = pair.iter().map(|s| s.signature.clone()).collect();
     let tangent = Tangent::new(before.search.best(), before.variables());
@@ -150,37 +151,23 @@ fn printed_limits_are_those_of_ninety_per_cent_power() {
 #[test]
 fn four_gauges_alone_name_most_effects() {
     let channels = ALL[..4].to_vec();
-    let setup = crate::trial::Setup {
+    let setup = Setup {
         channels,
-        ..crate::trial::Setup::default()
+        ..Setup::default()
     };
-    let (healthy, _) = crate::trial::diagnosed(&Truth::healthy(9002), &setup);
     let (mut right, mut all) = (0, 0);
     let mut missed = Vec::new();
     for seed in 0..trials(1) {
         for (k, effect) in named().into_iter().enumerate() {
-            let limit = |id: &str| {
-                healthy
-                    .limits
-                    .iter()
-                    .find(|l| l.id == id)
-                    .map_or(f64::INFINITY, |l| l.size)
-            };
-            let full = limits(1.0)
-                .iter()
-                .find(|l| l.id == effect.id)
-                .map_or(f64::INFINITY, |l| l.size);
-            let multiple = 3.0 * limit(&effect.id) / full;
+            let healthy = Truth::healthy(30_000 + 100 * k as u64 + seed);
+            let limits = limits(&healthy, &setup);
             let scale = effect.parameters[sizes(effect)[0]].scale;
-            if !(limit(&effect.id) < 2.0 * scale) {
+            let limit = limits.iter().find(|l| l.id == effect.id);
+            if limit.is_none_or(|l| l.size >= 2.0 * scale) {
                 // the limits say that the gauges do not see it
                 continue;
             }
-            let truth = planted(
-                Truth::healthy(30_000 + 100 * k as u64 + seed),
-                effect,
-                multiple,
-            );
+            let truth = planted_at(healthy, effect, 3.0, &limits);
             let (answer, _) = crate::trial::diagnosed(&truth, &setup);
             let first = answer.rounds.first().map_or(&[][..], |round| &round.set);
             all += 1;

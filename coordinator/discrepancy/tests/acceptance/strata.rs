@@ -1,37 +1,28 @@
 //! The strata of truths that the pipeline is held against.
-use crate::trial::{MACHINE, diagnose_usual};
+use crate::trial::{MACHINE, Setup, diagnosed};
 use crate::truth::{Truth, Unlisted};
 use discrepancy::diagnose::Limit;
 use discrepancy::model::{shapes, sizes};
-use discrepancy::verdict::Verdict;
 use protocol::announce::{EffectDescriptor, Sign};
 use search::random::{Phase, Streams};
-use std::sync::LazyLock;
 
 /// Levels of noise, as factors of the usual one, through which strata go.
 pub(crate) const NOISES: [f64; 3] = [0.3, 1.0, 3.0];
 
-/// Detection limits as a diagnosis of a healthy machine prints them, by level of noise.
-static LIMITS: [LazyLock<Vec<Limit>>; 3] = [
-    LazyLock::new(|| healthy(NOISES[0])),
-    LazyLock::new(|| healthy(NOISES[1])),
-    LazyLock::new(|| healthy(NOISES[2])),
-];
-
-fn healthy(noise: f64) -> Vec<Limit> {
-    let healthy = diagnose_usual(&Truth::healthy(9001).noisy(noise));
-    assert_eq!(
-        healthy.verdict,
-        Verdict::NothingDetected,
-        "the limits come from a healthy machine"
-    );
-    healthy.limits
-}
-
-/// The detection limits at one of [`NOISES`].
-pub(crate) fn limits(noise: f64) -> &'static [Limit] {
-    let level = NOISES.iter().position(|n| n.total_cmp(&noise).is_eq());
-    &LIMITS[level.expect("a level that strata go through")]
+/// The detection limits that a diagnosis of this machine, with the same noise and nothing hidden in
+/// it, prints; those of another such machine if its recalibration does not converge.
+pub(crate) fn limits(truth: &Truth, setup: &Setup) -> Vec<Limit> {
+    let healthy = Truth {
+        effects: Vec::new(),
+        unlisted: None,
+        ..truth.clone()
+    };
+    let own = diagnosed(&healthy, setup).0.limits;
+    if own.is_empty() {
+        let other = Truth::healthy(9001).noisy(truth.noise);
+        return diagnosed(&other, setup).0.limits;
+    }
+    own
 }
 
 /// The named effects.
@@ -42,12 +33,23 @@ pub(crate) fn named() -> Vec<&'static EffectDescriptor> {
 /// An effect of the library at a multiple of its limit: one of its sizes, its shapes where the
 /// library tries none.
 pub(crate) fn planted(truth: Truth, effect: &EffectDescriptor, multiple: f64) -> Truth {
+    let limits = limits(&truth, &Setup::default());
+    planted_at(truth, effect, multiple, &limits)
+}
+
+/// The same at a multiple of other limits than those of all channels.
+pub(crate) fn planted_at(
+    truth: Truth,
+    effect: &EffectDescriptor,
+    multiple: f64,
+    limits: &[Limit],
+) -> Truth {
     let mut stream = Streams::new(truth.seed, 23).at(0, Phase::Initial, effect.id.len());
     let mut amounts: Vec<f64> = effect.parameters.iter().map(|p| p.absent).collect();
     let choices = sizes(effect);
     let k = choices[stream.index(choices.len())];
     let parameter = &effect.parameters[k];
-    let limit = limits(truth.noise)
+    let limit = limits
         .iter()
         .find(|l| l.id == effect.id && l.parameter == parameter.name)
         .map_or(f64::INFINITY, |l| l.size);

@@ -9,6 +9,7 @@ mod place;
 mod proof;
 mod suspect;
 mod verdict;
+mod wander;
 
 use super::Subject;
 use super::shown::shown;
@@ -31,6 +32,7 @@ pub(super) struct Section {
 pub(super) const SECTIONS: &[Section] = &[
     verdict::SECTION,
     place::SECTION,
+    wander::SECTION,
     suspect::SECTION,
     addition::SECTION,
     proof::SECTION,

@@ -3,11 +3,13 @@ mod answer;
 mod ground;
 mod proof;
 mod suspicion;
+mod wander;
 
 pub(super) use answer::{genes, sizes};
 pub(super) use ground::{numerics, stages};
 pub(super) use proof::{gaps, paper};
 pub(super) use suspicion::{generics, limits, look_alikes, suspects};
+pub(super) use wander::wander;
 
 use crate::report::table::{Label, Row, Table};
 

@@ -1,0 +1,65 @@
+//! Parameters that would have to wander along the turn or with the speed.
+use crate::report::diagnosis::Subject;
+use crate::report::number::{figure, fixed, percent};
+use crate::report::table::{Label, Row, Table};
+use crate::report::words::condition_name;
+use discrepancy::bench::Fit;
+use discrepancy::locate::wander::{Part, Shift, Wander};
+
+/// Probability below which a shift is no noise.
+const CLEAR: f64 = 0.05;
+/// Parameters that are shown.
+const SHOWN: usize = 6;
+
+/// The genes that would have to wander under a model, with the values that they would take.
+pub(in crate::report::diagnosis) fn wander(
+    subject: &Subject<'_>,
+    (fit, wander, title): (&Fit, &[Wander], &str),
+) -> Option<Table> {
+    let clear: Vec<&Wander> = clear(fit, wander).collect();
+    let first = clear.first()?;
+    let part = |shift: &Shift| match shift.part {
+        Part::Sector { from_deg, to_deg } => {
+            format!("{} to {} deg", fixed(from_deg, 0), fixed(to_deg, 0))
+        }
+        Part::Condition(index) => condition_name(subject.case, index),
+    };
+    let mut head = vec![String::new(), "whole turn".to_owned()];
+    head.extend(first.shifts.iter().map(part));
+    head.push("takes up".to_owned());
+    let rows = clear.iter().take(SHOWN).filter_map(|wander| {
+        let k = wander.unknown;
+        let (gene, axis) = (subject.case.genes.get(k)?, fit.model.space.axes().get(k)?);
+        let at = |by: f64| figure(axis.value(fit.x()[k] + by));
+        let moved = |shift: &Shift| {
+            if shift.p_value <= CLEAR {
+                at(shift.by)
+            } else {
+                format!("({})", at(shift.by))
+            }
+        };
+        let mut cells = vec![at(0.0)];
+        cells.extend(wander.shifts.iter().map(moved));
+        cells.push(percent(wander.explained));
+        Some(Row::Values(Label::of(gene), cells))
+    });
+    Some(Table {
+        title: title.to_owned(),
+        head,
+        rows: rows.collect(),
+        notes: vec![
+            "Each refitted alone, linearly, all others held; values in brackets lie within the scatter \
+             between cycles. The last column is the share of what is left along the turn that it would \
+             take up."
+                .to_owned(),
+        ],
+    })
+}
+
+/// Genes of which some part stands out of the noise.
+fn clear<'a>(fit: &Fit, wander: &'a [Wander]) -> impl Iterator<Item = &'a Wander> {
+    let genes = fit.model.space.dimension();
+    wander.iter().filter(move |wander| {
+        wander.unknown < genes && wander.shifts.iter().any(|shift| shift.p_value <= CLEAR)
+    })
+}
