@@ -105,7 +105,9 @@ impl Sheet {
         let end = |k: usize| k * self.samples / SECTORS;
         let own: Range<usize> = end(sector)..end(sector + 1);
         let channels = (0..self.left.len()).step_by(self.samples.max(1));
-        channels.flat_map(|c| own.clone().map(move |i| c + i)).collect()
+        channels
+            .flat_map(|c| own.clone().map(move |i| c + i))
+            .collect()
     }
 }
 
@@ -248,7 +250,8 @@ mod tests {
             (0..GRID)
                 .map(|i| {
                     let turn = std::f64::consts::TAU * i as f64 / GRID as f64;
-                    ((k + 1) as f64 * turn + c as f64).sin() + 0.3 * ((5 * k + 2) as f64 * turn).cos()
+                    ((k + 1) as f64 * turn + c as f64).sin()
+                        + 0.3 * ((5 * k + 2) as f64 * turn).cos()
                 })
                 .collect()
         };
@@ -334,7 +337,10 @@ mod tests {
         let of = |unknown: usize| all.iter().find(|w| w.unknown == unknown).unwrap();
         let shift = of(1).shifts.last().unwrap();
         assert_eq!(shift.part, Part::Condition(1));
-        assert!(shift.p_value < 1e-3 && (shift.by - 2.0).abs() < 0.5, "{shift:?}");
+        assert!(
+            shift.p_value < 1e-3 && (shift.by - 2.0).abs() < 0.5,
+            "{shift:?}"
+        );
         assert!(of(3).shifts.last().unwrap().p_value > 0.05);
     }
 

@@ -1,8 +1,10 @@
 //! The maps of where: false alarms on noise that comes as cycles, not as the metric imagines it.
 use crate::case::{ORDERS, space};
-use crate::trial::{MACHINE, say, trials};
+use crate::strata::{named, planted};
+use crate::trial::{MACHINE, diagnose_usual, say, trials};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::laboratory::channels;
+use discrepancy::locate::wander::Wander;
 use discrepancy::locate::{angle, joint, order};
 use discrepancy::metric::Metric;
 use discrepancy::model::Model;
@@ -228,4 +230,39 @@ fn scores_do_not_see_what_recalibration_explains() {
     }
     assert!(largest < 0.05, "{largest}");
     assert!(raw_changes >= 1);
+}
+
+/// Parameters that would have to wander: on healthy machines hardly ever, beside a missing effect mostly,
+/// and beside the answer no more.
+#[test]
+fn parameters_wander_with_what_is_missing_and_not_with_the_answer() {
+    let least = |all: &[Wander]| {
+        let shifts = all.iter().flat_map(|wander| &wander.shifts);
+        shifts.map(|shift| shift.p_value).fold(1.0, f64::min)
+    };
+    let sets = trials(30);
+    let healthy = (0..sets)
+        .filter(|seed| least(&diagnose_usual(&Truth::healthy(2000 + seed)).wander) < 0.05)
+        .count();
+    let (mut before, mut after, mut named_right) = (0, 0, 0);
+    for (k, effect) in named().into_iter().enumerate() {
+        let truth = planted(Truth::healthy(15_000 + 100 * k as u64), effect, 5.0);
+        let answer = diagnose_usual(&truth);
+        if answer
+            .rounds
+            .iter()
+            .any(|round| round.added.as_ref() == Some(&effect.id))
+        {
+            named_right += 1;
+            before += usize::from(least(&answer.wander) < 0.05);
+            after += usize::from(least(&answer.wander_after) < 0.05);
+        }
+    }
+    say(&format!(
+        "wandering parameters: healthy {healthy} of {sets}; before the answer {before} of {named_right}, \
+         after it {after}"
+    ));
+    assert!(10 * healthy as u64 <= sets, "{healthy}");
+    assert!(2 * before >= named_right && named_right >= 12, "{before}");
+    assert!(10 * after <= named_right, "{after}");
 }
