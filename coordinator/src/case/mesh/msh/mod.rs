@@ -28,7 +28,8 @@ const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh
 ///
 /// # Errors
 /// Another version or a binary file, malformed sections (with the line), elements that are not taken
-/// or of two kinds, a missing physical group, an element that is inside out, a half that is none.
+/// or of two kinds, a missing physical group, a group with a node that no element has, an element that
+/// is inside out, a half that is none.
 pub fn read(path: &Path) -> Result<Mesh, CaseError> {
     read_hashed(path).map(|(mesh, _)| mesh)
 }
@@ -69,7 +70,7 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
         VOLUME,
         sections.mesh.volumes.get(VOLUME).map_or(0, Vec::len),
     )?;
-    let mut mesh = sections.mesh;
+    let mut mesh = only_used(path, sections.mesh)?;
     for (group, elements) in &mesh.volumes {
         let inverted = |element: &[usize]| mesh.element_volume_m3(element).is_none();
         let mut elements = elements.chunks_exact(mesh.kind.nodes());
@@ -86,6 +87,42 @@ fn parse(path: &Path, bytes: Vec<u8>) -> Result<Mesh, CaseError> {
     }
     mesh.half = mesh.surfaces.contains_key(SYMMETRY);
     check_half(path, &mesh)?;
+    Ok(mesh)
+}
+
+/// Without nodes that no element has, such as the centres of arcs: nothing would hold them. The order
+/// of the others is kept.
+fn only_used(path: &Path, mut mesh: Mesh) -> Result<Mesh, CaseError> {
+    let mut place = vec![None; mesh.nodes_m.len()];
+    for node in mesh.volumes.values().flatten() {
+        if let Some(place) = place.get_mut(*node) {
+            *place = Some(0);
+        }
+    }
+    for (index, place) in place.iter_mut().flatten().enumerate() {
+        *place = index;
+    }
+    let moved = |node: &usize| place.get(*node).copied().flatten();
+    for (group, faces) in &mut mesh.surfaces {
+        for node in faces {
+            *node = moved(node).ok_or_else(|| {
+                let [x, y, z] = mesh.nodes_m.get(*node).copied().unwrap_or_default();
+                damaged(
+                    path,
+                    format!(
+                        "group `{group}` has a node at ({x:.4}, {y:.4}, {z:.4}) m that no element of the \
+                         body has"
+                    ),
+                    "put only faces of the meshed body into the group",
+                )
+            })?;
+        }
+    }
+    for node in mesh.volumes.values_mut().flatten() {
+        *node = moved(node).unwrap_or_default();
+    }
+    let nodes = mesh.nodes_m.iter().zip(&place);
+    mesh.nodes_m = nodes.filter_map(|(at, place)| place.map(|_| *at)).collect();
     Ok(mesh)
 }
 

@@ -148,6 +148,36 @@ fn what_cannot_be_taken_is_named_with_its_line_and_a_remedy() {
     }
 }
 
+/// A node that no element has is left out, wherever it stands; a face that hangs on one is refused.
+#[test]
+fn nodes_without_an_element_are_left_out() {
+    const MOVED: Block = (3, 1, 11, &[2, 3, 4, 5, 6, 7, 8, 9, 10, 11]);
+    const MOVED_A: Block = (2, 1, 9, &[2, 3, 5, 6, 11, 9]);
+    const MOVED_B: Block = (2, 2, 9, &[2, 5, 4, 9, 10, 8]);
+    const MOVED_ROPE: Block = (2, 3, 9, &[3, 4, 5, 7, 10, 11]);
+    let mut nodes = vec![[9.0; 3]];
+    nodes.extend(NODES);
+    let blocks = [MOVED_A, MOVED_B, MOVED_ROPE, MOVED];
+    let own = [PIN_A, PIN_B, ROPE, TETRAHEDRON];
+    assert_eq!(
+        read_blocks(&blocks, &nodes, "floor"),
+        read_blocks(&own, &NODES, "floor")
+    );
+    let hanging = [
+        (2, 1, 9, &[2, 3, 1, 6, 11, 9][..]),
+        MOVED_B,
+        MOVED_ROPE,
+        MOVED,
+    ];
+    let message = read_blocks(&hanging, &nodes, "floor").unwrap_err();
+    for part in [
+        "group `pin_a` has a node at (9.0000, 9.0000, 9.0000) m",
+        "help: put only faces",
+    ] {
+        assert!(message.contains(part), "{part}\n{message}");
+    }
+}
+
 #[test]
 fn a_half_must_end_on_the_plane_and_lie_on_one_side_of_it() {
     let blocks = [PIN_A, PIN_B, ROPE, FLOOR, TETRAHEDRON];
