@@ -243,13 +243,13 @@ impl RunFolder {
         let (earlier, earlier_case) = folder.load::<S>(&manifest.kind)?;
         let difference = if earlier.seed != manifest.seed {
             format!("its seed is {}, not {}", earlier.seed, manifest.seed)
+        } else if earlier.start_genes() != manifest.start_genes() {
+            "it starts at other genes".to_owned()
         } else if earlier.settings != manifest.settings {
             match earlier.preset.as_str() {
                 "" => "its settings differ".to_owned(),
                 preset => format!("its search settings differ (it was begun with preset {preset})"),
             }
-        } else if earlier.start_genes() != manifest.start_genes() {
-            "it starts at other genes".to_owned()
         } else if earlier_case != *case {
             "its case or its records differ".to_owned()
         } else {
