@@ -191,7 +191,13 @@ impl Source<'_> {
             entry.name,
             self.document.path.display()
         );
-        let card = card::read(&self.place(&entry.card_file), entry.smoothing, &role)?;
+        let not_repeated = self.not_repeated(entry);
+        let card_file = if not_repeated.is_some() && !self.place(&entry.card_file).exists() {
+            self.folder.join(&entry.card_file)
+        } else {
+            self.place(&entry.card_file)
+        };
+        let card = card::read(&card_file, entry.smoothing, &role)?;
         let highest = card.load_n.len() / 2;
         if let Smoothing::Harmonics(kept) = entry.smoothing
             && kept as usize > highest
@@ -216,6 +222,7 @@ impl Source<'_> {
         };
         let record_file = entry.record_file.as_ref();
         let read = record_file
+            .filter(|_| not_repeated.is_none())
             .map(|name| record::read(&self.place(name), &expected))
             .transpose()?;
         let (record, facts, cycles, notes) = match read {
@@ -225,7 +232,7 @@ impl Source<'_> {
                 Some(read.cycles),
                 read.notes,
             ),
-            None => (None, None, None, Vec::new()),
+            None => (None, None, None, not_repeated.into_iter().collect()),
         };
         let condition = Condition {
             name: entry.name.clone(),
@@ -239,6 +246,22 @@ impl Source<'_> {
             facts,
             cycles,
             notes,
+        })
+    }
+
+    /// A remark if the test in `--measured DIR` did not repeat a condition: it has no record then, and
+    /// the case's card. That of the objective must be there.
+    fn not_repeated(&self, entry: &ConditionEntry) -> Option<Note> {
+        let measured = self.overrides.measured.as_ref()?;
+        let record = self.place(entry.record_file.as_ref()?);
+        let needed = entry.name == self.file.objective.condition;
+        (!needed && !record.exists()).then(|| Note {
+            path: measured.clone(),
+            text: format!(
+                "{} is not there: condition `{}` was not measured, and nothing is compared with it",
+                record.file_name().unwrap_or_default().display(),
+                entry.name
+            ),
         })
     }
 

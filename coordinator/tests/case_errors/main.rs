@@ -40,6 +40,38 @@ fn every_fault_of_twin_ropes_is_named() {
     assert_each_is_named(twins::FAULTS);
 }
 
+/// A test that was run at one speed alone is one: the other condition keeps its card and has no record.
+#[test]
+fn another_test_need_not_repeat_every_condition() {
+    let copy = Copy::new();
+    let other = copy.path("other");
+    fs::create_dir(&other).unwrap();
+    for file in ["card_5rpm.csv", "test_5rpm.csv.gz", "test_5rpm.toml"] {
+        fs::copy(copy.path(&format!("measured/{file}")), other.join(file)).unwrap();
+    }
+    let load = |measured| case::load_with_notes(copy.folder.path(), &Overrides { measured });
+    let (own, part) = (load(None).unwrap(), load(Some(other.clone())).unwrap());
+    let [calibrated, held] = &part.case.conditions[..] else {
+        panic!("two conditions");
+    };
+    assert_eq!(*calibrated, own.case.conditions[0]);
+    assert_eq!(held.card, own.case.conditions[1].card);
+    assert_eq!((held.record.as_ref(), part.cycles.len()), (None, 1));
+    let said = "test_4rpm.csv.gz is not there: condition `4rpm` was not measured";
+    assert!(
+        part.notes
+            .iter()
+            .any(|note| note.to_string().contains(said))
+    );
+    // the calibrated condition must be there
+    fs::remove_file(other.join("test_5rpm.csv.gz")).unwrap();
+    let message = load(Some(other)).unwrap_err().to_string();
+    assert!(
+        message.contains("other/test_5rpm.csv.gz: no such file"),
+        "{message}"
+    );
+}
+
 #[test]
 fn another_test_of_the_same_machine_replaces_the_records() {
     let copy = Copy::new();
