@@ -28,10 +28,9 @@ pub(crate) fn decide(
         .into_iter()
         .map(|i| round.refits[i].id.clone())
         .collect();
-    // of the gap that there was before anything was added
-    let removed = (current.chi_squared() - best.fit.chi_squared())
-        / (base.fit.chi_squared() - base.bench.metric.len() as f64).max(1.0);
-    if removed < settings.practical {
+    let lengths = [&base.fit, current, &best.fit].map(Fit::chi_squared);
+    let (removed, trace) = trace(lengths, base.bench.metric.len() as f64, settings.practical);
+    if trace {
         round.reason = Some(format!(
             "{} is there, but a trace: it removes {:.1} % of what is left above the noise",
             best.id,
@@ -42,6 +41,19 @@ pub(crate) fn decide(
     }
     round.added = Some(best.id.clone());
     Some(best.fit.clone())
+}
+
+/// Share of what is left above the noise whose removal is no trace, however large the gap was at first.
+const NEARLY_ALL: f64 = 0.8;
+
+/// The share that an effect removes of the gap that there was before anything was added, and whether that
+/// is but a trace: beside a large effect a second one may be small and yet all that is missing. From the
+/// squared lengths of the residual at first, now and with the effect, and what noise alone would leave.
+fn trace([first, now, then]: [f64; 3], noise: f64, practical: f64) -> (f64, bool) {
+    let share = |of: f64| (now - then) / (of - noise).max(1.0);
+    let rough = now >= ROUGH * noise;
+    let rest = rough && share(now) >= NEARLY_ALL;
+    (share(first), share(first) < practical && !rest)
 }
 
 /// Where an answer leaves so many times the noise, no law that was tried has the right shape.
@@ -101,6 +113,18 @@ mod tests {
         assert!(near(&lengths, 1100.0, 1000.0).is_empty());
         assert!(near(&[], 3000.0, 1000.0).is_empty());
         assert_eq!(near(&[3000.0, f64::NAN], 3000.0, 1000.0), [0]);
+    }
+
+    /// What removes little of the gap is a trace, unless it is nearly all that is left of a gap that shows.
+    #[test]
+    fn little_of_a_large_gap_may_be_all_that_is_missing() {
+        let is_trace = |lengths| trace(lengths, 1000.0, 0.05).1;
+        assert!(is_trace([9000.0, 1200.0, 1010.0]));
+        assert!(!is_trace([9000.0, 1800.0, 1010.0]));
+        assert!(!is_trace([90_000.0, 2500.0, 1060.0]));
+        assert!(is_trace([90_000.0, 2500.0, 1400.0]));
+        let (removed, _) = trace([9000.0, 3000.0, 1000.0], 1000.0, 0.05);
+        assert!((removed - 0.25).abs() < 1e-12);
     }
 
     #[test]

@@ -3,7 +3,8 @@
 //! Refits begin where the model without effects was fitted. If that is not the valley of the true
 //! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
 //! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
-//! whole way from the start; all others are refitted from the deepest, and all are judged again.
+//! whole way from the start; all others are refitted from the deepest, and all are judged again. If even
+//! that is no valley, the low orders of the crank say which effects to begin with.
 use crate::bench::Fit;
 use crate::diagnose::Inputs;
 use crate::evidence::{log_evidence, misfit};
@@ -12,7 +13,8 @@ use crate::model::Model;
 use crate::rounds::Round;
 use crate::stage::establish::Base;
 use crate::stage::refit::Refitted;
-use crate::stage::{basin, valley};
+use crate::stage::{basin, low_orders, valley};
+use protocol::announce::EffectDescriptor;
 use search::least_squares;
 
 /// Suspects whose own valley is looked for.
@@ -27,6 +29,8 @@ const WORTH: f64 = 0.1;
 const LOOSE: f64 = 0.5;
 /// Looks for valleys in one round: each begins where the one before ended.
 const DEEPER: usize = 3;
+/// What the low orders suggest is taken if it leaves less than this share of the best refit.
+const CLEARLY: f64 = 0.9;
 
 /// Looks again while the best refit of a round leaves much and another valley is found; changes the
 /// round's refits, their order and what is derived from them. Says whether the best of them lies in the
@@ -51,19 +55,7 @@ pub(crate) async fn look<L: Laboratory>(
         }
     }
     settle(lab, base, (current, round), found).await?;
-    for _ in 0..DEEPER {
-        let mut found = Vec::new();
-        for leader in leaders(round, bench.metric.len(), LOOSE * settings.valley) {
-            let fit = &round.refits[leader].fit;
-            if let Some(other) = valley::enter(lab, (bench, Stage::Refit), fit).await? {
-                found.push((leader, other));
-            }
-        }
-        if found.is_empty() {
-            break;
-        }
-        settle(lab, base, (current, round), found).await?;
-    }
+    deeper(lab, base, (current, round), settings.valley).await?;
     // from the start, with the likeliest effect where it is now
     if let Some(&leader) = leaders(round, bench.metric.len(), settings.valley).first() {
         let fit = &round.refits[leader].fit;
@@ -75,7 +67,80 @@ pub(crate) async fn look<L: Laboratory>(
         let found = found.map(|other| (leader, other)).into_iter().collect();
         settle(lab, base, (current, round), found).await?;
     }
+    if round.phi > settings.valley {
+        let found = from_low_orders(lab, base, (current, round)).await?;
+        if !found.is_empty() {
+            settle(lab, base, (current, round), found).await?;
+            deeper(lab, base, (current, round), settings.valley).await?;
+        }
+    }
     Ok(round.phi <= settings.valley)
+}
+
+/// Valleys of the likeliest, each look from where the one before ended.
+async fn deeper<L: Laboratory>(
+    lab: &mut L,
+    base: &Base,
+    (current, round): (&Fit, &mut Round),
+    valley: f64,
+) -> Result<(), L::Error> {
+    let bench = &base.bench;
+    for _ in 0..DEEPER {
+        let mut found = Vec::new();
+        for leader in leaders(round, bench.metric.len(), LOOSE * valley) {
+            let fit = &round.refits[leader].fit;
+            if let Some(other) = valley::enter(lab, (bench, Stage::Refit), fit).await? {
+                found.push((leader, other));
+            }
+        }
+        if found.is_empty() {
+            break;
+        }
+        settle(lab, base, (current, round), found).await?;
+    }
+    Ok(())
+}
+
+/// What the low orders hold for likeliest, in valleys of its own: those that leave clearly less than every
+/// refit so far, with their places among the round's refits.
+async fn from_low_orders<L: Laboratory>(
+    lab: &mut L,
+    base: &Base,
+    (current, round): (&Fit, &mut Round),
+) -> Result<Vec<(usize, Fit)>, L::Error> {
+    let (bench, way) = (&base.bench, (&base.bench, Stage::Refit));
+    let effects: Vec<EffectDescriptor> = round.suspects.iter().map(|s| s.effect.clone()).collect();
+    let likeliest = low_orders::likeliest(lab, bench, current, &effects).await?;
+    let short = least_squares::Settings {
+        iterations: 3,
+        ..least_squares::Settings::default()
+    };
+    let fits = bench.fit(lab, Stage::Refit, likeliest, short).await?;
+    let left = |refit: &Refitted| refit.fit.chi_squared();
+    let least = round.refits.iter().map(left);
+    let least = least.fold(current.chi_squared(), f64::min);
+    let mut found = Vec::new();
+    for fit in fits.into_iter().flatten() {
+        let fit = valley::enter(lab, way, &fit).await?.unwrap_or(fit);
+        let Some(effect) = fit.model.added.last() else {
+            continue;
+        };
+        if fit.chi_squared() >= CLEARLY * least {
+            continue;
+        }
+        let id = effect.id.clone();
+        let place = round.refits.iter().position(|refit| refit.id == id);
+        let place = place.unwrap_or_else(|| {
+            round.refits.push(Refitted {
+                id,
+                log_evidence: log_evidence(fit.search.best(), fit.variables()),
+                fit: fit.clone(),
+            });
+            round.refits.len() - 1
+        });
+        found.push((place, fit));
+    }
+    Ok(found)
 }
 
 /// Places of the likeliest refits that leave more than so much.

@@ -3,6 +3,7 @@ pub(crate) mod again;
 pub mod basin;
 pub mod challenge;
 pub(crate) mod establish;
+pub(crate) mod low_orders;
 pub mod pair;
 pub mod preflight;
 pub mod recalibrate;
