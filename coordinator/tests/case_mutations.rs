@@ -1,12 +1,18 @@
 //! Whatever bytes stand in the files of a case: loading ends in a case or in an error, never in a
 //! panic, and an error always names a file of the case and a remedy.
+#![expect(
+    clippy::unwrap_used,
+    reason = "the helpers prepare folders; a test that cannot has failed"
+)]
 use coordinator::case::{self, Overrides};
-use proptest::prelude::*;
+use flate2::{Compression, read::GzDecoder, write::GzEncoder};
+use proptest::{prelude::*, test_runner::TestRunner};
 use std::{
     fs,
-    io::Write,
+    io::{Read, Write},
     path::{Path, PathBuf},
 };
+use tempfile::TempDir;
 
 fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb")
@@ -91,52 +97,91 @@ fn apply(bytes: &mut Vec<u8>, mutation: &Mutation) {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 250, failure_persistence: None, ..ProptestConfig::default() })]
-    #[test]
-    fn mutated_files_never_panic(
-        file in 0..FILES.len(),
-        // near the head of a file is where its structure is decided
-        head in any::<bool>(),
-        unpack in any::<bool>(),
-        mutations in prop::collection::vec(mutation(), 1..4),
-    ) {
-        let scratch = tempfile::tempdir().unwrap();
-        for folder in ["measured", "back_head"] {
-            fs::create_dir(scratch.path().join(folder)).unwrap();
-        }
-        for name in FILES {
-            fs::copy(shipped().join(name), scratch.path().join(name)).unwrap();
-        }
-        // one condition suffices, and is quicker
-        let text = fs::read_to_string(scratch.path().join(FILES[0])).unwrap();
-        let (first, rest) = text.split_once("[[conditions]]\nname = \"4rpm\"").unwrap();
-        let (_, objective) = rest.split_once("[objective]").unwrap();
-        fs::write(scratch.path().join(FILES[0]), format!("{first}[objective]{objective}")).unwrap();
+/// The shipped case with one condition, which suffices and is quicker.
+fn lean_copy() -> TempDir {
+    let scratch = tempfile::tempdir().unwrap();
+    for folder in ["measured", "back_head"] {
+        fs::create_dir(scratch.path().join(folder)).unwrap();
+    }
+    for name in FILES {
+        fs::copy(shipped().join(name), scratch.path().join(name)).unwrap();
+    }
+    let text = fs::read_to_string(scratch.path().join(FILES[0])).unwrap();
+    let (first, rest) = text.split_once("[[conditions]]\nname = \"4rpm\"").unwrap();
+    let (_, objective) = rest.split_once("[objective]").unwrap();
+    let text = format!("{first}[objective]{objective}");
+    fs::write(scratch.path().join(FILES[0]), text).unwrap();
+    scratch
+}
 
-        let path = scratch.path().join(FILES[file]);
-        let mut bytes = fs::read(&path).unwrap();
-        let packed = FILES[file] == PACKED && unpack;
-        if packed {
-            let mut plain = Vec::new();
-            std::io::Read::read_to_end(&mut flate2::read::GzDecoder::new(bytes.as_slice()), &mut plain).unwrap();
-            bytes = plain;
-        }
-        let tail = if head { bytes.split_off(bytes.len().min(1500)) } else { Vec::new() };
+fn unpacked(bytes: &[u8]) -> Vec<u8> {
+    let mut plain = Vec::new();
+    GzDecoder::new(bytes).read_to_end(&mut plain).unwrap();
+    plain
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+/// A file that is whole again afterwards, whatever happens: so the next mutation finds it, or a smaller
+/// one of the same.
+struct Mutated {
+    path: PathBuf,
+    whole: Vec<u8>,
+}
+
+impl Drop for Mutated {
+    fn drop(&mut self) {
+        fs::write(&self.path, &self.whole).unwrap();
+    }
+}
+
+#[test]
+fn mutated_files_never_panic() {
+    let config = ProptestConfig {
+        cases: 250,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    let strategy = (
+        0..FILES.len(),
+        // near the head of a file is where its structure is decided
+        any::<bool>(),
+        any::<bool>(),
+        prop::collection::vec(mutation(), 1..4),
+    );
+    let copy = lean_copy();
+    let folder = copy.path().display().to_string();
+    let ran = TestRunner::new(config).run(&strategy, |(file, head, unpack, mutations)| {
+        let path = copy.path().join(FILES[file]);
+        let whole = fs::read(&path).unwrap();
+        let mutated = Mutated { path, whole };
+        let unpack = FILES[file] == PACKED && unpack;
+        let mut bytes = if unpack {
+            unpacked(&mutated.whole)
+        } else {
+            mutated.whole.clone()
+        };
+        let tail = if head {
+            bytes.split_off(bytes.len().min(1500))
+        } else {
+            Vec::new()
+        };
         for mutation in &mutations {
             apply(&mut bytes, mutation);
         }
         bytes.extend(tail);
-        if packed {
-            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-            encoder.write_all(&bytes).unwrap();
-            bytes = encoder.finish().unwrap();
-        }
-        fs::write(&path, bytes).unwrap();
-        if let Err(error) = case::load(scratch.path(), &Overrides::default()) {
+        let bytes = if unpack { packed(&bytes) } else { bytes };
+        fs::write(&mutated.path, bytes).unwrap();
+        if let Err(error) = case::load(copy.path(), &Overrides::default()) {
             let message = error.to_string();
-            prop_assert!(message.starts_with(&scratch.path().display().to_string()), "{message}");
+            prop_assert!(message.starts_with(&folder), "{message}");
             prop_assert!(message.contains("\nhelp: "), "{message}");
         }
-    }
+        Ok(())
+    });
+    ran.unwrap();
 }

@@ -1,7 +1,8 @@
 //! The case that is shipped loads, and its figures are those its README states.
-use coordinator::case::{self, Overrides, mesh};
+use coordinator::case::{self, Loaded, Overrides, RecordFacts, mesh};
+use discrepancy::record::Tolerance;
 use protocol::{
-    case::{Case, Coefficient, GaugeTrace, Gene, Offset, Quantity},
+    case::{Case, Coefficient, GaugeRecord, GaugeTrace, Gene, Offset, Quantity},
     unit::Unit,
 };
 use std::{
@@ -22,6 +23,39 @@ fn half_range(values: &[f64]) -> f64 {
 fn root_mean_square(trace: &GaugeTrace) -> f64 {
     let squares: f64 = trace.spread_mpa.iter().map(|s| s * s).sum();
     (squares / trace.spread_mpa.len() as f64).sqrt()
+}
+
+/// The rows of the README's table of figures, as the records have them.
+fn figures(loaded: &Loaded) -> [String; 3] {
+    let records = loaded.case.conditions.iter();
+    let records: Vec<&GaugeRecord> = records.filter_map(|c| c.record.as_ref()).collect();
+    let facts: Vec<&RecordFacts> = loaded.records.iter().flatten().collect();
+    let ranges = records.iter().map(|record| {
+        let half = record
+            .gauges
+            .iter()
+            .map(|trace| half_range(&trace.mean_mpa));
+        half.map(|half| format!("{half:.2}"))
+            .collect::<Vec<_>>()
+            .join(", ")
+    });
+    let spreads = records.iter().map(|record| {
+        let squares = record
+            .gauges
+            .iter()
+            .map(|trace| root_mean_square(trace).powi(2));
+        format!(
+            "{:.2}",
+            (squares.sum::<f64>() / record.gauges.len() as f64).sqrt()
+        )
+    });
+    let samples = facts.iter().map(|f| format!("{}, {}", f.samples, f.lost));
+    let row = |name: &str, cells: Vec<String>| format!("| {name} | {} |", cells.join(" | "));
+    [
+        row("half-range at gauges 1, 2, 3, 4 [MPa]", ranges.collect()),
+        row("standard deviation between cycles [MPa]", spreads.collect()),
+        row("samples, lost", samples.collect()),
+    ]
 }
 
 #[test]
@@ -65,12 +99,32 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
             assert!((1.0..1.1).contains(&ratio), "gauge {gauge}: {ratio}");
         }
     }
+    let readme = fs::read_to_string(shipped().join("README.md")).unwrap();
+    let rows = figures(&loaded);
+    let kept = rows.iter().all(|row| readme.contains(row));
+    assert!(
+        kept,
+        "the README's table of figures is\n{}",
+        rows.join("\n")
+    );
+    let stated: Vec<Tolerance> = loaded.cycles.iter().map(|r| r.stated.tolerance).collect();
+    let sheets = Tolerance {
+        gauge_factor: Some(0.005),
+        index_deg: Some(0.06),
+        load_cell: Some(0.003),
+        amplifier_lag_s: Some(0.002),
+        position: Some(0.002),
+        torque: Some(0.005),
+        bearing_friction_nm: Some(50.0),
+        balance_nm: Some(200.0),
+    };
+    assert_eq!(stated, [sheets; 2], "as the data sheets say");
     let lost: Vec<u64> = loaded
         .records
         .iter()
         .map(|facts| facts.as_ref().unwrap().lost)
         .collect();
-    assert_eq!(lost, [28, 19], "as the data sheets say");
+    assert_eq!(lost, [30, 43], "as the data sheets say");
     assert_eq!(
         loaded.notes.len(),
         2,
@@ -323,10 +377,10 @@ fn the_summary_tells_what_a_user_asks_first() {
         "881.0 kg, modes at 116.0, 121.3",
         "kb4       1.100e2 (1.10e-2 .. 1.10e6) N.m/deg",
         "condition   5rpm: 5 /min, load 34.4 to 78.3 kN",
-        "record 5 cycles, 5972 samples at 100 Hz, 28 lost, measured speed 4.999 /min",
+        "record 5 cycles, 5970 samples at 100 Hz, 30 lost, measured speed 5.001 /min",
         "gauge 1: half-range 13.",
         "objective   5rpm: gauges 1 (weight 1), 3 (weight 1)",
-        "28 of 6000 samples are lost",
+        "30 of 6000 samples are lost",
     ] {
         assert!(summary.contains(expected), "no `{expected}` in\n{summary}");
     }

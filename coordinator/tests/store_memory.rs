@@ -11,16 +11,19 @@ use coordinator::{
 use protocol::{
     event::{Event, Finished, RunHeader},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{ChannelScore, Counters, Evaluation, Job, Outcome, ScoreSpec, Verdict},
-    message::Attempt,
+    job::{
+        Answer, ChannelScore, Counters, Evaluation, Individual, Job, Outcome, Reply, SimulateSpec,
+        Verdict,
+    },
+    message::{Attempt, Cost},
 };
 use std::{env, fs, path::Path, process::Command};
 
 /// Residuals of each result (a tenth of a real one's).
 const RESIDUALS: usize = 144;
-/// What an export of a hundred thousand evaluations may need beyond one of ten thousand (MiB); they
-/// are 160 MiB in the journal, and more as rows.
-const MORE_MIB: u64 = 24;
+/// What an export of fifty thousand evaluations may need beyond one of five thousand (MiB); they are
+/// 80 MiB in the journal, and more as rows.
+const MORE_MIB: u64 = 12;
 
 fn finished(job: u64) -> Finished {
     let score = ChannelScore {
@@ -39,14 +42,17 @@ fn finished(job: u64) -> Finished {
         },
         work: ContentHash::of(&job.to_le_bytes()),
         worker: Some(WorkerId(job % 64)),
-        wall_us: job,
-        outcome: Outcome::Scored(Evaluation {
+        cost: Cost {
+            wall_us: job,
+            cpu_us: job,
+        },
+        outcome: Outcome::Done(Answer::Scored(Evaluation {
             verdict: Verdict::Complete,
             fitness: 1.0 / (job + 1) as f64,
             channels: vec![score; 4],
             residual_mpa: vec![0.5; RESIDUALS],
             counters: Counters::default(),
-        }),
+        })),
     }
 }
 
@@ -60,13 +66,13 @@ fn peak_mib() -> u64 {
 }
 
 #[test]
-fn a_hundred_thousand_evaluations_need_the_memory_of_ten_thousand() {
+fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
     let scratch = tempfile::tempdir().unwrap();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
     let case = load(&folder, &Overrides::default()).unwrap();
     for format in [Format::Sqlite, Format::Csv, Format::Parquet] {
         let mut peaks = Vec::new();
-        for count in [10_000, 100_000] {
+        for count in [5_000, 50_000] {
             let run = scratch.path().join(count.to_string());
             if !run.exists() {
                 write_elsewhere(&run, count);
@@ -81,19 +87,16 @@ fn a_hundred_thousand_evaluations_need_the_memory_of_ten_thousand() {
             let recording = store.journal(&run.join(journal::FILE)).unwrap();
             for job in 0..count {
                 let finished = recording.recall(JobId(job)).unwrap().unwrap();
-                let spec = ScoreSpec {
-                    condition: 0,
-                    genes: case.recommended(),
-                    effects: Vec::new(),
+                let individual = Individual::new(0, case.recommended());
+                let reply = Reply::Score {
                     with_residual: true,
                 };
                 let label = Label {
                     generation: Some(0),
                     purpose: "initial".to_owned(),
                 };
-                store
-                    .evaluation(label, &Job::Score(spec), &finished)
-                    .unwrap();
+                let job = Job::Simulate(SimulateSpec::new(individual, reply));
+                store.evaluation(label, &job, &finished).unwrap();
             }
             let rows = store.finish().unwrap().rows;
             assert_eq!((rows["evaluations"], rows["scores"]), (count, 4 * count));

@@ -2,7 +2,7 @@
 use crate::{
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
-    message::Attempt,
+    message::{Attempt, Cost},
 };
 use serde::{Deserialize, Serialize};
 
@@ -154,8 +154,8 @@ pub struct Finished {
     pub work: ContentHash,
     /// Who did it; none for a failure that the coordinator states itself.
     pub worker: Option<WorkerId>,
-    /// Time in the slot \[us\].
-    pub wall_us: u64,
+    /// What it took.
+    pub cost: Cost,
     /// What came out.
     pub outcome: Outcome,
 }

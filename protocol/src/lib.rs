@@ -4,6 +4,7 @@
 //! dynamics. At this edge every number carries its unit in its name.
 pub mod announce;
 pub mod case;
+pub mod curve;
 pub mod event;
 pub mod id;
 pub mod job;

@@ -88,6 +88,27 @@ pub struct Beat {
     pub finished: Vec<Attempt>,
 }
 
+/// What a job took of the slot that did it. It decides nothing and enters no digest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Cost {
+    /// Time in the slot \[us\].
+    pub wall_us: u64,
+    /// Processor time of the slot's process meanwhile \[us\]; 0 if it came to no answer.
+    pub cpu_us: u64,
+}
+
+impl Cost {
+    /// Time in the slot \[s\].
+    pub const fn wall_s(self) -> f64 {
+        self.wall_us as f64 / 1e6
+    }
+
+    /// Processor time \[s\].
+    pub const fn cpu_s(self) -> f64 {
+        self.cpu_us as f64 / 1e6
+    }
+}
+
 /// A result, kept by the worker until it is acknowledged.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Done {
@@ -95,8 +116,8 @@ pub struct Done {
     pub attempt: Attempt,
     /// Hash of the job that was done, so that a result never answers another question.
     pub work: ContentHash,
-    /// Time in the slot \[us\].
-    pub wall_us: u64,
+    /// What it took.
+    pub cost: Cost,
     /// What came out.
     pub outcome: Outcome,
 }
@@ -115,6 +136,11 @@ pub enum ToSlot {
 pub enum FromSlot {
     /// The slot's process is ready.
     Ready,
-    /// The outcome of the last job.
-    Done(Box<Outcome>),
+    /// The last job is done.
+    Done {
+        /// What came out.
+        outcome: Box<Outcome>,
+        /// Processor time that it took \[us\].
+        cpu_us: u64,
+    },
 }

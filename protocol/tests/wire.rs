@@ -4,8 +4,8 @@ use protocol::{
     case::EffectSetting,
     event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{Failure, Job, ObserveSpec, Outcome, Refinement, ScoreSpec},
-    message::{Attempt, Beat, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
+    job::{Answer, Discretisation, Failure, Individual, Job, Outcome, Reply, SimulateSpec},
+    message::{Attempt, Beat, Cost, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
     wire::{self, Kind, WireError},
 };
 
@@ -41,12 +41,15 @@ fn job() -> impl Strategy<Value = Job> {
             any::<bool>()
         )
             .prop_map(|(condition, genes, effects, with_residual)| {
-                Job::Score(ScoreSpec {
+                let individual = Individual {
                     condition,
                     genes,
                     effects,
-                    with_residual,
-                })
+                };
+                Job::Simulate(SimulateSpec::new(
+                    individual,
+                    Reply::Score { with_residual },
+                ))
             }),
         (
             vec(effect(), 0..3),
@@ -54,14 +57,17 @@ fn job() -> impl Strategy<Value = Job> {
             option::of(0..9_usize)
         )
             .prop_map(|(effects, cylinder_length_m, modes)| {
-                Job::Observe(ObserveSpec {
-                    effects,
-                    refinement: Refinement {
+                Job::Simulate(SimulateSpec {
+                    individual: Individual {
+                        effects,
+                        ..Individual::default()
+                    },
+                    discretisation: Discretisation {
                         cylinder_length_m,
                         modes,
-                        ..Refinement::default()
+                        ..Discretisation::OF_THE_CASE
                     },
-                    ..ObserveSpec::default()
+                    reply: Reply::Channels,
                 })
             }),
     ]
@@ -69,7 +75,7 @@ fn job() -> impl Strategy<Value = Job> {
 
 fn outcome() -> impl Strategy<Value = Outcome> {
     prop_oneof![
-        bytes().prop_map(Outcome::Nothing),
+        bytes().prop_map(|bytes| Outcome::Done(Answer::Nothing(bytes))),
         ".{0,40}".prop_map(|how| Outcome::Failed(Failure::Crashed { how })),
         any::<u64>().prop_map(|limit_ms| Outcome::Failed(Failure::Deadline { limit_ms })),
     ]
@@ -116,12 +122,12 @@ fn from_worker() -> impl Strategy<Value = FromWorker> {
                     waiting,
                 })
             }),
-        (attempt(), any::<[u8; 32]>(), any::<u64>(), outcome()).prop_map(
-            |(attempt, work, wall_us, outcome)| {
+        (attempt(), any::<[u8; 32]>(), any::<[u64; 2]>(), outcome()).prop_map(
+            |(attempt, work, [wall_us, cpu_us], outcome)| {
                 FromWorker::Done(Box::new(Done {
                     attempt,
                     work: ContentHash(work),
-                    wall_us,
+                    cost: Cost { wall_us, cpu_us },
                     outcome,
                 }))
             }
@@ -223,9 +229,12 @@ fn a_promise_of_more_than_there_is_is_refused() {
 /// acknowledged, it kept the run from ending.
 #[test]
 fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
-    let outcome = |bytes: usize| Outcome::Nothing(vec![0; bytes]);
+    let outcome = |bytes: usize| Outcome::Done(Answer::Nothing(vec![0; bytes]));
     let from_slot = |bytes| {
-        let message = FromSlot::Done(Box::new(outcome(bytes)));
+        let message = FromSlot::Done {
+            outcome: Box::new(outcome(bytes)),
+            cpu_us: u64::MAX,
+        };
         wire::seal(Kind::FromSlot, RunId(0), &message)
     };
     let around = from_slot(0).unwrap().len() - wire::HEADER_BYTES;
@@ -240,11 +249,15 @@ fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
         attempt: AttemptId(u32::MAX),
     };
     let work = ContentHash([255; 32]);
+    let cost = Cost {
+        wall_us: u64::MAX,
+        cpu_us: u64::MAX,
+    };
     let sent = |bytes| {
         let done = Done {
             attempt,
             work,
-            wall_us: u64::MAX,
+            cost,
             outcome: outcome(bytes),
         };
         wire::seal(
@@ -261,7 +274,7 @@ fn what_a_slot_can_hand_in_can_be_sent_on_and_stored() {
         attempt,
         work,
         worker: Some(WorkerId(u64::MAX)),
-        wall_us: u64::MAX,
+        cost,
         outcome: outcome(longest),
     }));
     wire::encode(&event).unwrap();

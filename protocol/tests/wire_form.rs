@@ -7,11 +7,14 @@ use protocol::{
     announce::{Place, Role, Sign},
     case::{
         Case, Coefficient, Integrator, Offset, Quantity, RopeEnds, Smoothing, StressRecovery,
-        TurnSense, WeightAxes,
+        TurnSense,
     },
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::{ElementKind, Failure, Job, ModeFamily, Outcome, PhysicsFailure, Reached, Verdict},
+    job::{
+        Answer, ElementKind, Failure, Job, ModeFamily, Outcome, PhysicsFailure, Reached, Reply,
+        Verdict,
+    },
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
     unit::Unit,
     wire::{self, Kind},
@@ -30,9 +33,9 @@ fn form() -> String {
         };
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case);
-    trace!(Job Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
+    trace!(Job Reply Answer Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
     trace!(Place Role Sign Unit Coefficient Quantity Integrator Offset RopeEnds Smoothing StressRecovery);
-    trace!(TurnSense WeightAxes);
+    trace!(TurnSense);
     let registry = tracer.registry().expect("every variant was seen");
     let mut text = format!("wire version {}\n", wire::VERSION);
     for (name, form) in registry {

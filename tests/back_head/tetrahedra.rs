@@ -3,7 +3,7 @@
 use super::*;
 use coordinator::case::mesh::Mesh as ReadMesh;
 use split::Split;
-use std::{collections::BTreeSet, fmt::Write as _, sync::LazyLock};
+use std::{collections::BTreeSet, fmt::Write as _};
 
 #[path = "../../worker/simulation/src/flexible/tests/split.rs"]
 mod split;

@@ -4,7 +4,7 @@ use super::{OWN_SLOTS, collect};
 use coordinator::runtime::{Completed, Dispatch, Summary};
 use protocol::{
     id::{AttemptId, JobId},
-    job::{Failure, Outcome},
+    job::{Answer, Failure, Outcome},
     message::Attempt,
 };
 use std::{
@@ -82,7 +82,7 @@ async fn a_job_that_kills_its_workers_is_quarantined_and_given_up() {
     );
     let others = results
         .values()
-        .filter(|it| matches!(it, Outcome::Nothing(_)));
+        .filter(|it| matches!(it, Outcome::Done(Answer::Nothing(_))));
     assert_eq!(others.count(), 29);
     assert_eq!((summary.last.failed, summary.last.lost), (1, 4));
 }
@@ -220,18 +220,21 @@ fn a_job_that_gets_no_processor_is_not_overdue() {
     pool.run(0, task(1, LIMIT));
     assert!(matches!(
         freed.blocking_recv().unwrap().outcome,
-        Some(Outcome::Nothing(_))
+        Some(Outcome::Done(Answer::Nothing(_)))
     ));
     let deadline = Duration::from_millis(500);
     pool.run(0, task(2, deadline));
     let done = freed.blocking_recv().unwrap();
-    eprintln!("a tenth of a second of computing took {:?}", done.wall);
+    let [wall, cpu] = [done.cost.wall_us, done.cost.cpu_us].map(Duration::from_micros);
+    eprintln!("{cpu:?} of computing took {wall:?}");
+    assert!(wall > deadline, "it was not short of anything: {done:?}");
+    let burnt = Duration::from_millis(100);
     assert!(
-        done.wall > deadline,
-        "it was not short of anything: {done:?}"
+        (burnt / 2..wall).contains(&cpu),
+        "waiting is not computing: {done:?}"
     );
     assert!(
-        matches!(done.outcome, Some(Outcome::Nothing(_))),
+        matches!(done.outcome, Some(Outcome::Done(Answer::Nothing(_)))),
         "{done:?}"
     );
     drop((pool, busy));

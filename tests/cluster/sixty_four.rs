@@ -7,7 +7,7 @@ use super::LIMIT;
 use coordinator::runtime::Dispatch;
 use protocol::{
     id::JobId,
-    job::{Job, Outcome},
+    job::{Answer, Job, Outcome},
 };
 use rustix::process::Signal;
 use std::time::{Duration, Instant};
@@ -55,7 +55,10 @@ impl Load {
     async fn next(&mut self) {
         let completed = tokio::time::timeout(LIMIT, self.dispatch.next()).await;
         let outcome = completed.unwrap().unwrap().outcome;
-        assert!(matches!(outcome, Outcome::Nothing(_)), "{outcome:?}");
+        assert!(
+            matches!(outcome, Outcome::Done(Answer::Nothing(_))),
+            "{outcome:?}"
+        );
         self.done += 1;
     }
 }

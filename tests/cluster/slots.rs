@@ -4,7 +4,7 @@ use coordinator::runtime::Dispatch;
 use link::memory::{Faults, Hub};
 use protocol::{
     id::{JobId, WorkerId},
-    job::{Failure, Job},
+    job::{Answer, Failure, Job},
     message::Attempt,
 };
 use rustix::process::{Signal, getpid, kill_process};
@@ -112,7 +112,7 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     let done = freed.blocking_recv().unwrap();
     assert_eq!(
         done.outcome,
-        Some(protocol::job::Outcome::Nothing(vec![0; 3]))
+        Some(protocol::job::Outcome::Done(Answer::Nothing(vec![0; 3])))
     );
     assert!(pool.is_alive());
     drop(pool);

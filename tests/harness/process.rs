@@ -5,52 +5,27 @@ use std::{
     fs,
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
-    sync::OnceLock,
     thread,
     time::{Duration, Instant},
 };
 
-/// The worker program, built with the cargo that runs the tests: under `cargo test` a program of
-/// another package is not built by itself.
+/// The worker program: `cargo test --workspace` puts it, and the coordinator's, where the suites look.
 ///
 /// # Panics
-/// If it cannot be built.
+/// If it is not there: `cargo build` makes it.
 pub fn worker_program() -> PathBuf {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM
-        .get_or_init(|| locate::worker_program().expect("the worker program"))
-        .clone()
+    locate::worker_program().expect("the worker program")
 }
 
-/// The coordinator program, which `cargo test --workspace` builds; built here otherwise.
+/// The coordinator program, beside the worker's.
 ///
 /// # Panics
-/// If it cannot be built.
+/// If it is not there: `cargo build` makes it.
 pub fn coordinator_program() -> PathBuf {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM
-        .get_or_init(|| {
-            let program = worker_program().with_file_name("horsehead");
-            if !program.is_file() {
-                let cargo = std::env::var_os("CARGO").expect("started by cargo");
-                let built = Command::new(cargo)
-                    .args([
-                        "build",
-                        "--quiet",
-                        "-p",
-                        "coordinator",
-                        "--bin",
-                        "horsehead",
-                    ])
-                    .status();
-                assert!(
-                    built.is_ok_and(|status| status.success()),
-                    "horsehead is built"
-                );
-            }
-            program
-        })
-        .clone()
+    let program = worker_program().with_file_name("horsehead");
+    let shown = program.display();
+    assert!(program.is_file(), "`cargo build` makes {shown}");
+    program
 }
 
 /// A free port on loopback, as a locator.

@@ -3,12 +3,12 @@
 use coordinator::runtime::Dispatch;
 use protocol::{
     id::JobId,
-    job::{Job, Outcome},
+    job::{Answer, Job, Outcome},
 };
 use search::{
     space::Space,
     strategy::{
-        Evaluated, Settings, Strategy, Told,
+        Evaluated, Settings, Strategy, Told, build,
         memetic::{MemeticSettings, window::WindowSettings},
     },
     test_function::SPHERE,
@@ -39,7 +39,7 @@ impl SearchRun {
     /// # Panics
     /// Never: the settings lie within their range.
     pub fn of(generations: u32, seed: u64, delay_ms: u32) -> Self {
-        let settings = Settings::Window(WindowSettings {
+        let settings = Settings::of(&WindowSettings {
             window: 16,
             memetic: MemeticSettings {
                 population: 20,
@@ -51,7 +51,7 @@ impl SearchRun {
         });
         let space: Space = SPHERE.space();
         Self {
-            strategy: settings.build(&space, seed).expect("valid settings"),
+            strategy: build(&settings, &space, seed).expect("valid settings"),
             delay_ms,
         }
     }
@@ -97,16 +97,11 @@ impl SearchRun {
     /// Takes a result.
     pub fn tell(&mut self, id: u64, outcome: &Outcome) {
         let told = match outcome {
-            Outcome::Nothing(reply) => Told {
+            Outcome::Done(Answer::Nothing(reply)) => Told {
                 fitness: reply.len() as f64,
                 complete: true,
             },
-            Outcome::Scored(_)
-            | Outcome::Simulated(_)
-            | Outcome::Observed(_)
-            | Outcome::Described(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Failed(_) => Told {
+            Outcome::Done(_) | Outcome::Failed(_) => Told {
                 fitness: f64::INFINITY,
                 complete: false,
             },

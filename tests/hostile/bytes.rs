@@ -1,6 +1,6 @@
 //! Peers that do not even speak the bus's language: half frames and rubbish on its sockets, beside a
 //! run that must not notice.
-use super::{LIMIT, idle::first_datagrams};
+use super::{LIMIT, MEASURING, idle::first_datagrams};
 use protocol::{
     id::{RunId, draw},
     message::{Beat, FromWorker},
@@ -86,6 +86,7 @@ fn ends_well(coordinator: &mut Process, log: &Path) -> String {
 
 #[test]
 fn rubbish_on_the_tcp_socket_costs_no_result() {
+    let _others = MEASURING.blocking_read();
     let folder = tempfile::tempdir().unwrap();
     let log = folder.path().join("log");
     let locator = free_locator();
@@ -116,6 +117,7 @@ fn rubbish_on_the_tcp_socket_costs_no_result() {
 /// and cut.
 #[tokio::test(flavor = "multi_thread")]
 async fn rubbish_on_the_udp_socket_costs_no_result() {
+    let _others = MEASURING.read().await;
     let folder = tempfile::tempdir().unwrap();
     let (keys, log) = (folder.path().join("keys"), folder.path().join("log"));
     make(&keys, &[]);

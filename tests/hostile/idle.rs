@@ -51,6 +51,7 @@ pub(super) async fn first_datagrams(count: usize) -> Vec<Vec<u8>> {
 /// Anybody on the network can begin handshakes and leave it at that, with no certificate at all.
 #[tokio::test(flavor = "multi_thread")]
 async fn handshakes_that_are_never_finished_keep_nobody_out() {
+    let _others = MEASURING.read().await;
     let folder = tempfile::tempdir().unwrap();
     let keys = folder.path().join("keys");
     make(&keys, &[]);
@@ -108,7 +109,7 @@ fn wait_until_closed(connections: Vec<TcpStream>) {
 /// less than one result does, once, and keeps nobody out meanwhile.
 #[tokio::test(flavor = "multi_thread")]
 async fn thousands_of_silent_connections_cost_little_and_no_result() {
-    let _alone = MEASURING.lock().await;
+    let _alone = MEASURING.write().await;
     let folder = tempfile::tempdir().unwrap();
     let locator = free_locator();
     let mut dispatch = Dispatch::open(options(folder.path(), Some(&locator), 0))
@@ -174,6 +175,7 @@ async fn thousands_of_silent_connections_cost_little_and_no_result() {
 /// A shell allows its programs a thousand open files or fewer; silent peers must not use them up.
 #[test]
 fn silent_connections_beyond_the_files_of_a_shell_keep_nobody_out() {
+    let _others = MEASURING.blocking_read();
     let folder = tempfile::tempdir().unwrap();
     let locator = free_locator();
     let mut command = Command::new("sh");
@@ -205,7 +207,7 @@ fn silent_connections_beyond_the_files_of_a_shell_keep_nobody_out() {
 async fn idle_sessions_cost_their_keep_alives() {
     const SESSIONS: usize = 400;
     const TIME: Duration = Duration::from_secs(10);
-    let _alone = MEASURING.lock().await;
+    let _alone = MEASURING.write().await;
     let folder = tempfile::tempdir().unwrap();
     let locator = free_locator();
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));

@@ -21,8 +21,8 @@ use std::{
 
 const LIMIT: Duration = Duration::from_mins(1);
 
-/// One at a time, so that the numbers mean something.
-static MEASURING: tokio::sync::Mutex<()> = tokio::sync::Mutex::const_new(());
+/// Who measures writes and is alone, so that the numbers mean something; the others read.
+static MEASURING: tokio::sync::RwLock<()> = tokio::sync::RwLock::const_new(());
 
 /// Processor time of a process: this one, where the coordinator is in it \[us\].
 fn processor_us(of: Pid) -> u64 {

@@ -4,9 +4,9 @@ use coordinator::runtime::{Dispatch, Snapshot};
 use protocol::{
     announce::Announcement,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::Outcome,
+    job::{Answer, Outcome},
     key::{self, Lane},
-    message::{Attempt, Beat, Done, FromWorker, ToWorker},
+    message::{Attempt, Beat, Cost, Done, FromWorker, ToWorker},
     name::WorkerName,
     wire::{self, Kind},
 };
@@ -126,6 +126,7 @@ fn refusal_of(field: &'static str) -> impl Fn(&ToWorker) -> bool {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
+    let _others = MEASURING.read().await;
     let folder = tempfile::tempdir().unwrap();
     let (dispatch, _honest, locator) = stage(folder.path()).await;
     let peer = Peer::join(&locator, 1).await;
@@ -263,7 +264,7 @@ fn throw_rubbish(peer: &Peer, run: RunId, digest: &str, stop: &AtomicBool) -> u6
 
 #[tokio::test(flavor = "multi_thread")]
 async fn rubbish_costs_little_and_no_result() {
-    let _alone = MEASURING.lock().await;
+    let _alone = MEASURING.write().await;
     let folder = tempfile::tempdir().unwrap();
     let (mut dispatch, _honest, locator) = stage(folder.path()).await;
     let peer = Arc::new(Peer::join(&locator, 1).await);
@@ -302,6 +303,7 @@ async fn rubbish_costs_little_and_no_result() {
 /// A peer that is admitted, does no work, and hands in results of jobs that others have.
 #[tokio::test(flavor = "multi_thread")]
 async fn forged_and_repeated_results_are_not_believed() {
+    let _others = MEASURING.read().await;
     let folder = tempfile::tempdir().unwrap();
     let (mut dispatch, _honest, locator) = stage(folder.path()).await;
     let peer = Peer::join(&locator, 1).await;
@@ -334,8 +336,8 @@ async fn forged_and_repeated_results_are_not_believed() {
                 },
                 // which job it is about cannot be known without having been given it
                 work: ContentHash::of(&round.to_le_bytes()),
-                wall_us: 1,
-                outcome: Outcome::Nothing(b"forged".to_vec()),
+                cost: Cost::default(),
+                outcome: Outcome::Done(Answer::Nothing(b"forged".to_vec())),
             };
             peer.say(run, Lane::Data, &FromWorker::Done(Box::new(done)));
         }

@@ -7,7 +7,8 @@
 use super::{case, run};
 use protocol::case::{Case, EffectSetting};
 use protocol::job::{
-    Failure, Job, Observation, ObserveSpec, Outcome, Refinement, ScoreSpec, SimulateSpec, Verdict,
+    Answer, Discretisation, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec,
+    Verdict,
 };
 use simulation::effect::{Descriptor, Place, catalogue};
 use worker::handler::Prepared;
@@ -26,8 +27,11 @@ fn energy_ledger_closes_with_every_effect() {
         let sizes = d.parameters.iter().map(|p| (p.name, p.typical));
         let typical: Vec<(&str, f64)> = sizes.collect();
         let effect = EffectSetting::new(&d.id, &typical);
-        let machine =
-            worker::convert::machine_with(&case, 0, (&case.recommended(), &[effect])).unwrap();
+        let individual = Individual {
+            effects: vec![effect],
+            ..Individual::new(0, case.recommended())
+        };
+        let machine = worker::convert::machine_with(&case, &individual).unwrap();
         let (result, _) = run(&machine, &law, &settings);
         let work = result.work;
         let gained = work.input - work.output - work.dissipated;
@@ -37,15 +41,22 @@ fn energy_ledger_closes_with_every_effect() {
     }
 }
 
-fn observe(case: &Case, effects: &[EffectSetting], refinement: Refinement) -> Observation {
-    let spec = ObserveSpec {
-        condition: 0,
-        genes: case.recommended(),
-        effects: effects.to_vec(),
-        refinement,
+/// Everything but the shapes of the moving machine.
+const CURVES: Reply = Reply::Curves {
+    motion_step_deg: 0.0,
+};
+
+fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisation) -> Observation {
+    let spec = SimulateSpec {
+        individual: Individual {
+            effects: effects.to_vec(),
+            ..Individual::new(0, case.recommended())
+        },
+        discretisation,
+        reply: Reply::Channels,
     };
-    match Prepared::new(case).unwrap().evaluate(&Job::Observe(spec)) {
-        Outcome::Observed(observation) => observation,
+    match Prepared::new(case).unwrap().evaluate(&Job::Simulate(spec)) {
+        Outcome::Done(Answer::Channels(observation)) => observation,
         other => unreachable!("{other:?}"),
     }
 }
@@ -63,33 +74,37 @@ fn bits(observation: &Observation) -> Vec<u64> {
 #[test]
 fn effects_give_the_same_bits_wherever_they_are_stated() {
     let case = case();
-    let plain = observe(&case, &[], Refinement::default());
+    let plain = observe(&case, &[], Discretisation::default());
     assert_eq!(plain.verdict, Verdict::Complete);
     assert_eq!(plain.gauge_mpa[0].len(), 720);
-    let simulate = Job::Simulate(SimulateSpec {
-        integration: None,
-        condition: 0,
-        genes: case.recommended(),
+    let individual = Individual {
         effects: vec![EffectSetting::new("gauge_gain", &[("gain_1", 0.0)])],
-        motion_step_deg: 0.0,
-    });
-    let Outcome::Simulated(whole) = Prepared::new(&case).unwrap().evaluate(&simulate) else {
+        ..Individual::new(0, case.recommended())
+    };
+    let simulate = Job::Simulate(SimulateSpec::new(individual, CURVES));
+    let Outcome::Done(Answer::Curves(whole)) = Prepared::new(&case).unwrap().evaluate(&simulate)
+    else {
         unreachable!("a simulation")
     };
-    assert_eq!(whole.gauge_mpa, plain.gauge_mpa);
-    assert_eq!(whole.suspension_m, plain.suspension_m);
-    assert_eq!(whole.crank_torque_n_m, plain.crank_torque_n_m);
+    let of_whole = Observation {
+        verdict: whole.verdict,
+        counters: whole.counters,
+        gauge_mpa: whole.gauge_mpa,
+        suspension_m: whole.suspension_m,
+        crank_torque_n_m: whole.crank_torque_n_m,
+    };
+    assert_eq!(of_whole.rounded(), plain);
 
     let effects = [
         EffectSetting::new("pivot_friction", &[("moment", 1500.0)]),
         EffectSetting::new("pin_clearance", &[("step_3", -1.2), ("force", 1500.0)]),
     ];
-    let of_job = observe(&case, &effects, Refinement::default());
+    let of_job = observe(&case, &effects, Discretisation::default());
     assert_ne!(bits(&of_job), bits(&plain));
     let mut with = case;
     with.effects = effects.iter().rev().cloned().collect();
     assert_eq!(
-        bits(&observe(&with, &[], Refinement::default())),
+        bits(&observe(&with, &[], Discretisation::default())),
         bits(&of_job)
     );
     // the job's replaces the case's, absent or not
@@ -98,7 +113,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
         EffectSetting::new("pin_clearance", &[]),
     ];
     assert_eq!(
-        bits(&observe(&with, &off, Refinement::default())),
+        bits(&observe(&with, &off, Discretisation::default())),
         bits(&plain)
     );
 }
@@ -107,16 +122,15 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
 #[test]
 fn a_refined_observation_is_of_the_same_machine() {
     let case = case();
-    let plain = observe(&case, &[], Refinement::default());
+    let plain = observe(&case, &[], Discretisation::default());
     let fine = observe(
         &case,
         &[],
-        Refinement {
-            lead_in_deg: None,
+        Discretisation {
             cylinder_length_m: Some(0.025),
             longest_step_s: Some(0.02),
             modes: Some(8),
-            tolerance: None,
+            ..Discretisation::OF_THE_CASE
         },
     );
     assert_eq!(fine.verdict, Verdict::Complete);
@@ -131,89 +145,74 @@ fn a_refined_observation_is_of_the_same_machine() {
 fn what_the_model_does_not_have_is_refused_by_field() {
     let case = case();
     let prepared = Prepared::new(&case).unwrap();
-    let genes = case.recommended();
     let effects = vec![EffectSetting::new("pivot_friction", &[("mu", 0.1)])];
-    let refused = |job: Job| match prepared.evaluate(&job) {
+    let refused = |spec: SimulateSpec| match prepared.evaluate(&Job::Simulate(spec)) {
         Outcome::Failed(Failure::Misconfigured { field, problem }) => (field, problem),
         other => unreachable!("{other:?}"),
     };
-    let observe = ObserveSpec {
-        genes: genes.clone(),
-        effects: effects.clone(),
-        ..ObserveSpec::default()
+    let plain = Individual::new(0, case.recommended());
+    let misstated = Individual {
+        effects,
+        ..plain.clone()
     };
-    let jobs = [
-        Job::Observe(observe.clone()),
-        Job::Score(ScoreSpec {
-            condition: 0,
-            genes: genes.clone(),
-            effects: effects.clone(),
-            with_residual: false,
-        }),
-        Job::Simulate(SimulateSpec {
-            integration: None,
-            condition: 0,
-            genes,
-            effects,
-            motion_step_deg: 0.0,
-        }),
-    ];
-    for job in jobs {
-        let (field, problem) = refused(job);
+    let score = Reply::Score {
+        with_residual: false,
+    };
+    for reply in [Reply::Channels, score, CURVES] {
+        let (field, problem) = refused(SimulateSpec::new(misstated.clone(), reply));
         assert_eq!(field, "effects[0].parameters.mu");
         assert!(problem.contains("has no parameter `mu`"), "{problem}");
     }
-    let refinements = [
+    let discretisations = [
         (
-            "refinement.cylinder_length_m",
-            Refinement {
+            "discretisation.cylinder_length_m",
+            Discretisation {
                 cylinder_length_m: Some(0.07),
-                ..Refinement::default()
+                ..Discretisation::default()
             },
         ),
         (
-            "refinement.cylinder_length_m",
-            Refinement {
+            "discretisation.cylinder_length_m",
+            Discretisation {
                 cylinder_length_m: Some(f64::NAN),
-                ..Refinement::default()
+                ..Discretisation::default()
             },
         ),
         (
-            "refinement.cylinder_length_m",
-            Refinement {
+            "discretisation.cylinder_length_m",
+            Discretisation {
                 cylinder_length_m: Some(1e-9),
-                ..Refinement::default()
+                ..Discretisation::default()
             },
         ),
         (
-            "refinement.modes",
-            Refinement {
+            "discretisation.modes",
+            Discretisation {
                 modes: Some(99),
-                ..Refinement::default()
+                ..Discretisation::default()
             },
         ),
         (
-            "refinement.longest_step_s",
-            Refinement {
+            "discretisation.longest_step_s",
+            Discretisation {
                 longest_step_s: Some(-1.0),
-                ..Refinement::default()
+                ..Discretisation::default()
             },
         ),
         (
-            "refinement.tolerance",
-            Refinement {
+            "discretisation.tolerance",
+            Discretisation {
                 tolerance: Some(f64::INFINITY),
-                ..Refinement::default()
+                ..Discretisation::default()
             },
         ),
     ];
-    for (expected, refinement) in refinements {
-        let spec = ObserveSpec {
-            effects: Vec::new(),
-            refinement,
-            ..observe.clone()
+    for (expected, discretisation) in discretisations {
+        let spec = SimulateSpec {
+            discretisation,
+            ..SimulateSpec::new(plain.clone(), Reply::Channels)
         };
-        assert_eq!(refused(Job::Observe(spec)).0, expected);
+        assert_eq!(refused(spec).0, expected);
     }
     let mut misnamed = case;
     misnamed.effects = vec![EffectSetting::new("pivot_frictoin", &[])];

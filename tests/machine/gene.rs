@@ -6,15 +6,17 @@
 )]
 use super::case;
 use coordinator::study::{
-    Calibrated, Completed, Crew, Evaluator, EvaluatorError, Observe, ProgressView, calibrate,
+    Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
 };
 use protocol::case::{Case, EffectSetting, GaugeRecord, GaugeTrace, Gene, Quantity};
+use protocol::id::JobId;
 use protocol::job::{
-    Failure, Job, Observation, ObserveSpec, Outcome, Refinement, ScoreSpec, SimulateSpec,
+    Answer, Discretisation, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec,
 };
+use protocol::message::Cost;
 use search::space::Space;
 use search::strategy::{
-    Settings,
+    Settings, build,
     levenberg::LevenbergSettings,
     memetic::MemeticSettings,
     quick::{Part, QuickSettings},
@@ -37,9 +39,9 @@ fn gene((id, parameter): (&str, &str), unit: &str, [lower, upper]: [f64; 2], val
 
 /// The shipped machine with long cylinders and effects of these sizes, as a case that searches none.
 fn coarse(effects: &[EffectSetting]) -> Case {
-    let long = Refinement {
+    let long = Discretisation {
         cylinder_length_m: Some(0.15),
-        ..Refinement::default()
+        ..Discretisation::default()
     };
     let mut case = worker::convert::refined(&case(), &long).unwrap();
     case.effects = effects.to_vec();
@@ -69,14 +71,14 @@ fn individual(case: &Case, moment: f64) -> Vec<f64> {
 }
 
 fn observed(prepared: &Prepared, genes: &[f64], effects: &[EffectSetting]) -> Observation {
-    let spec = ObserveSpec {
+    let individual = Individual {
         condition: 0,
         genes: genes.to_vec(),
         effects: effects.to_vec(),
-        refinement: Refinement::default(),
     };
-    match prepared.evaluate(&Job::Observe(spec)) {
-        Outcome::Observed(observation) => observation,
+    let spec = SimulateSpec::new(individual, Reply::Channels);
+    match prepared.evaluate(&Job::Simulate(spec)) {
+        Outcome::Done(Answer::Channels(observation)) => observation,
         other => unreachable!("{other:?}"),
     }
 }
@@ -99,26 +101,24 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
         assert_eq!(&observed(&with_gene, &at(moment), &[]), expected);
     }
     let jobs = |genes: Vec<f64>| {
-        let score = ScoreSpec {
-            condition: 0,
-            genes: genes.clone(),
-            effects: Vec::new(),
+        let score = Reply::Score {
             with_residual: true,
         };
-        let simulate = SimulateSpec {
-            integration: None,
-            condition: 0,
-            genes,
-            effects: Vec::new(),
+        let curves = Reply::Curves {
             motion_step_deg: 0.0,
         };
-        (Job::Score(score), Job::Simulate(simulate))
+        [score, curves].map(|reply| {
+            let individual = Individual::new(0, genes.clone());
+            Job::Simulate(SimulateSpec::new(individual, reply))
+        })
     };
-    let (score, simulate) = jobs(genes.clone());
-    let (scored, simulated) = jobs(at(1800.0));
+    let [score, simulate] = jobs(genes.clone());
+    let [scored, simulated] = jobs(at(1800.0));
     assert_eq!(with_gene.evaluate(&scored), fixed[1].evaluate(&score));
     let curves = |outcome: Outcome| match outcome {
-        Outcome::Simulated(simulation) => (simulation.gauge_mpa, simulation.crank_torque_n_m),
+        Outcome::Done(Answer::Curves(simulation)) => {
+            (simulation.gauge_mpa, simulation.crank_torque_n_m)
+        }
         other => unreachable!("{other:?}"),
     };
     assert_eq!(
@@ -179,12 +179,10 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
         (individual(&case, f64::NAN), "effects[0].parameters.moment"),
         (stated.recommended(), "genes"),
     ] {
-        let job = Job::Score(ScoreSpec {
-            condition: 0,
-            genes,
-            effects: Vec::new(),
+        let reply = Reply::Score {
             with_residual: false,
-        });
+        };
+        let job = Job::Simulate(SimulateSpec::new(Individual::new(0, genes), reply));
         let Outcome::Failed(failure) = prepared.evaluate(&job) else {
             unreachable!("accepted")
         };
@@ -195,11 +193,11 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
 /// Jobs done one after the other, as a slot does them.
 struct Here {
     prepared: Prepared,
-    waiting: VecDeque<(u64, Job)>,
+    waiting: VecDeque<(JobId, Job)>,
 }
 
 impl Evaluator for Here {
-    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
         self.waiting.push_back((id, job));
         Ok(())
     }
@@ -210,6 +208,7 @@ impl Evaluator for Here {
         };
         Ok(Completed {
             id,
+            cost: Cost::default(),
             outcome: self.prepared.evaluate(&job),
             replayed: false,
         })
@@ -222,15 +221,15 @@ impl Evaluator for Here {
 
 struct Unseen;
 
-impl Observe for Unseen {
+impl Watch<ProgressView> for Unseen {
     fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Crew) {}
 }
 
 fn calibrated(case: &Case, parts: Vec<Part>) -> Calibrated {
     let space = Space::new(&case.genes).unwrap();
     let trust = space.axes().iter().map(|axis| axis.trust).collect();
-    let settings = Settings::Quick(QuickSettings { trust, parts });
-    let mut strategy = settings.build(&space, 1).unwrap();
+    let settings = Settings::of(&QuickSettings { trust, parts });
+    let mut strategy = build(&settings, &space, 1).unwrap();
     let mut here = Here {
         prepared: Prepared::new(case).unwrap(),
         waiting: VecDeque::new(),

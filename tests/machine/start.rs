@@ -1,14 +1,13 @@
 //! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
 use super::{case, individuals};
 use coordinator::{case::QuasiStatic, study};
-use protocol::case::{Case, Coefficient, WeightAxes};
+use protocol::case::{Case, Coefficient};
 use simulation::{
     drive::Drive,
-    integrator::State,
-    model::{Individual, Machine, description::RopeLaw},
+    model::{BackHeadLoads, Individual, Machine, description::RopeLaw},
     observe::gauge_stress,
     run::{RunSettings, settle},
-    system::System,
+    system::{State, StateRef, System},
 };
 use std::f64::consts::TAU;
 
@@ -39,9 +38,7 @@ fn at_rest<'a>(
 /// hundred times the recommended, by less than 1 %.
 #[test]
 fn gauges_at_rest_read_exact_statics() {
-    let mut case = case();
-    // the records' convention, which this machine follows, is not physics
-    case.modal_head.weight_axes = WeightAxes::Physical;
+    let case = case();
     let machine = worker::convert::machine(&case, 0).unwrap();
     let settings = worker::convert::run_settings(&case);
     let [(_, recommended), (_, optimised)] = individuals(&case);
@@ -61,9 +58,9 @@ fn gauges_at_rest_read_exact_statics() {
         for turn in TURNS {
             let (mut system, mut state) = at_rest(&machine, &law, &settings, turn);
             let mut force = vec![0.0; state.q.len()];
-            system.forces(0.0, &state.q, &state.v, &mut force);
             state.a.fill(0.0);
-            let read = gauge_stress(&system.equations, &state);
+            let loads = system.forces(state.motion(), &mut force);
+            let read = gauge_stress(&BackHeadLoads::of(&loads), &state.a);
             let exact = exact_statics(&case, &machine, &system, (&state, turn));
             for (read, exact) in read.iter().zip(exact) {
                 worst = worst.max((1e-6 * read - exact).abs());
@@ -115,9 +112,8 @@ fn a_run_starts_at_rest() {
         for turn in TURNS {
             let (mut system, mut state) = at_rest(&machine, &law, &settings, turn);
             let mut accelerated = |q: &[f64]| {
-                system
-                    .accelerations(0.0, q, &state.v, &mut state.a)
-                    .unwrap();
+                let at = StateRef::new(0.0, q, &state.v);
+                system.accelerations(at, &mut state.a).unwrap();
                 state.a[beam].abs()
             };
             let rest = accelerated(&state.q);

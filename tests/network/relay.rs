@@ -3,6 +3,7 @@
 //! `test-relay LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS`: shares from 0 to 1, both ways. (The
 //! kernel's own netem does the same, but is not in every kernel.) Each datagram waits a time of its
 //! own, so they overtake each other. Now and then a line says how many were lost and doubled.
+use protocol::id::draw;
 use std::{
     collections::BTreeMap,
     env,
@@ -25,7 +26,8 @@ const LONGEST: usize = 65_535;
 /// How the stretch misbehaves.
 #[derive(Clone, Debug)]
 struct Weather {
-    state: Arc<AtomicU64>,
+    seed: String,
+    drawn: Arc<AtomicU64>,
     loss: f64,
     duplication: f64,
     delay: Duration,
@@ -34,16 +36,10 @@ struct Weather {
 }
 
 impl Weather {
-    /// A uniform number in [0, 1): `SplitMix64`.
+    /// A uniform number in [0, 1).
     fn draw(&self) -> f64 {
-        let step = 0x9e37_79b9_7f4a_7c15_u64;
-        let mut z = self
-            .state
-            .fetch_add(step, Ordering::Relaxed)
-            .wrapping_add(step);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        let count = self.drawn.fetch_add(1, Ordering::Relaxed);
+        (draw(&self.seed, count.into()) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// When the copies of a datagram go on; none if it is lost.
@@ -92,7 +88,8 @@ async fn main() -> Result<(), Box<dyn Error>> {
         return Err("expected LISTEN TARGET SEED LOSS DUPLICATION DELAY_MS".into());
     };
     let weather = Weather {
-        state: Arc::new(AtomicU64::new(seed.parse()?)),
+        seed: seed.clone(),
+        drawn: Arc::default(),
         loss: loss.parse()?,
         duplication: duplication.parse()?,
         delay: Duration::from_millis(delay_ms.parse()?),

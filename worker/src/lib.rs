@@ -9,6 +9,7 @@
 //! takes nothing with it. A worker keeps no files and decides nothing.
 pub mod cli;
 pub mod convert;
+pub mod digest;
 pub mod handler;
 pub mod outbox;
 pub mod pool;

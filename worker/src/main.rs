@@ -24,7 +24,7 @@ use tokio::{
 use tracing_subscriber::EnvFilter;
 use worker::{
     cli::Cli,
-    handler,
+    digest,
     session::{self, Ending, SessionOptions},
     slot,
 };
@@ -71,7 +71,7 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
     drop(
         thread::Builder::new()
             .name("digest".to_owned())
-            .spawn(handler::model_digest),
+            .spawn(digest::model_digest),
     );
     let cores = || thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let options = SessionOptions {

@@ -99,7 +99,8 @@ mod tests {
     use super::*;
     use protocol::{
         id::{AttemptId, ContentHash, JobId},
-        job::Outcome,
+        job::{Answer, Outcome},
+        message::Cost,
     };
 
     fn result(job: u64) -> Done {
@@ -109,8 +110,8 @@ mod tests {
                 attempt: AttemptId(1),
             },
             work: ContentHash::of(b"work"),
-            wall_us: 5,
-            outcome: Outcome::Nothing(vec![1]),
+            cost: Cost::default(),
+            outcome: Outcome::Done(Answer::Nothing(vec![1])),
         }
     }
 

@@ -4,15 +4,14 @@
 //! that started a process. It ends its process (and whatever that started) at the deadline.
 mod child;
 mod keeper;
+mod task;
+
+pub use task::{CaseBytes, Freed, SlotOptions, Task};
 
 use keeper::{Keeper, ToKeeper};
-use protocol::{
-    job::{Job, Outcome},
-    message::Attempt,
-};
+use protocol::message::Attempt;
 use std::{
     io,
-    path::PathBuf,
     sync::{
         Arc,
         atomic::{AtomicU64, Ordering},
@@ -25,50 +24,6 @@ use tokio::sync::mpsc::UnboundedSender;
 
 /// A keeper that does not show itself for so long is stuck, and so is the worker.
 const STUCK: Duration = Duration::from_secs(3);
-
-/// The encoded case, as slots are given it.
-#[derive(Clone, Debug)]
-pub struct CaseBytes {
-    /// Its name.
-    pub hash: protocol::id::ContentHash,
-    /// Its content.
-    pub bytes: Arc<[u8]>,
-}
-
-/// How the processes of slots are started.
-#[derive(Clone, Debug)]
-pub struct SlotOptions {
-    /// Program whose `slot` subcommand computes.
-    pub program: PathBuf,
-    /// Address space that a process may have (MiB); 0 for as much as there is.
-    pub memory_mib: u64,
-}
-
-/// A job for a slot.
-#[derive(Clone, Debug)]
-pub struct Task {
-    /// Which try at which job.
-    pub attempt: Attempt,
-    /// From start to forced end.
-    pub deadline: Duration,
-    /// What to do.
-    pub job: Box<Job>,
-    /// On what.
-    pub case: Option<CaseBytes>,
-}
-
-/// A slot is free again.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Freed {
-    /// Which slot.
-    pub slot: usize,
-    /// What it did.
-    pub attempt: Attempt,
-    /// How long.
-    pub wall: Duration,
-    /// What came out; none if it was cancelled.
-    pub outcome: Option<Outcome>,
-}
 
 /// All slots of a worker; dropping it ends their processes.
 #[derive(Debug)]

@@ -1,20 +1,21 @@
 //! A worker's life on the bus: announce, take jobs, return results, until told to end.
 mod case;
+mod options;
 mod proof;
 mod state;
 
+pub use options::{Ending, SessionOptions};
+
 use crate::{
-    convert, handler,
+    convert, digest,
     pool::{Pool, SlotOptions},
 };
 use link::WorkerEnd;
-use protocol::{announce::Announcement, id::WorkerId, job::kind, wire};
+use protocol::{announce::Announcement, job::kind, wire};
 use state::{State, Step};
 use std::{
     future::Future,
-    io,
-    path::PathBuf,
-    thread,
+    io, thread,
     time::{Duration, Instant},
 };
 use tokio::sync::mpsc::unbounded_channel;
@@ -24,38 +25,6 @@ const TICK: Duration = Duration::from_millis(250);
 
 /// How long a worker waits to be told that its leaving was heard.
 const FAREWELL: Duration = Duration::from_millis(500);
-
-/// How a session is set up.
-#[derive(Clone, Debug)]
-pub struct SessionOptions {
-    /// The worker's name.
-    pub id: WorkerId,
-    /// Jobs computed at a time.
-    pub slots: usize,
-    /// Program whose `slot` subcommand computes; usually this one.
-    pub program: PathBuf,
-    /// Address space that a slot's process may have (MiB); 0 for as much as there is.
-    pub slot_memory_mib: u64,
-    /// Without work for so long the worker ends; never by default.
-    pub idle_timeout: Option<Duration>,
-    /// Whether it belongs to one coordinator and ends with its run.
-    pub embedded: bool,
-}
-
-/// Why a session ended.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Ending {
-    /// It was asked to.
-    Asked,
-    /// The run is over and the worker belongs to it.
-    RunOver,
-    /// There was no work for the given time.
-    Idle,
-    /// The coordinator does not take it.
-    Refused(String),
-    /// The link is closed.
-    Unlinked,
-}
 
 /// Serves until there is a reason to end; `asked` is that of the outside.
 ///
@@ -112,7 +81,7 @@ fn announcement(slots: usize) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
         build: format!("{} {profile}", env!("CARGO_PKG_VERSION")),
-        model_digest: handler::model_digest().to_owned(),
+        model_digest: digest::model_digest().to_owned(),
         host: rustix::system::uname()
             .nodename()
             .to_string_lossy()

@@ -2,18 +2,25 @@
 //!
 //! It ends with its worker: at the end of its input even in the middle of a job, and by the
 //! parent-death signal should the worker be killed while this process does not read.
-use crate::{handler, handler::Prepared, stream, test_hook};
+use crate::{
+    handler::{self, Prepared},
+    stream, test_hook,
+};
 use protocol::{
     case::Case,
     job::{Failure, Job, Outcome},
     message::{FromSlot, ToSlot},
     wire::{self, Kind},
 };
-use rustix::process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit};
+use rustix::{
+    process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit},
+    time::{ClockId, clock_gettime},
+};
 use std::{
     io::{self, BufReader},
     sync::mpsc,
     thread,
+    time::Duration,
 };
 
 /// Name of the thread that reads jobs.
@@ -45,18 +52,28 @@ pub fn serve(memory_mib: u64) -> io::Result<()> {
         match message {
             ToSlot::Case(bytes) => prepared = Some(prepare(&bytes)),
             ToSlot::Run(job) => {
+                let before = processor_time();
                 test_hook::before(&job);
-                answer(&mut out, evaluate(prepared.as_ref(), &job))?;
+                let outcome = evaluate(prepared.as_ref(), &job);
+                let taken = processor_time().saturating_sub(before);
+                answer(&mut out, outcome, taken)?;
             }
         }
     }
     Ok(())
 }
 
+/// Processor time of all threads of this process so far.
+fn processor_time() -> Duration {
+    Duration::try_from(clock_gettime(ClockId::ProcessCPUTime)).unwrap_or_default()
+}
+
 /// Hands an outcome to the worker, or says that it is too long for that.
-fn answer(out: &mut impl io::Write, outcome: Outcome) -> io::Result<()> {
+fn answer(out: &mut impl io::Write, outcome: Outcome, taken: Duration) -> io::Result<()> {
+    let cpu_us = u64::try_from(taken.as_micros()).unwrap_or(u64::MAX);
     let say = |out: &mut _, outcome| {
-        stream::write(out, Kind::FromSlot, &FromSlot::Done(Box::new(outcome)))
+        let outcome = Box::new(outcome);
+        stream::write(out, Kind::FromSlot, &FromSlot::Done { outcome, cpu_us })
     };
     match say(out, outcome) {
         // nothing has been written of it
@@ -87,10 +104,8 @@ fn listen(to: &mpsc::Sender<ToSlot>) {
 }
 
 fn prepare(bytes: &[u8]) -> Result<Prepared, Failure> {
-    let case: Case = wire::decode(bytes).map_err(|error| Failure::Misconfigured {
-        field: "case".to_owned(),
-        problem: error.to_string(),
-    })?;
+    let case: Case =
+        wire::decode(bytes).map_err(|error| Failure::misconfigured("case", error.to_string()))?;
     Prepared::new(&case)
 }
 

@@ -4,6 +4,11 @@
 //! begins with the number 17 or 18 (64 bits, little endian) behave that way, in slots of the worker
 //! that has the variable. `HORSEHEAD_TEST_TRACE=FILE` makes slots add a line to a file for each
 //! such job they begin. No message can bring either about.
+//!
+//! It stays in the product because the tests are about the program that is shipped: how its keeper,
+//! its pipes and its parent-death signal bear a slot that hangs, aborts or kills its worker. A program
+//! for tests alone would prove that of another one; without the variables this costs a look at the
+//! payload of jobs that do nothing.
 use protocol::job::Job;
 use rustix::process::{Signal, getppid, kill_process};
 use std::{env, fs::OpenOptions, io::Write, process::Command, thread, time::Duration};

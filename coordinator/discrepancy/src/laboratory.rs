@@ -1,6 +1,6 @@
 //! Where experiments are done: whoever simulates batches of points.
-use crate::record::{Curves, Source};
-use protocol::job::{Observation, ObserveSpec, Verdict};
+use crate::record::measured::{Curves, Record, Source};
+use protocol::job::{Observation, SimulateSpec, Verdict};
 
 /// A part of the diagnosis, for progress and for accounts of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -47,7 +47,7 @@ impl Stage {
     }
 }
 
-/// Simulates.
+/// Whoever simulates experiments.
 pub trait Laboratory {
     /// Why no experiment can be done any more.
     type Error;
@@ -60,7 +60,7 @@ pub trait Laboratory {
     fn observe(
         &mut self,
         stage: Stage,
-        batch: Vec<ObserveSpec>,
+        batch: Vec<SimulateSpec>,
     ) -> impl Future<Output = Result<Vec<Option<Observation>>, Self::Error>>;
 }
 
@@ -70,9 +70,10 @@ pub fn channels(observation: &Observation, sources: &[Source]) -> Option<Curves>
         return None;
     }
     let curve = |source: &Source| match source {
-        Source::Gauge(number) => observation
-            .gauge_mpa
-            .get(usize::from(*number).checked_sub(1)?),
+        Source::Gauge(number) => {
+            let place = usize::from(*number).checked_sub(1)?;
+            observation.gauge_mpa.get(place)
+        }
         Source::Position => Some(&observation.suspension_m),
         Source::Torque => Some(&observation.crank_torque_n_m),
     };
@@ -80,4 +81,20 @@ pub fn channels(observation: &Observation, sources: &[Source]) -> Option<Curves>
         .iter()
         .map(|source| curve(source).cloned())
         .collect()
+}
+
+/// Does a batch of experiments on a record; the curves of its channels, nothing for an experiment that
+/// failed.
+///
+/// # Errors
+/// Those of the laboratory.
+pub async fn curves<L: Laboratory>(
+    lab: &mut L,
+    stage: Stage,
+    record: &Record,
+    batch: Vec<SimulateSpec>,
+) -> Result<Vec<Option<Curves>>, L::Error> {
+    let observed = lab.observe(stage, batch).await?;
+    let own = |seen: Option<Observation>| channels(&seen?, &record.channels);
+    Ok(observed.into_iter().map(own).collect())
 }

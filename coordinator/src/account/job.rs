@@ -1,4 +1,5 @@
 //! What the jobs of a run were and how long they took, by kind; which were given up and why.
+use crate::quantile;
 use protocol::{
     event::Finished,
     job::{Outcome, Verdict},
@@ -8,7 +9,7 @@ use std::collections::BTreeMap;
 /// The results of one kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct JobUse {
-    /// How many.
+    /// How many there are.
     pub results: u64,
     /// How many of them say that the machine failed on the way.
     pub machine_failed: u64,
@@ -18,6 +19,10 @@ pub struct JobUse {
     pub usual_s: f64,
     /// What the longest needed \[s\].
     pub longest_s: f64,
+    /// Time in the slot of all of them together \[s\].
+    pub wall_s: f64,
+    /// Processor time of all of them together \[s\].
+    pub processor_s: f64,
 }
 
 /// Results while they are counted.
@@ -30,6 +35,7 @@ pub(super) struct Jobs {
 #[derive(Debug, Default)]
 struct Kind {
     times_us: Vec<u64>,
+    cpu_us: u64,
     machine_failed: u64,
 }
 
@@ -40,9 +46,10 @@ impl Jobs {
             self.given_up.push((finished.job().0, failure.to_string()));
             return;
         }
-        let failed = matches!(outcome.verdict(), Some(Verdict::Failed { .. }));
+        let failed = matches!(outcome.simulation(), Some((Verdict::Failed { .. }, _)));
         let kind = self.kinds.entry(outcome.kind()).or_default();
-        kind.times_us.push(finished.wall_us);
+        kind.times_us.push(finished.cost.wall_us);
+        kind.cpu_us = kind.cpu_us.saturating_add(finished.cost.cpu_us);
         kind.machine_failed += u64::from(failed);
     }
 
@@ -50,16 +57,18 @@ impl Jobs {
     pub(super) fn counted(self) -> (BTreeMap<&'static str, JobUse>, Vec<(u64, String)>) {
         let used = |(name, mut kind): (&'static str, Kind)| {
             kind.times_us.sort_unstable();
-            let quantile = |percent: usize| {
-                let at = (kind.times_us.len() * percent).div_ceil(100).max(1) - 1;
-                kind.times_us.get(at).map_or(0.0, |us| *us as f64 / 1e6)
+            let wall_s = |percent| {
+                let us: Option<u64> = quantile::of(&kind.times_us, percent);
+                us.map_or(0.0, |us| us as f64 / 1e6)
             };
             let used = JobUse {
                 results: kind.times_us.len() as u64,
                 machine_failed: kind.machine_failed,
-                median_s: quantile(50),
-                usual_s: quantile(95),
-                longest_s: quantile(100),
+                median_s: wall_s(50),
+                usual_s: wall_s(95),
+                longest_s: wall_s(100),
+                wall_s: kind.times_us.iter().map(|us| *us as f64 / 1e6).sum(),
+                processor_s: kind.cpu_us as f64 / 1e6,
             };
             (name, used)
         };

@@ -2,8 +2,10 @@
 //!
 //! It adds up what the core wrote down (one row per worker and coordinator process) and puts the
 //! causes into words. It decides nothing, and knows neither workers nor sockets.
+mod cost;
 mod job;
 
+pub use cost::{Costs, JobCost};
 pub use job::JobUse;
 
 use crate::journal::{self, Damage, JournalError};
@@ -64,6 +66,21 @@ pub fn read(path: &Path) -> Result<RunAccount, JournalError> {
     let mut folding = Folding::default();
     let report = journal::fold(path, |_, event| folding.apply(&event))?;
     Ok(folding.finish(report.damage))
+}
+
+/// Reads the account of a journal, and what every job cost.
+///
+/// # Errors
+/// [`JournalError::Io`] if it cannot be read, [`JournalError::Version`] if another version wrote it.
+pub fn read_with_costs(path: &Path) -> Result<(RunAccount, Costs), JournalError> {
+    let (mut folding, mut costs) = (Folding::default(), Costs::new());
+    let report = journal::fold(path, |_, event| {
+        if let Event::Finished(finished) = &event {
+            cost::add(&mut costs, finished);
+        }
+        folding.apply(&event);
+    })?;
+    Ok((folding.finish(report.damage), costs))
 }
 
 /// An account while the journal is read, for whoever reads it for other reasons too.
@@ -198,7 +215,7 @@ mod tests {
     use protocol::{
         event::{Account, RunHeader},
         id::{ContentHash, RunId},
-        job::{Failure, Outcome},
+        job::{Answer, Failure, Outcome},
     };
 
     fn row(worker: u64, useful_us: u64, barrier_us: u64) -> WorkerAccount {
@@ -243,8 +260,16 @@ mod tests {
             }
             let place = u64::from(epoch);
             for (job, seconds, outcome) in [
-                (place, 2 * place - 1, Outcome::Nothing(vec![1])),
-                (place + 2, 2 * place, Outcome::Nothing(vec![1])),
+                (
+                    place,
+                    2 * place - 1,
+                    Outcome::Done(Answer::Nothing(vec![1])),
+                ),
+                (
+                    place + 2,
+                    2 * place,
+                    Outcome::Done(Answer::Nothing(vec![1])),
+                ),
                 (9, 1, Outcome::Failed(Failure::Lost { workers: 4 })),
             ] {
                 journal

@@ -1,74 +1,8 @@
 //! Recommended coefficients by formula: the elasticity of a rope (paper, Eq. 3) and the contact of two
 //! elastic bodies (paper, Eq. 5). Knows material and size, no bounds, and damping has no formula.
-use super::schema::CaseFile;
+use super::{recommended::Formula, schema::CaseFile};
 use protocol::case::Coefficient;
-use serde::{
-    Deserialize,
-    de::{self, Visitor},
-};
-use std::{f64::consts::PI, fmt};
-
-/// What a case states as a gene's recommended value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Recommended {
-    /// A number, in the gene's unit.
-    Value(f64),
-    /// What a formula gives.
-    By(Formula),
-}
-
-/// Formulas by their equations.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Formula {
-    /// Stiffness of a solid round bar of the joint's length.
-    Eq3,
-    /// Contact stiffness of rope and head.
-    Hertz,
-}
-
-impl Formula {
-    const ALL: [Self; 2] = [Self::Eq3, Self::Hertz];
-    const WORDS: &'static [&'static str] = &[Self::Eq3.word(), Self::Hertz.word()];
-
-    /// As case files write it.
-    pub(super) const fn word(self) -> &'static str {
-        match self {
-            Self::Eq3 => "eq3",
-            Self::Hertz => "hertz",
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Recommended {
-    fn deserialize<D: serde::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        from.deserialize_any(NumberOrWord)
-    }
-}
-
-struct NumberOrWord;
-
-impl Visitor<'_> for NumberOrWord {
-    type Value = Recommended;
-
-    fn expecting(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        to.write_str("a number, \"eq3\" or \"hertz\"")
-    }
-
-    fn visit_f64<E: de::Error>(self, value: f64) -> Result<Recommended, E> {
-        Ok(Recommended::Value(value))
-    }
-
-    fn visit_i64<E: de::Error>(self, value: i64) -> Result<Recommended, E> {
-        Ok(Recommended::Value(value as f64))
-    }
-
-    fn visit_str<E: de::Error>(self, word: &str) -> Result<Recommended, E> {
-        let named = Formula::ALL.into_iter().find(|known| known.word() == word);
-        named
-            .map(Recommended::By)
-            .ok_or_else(|| E::unknown_variant(word, Formula::WORDS))
-    }
-}
+use std::f64::consts::PI;
 
 /// Isotropic elastic material.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -169,7 +103,8 @@ impl Bodies {
 
 #[cfg(test)]
 mod tests {
-    use super::{Bodies, Elastic, Formula};
+    use super::{Bodies, Elastic};
+    use crate::case::recommended::Formula;
     use protocol::{case::Coefficient, unit::Unit};
 
     const STEEL: Elastic = Elastic {

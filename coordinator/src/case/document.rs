@@ -110,20 +110,6 @@ impl Document {
         ))
     }
 
-    /// As [`Self::within`], for several fields of one kind.
-    ///
-    /// # Errors
-    /// Names the first field outside.
-    pub(super) fn all_within(
-        &self,
-        fields: &[(&str, f64)],
-        range: RangeInclusive<f64>,
-        unit: &str,
-    ) -> Result<(), CaseError> {
-        let mut fields = fields.iter();
-        fields.try_for_each(|(field, value)| self.within(field, *value, range.clone(), unit))
-    }
-
     /// Where a field stands in the text.
     fn span(&self, way: &[Step<'_>]) -> Option<Range<usize>> {
         let root = DeTable::parse(&self.text).ok()?;

@@ -28,6 +28,14 @@ pub enum CaseError {
         /// What the system says.
         source: io::Error,
     },
+    /// A file cannot be replaced.
+    #[error("{}: cannot be written: {source}\nhelp: check that there is room and that you may write there; the old file is unchanged", path.display())]
+    Unwritable {
+        /// The file.
+        path: Box<Path>,
+        /// What the system says.
+        source: io::Error,
+    },
     /// A file as a whole is not what it should be: empty, truncated, of another format.
     #[error("{}: {problem}\nhelp: {help}", path.display())]
     Damaged {

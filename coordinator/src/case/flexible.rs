@@ -1,18 +1,13 @@
 //! The flexible head of a case: its tables, its mesh, and whether they belong together.
 use super::{
     document::{Document, Step},
-    error::{CaseError, damaged},
-    head,
-    load::{Overrides, resolve},
-    mesh,
+    error::CaseError,
+    head, mesh,
     schema::CaseFile,
     twin,
 };
-use protocol::{
-    case::{Case, ModalHead, TwinRopes},
-    job::HeadGauge,
-};
-use std::path::{Path, PathBuf};
+use protocol::case::{ModalHead, TwinRopes};
+use std::path::Path;
 
 /// The flexible head as its files have it.
 pub(super) struct ReadHead {
@@ -37,7 +32,6 @@ pub(super) fn read(
     let flexible = &file.flexible_head;
     let modes_file = folder.join(&flexible.modes_file);
     let (mut head, provenance) = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
-    head.weight_axes = flexible.weight_axes;
     head.stress = flexible.stress;
     let mut read = ReadHead {
         head,
@@ -112,68 +106,4 @@ fn source_hash(mesh: &str, file: &CaseFile, read: &ReadHead) -> String {
     }
     take(&read.head.arc_deg);
     hasher.finalize().to_hex().to_string()
-}
-
-/// What a reduction of the back head starts from, and where its tables are kept.
-#[derive(Clone, Debug, PartialEq)]
-pub struct HeadSource {
-    /// The mesh.
-    pub mesh: mesh::Mesh,
-    /// Content hash of its file, in hexadecimal digits.
-    pub mesh_blake3: String,
-    /// Content hash of all that the reduction depends on.
-    pub source_blake3: String,
-    /// Young's modulus \[Pa\].
-    pub young_pa: f64,
-    /// Poisson's ratio \[1\].
-    pub poisson: f64,
-    /// Density [kg/m3].
-    pub density_kg_m3: f64,
-    /// Where stress is read.
-    pub gauges: [HeadGauge; 4],
-    /// Whether the case's tables are missing or were computed from something else.
-    pub stale: bool,
-    /// The file of the modes.
-    pub modes_file: PathBuf,
-    /// The file of the influence lines.
-    pub influence_file: PathBuf,
-    /// The file of the tables for a pair of ropes, where the case has one.
-    pub twin_file: Option<PathBuf>,
-}
-
-/// Reads a case and what its back head is reduced from. Tables of another mesh are no error here.
-///
-/// # Errors
-/// As [`super::load`]; a case without mesh or gauge places.
-pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
-    let (loaded, read, (flexible, twins)) = resolve(folder, &Overrides::default())?;
-    let (Some((mesh, mesh_blake3)), Some(source_blake3)) = (read.mesh, read.source_blake3) else {
-        return Err(damaged(
-            &folder.join("case.toml"),
-            "`flexible_head` names no mesh_file: there is nothing to reduce",
-            "add mesh_file = \"FILE.msh\" (Gmsh 4.1)",
-        ));
-    };
-    let modes_file = folder.join(&flexible.modes_file);
-    let Some(gauges) = read.provenance.gauges else {
-        return Err(damaged(
-            &modes_file,
-            "`gauges` does not place the gauges 1 to 4",
-            "add \"gauges\": {\"1\": {\"x_m\": .., \"y_m\": .., \"z_m\": .., \"length_m\": ..}, ..}",
-        ));
-    };
-    let source = HeadSource {
-        mesh,
-        mesh_blake3,
-        source_blake3,
-        young_pa: flexible.young_gpa * 1e9,
-        poisson: flexible.poisson,
-        density_kg_m3: flexible.density_kg_m3,
-        gauges,
-        stale: read.stale.is_some(),
-        influence_file: folder.join(&flexible.influence_file),
-        twin_file: twins.map(|entry| folder.join(entry.head_file)),
-        modes_file,
-    };
-    Ok((loaded.case, source))
 }

@@ -4,7 +4,6 @@
 //! effects its label as the key, `"pin_clearance.force" = { value = 1500.0, unit = "N" }`.
 use super::{
     document::{Document, Step, nearest},
-    effect::key,
     error::CaseError,
     genes::{check_unit, check_value},
 };
@@ -187,7 +186,9 @@ fn check_effect(
 pub fn write_genes(case: &Case, values: &[f64], about: &str) -> String {
     let mut text = format!("# {about}\n");
     for (gene, value) in case.genes.iter().zip(values) {
-        let name = key(&gene.label());
+        let name = toml_edit::Key::new(gene.label())
+            .display_repr()
+            .into_owned();
         let unit = gene.unit();
         let line = format!("{name:<4} = {{ value = {value:e}, unit = \"{unit}\" }}\n");
         text.push_str(&line);

@@ -1,14 +1,16 @@
 //! The coefficients of rope and contact that a case declares as genes.
 use super::{
-    coefficient::{Bodies, Recommended},
+    coefficient::Bodies,
     document::{Document, Step, units},
     error::CaseError,
-    schema::GeneTable,
+    recommended::Recommended,
+    schema::GeneEntry,
 };
 use protocol::{
     case::{Coefficient, Gene},
     unit::Unit,
 };
+use std::collections::BTreeMap;
 
 /// Largest value of any coefficient, in SI units.
 const LARGEST: f64 = 1.0e30;
@@ -20,11 +22,22 @@ const LARGEST: f64 = 1.0e30;
 /// value, a formula that does not give this coefficient.
 pub(super) fn declared(
     document: &Document,
-    table: GeneTable,
+    table: &BTreeMap<Coefficient, GeneEntry>,
     bodies: &Bodies,
 ) -> Result<Vec<Gene>, CaseError> {
     let mut genes = Vec::new();
-    for (name, entry) in Coefficient::ALL.into_iter().zip(table.into_array()) {
+    for name in Coefficient::ALL {
+        let Some(entry) = table.get(&name) else {
+            return Err(document.field(
+                &[Step::Key("genes")],
+                format!("a table without `{}`", name.as_str()),
+                "all ten coefficients: kb1, kb23, kb4, kb56, cb1, cb23, cb4, cb56, kc, cc",
+                &format!(
+                    "add `{} = {{ recommended = .., lower = .., upper = .., unit = \"..\" }}`",
+                    name.as_str()
+                ),
+            ));
+        };
         let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
         check_unit(document, &way("unit"), name, entry.unit)?;
         let recommended = match entry.recommended {

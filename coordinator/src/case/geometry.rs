@@ -6,6 +6,7 @@
 //! the support function `h = R + C.n(psi)` and the crank pin P; Newton on both. The dynamics in
 //! the worker know nothing of this file.
 use super::schema::CaseFile;
+use crate::line::periodic;
 use protocol::case::{BackHead, Case, Condition, Crank, TurnSense};
 
 /// Extremes over one turn.
@@ -165,27 +166,14 @@ pub fn quasi_static(case: &Case, condition: &Condition) -> Option<QuasiStatic> {
         let psi = normal - theta;
         let head = &case.back_head;
         let arm = head.radius_m + head.center_x_m * psi.cos() + head.center_y_m * psi.sin();
-        let moment = load_at(condition, turn_deg) * case.front_head.radius_m
-            + case.beam.gravity_moment_n_m * theta.cos()
+        let card = &condition.card;
+        let load = periodic(&card.turn_deg, &card.load_n, turn_deg, 360.0).unwrap_or_default();
+        let moment = load * case.front_head.radius_m + case.beam.gravity_moment_n_m * theta.cos()
+            - case.beam.gravity_height_moment_n_m * theta.sin()
             + case.beam.inertia_kg_m2 * acceleration;
         result.turn_deg.push(turn_deg);
         result.contact_deg.push(psi.to_degrees());
         result.tension_n.push(moment / arm);
     }
     Some(result)
-}
-
-/// The card at a crank angle, between its points linear.
-fn load_at(condition: &Condition, turn_deg: f64) -> f64 {
-    let load = &condition.card.load_n;
-    let at = turn_deg / 360.0 * load.len() as f64;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a place in a card of some hundred points"
-    )]
-    let left = at as usize;
-    let share = at - left as f64;
-    let value = |at: usize| load.get(at % load.len().max(1)).copied().unwrap_or(0.0);
-    value(left) * (1.0 - share) + value(left + 1) * share
 }

@@ -7,7 +7,7 @@ use super::{
     file,
     table::Table,
 };
-use protocol::case::{Influence, ModalHead, StressRecovery, WeightAxes};
+use protocol::case::{Influence, ModalHead, StressRecovery};
 use protocol::job::HeadGauge;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
@@ -97,7 +97,6 @@ pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provena
         gauge_stress_mpa: read.gauge_stress_mpa,
         participation: read.participation,
         inertia_stress_mpa: read.inertia_stress_mpa,
-        weight_axes: WeightAxes::default(),
         stress: StressRecovery::default(),
         mass_kg: read.mass_kg,
         influence,

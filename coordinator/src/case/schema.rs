@@ -1,15 +1,15 @@
 //! `case.toml` as it is written: the keys there are, and their types. What the values may be is
-//! checked in [`super::machine`] and beside the data they name.
-use super::{coefficient::Recommended, effect::CaseEffect};
+//! checked beside the data they name.
+use super::{effect::CaseEffect, recommended::Recommended};
 use protocol::{
     case::{
-        BackHead, Beam, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings, Smoothing,
-        StressRecovery, Suspension, WeightAxes,
+        BackHead, Beam, Coefficient, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings,
+        Smoothing, StressRecovery, Suspension,
     },
     unit::Unit,
 };
 use serde::Deserialize;
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 /// A whole `case.toml`.
 #[derive(Debug, Deserialize)]
@@ -37,9 +37,11 @@ pub(super) struct CaseFile {
     /// What the machine has beside the above; nothing unless stated.
     #[serde(default)]
     pub(super) effects: Vec<CaseEffect>,
-    pub(super) genes: GeneTable,
+    /// One entry per coefficient; all are required.
+    pub(super) genes: BTreeMap<Coefficient, GeneEntry>,
     pub(super) conditions: Vec<ConditionEntry>,
-    pub(super) objective: ObjectiveEntry,
+    /// What a calibration minimises; needed where there is a gauge record.
+    pub(super) objective: Option<ObjectiveEntry>,
     pub(super) run: RunSettings,
 }
 
@@ -64,9 +66,6 @@ pub(super) struct FlexibleHead {
     pub(super) influence_file: PathBuf,
     /// Mesh as MSH 4.1; absent where only the reduction is at hand.
     pub(super) mesh_file: Option<PathBuf>,
-    /// How the records hold the head's own weight; physical unless stated.
-    #[serde(default)]
-    pub(super) weight_axes: WeightAxes,
     /// How gauge stress follows from the modes; by mode acceleration unless stated.
     #[serde(default)]
     pub(super) stress: StressRecovery,
@@ -129,32 +128,6 @@ const fn steel_gpa() -> f64 {
 
 const fn steel_poisson() -> f64 {
     0.3
-}
-
-/// One entry per coefficient; all are required.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct GeneTable {
-    kb1: GeneEntry,
-    kb23: GeneEntry,
-    kb4: GeneEntry,
-    kb56: GeneEntry,
-    cb1: GeneEntry,
-    cb23: GeneEntry,
-    cb4: GeneEntry,
-    cb56: GeneEntry,
-    kc: GeneEntry,
-    cc: GeneEntry,
-}
-
-impl GeneTable {
-    /// The entries in the order of the chromosome.
-    pub(super) fn into_array(self) -> [GeneEntry; 10] {
-        [
-            self.kb1, self.kb23, self.kb4, self.kb56, self.cb1, self.cb23, self.cb4, self.cb56,
-            self.kc, self.cc,
-        ]
-    }
 }
 
 /// One coefficient of the case.

@@ -1,13 +1,13 @@
-//! Twin ropes of a case: the numbers of `[twin_ropes]`, and the head's tables for a pair (JSON).
+//! Twin ropes of a case: the head's tables for a pair (JSON).
 //!
 //! The tables hold for one distance from the plane and for the stations of the other tables of the
 //! head; where they do not fit, `horsehead head CASE --write` makes them again, so that reading them
 //! for that command is no error ([`Read::unfit`]).
 use super::{
-    document::{self, Document},
+    document,
     error::{CaseError, contradiction},
     file, mesh,
-    schema::{CaseFile, TwinRopesEntry},
+    schema::TwinRopesEntry,
 };
 use protocol::case::{Influence, ModalHead, TwinHead, TwinRopes};
 use serde::{Deserialize, Serialize};
@@ -15,8 +15,6 @@ use std::path::Path;
 
 /// What makes the tables.
 const REMEDY: &str = "`horsehead head CASE --write` computes the tables";
-/// Most head modes that a simulation takes, of both kinds together.
-const MOST_MODES: usize = 24;
 
 /// The head's tables for a pair of ropes, as they are written.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -43,35 +41,6 @@ pub(crate) struct TwinFile {
 pub(super) struct Read {
     pub(super) twins: TwinRopes,
     pub(super) unfit: Option<CaseError>,
-}
-
-/// Checks the numbers of `[twin_ropes]`.
-///
-/// # Errors
-/// Names the first number outside its range.
-pub(super) fn check(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
-    let Some(entry) = &case.twin_ropes else {
-        return Ok(());
-    };
-    let differences = [
-        (
-            "twin_ropes.back_length_difference_m",
-            entry.back_length_difference_m,
-        ),
-        (
-            "twin_ropes.front_length_difference_m",
-            entry.front_length_difference_m,
-        ),
-    ];
-    document.within("twin_ropes.offset_m", entry.offset_m, 1.0e-3..=2.0, "m")?;
-    document.all_within(&differences, -0.05..=0.05, "m")?;
-    let most = MOST_MODES.saturating_sub(case.run.modes);
-    document.within(
-        "twin_ropes.modes",
-        entry.modes as f64,
-        0.0..=most as f64,
-        &format!("modes: {MOST_MODES} together with run.modes"),
-    )
 }
 
 /// What the head's tables must have been computed from; none without a mesh.

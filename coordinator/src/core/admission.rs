@@ -3,37 +3,26 @@
 //! Numerics are compared twice: by the digest of a fixed model when a worker announces itself, and
 //! by the case's own reference individual, which each worker computes once it holds the case. The
 //! first worker of a run sets what the others must come to, to the last bit.
-use super::{Core, account::Purse, input::Command, membership, notice::Notice, state::Member};
+use super::{
+    member::Member,
+    notice::Notice,
+    roster::dismiss,
+    state::Core,
+    terms::{absurdity, objection},
+};
 use protocol::{
     announce::Announcement,
     event::Event,
     id::WorkerId,
     message::{Beat, ToWorker},
-    wire,
 };
 use std::time::Duration;
-
-/// More slots than any machine has: a number beyond it is a mistake.
-const MOST_SLOTS: u32 = 4096;
-
-/// More workers than any run has: so many are no workers.
-const MOST_WORKERS: usize = 16 << 10;
 
 /// Refused workers that are remembered, so that each is spoken of once.
 const MOST_REFUSED: usize = 4096;
 
-/// Longest name of a machine, a build or a model (bytes).
-const MOST_NAME: usize = 255;
-
-/// Longest list of kinds of job, and of effects (bytes, encoded): ten times what ours have.
-const MOST_KINDS: usize = 4 << 10;
-const MOST_EFFECTS: usize = 1 << 20;
-
 /// How much of a text that cannot be trusted people are shown (characters).
 const MOST_SHOWN: usize = 200;
-
-/// This program's version.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// A worker introduces itself.
 pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
@@ -45,19 +34,12 @@ pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announceme
     if !core.members.contains_key(&from) {
         admit(core, from, announcement, now);
     }
-    let (epoch, case, case_bytes) = (
-        core.options.epoch,
-        core.options.case,
-        core.options.case_bytes,
-    );
-    core.send(
-        from,
-        ToWorker::Admitted {
-            epoch,
-            case,
-            case_bytes,
-        },
-    );
+    let admitted = ToWorker::Admitted {
+        epoch: core.options.epoch,
+        case: core.options.case,
+        case_bytes: core.options.case_bytes,
+    };
+    core.send(from, admitted);
 }
 
 /// Tells a worker why it may not take part, and people once.
@@ -88,98 +70,6 @@ pub(super) fn shown(text: &str) -> String {
     plain.take(MOST_SHOWN).collect()
 }
 
-/// What no worker of ours would say of itself; it is kept, shown and written down, so there is an
-/// end to it.
-fn absurdity(announcement: &Announcement) -> Option<String> {
-    let Announcement {
-        build,
-        model_digest,
-        host,
-        job_kinds,
-        effects,
-        ..
-    } = announcement;
-    for (field, text) in [
-        ("host", host),
-        ("build", build),
-        ("model_digest", model_digest),
-    ] {
-        if text.len() > MOST_NAME {
-            let bytes = text.len();
-            return Some(format!(
-                "{field} has {bytes} bytes, allowed are {MOST_NAME}"
-            ));
-        }
-        if text.chars().any(char::is_control) {
-            return Some(format!("{field} holds control characters"));
-        }
-    }
-    // what cannot be encoded came over no wire
-    let bytes = |encoded: Result<Vec<u8>, wire::WireError>| encoded.map_or(0, |it| it.len());
-    for (field, bytes, most) in [
-        ("job_kinds", bytes(wire::encode(job_kinds)), MOST_KINDS),
-        ("effects", bytes(wire::encode(effects)), MOST_EFFECTS),
-    ] {
-        if bytes > most {
-            return Some(format!("{field} has {bytes} bytes, allowed are {most}"));
-        }
-    }
-    None
-}
-
-fn objection(core: &Core, announcement: &Announcement) -> Option<String> {
-    const SAME: &str = "use the same build of horsehead and horsehead-worker on every machine";
-    let Announcement {
-        protocol,
-        build,
-        model_digest,
-        slots,
-        effects,
-        ..
-    } = announcement;
-    if *protocol != wire::VERSION {
-        return Some(format!(
-            "protocol is {protocol}, this coordinator speaks {}: {SAME}",
-            wire::VERSION
-        ));
-    }
-    if build.split(' ').next() != Some(VERSION) {
-        return Some(format!(
-            "build is {build}, this coordinator's is {VERSION}: {SAME}"
-        ));
-    }
-    if !(1..=MOST_SLOTS).contains(slots) {
-        return Some(format!(
-            "slots is {slots}, allowed are 1 to {MOST_SLOTS}: set --slots"
-        ));
-    }
-    if core.members.len() >= MOST_WORKERS {
-        return Some(format!(
-            "workers are {MOST_WORKERS} already: start fewer, with more slots"
-        ));
-    }
-    if let Some(expected) = &core.options.model_digest
-        && expected != model_digest
-    {
-        return Some(format!(
-            "model_digest is {model_digest}, this run's is {expected}: {SAME}"
-        ));
-    }
-    if let Some(expected) = &core.effects {
-        let names: Vec<&String> = effects.iter().map(|effect| &effect.id).collect();
-        let differs = |name: &&String| !expected.contains(*name);
-        let more = names.iter().copied().find(differs);
-        let fewer = expected.iter().find(|name| !names.contains(name));
-        let difference = match (more, fewer) {
-            (Some(more), _) => format!("{more} that the others do not know"),
-            (None, Some(fewer)) => format!("no {fewer}, which the others know"),
-            (None, None) => return None,
-        };
-        return Some(format!("effects has {difference}: {SAME}"));
-    }
-    None
-}
-
 fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Duration) {
     let (host, slots) = (announcement.host.clone(), announcement.slots);
     let model_digest = announcement.model_digest.clone();
@@ -191,33 +81,19 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
         effects.map(|effect| effect.id.clone()).collect()
     });
     core.refused.remove(&worker);
-    core.members.insert(
-        worker,
-        Member {
-            announcement,
-            since: now,
-            heard: now,
-            ready: false,
-            leases: Vec::new(),
-            alone: false,
-            claims: Vec::new(),
-            taken: Vec::new(),
-            done: 0,
-            failed: 0,
-            purse: Purse::new(&core.clocks),
-        },
-    );
+    let member = Member::new(announcement, &core.clocks, now);
+    core.members.insert(worker, member);
     core.notice(Notice::Joined {
         worker,
         host: host.clone(),
         slots,
     });
-    core.out.push(Command::Record(Event::Joined {
+    core.record(Event::Joined {
         worker,
         host,
         slots,
         model_digest,
-    }));
+    });
 }
 
 /// Whether a worker can be given jobs; none if it has just been refused.
@@ -239,8 +115,7 @@ pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<b
     };
     let Some(expected) = core.options.proof else {
         core.options.proof = Some(proof);
-        let proved = Event::Proved { proof };
-        core.out.push(Command::Record(proved));
+        core.record(Event::Proved { proof });
         return Some(true);
     };
     if expected == proof {
@@ -256,7 +131,7 @@ pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<b
 
 /// Refuses a worker that takes part already.
 fn expel(core: &mut Core, worker: WorkerId, reason: String) -> Option<bool> {
-    let member = membership::lose_refused(core, worker)?;
+    let member = dismiss(core, worker, "it was refused", core.clocks.now)?;
     refuse(core, worker, member.announcement.host, reason);
     None
 }

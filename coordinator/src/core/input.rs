@@ -1,9 +1,12 @@
 //! What the core is told, and what it wants done.
-use super::notice::{Notice, Stop};
+use super::{
+    completed::Completed,
+    notice::{Notice, Stop},
+};
 use protocol::{
     event::{Event, Finished},
     id::{JobId, WorkerId},
-    job::{Job, Outcome},
+    job::Job,
     message::{FromWorker, ToWorker},
 };
 use std::time::Duration;
@@ -20,26 +23,26 @@ pub enum Input {
     },
     /// A worker spoke.
     Heard {
-        /// Which.
+        /// The worker's name.
         from: WorkerId,
         /// What it said.
         message: FromWorker,
     },
     /// A worker spoke of another run.
     Stranger {
-        /// Which.
+        /// The worker's name.
         from: WorkerId,
     },
     /// A worker spoke in words of another version of the wire.
     OtherVersion {
-        /// Which.
+        /// The worker's name.
         from: WorkerId,
         /// The version.
         version: u8,
     },
     /// The transport lost a worker.
     Gone {
-        /// Which.
+        /// The worker's name.
         worker: WorkerId,
     },
     /// These results are safe in the journal.
@@ -51,7 +54,7 @@ pub enum Input {
     Writable(bool),
     /// The machine has slept, and its clock stood still.
     Slept {
-        /// For how long.
+        /// For how long it slept.
         time: Duration,
     },
     /// Time has passed.
@@ -67,9 +70,9 @@ pub enum Input {
 pub enum Command {
     /// Send a message.
     Send {
-        /// To whom.
+        /// The worker that it is for.
         to: WorkerId,
-        /// What.
+        /// What it says.
         message: ToWorker,
     },
     /// Write a result to the journal and answer [`Input::Stored`] once it is safe.
@@ -77,12 +80,7 @@ pub enum Command {
     /// Write to the journal when convenient.
     Record(Event),
     /// Hand a result to whoever submitted the job.
-    Deliver {
-        /// The job.
-        id: JobId,
-        /// Its one accepted outcome.
-        outcome: Outcome,
-    },
+    Deliver(Completed),
     /// Tell people.
     Notice(Notice),
     /// The run cannot go on.

@@ -1,107 +1,49 @@
 //! Who takes part, and who is lost.
 use super::{
-    Core, Phase,
-    account::{self, Clocks, Use},
-    admission, assign,
-    input::Command,
+    admission::shown,
+    lease::requeue,
     notice::Notice,
-    policy::Failures,
-    reconcile, result,
-    state::Member,
+    result,
+    roster::{dismiss, remove},
+    state::{Core, millis},
 };
 use protocol::{
-    event::{Event, WorkerAccount},
     id::{JobId, WorkerId},
     job::Failure,
-    message::{Beat, FromWorker, ToWorker},
+    message::ToWorker,
 };
 use std::{collections::BTreeSet, time::Duration};
 
-pub(super) fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: Duration) {
-    let known = core
-        .members
-        .get_mut(&from)
-        .map(|member| member.heard = now)
-        .is_some();
-    match message {
-        FromWorker::Announce(_) if core.phase == Phase::Closed => {}
-        FromWorker::Announce(announcement) => admission::announce(core, from, *announcement, now),
-        FromWorker::Beat(beat) if known => beaten(core, from, &beat, now),
-        FromWorker::Beat(_) => core.send(from, ToWorker::Identify),
-        // it differs from the others, and so may what it computes
-        FromWorker::Done(_) if core.refused.contains(&from) => {}
-        FromWorker::Done(done) => {
-            if !known {
-                core.send(from, ToWorker::Identify);
-            }
-            result::done(core, from, *done, now);
-        }
-        FromWorker::Leaving { reason } if known => leave(core, from, &reason, now),
-        FromWorker::Leaving { .. } => {}
-    }
-}
-
-fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
-    let Some(ready) = admission::is_ready(core, from, beat) else {
-        return;
-    };
-    let unmentioned = core.options.policy.unmentioned;
-    if let Some(member) = core.members.get_mut(&from) {
-        if member.ready != ready {
-            account::settle(member, &core.clocks);
-            member.ready = ready;
-        }
-        for lease in &mut member.leases {
-            if lease.running.is_none() && beat.running.contains(&lease.attempt) {
-                lease.running = Some(now);
-            }
-        }
-        member.claims.clear();
-        member.taken.retain(|(attempt, at)| {
-            let mut held = beat.running.iter().chain(&beat.waiting);
-            held.any(|held| held == attempt) || now.saturating_sub(*at) < unmentioned
-        });
-    }
-    reconcile::reconcile(core, from, beat, now);
-    if beat.case.is_some() {
-        welcome(core, from, now);
-    }
-}
-
 /// Whether everyone is there who may hold jobs and results of the last process, or was waited for.
 pub(super) fn is_complete(core: &mut Core, now: Duration) -> bool {
-    let policy = &core.options.policy;
-    if core.reunion.is_none() && !core.options.expected.is_empty() {
-        core.reunion = Some(now + policy.reunion);
+    if core.rejoining.is_none() && !core.options.expected.is_empty() {
+        core.rejoining = Some(now + core.options.policy.rejoin_grace);
     }
-    core.reunion.is_none_or(|until| {
+    core.rejoining.is_none_or(|until| {
         let over = now >= until;
         if over {
             core.options.expected.clear();
-            core.reunion = None;
+            core.rejoining = None;
         }
         over
     })
 }
 
 /// One of those who were waited for is back and has said what it holds.
-fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
+pub(super) fn welcome(core: &mut Core, worker: WorkerId, now: Duration) {
     if core.options.expected.remove(&worker)
         && core.options.expected.is_empty()
-        && let Some(until) = core.reunion
+        && let Some(until) = core.rejoining
     {
-        core.reunion = Some(until.min(now + core.options.policy.delivery));
+        core.rejoining = Some(until.min(now + core.options.policy.delivery_grace));
     }
 }
 
-fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
-    let reason = admission::shown(reason);
-    let Some(member) = remove(core, worker, &reason, now) else {
+/// A worker leaves in good order.
+pub(super) fn leave(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
+    let reason = shown(reason);
+    if dismiss(core, worker, &reason, now).is_none() {
         return;
-    };
-    for lease in member.leases {
-        // nobody is to blame
-        assign::requeue(core, worker, lease.attempt.job);
     }
     // it waits for this, lest the end of its connection be heard first and taken for a loss
     core.send(worker, ToWorker::Ended);
@@ -117,7 +59,7 @@ pub(super) fn gone(core: &mut Core, worker: WorkerId, now: Duration) {
         return;
     }
     let silent = now.saturating_sub(member.heard);
-    let reason = if silent > core.options.policy.silence / 2 {
+    let reason = if silent > core.options.policy.heartbeat_timeout / 2 {
         silence(silent)
     } else {
         "its connection ended: it was killed, or its machine or the network went down".to_owned()
@@ -135,92 +77,50 @@ fn silence(time: Duration) -> String {
 /// Whatever it held may be to blame, even what waited there when it was last heard of: the results
 /// before it may have been lost with the worker. So may what was taken from it and not yet let go.
 /// The innocent clear themselves by running alone.
-pub(super) fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
+fn lose(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) {
     let Some(member) = remove(core, worker, reason, now) else {
         return;
     };
     core.counts.lost += 1;
-    let offered = member.leases.len();
     core.notice(Notice::Lost {
         worker,
         reason: reason.to_owned(),
-        jobs: offered,
+        jobs: member.leases.len(),
     });
     let held = member.leases.iter().map(|lease| lease.attempt.job);
     let taken = member.taken.iter().map(|(attempt, _)| attempt.job);
     let jobs: BTreeSet<JobId> = held.chain(taken).collect();
+    let workers = core.options.policy.alone_after_losses;
     let mut suspects = Vec::new();
     for job in jobs {
-        assign::requeue(core, worker, job);
+        requeue(core, worker, job);
         let Some(pending) = core.jobs.get(&job) else {
             continue;
         };
         let losses = pending.failures.losses + 1;
         result::failed(core, worker, job, Failure::Lost { workers: losses }, now);
-        if losses == core.options.policy.suspect && core.jobs.contains_key(&job) {
+        if losses == workers && core.jobs.contains_key(&job) {
             suspects.push(job);
         }
     }
     if !suspects.is_empty() {
         core.suspects.extend(&suspects);
-        core.notice(Notice::Quarantined {
-            jobs: suspects,
-            workers: core.options.policy.suspect,
-        });
+        let jobs = suspects;
+        core.notice(Notice::Quarantined { jobs, workers });
     }
 }
 
-/// Takes out a worker that must not take part after all; nobody is to blame for its jobs.
-pub(super) fn lose_refused(core: &mut Core, worker: WorkerId) -> Option<Member> {
-    let now = core.clocks.now;
-    let member = remove(core, worker, "it was refused", now)?;
-    for lease in &member.leases {
-        assign::requeue(core, worker, lease.attempt.job);
-    }
-    Some(member)
-}
-
-/// Takes a worker out; what it was computing is lost.
-fn remove(core: &mut Core, worker: WorkerId, reason: &str, now: Duration) -> Option<Member> {
-    let mut member = core.members.remove(&worker)?;
-    account::settle(&mut member, &core.clocks);
-    for lease in member.leases.clone() {
-        account::attribute(&mut member, &lease, Use::Lost);
-    }
-    for lease in &mut member.leases {
-        lease.held = Duration::ZERO;
-    }
-    let row = row(worker, &member, &core.clocks);
-    core.counts.past.add(&row.spent);
-    core.record_account(vec![row], now);
-    let reason = reason.to_owned();
-    core.out
-        .push(Command::Record(Event::Left { worker, reason }));
-    Some(member)
-}
-
-/// A worker's account until now.
-pub(super) fn row(worker: WorkerId, member: &Member, clocks: &Clocks) -> WorkerAccount {
-    WorkerAccount {
-        worker,
-        host: member.announcement.host.clone(),
-        slots: member.announcement.slots,
-        done: member.done,
-        failed: member.failed,
-        spent: account::statement(member, clocks),
-    }
-}
-
+/// Gives up workers that have not spoken for too long.
 pub(super) fn check_silence(core: &mut Core, now: Duration) {
-    let (silence, excused) = (core.options.policy.silence, core.excused);
+    let (timeout, excused) = (core.options.policy.heartbeat_timeout, core.excused);
     let silent: Vec<WorkerId> = core
         .members
         .iter()
-        .filter(|(_, member)| now.saturating_sub(member.heard.max(excused)) > silence)
+        .filter(|(_, member)| now.saturating_sub(member.heard.max(excused)) > timeout)
         .map(|(id, _)| *id)
         .collect();
     for worker in silent {
-        lose(core, worker, &self::silence(silence), now);
+        lose(core, worker, &silence(timeout), now);
     }
 }
 
@@ -228,7 +128,7 @@ pub(super) fn check_silence(core: &mut Core, now: Duration) {
 pub(super) fn forgive_stall(core: &mut Core, now: Duration) {
     let gap = now.saturating_sub(core.last_call);
     core.last_call = now;
-    if gap <= core.options.policy.stall || core.members.is_empty() {
+    if gap <= core.options.policy.stall_after || core.members.is_empty() {
         return;
     }
     for member in core.members.values_mut() {
@@ -245,29 +145,24 @@ pub(super) fn forgive_stall(core: &mut Core, now: Duration) {
 /// lost, they come back.
 pub(super) fn excuse(core: &mut Core, time: Duration, now: Duration) {
     let policy = &core.options.policy;
-    if time >= policy.estranged {
-        core.excused = now + policy.return_within;
+    if time >= policy.disconnecting_stall {
+        core.excused = now + policy.reconnect_grace;
     }
-    let ms = u64::try_from(time.as_millis()).unwrap_or(u64::MAX);
+    let ms = millis(time);
     core.notice(Notice::Stalled { ms });
 }
 
 /// Tells people, once, that jobs wait and nobody is there.
-pub(super) fn check_lonely(core: &mut Core, now: Duration) {
+pub(super) fn check_deserted(core: &mut Core, now: Duration) {
     if !core.members.is_empty() || core.queue.is_empty() {
-        core.lonely_since = None;
-        core.told_lonely = false;
+        core.deserted_since = None;
+        core.told_deserted = false;
         return;
     }
-    let since = *core.lonely_since.get_or_insert(now);
-    if !core.told_lonely && now.saturating_sub(since) >= core.options.policy.lonely {
-        core.told_lonely = true;
+    let since = *core.deserted_since.get_or_insert(now);
+    if !core.told_deserted && now.saturating_sub(since) >= core.options.policy.no_worker_notice {
+        core.told_deserted = true;
         let (jobs, refused) = (core.queue.len(), core.refused.len());
         core.notice(Notice::NoWorker { jobs, refused });
     }
-}
-
-/// Whether a job must run alone.
-pub(super) const fn is_suspect(failures: Failures, suspect: u32) -> bool {
-    failures.losses >= suspect
 }

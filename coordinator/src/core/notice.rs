@@ -14,7 +14,7 @@ const MOST_NAMED: usize = 5;
 pub enum Notice {
     /// A worker takes part.
     Joined {
-        /// Which.
+        /// The worker's name.
         worker: WorkerId,
         /// Its machine.
         host: String,
@@ -23,14 +23,14 @@ pub enum Notice {
     },
     /// A worker left in good order.
     Left {
-        /// Which.
+        /// The worker's name.
         worker: WorkerId,
-        /// Why.
+        /// Why, in the worker's words.
         reason: String,
     },
     /// A worker was lost.
     Lost {
-        /// Which.
+        /// The worker's name.
         worker: WorkerId,
         /// How it showed.
         reason: String,
@@ -39,16 +39,16 @@ pub enum Notice {
     },
     /// A worker may not take part.
     Refused {
-        /// Which.
+        /// The worker's name.
         worker: WorkerId,
         /// Its machine.
         host: String,
-        /// Why.
+        /// Why, as it was told.
         reason: String,
     },
     /// A worker speaks another version of the wire.
     OtherVersion {
-        /// Which.
+        /// The worker's name.
         worker: WorkerId,
         /// The version.
         version: u8,
@@ -71,7 +71,7 @@ pub enum Notice {
     GivenUp {
         /// The job.
         job: JobId,
-        /// Why.
+        /// What happened last.
         failure: Failure,
     },
     /// The coordinator itself did not run for a while.

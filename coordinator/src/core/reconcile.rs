@@ -1,40 +1,17 @@
 //! What a worker says that it holds, against what it should hold.
-use super::{Core, assign, state::Lease};
+use super::{
+    lease::{adopt, order},
+    state::Core,
+};
 use protocol::{
-    id::{JobId, WorkerId},
+    id::WorkerId,
     message::{Beat, ToWorker},
 };
 use std::time::Duration;
 
-/// If a worker says that it holds a queued job already, it may keep it: it is one that outlived
-/// the process that gave it out.
-pub(super) fn adopt(core: &mut Core, job: JobId, now: Duration) {
-    if !core.queue.contains(&job) {
-        return;
-    }
-    let claim = core.members.iter().find_map(|(id, member)| {
-        let claim = member.claims.iter().find(|attempt| attempt.job == job)?;
-        Some((*id, *claim))
-    });
-    let Some((worker, attempt)) = claim else {
-        return;
-    };
-    let Some(pending) = core.jobs.get_mut(&job) else {
-        return;
-    };
-    let Some(member) = core.members.get_mut(&worker) else {
-        return;
-    };
-    member.claims.retain(|claim| *claim != attempt);
-    let (kind, overdue) = (pending.job.kind(), pending.failures.deadlines);
-    let deadline = core.times.deadline(kind, overdue, &core.options.policy);
-    member.add_lease(Lease::new(attempt, deadline, now), &core.clocks);
-    pending.holders.push(worker);
-    core.queue.remove(&job);
-}
-
-/// Compares what a worker holds with what it should hold.
+/// Takes note of what a worker holds, and makes it what it should hold.
 pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+    mark(core, from, beat, now);
     let computing = beat.running.iter().chain(&beat.waiting);
     for attempt in computing.clone() {
         let job = attempt.job;
@@ -52,25 +29,45 @@ pub(super) fn reconcile(core: &mut Core, from: WorkerId, beat: &Beat, now: Durat
             adopt(core, job, now);
         }
     }
-    let unmentioned = core.options.policy.unmentioned;
+    resend(core, from, beat, now);
+}
+
+/// Marks what it has begun, and forgets what it has let go.
+fn mark(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+    let resend_after = core.options.policy.resend_after;
     let Some(member) = core.members.get_mut(&from) else {
         return;
     };
+    for lease in &mut member.leases {
+        if lease.running.is_none() && beat.running.contains(&lease.attempt) {
+            lease.running = Some(now);
+        }
+    }
+    member.claims.clear();
+    member.taken.retain(|(attempt, at)| {
+        let mut held = beat.running.iter().chain(&beat.waiting);
+        held.any(|held| held == attempt) || now.saturating_sub(*at) < resend_after
+    });
+}
+
+/// Sends again what it was given and does not mention.
+fn resend(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+    let resend_after = core.options.policy.resend_after;
+    let Some(member) = core.members.get_mut(&from) else {
+        return;
+    };
+    let known = [&beat.running, &beat.waiting, &beat.finished];
     let mut again = Vec::new();
     for lease in &mut member.leases {
-        let attempt = lease.attempt;
-        let mentioned = computing
-            .clone()
-            .chain(&beat.finished)
-            .any(|held| *held == attempt);
-        if !mentioned && now.saturating_sub(lease.sent) > unmentioned {
+        let mentioned = known.iter().any(|held| held.contains(&lease.attempt));
+        if !mentioned && now.saturating_sub(lease.sent) > resend_after {
             lease.sent = now;
-            again.push((attempt, lease.deadline));
+            again.push((lease.attempt, lease.deadline));
         }
     }
     for (attempt, deadline) in again {
         if let Some(pending) = core.jobs.get(&attempt.job) {
-            let order = assign::order(attempt, deadline, &pending.job);
+            let order = order(attempt, deadline, &pending.job);
             core.send(from, order);
         }
     }

@@ -1,19 +1,25 @@
 //! What becomes of results and failures.
 use super::{
-    Core,
-    account::{self, Use},
-    assign,
+    completed::Completed,
     input::Command,
+    lease::{STATED, adopt, release},
     notice::{Notice, Stop},
-    reconcile,
+    slot_time::Use,
+    state::{Core, Pending, millis},
 };
 use protocol::{
     event::Finished,
     id::{JobId, WorkerId},
     job::{Failure, Outcome},
-    message::{Attempt, Done, ToWorker},
+    message::{Attempt, Cost, Done, ToWorker},
 };
-use std::time::Duration;
+use std::{collections::BTreeMap, time::Duration};
+
+/// An attempt has this many times the deadline that its worker enforces itself, since the worker does
+/// not count the time for which a job got no processor.
+const PATIENCE: u32 = 8;
+/// It has this on top of that, for a worker that ended it to say so.
+const GRACE: Duration = Duration::from_secs(10);
 
 /// A worker brought a result.
 pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
@@ -21,16 +27,7 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     if let Some(member) = core.members.get_mut(&from) {
         member.taken.retain(|(attempt, _)| *attempt != done.attempt);
     }
-    if let Some(waiting) = core.storing.get_mut(&job) {
-        if !waiting.contains(&(from, done.attempt)) {
-            waiting.push((from, done.attempt));
-        }
-        core.counts.duplicates += 1;
-        return;
-    }
-    if core.finished.contains(job) {
-        core.send(from, ToWorker::Stored(vec![done.attempt]));
-        core.counts.duplicates += 1;
+    if is_duplicate(core, from, done.attempt) {
         return;
     }
     let Some(pending) = core.jobs.get(&job) else {
@@ -47,37 +44,23 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
         let mut leases = member.leases.iter();
         leases.any(|lease| lease.attempt == done.attempt)
     });
-    let (wall_us, kind) = (done.wall_us, pending.job.kind());
-    let failure = if pending.work == done.work {
-        match done.outcome {
-            Outcome::Failed(failure) => failure,
-            outcome @ (Outcome::Scored(_)
-            | Outcome::Simulated(_)
-            | Outcome::Observed(_)
-            | Outcome::Described(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Nothing(_)) => {
-                if let Some(member) = core.members.get_mut(&from) {
-                    member.done += 1;
-                }
-                core.times.add(kind, wall_us, &core.options.policy);
-                core.counts.succeeded += 1;
-                accept(core, Some(from), Done { outcome, ..done });
-                return;
-            }
+    let (wall_us, kind) = (done.cost.wall_us, pending.job.kind());
+    let failure = if let Some(failure) = mistaken(pending, &done) {
+        if !held {
+            // an answer to another question, of another run: forget it
+            core.send(from, ToWorker::Stored(vec![done.attempt]));
+            return;
         }
-    } else if held {
-        // it was given this job and did another: it reads jobs in another way than we do
-        Failure::Refused {
-            reason: format!(
-                "it answered for the work {} when it was given {}; use the same build of \
-                 horsehead-worker on every machine",
-                done.work, pending.work
-            ),
-        }
+        failure
+    } else if let Outcome::Failed(failure) = done.outcome {
+        failure
     } else {
-        // an answer to another question, of another run: forget it
-        core.send(from, ToWorker::Stored(vec![done.attempt]));
+        if let Some(member) = core.members.get_mut(&from) {
+            member.done += 1;
+        }
+        core.times.add(kind, wall_us, &core.options.policy);
+        core.counts.succeeded += 1;
+        accept(core, Some(from), done);
         return;
     };
     core.send(from, ToWorker::Stored(vec![done.attempt]));
@@ -86,19 +69,44 @@ pub(super) fn done(core: &mut Core, from: WorkerId, done: Done, now: Duration) {
     }
     // a failure of an attempt that was taken away says nothing about the job
     if held {
-        assign::release(core, from, job, Use::Failed(wall_us));
+        release(core, from, job, Use::Failed(wall_us));
         failed(core, from, job, failure, now);
     }
+}
+
+/// Whether the job has its result already; the worker is told so once that is safe.
+fn is_duplicate(core: &mut Core, from: WorkerId, attempt: Attempt) -> bool {
+    if let Some(waiting) = core.storing.get_mut(&attempt.job) {
+        if !waiting.contains(&(from, attempt)) {
+            waiting.push((from, attempt));
+        }
+    } else if core.finished.contains(attempt.job) {
+        core.send(from, ToWorker::Stored(vec![attempt]));
+    } else {
+        return false;
+    }
+    core.counts.duplicates += 1;
+    true
+}
+
+/// What is wrong with a result of a job that is not the one of this name: whoever was given that job
+/// reads jobs in another way than we do.
+fn mistaken(pending: &Pending, done: &Done) -> Option<Failure> {
+    (pending.work != done.work).then(|| Failure::Refused {
+        reason: format!(
+            "it answered for the work {} when it was given {}; use the same build of \
+             horsehead-worker on every machine",
+            done.work, pending.work
+        ),
+    })
 }
 
 /// The one result of a job: stored, delivered, and no longer wanted from anyone else.
 fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
     let job = done.attempt.job;
-    let Some(pending) = core.jobs.remove(&job) else {
+    let Some(pending) = core.forget(job) else {
         return;
     };
-    core.queue.remove(&job);
-    core.suspects.remove(&job);
     for holder in pending.holders {
         let Some(member) = core.members.get_mut(&holder) else {
             continue;
@@ -108,39 +116,41 @@ fn accept(core: &mut Core, from: Option<WorkerId>, done: Done) {
         };
         if Some(holder) == from {
             if lease.prompt {
-                let fresh = lease
-                    .held
-                    .saturating_sub(Duration::from_micros(done.wall_us));
+                let wall = Duration::from_micros(done.cost.wall_us);
+                let fresh = lease.held.saturating_sub(wall);
                 let before = core.latency.unwrap_or(fresh);
                 core.latency = Some((before * 7 + fresh) / 8);
             }
-            account::attribute(member, &lease, Use::Useful(done.wall_us));
+            member.attribute(&lease, Use::Useful(done.cost.wall_us));
         } else {
-            account::attribute(member, &lease, Use::Speculative);
+            member.attribute(&lease, Use::Speculative);
             core.send(holder, ToWorker::Cancel(lease.attempt));
         }
     }
-    core.storing.insert(
-        job,
-        from.map(|from| (from, done.attempt)).into_iter().collect(),
-    );
-    core.out.push(Command::Deliver {
-        id: job,
-        outcome: done.outcome.clone(),
-    });
+    let waiting = from.map(|from| (from, done.attempt));
+    core.storing.insert(job, waiting.into_iter().collect());
+    deliver(core, job, done.cost, done.outcome.clone());
     core.out.push(Command::Store(Box::new(Finished {
         attempt: done.attempt,
         work: done.work,
         worker: from,
-        wall_us: done.wall_us,
+        cost: done.cost,
         outcome: done.outcome,
     })));
 }
 
+fn deliver(core: &mut Core, id: JobId, cost: Cost, outcome: Outcome) {
+    core.out.push(Command::Deliver(Completed {
+        id,
+        cost,
+        outcome,
+        replayed: false,
+    }));
+}
+
 /// Results became safe: the workers may forget them.
 pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
-    let mut acknowledged: std::collections::BTreeMap<WorkerId, Vec<Attempt>> =
-        std::collections::BTreeMap::new();
+    let mut acknowledged: BTreeMap<WorkerId, Vec<Attempt>> = BTreeMap::new();
     for job in jobs {
         for (worker, attempt) in core.storing.remove(&job).unwrap_or_default() {
             acknowledged.entry(worker).or_default().push(attempt);
@@ -152,6 +162,26 @@ pub(super) fn stored(core: &mut Core, jobs: Vec<JobId>) {
     }
 }
 
+/// Ends attempts that their worker should have ended itself.
+pub(super) fn check_overdue(core: &mut Core, now: Duration) {
+    let mut overdue = Vec::new();
+    for (worker, member) in &core.members {
+        for lease in &member.leases {
+            let since = lease.running.map(|running| now.saturating_sub(running));
+            if since.is_some_and(|since| since > lease.deadline.saturating_mul(PATIENCE) + GRACE) {
+                overdue.push((*worker, lease.attempt, lease.deadline));
+            }
+        }
+    }
+    for (worker, attempt, deadline) in overdue {
+        core.send(worker, ToWorker::Cancel(attempt));
+        release(core, worker, attempt.job, Use::Overdue);
+        let limit_ms = millis(deadline);
+        let failure = Failure::Deadline { limit_ms };
+        failed(core, worker, attempt.job, failure, now);
+    }
+}
+
 /// An attempt failed, whose worker no longer holds it: try again, or give the job up.
 pub(super) fn failed(
     core: &mut Core,
@@ -160,23 +190,20 @@ pub(super) fn failed(
     failure: Failure,
     now: Duration,
 ) {
-    let policy = &core.options.policy;
     let Some(pending) = core.jobs.get_mut(&job) else {
         return;
     };
-    let mut again = pending.failures.count(&failure, policy);
+    let mut again = pending.failures.count(&failure, &core.options.policy);
     if let Failure::Refused { .. } = failure {
         pending.refused_by.insert(worker);
         let refused_by = &pending.refused_by;
-        again = core
-            .members
-            .keys()
-            .any(|member| !refused_by.contains(member));
+        let mut members = core.members.keys();
+        again = members.any(|member| !refused_by.contains(member));
     }
     if !again {
         give_up(core, job, failure);
     }
-    reconcile::adopt(core, job, now);
+    adopt(core, job, now);
 }
 
 fn give_up(core: &mut Core, job: JobId, failure: Failure) {
@@ -188,39 +215,25 @@ fn give_up(core: &mut Core, job: JobId, failure: Failure) {
         job,
         failure: failure.clone(),
     });
-    if core.counts.succeeded == 0 && core.counts.failed == core.options.policy.hopeless {
+    if core.counts.succeeded == 0 && core.counts.failed == core.options.policy.stop_after_failures {
         let (jobs, last) = (core.counts.failed, failure.clone());
         core.out
             .push(Command::Stop(Stop::EverythingFails { jobs, last }));
     }
-    let attempt = Attempt {
-        job,
-        attempt: assign::STATED,
-    };
-    let done = Done {
-        attempt,
-        work,
-        wall_us: 0,
-        outcome: Outcome::Failed(failure),
-    };
-    match &done.outcome {
+    let (cost, attempt) = (Cost::default(), STATED);
+    match failure {
         // another build or another case may do better: not a result of the run
-        Outcome::Failed(Failure::Refused { .. } | Failure::Misconfigured { .. }) => {
-            core.jobs.remove(&job);
-            core.queue.remove(&job);
-            core.suspects.remove(&job);
-            core.out.push(Command::Deliver {
-                id: job,
-                outcome: done.outcome,
-            });
+        Failure::Refused { .. } | Failure::Misconfigured { .. } => {
+            core.forget(job);
+            deliver(core, job, cost, Outcome::Failed(failure));
         }
-        Outcome::Failed(_)
-        | Outcome::Scored(_)
-        | Outcome::Simulated(_)
-        | Outcome::Observed(_)
-        | Outcome::Described(_)
-        | Outcome::HeadReduced(_)
-        | Outcome::Nothing(_) => {
+        Failure::Deadline { .. } | Failure::Crashed { .. } | Failure::Lost { .. } => {
+            let done = Done {
+                attempt: Attempt { job, attempt },
+                work,
+                cost,
+                outcome: Outcome::Failed(failure),
+            };
             accept(core, None, done);
         }
     }

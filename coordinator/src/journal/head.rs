@@ -2,16 +2,17 @@
 //!
 //! A damaged block may cover every record of a short journal; the copy then still says what the
 //! run is and what it is called. It is a record like any other, in a journal of one record.
-use super::{HEAD, JournalError, read::fold, write::record};
+use super::{
+    error::JournalError,
+    read::fold,
+    record::{HEAD, record},
+};
+use crate::draft;
 use protocol::{
     event::{Event, RunHeader},
     id::RunId,
 };
-use std::{
-    fs::{self, File},
-    io::{self, Write},
-    path::Path,
-};
+use std::path::Path;
 
 /// The copy of a run folder; none if there is none that can be read.
 pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalError> {
@@ -37,13 +38,7 @@ pub(super) fn write(folder: &Path, run: RunId, header: &RunHeader) -> Result<(),
     let header = header.clone();
     let bytes = record(&Event::Begun { run, header })?;
     let path = folder.join(HEAD);
-    let beside = folder.join("journal.head.new");
-    let written = (|| -> io::Result<()> {
-        let mut file = File::create(&beside)?;
-        file.write_all(&bytes)?;
-        file.sync_all()?;
-        fs::rename(&beside, &path)
-    })();
+    let written = draft::replace(&path, &bytes);
     written.map_err(|source| JournalError::Io {
         doing: "write",
         path,

@@ -1,5 +1,5 @@
 //! Results of a journal by job: where each lies, and reading it again.
-use super::{JournalError, RECORD_HEADER};
+use super::{error::JournalError, record::RECORD_HEADER};
 use protocol::{
     event::{Event, Finished},
     id::JobId,

@@ -1,9 +1,12 @@
 //! Opening a journal, or going on with it.
 use super::{
-    FILE, JournalError, LOCK, differences, head,
+    differences::differences,
+    error::JournalError,
+    head,
     index::Results,
     read::{Entry, ReadReport, fold},
-    write::{Appended, Writer, record},
+    record::{FILE, LOCK, record},
+    write::{Appended, Writer},
 };
 use protocol::{
     event::{Event, Finished, RunHeader},

@@ -1,5 +1,8 @@
 //! Reading a journal, damaged or not.
-use super::{JournalError, MARK, RECORD_HEADER};
+use super::{
+    error::JournalError,
+    record::{MARK, RECORD_HEADER, checksum},
+};
 use protocol::{
     event::Event,
     wire::{self, BODY_LIMIT},
@@ -193,12 +196,4 @@ impl Reader {
         self.at = self.length;
         Ok(())
     }
-}
-
-/// The checksum of a record: over its length too, which would otherwise be trusted.
-pub(super) fn checksum(length: u32, body: &[u8]) -> u32 {
-    let mut hasher = crc32fast::Hasher::new();
-    hasher.update(&length.to_le_bytes());
-    hasher.update(body);
-    hasher.finalize()
 }

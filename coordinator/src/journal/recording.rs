@@ -1,6 +1,6 @@
 //! A journal for reading alone: while its run goes on or after its end, and without a trace.
 use super::{
-    JournalError,
+    error::JournalError,
     index::Results,
     read::{Entry, ReadReport, fold},
 };

@@ -2,8 +2,8 @@
 use protocol::{
     event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId},
-    job::Outcome,
-    message::Attempt,
+    job::{Answer, Outcome},
+    message::{Attempt, Cost},
 };
 
 /// A result of a job, whose work is named after it.
@@ -15,12 +15,19 @@ pub(crate) fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
         },
         work: ContentHash::of(&job.to_le_bytes()),
         worker: None,
-        wall_us,
+        cost: Cost {
+            wall_us,
+            cpu_us: wall_us / 2,
+        },
         outcome,
     }))
 }
 
 /// A result that differs from those of other jobs.
 pub(crate) fn result(job: u64) -> Event {
-    finished(job, 11 * job, Outcome::Nothing(job.to_le_bytes().repeat(3)))
+    finished(
+        job,
+        11 * job,
+        Outcome::Done(Answer::Nothing(job.to_le_bytes().repeat(3))),
+    )
 }

@@ -1,8 +1,9 @@
 //! A journal under torture.
-use super::{sample::result, *};
+use super::{differences::differences, record::RECORD_HEADER, sample::result, *};
 use protocol::{
-    event::Event,
+    event::{Event, RunHeader},
     id::{ContentHash, JobId, RunId},
+    wire::VERSION,
 };
 use std::{
     collections::BTreeMap,
@@ -349,11 +350,11 @@ fn a_seed_and_settings_that_differ_are_named_not_dumped() {
         settings: settings.to_owned(),
         ..header()
     };
-    let was = header(r#"[1,{"name":"quick","stages":[{"size":24},{"size":8,"x":null}]}]"#);
-    let seed = header(r#"[2,{"name":"quick","stages":[{"size":24},{"size":8,"x":null}]}]"#);
+    let was = header(r#"{"seed":1,"name":"quick","stages":[{"size":24},{"size":8,"x":null}]}"#);
+    let seed = header(r#"{"seed":2,"name":"quick","stages":[{"size":24},{"size":8,"x":null}]}"#);
     assert_eq!(differences(&was, &seed), ["seed (1, now 2)"]);
-    let size = header(r#"[1,{"name":"quick","stages":[{"size":24},{"size":9,"x":null}]}]"#);
+    let size = header(r#"{"seed":1,"name":"quick","stages":[{"size":24},{"size":9,"x":null}]}"#);
     assert_eq!(differences(&was, &size), ["stages.2.size (8, now 9)"]);
-    let other = header(r#"[1,{"a":1,"b":2,"c":3,"d":4}]"#);
+    let other = header(r#"{"seed":1,"a":1,"b":2,"c":3,"d":4}"#);
     assert_eq!(differences(&was, &other).len(), 4);
 }

@@ -1,7 +1,7 @@
 //! Writing a journal: one thread, one flush for all records that wait, and patience with a disk
 //! that is full.
-use super::{MARK, RECORD_HEADER, read::checksum};
-use protocol::{event::Event, id::JobId, wire};
+use super::record::record;
+use protocol::{event::Event, id::JobId};
 use std::{
     fs::File,
     io::{self, Seek, SeekFrom, Write},
@@ -29,21 +29,6 @@ pub enum Appended {
     Resumed,
     /// The file was deleted: what is written to it now is lost with this process.
     Deleted,
-}
-
-/// Encodes an event as a record.
-pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
-    let body = wire::encode(event)?;
-    let length = u32::try_from(body.len()).map_err(|_| wire::WireError::TooLong {
-        bytes: body.len(),
-        limit: wire::BODY_LIMIT,
-    })?;
-    let mut record = Vec::with_capacity(RECORD_HEADER + body.len());
-    record.extend_from_slice(&MARK);
-    record.extend_from_slice(&length.to_le_bytes());
-    record.extend_from_slice(&checksum(length, &body).to_le_bytes());
-    record.extend_from_slice(&body);
-    Ok(record)
 }
 
 /// What records are written to.

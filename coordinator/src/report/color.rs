@@ -1,66 +1,91 @@
-//! The colour scales of the report: rope tension, contact pressure, and signed deviation.
+//! The colours of the report: of lines and words, and scales of tension, pressure and deviation.
 //!
-//! All are even in lightness and readable by colour-blind readers, and dark enough everywhere to
-//! stand on white paper where they mean something.
-use plotters::prelude::RGBColor;
+//! Measured is black on a grey band, simulated is vermillion: the pair stays apart for colour-blind
+//! readers and on a grey printer. The scales are even in lightness, and dark enough to stand on white
+//! paper where they mean something.
+use std::fmt;
+
+/// A colour: red, green and blue.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Color(pub u8, pub u8, pub u8);
+
+impl fmt::Display for Color {
+    /// As CSS and SVG write it.
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
+
+/// Text and measured curves.
+pub(super) const INK: Color = Color(0x22, 0x22, 0x22);
+/// Secondary text.
+pub(super) const GREY: Color = Color(0x6b, 0x6b, 0x6b);
+/// Axes.
+pub(super) const AXIS: Color = Color(0x55, 0x55, 0x55);
+/// Guide lines behind curves.
+pub(super) const GUIDE: Color = Color(0xe9, 0xe9, 0xe6);
+/// The guide line at zero.
+pub(super) const ZERO: Color = Color(0xb9, 0xb9, 0xb5);
+/// Bands of spread.
+pub(super) const BAND: Color = Color(0xd3, 0xd3, 0xd0);
+/// Simulated curves and the optimum.
+pub(super) const VERMILLION: Color = Color(0xc8, 0x4b, 0x11);
+/// Second simulated quantity.
+pub(super) const BLUE: Color = Color(0x0b, 0x5f, 0x9e);
+/// Third simulated quantity.
+pub(super) const GREEN: Color = Color(0x1b, 0x7a, 0x5a);
+/// Fourth simulated quantity.
+pub(super) const PURPLE: Color = Color(0x8a, 0x4f, 0x8f);
 
 /// Tension, low to high: deep blue over violet and rose to orange.
-const TENSION: [(u8, u8, u8); 5] = [
-    (0x1c, 0x2a, 0x7c),
-    (0x5b, 0x1f, 0x9b),
-    (0xa6, 0x2a, 0x8e),
-    (0xdd, 0x51, 0x66),
-    (0xf4, 0x92, 0x3a),
+const TENSION: [Color; 5] = [
+    Color(0x1c, 0x2a, 0x7c),
+    Color(0x5b, 0x1f, 0x9b),
+    Color(0xa6, 0x2a, 0x8e),
+    Color(0xdd, 0x51, 0x66),
+    Color(0xf4, 0x92, 0x3a),
 ];
 
 /// Pressure, none to high: paper over blue to ink.
-const PRESSURE: [(u8, u8, u8); 5] = [
-    (0xf1, 0xf4, 0xf6),
-    (0xb4, 0xcd, 0xde),
-    (0x63, 0x9c, 0xc4),
-    (0x22, 0x5f, 0x96),
-    (0x08, 0x24, 0x4e),
+const PRESSURE: [Color; 5] = [
+    Color(0xf1, 0xf4, 0xf6),
+    Color(0xb4, 0xcd, 0xde),
+    Color(0x63, 0x9c, 0xc4),
+    Color(0x22, 0x5f, 0x96),
+    Color(0x08, 0x24, 0x4e),
 ];
 
 /// Deviation, below to above: blue over paper to vermillion.
-const SIGNED: [(u8, u8, u8); 5] = [
-    (0x0b, 0x4a, 0x7d),
-    (0x7f, 0xb0, 0xd2),
-    (0xf6, 0xf6, 0xf4),
-    (0xea, 0xa1, 0x78),
-    (0xb3, 0x3c, 0x08),
+const SIGNED: [Color; 5] = [
+    Color(0x0b, 0x4a, 0x7d),
+    Color(0x7f, 0xb0, 0xd2),
+    Color(0xf6, 0xf6, 0xf4),
+    Color(0xea, 0xa1, 0x78),
+    Color(0xb3, 0x3c, 0x08),
 ];
 
 /// Colour of a deviation, as a share of the scale (-1 to 1, held inside).
-pub(super) fn signed(share: f64) -> RGBColor {
+pub(super) fn signed(share: f64) -> Color {
     let share = if share.is_finite() { share } else { 0.0 };
     blend(&SIGNED, 0.5 + 0.5 * share)
 }
 
 /// Colour of a tension, as a share of the scale (0 to 1, held inside).
-pub(super) fn tension(share: f64) -> RGBColor {
+pub(super) fn tension(share: f64) -> Color {
     blend(&TENSION, share)
 }
 
 /// Colour of a pressure, as a share of the scale (0 to 1, held inside).
-pub(super) fn pressure(share: f64) -> RGBColor {
+pub(super) fn pressure(share: f64) -> Color {
     blend(&PRESSURE, share)
-}
-
-/// As CSS writes it.
-pub(super) fn css(color: RGBColor) -> String {
-    format!("#{:02x}{:02x}{:02x}", color.0, color.1, color.2)
 }
 
 /// The stops of the tension scale as CSS colours, evenly spaced.
 pub(super) fn tension_stops() -> Vec<String> {
-    TENSION
-        .iter()
-        .map(|&(r, g, b)| css(RGBColor(r, g, b)))
-        .collect()
+    TENSION.iter().map(Color::to_string).collect()
 }
 
-fn blend(stops: &[(u8, u8, u8); 5], share: f64) -> RGBColor {
+fn blend(stops: &[Color; 5], share: f64) -> Color {
     let place = 4.0
         * if share.is_finite() {
             share.clamp(0.0, 1.0)
@@ -81,20 +106,20 @@ fn blend(stops: &[(u8, u8, u8); 5], share: f64) -> RGBColor {
         reason = "between two bytes"
     )]
     let mix = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;
-    RGBColor(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
+    Color(mix(a.0, b.0), mix(a.1, b.1), mix(a.2, b.2))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{css, pressure, signed, tension};
+    use super::{pressure, signed, tension};
 
     #[test]
     fn scales_end_at_their_stops_and_hold_outside() {
-        assert_eq!(css(tension(0.0)), "#1c2a7c");
-        assert_eq!(css(tension(7.0)), "#f4923a");
-        assert_eq!(css(tension(f64::NAN)), "#1c2a7c");
-        assert_eq!(css(pressure(0.5)), "#639cc4");
-        assert_eq!(css(signed(0.0)), css(signed(f64::NAN)));
-        assert_eq!(css(signed(-3.0)), "#0b4a7d");
+        assert_eq!(tension(0.0).to_string(), "#1c2a7c");
+        assert_eq!(tension(7.0).to_string(), "#f4923a");
+        assert_eq!(tension(f64::NAN).to_string(), "#1c2a7c");
+        assert_eq!(pressure(0.5).to_string(), "#639cc4");
+        assert_eq!(signed(0.0), signed(f64::NAN));
+        assert_eq!(signed(-3.0).to_string(), "#0b4a7d");
     }
 }

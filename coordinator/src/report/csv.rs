@@ -3,9 +3,8 @@
 //! An empty field is a value that does not exist; numbers are written with all their digits.
 use super::data::{ConditionResult, Run, SingleRun};
 use super::words::condition_name;
-use crate::study::{BoxPoint, WorkPrecision};
-use protocol::case::{Case, GaugeRecord, Gene};
-use protocol::job::{Simulation, Verdict};
+use protocol::case::{Case, GaugeRecord};
+use protocol::job::Simulation;
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.
@@ -177,81 +176,4 @@ fn on_grid(record: &GaugeRecord, turn_deg: f64) -> Option<usize> {
         .partition_point(|&known| known < turn_deg - SAME_DEG);
     let known = *record.turn_deg.get(row)?;
     ((known - turn_deg).abs() <= SAME_DEG).then_some(row)
-}
-
-/// Writes individuals of the box of genes: genes in declared units, how each ended, what it cost.
-///
-/// # Errors
-/// [`csv::Error`] when the writer fails.
-pub fn whole_box(to: impl Write, case: &Case, points: &[BoxPoint]) -> Result<(), csv::Error> {
-    let mut writer = csv::Writer::from_writer(to);
-    let genes: Vec<String> = case.genes.iter().map(Gene::label).collect();
-    let rest = [
-        "verdict",
-        "load_fraction",
-        "time_fraction",
-        "steps",
-        "newton_iterations",
-        "factorizations",
-        "wall_s",
-    ];
-    let genes = genes.iter().map(String::as_str);
-    writer.write_record(std::iter::once("point").chain(genes).chain(rest))?;
-    for (index, point) in points.iter().enumerate() {
-        let counters = &point.counters;
-        let mut fields = vec![index.to_string()];
-        fields.extend(point.genes.iter().map(f64::to_string));
-        let verdict = point.verdict;
-        fields.push(verdict.as_str().to_owned());
-        fields.extend([verdict.load_fraction(), verdict.time_fraction()].map(field));
-        fields.extend([
-            counters.steps.to_string(),
-            counters.newton_iterations.to_string(),
-            counters.factorizations.to_string(),
-            point.wall_s.to_string(),
-        ]);
-        writer.write_record(fields)?;
-    }
-    writer.flush()?;
-    Ok(())
-}
-
-/// Writes a comparison of methods: one row per run; the error is empty where the run did not end.
-///
-/// # Errors
-/// [`csv::Error`] when the writer fails.
-pub fn work_precision(to: impl Write, all: &WorkPrecision) -> Result<(), csv::Error> {
-    let mut writer = csv::Writer::from_writer(to);
-    writer.write_record([
-        "integrator",
-        "tolerance",
-        "longest_step_s",
-        "complete",
-        "steps",
-        "rejected_steps",
-        "newton_iterations",
-        "jacobians",
-        "factorizations",
-        "wall_s",
-        "error_over_range",
-        "energy_error",
-    ])?;
-    for point in &all.points {
-        let counters = &point.counters;
-        writer.write_record([
-            point.integrator.as_str().to_owned(),
-            point.tolerance.to_string(),
-            point.longest_step_s.to_string(),
-            (point.verdict == Verdict::Complete).to_string(),
-            counters.steps.to_string(),
-            counters.rejected_steps.to_string(),
-            counters.newton_iterations.to_string(),
-            counters.jacobians.to_string(),
-            counters.factorizations.to_string(),
-            field(Some(point.wall_s)),
-            field(point.error),
-            field(Some(point.energy_error)),
-        ])?;
-    }
-    Ok(writer.flush()?)
 }

@@ -1,6 +1,7 @@
 //! Plain data that a report is made of: what the study hands over, nothing drawn yet.
 //!
 //! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
+use crate::account::JobCost;
 use protocol::case::Case;
 use protocol::event::Spent;
 use protocol::job::{Evaluation, Simulation};
@@ -31,6 +32,8 @@ pub struct HistoryPoint {
     pub complete: bool,
     /// What ended it early, in words.
     pub failure: Option<String>,
+    /// What its simulation cost; none where nothing is known of it.
+    pub cost: Option<JobCost>,
 }
 
 /// What one worker contributed.
@@ -83,7 +86,7 @@ pub struct ConditionResult {
 
 /// Everything that identifies how a result was made.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Provenance {
+pub struct Origin {
     /// Program and version.
     pub program: String,
     /// Command line that makes it again.
@@ -110,7 +113,7 @@ pub struct Calibration {
     /// The case that was calibrated.
     pub case: Case,
     /// How it was made.
-    pub provenance: Provenance,
+    pub origin: Origin,
     /// The starting point.
     pub recommended: Individual,
     /// The best individual that was found.
@@ -146,7 +149,7 @@ pub struct SingleRun {
     /// The case that was simulated.
     pub case: Case,
     /// How it was made.
-    pub provenance: Provenance,
+    pub origin: Origin,
     /// Index of the condition in the case.
     pub condition: usize,
     /// Where the genes came from, as `recommended` or a file name.

@@ -164,25 +164,9 @@ pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)>
         })
 }
 
-/// The value below which a share of the values lies, linearly between neighbours; the values are
-/// sorted ascending.
-pub(super) fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
-    let last = sorted.len().checked_sub(1)?;
-    let place = share.clamp(0.0, 1.0) * last as f64;
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 0 and the last index"
-    )]
-    let below = place.floor() as usize;
-    let low = *sorted.get(below)?;
-    let high = *sorted.get((below + 1).min(last))?;
-    Some(low + (high - low) * (place - below as f64))
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{count, figure, fixed, percent, quantile, ratio};
+    use super::{count, figure, fixed, percent, ratio};
 
     #[test]
     fn three_digits_and_powers_of_ten() {
@@ -204,14 +188,5 @@ mod tests {
         assert_eq!(ratio(1.0, 0.0), "–");
         assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!(fixed(-0.001, 2), "0.00");
-    }
-
-    #[test]
-    fn quantiles_lie_between_neighbours() {
-        let sorted = [1.0, 2.0, 4.0, 8.0];
-        assert_eq!(quantile(&sorted, 0.5), Some(3.0));
-        assert_eq!(quantile(&sorted, 1.0), Some(8.0));
-        assert_eq!(quantile(&sorted, 0.0), Some(1.0));
-        assert_eq!(quantile(&[], 0.5), None);
     }
 }

@@ -56,14 +56,14 @@ pub fn write(
     fields(&mut to, "PointData", at_nodes)?;
     fields(&mut to, "CellData", at_elements)?;
     writeln!(to, "<Points>")?;
-    array(&mut to, "Float64", ("Points", 3), mesh.nodes_m.iter())?;
+    array(&mut to, "Float64", "Points", 3, mesh.nodes_m.iter())?;
     writeln!(to, "</Points>\n<Cells>")?;
     let nodes = elements.map(|element| order.iter().map(|&place| element[place]));
-    array(&mut to, "Int64", ("connectivity", 1), nodes)?;
+    array(&mut to, "Int64", "connectivity", 1, nodes)?;
     let offsets = (1..=cells).map(|k| [order.len() * k]);
-    array(&mut to, "Int64", ("offsets", 1), offsets)?;
+    array(&mut to, "Int64", "offsets", 1, offsets)?;
     let types = (0..cells).map(|_| [number]);
-    array(&mut to, "UInt8", ("types", 1), types)?;
+    array(&mut to, "UInt8", "types", 1, types)?;
     writeln!(to, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
 }
 
@@ -71,7 +71,7 @@ fn fields(to: &mut impl Write, kind: &str, fields: &[Field]) -> io::Result<()> {
     writeln!(to, "<{kind}>")?;
     for field in fields {
         let width = field.values.first().map_or(1, Vec::len);
-        array(to, "Float32", (&field.name, width), field.values.iter())?;
+        array(to, "Float32", &field.name, width, field.values.iter())?;
     }
     writeln!(to, "</{kind}>")
 }
@@ -79,7 +79,8 @@ fn fields(to: &mut impl Write, kind: &str, fields: &[Field]) -> io::Result<()> {
 fn array<R, N>(
     to: &mut impl Write,
     kind: &str,
-    (name, width): (&str, usize),
+    name: &str,
+    width: usize,
     rows: impl Iterator<Item = R>,
 ) -> io::Result<()>
 where

@@ -1,11 +1,12 @@
 //! The task of an open run: carries words between link, core and journal, and decides nothing.
 use super::{
-    Completed, DispatchError, Parts, Snapshot, Summary,
+    error::DispatchError,
     local::{LocalEvent, LocalWorkers},
+    parts::Parts,
     sleep::Sleep,
 };
 use crate::{
-    core::{Command, Core, Input, work_hash},
+    core::{Command, Completed, Core, Input, Snapshot},
     journal::{Appended, Journal},
 };
 use link::{CoordinatorEnd, Heard};
@@ -40,6 +41,17 @@ const LAST_WRITE: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub(super) enum Request {
     Submit { id: JobId, job: Box<Job> },
+}
+
+/// How a run went, from the opening to the closing of this process.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Summary {
+    /// The last state, with the account of slot time.
+    pub last: Snapshot,
+    /// Results taken from the journal instead of being computed.
+    pub replayed: u64,
+    /// Time between opening and closing \[s\].
+    pub wall_s: f64,
 }
 
 type Deliver = UnboundedSender<Result<Completed, DispatchError>>;
@@ -149,12 +161,12 @@ impl<L: CoordinatorEnd> Engine<L> {
     fn submit(&mut self, id: JobId, job: Job) {
         match self.journal.recall(id) {
             Ok(None) => self.handle(Input::Submit { id, job }),
-            Ok(Some(finished)) if finished.work == work_hash(&job) => {
+            Ok(Some(finished)) if finished.work == job.work_hash() => {
                 self.replayed += 1;
-                let outcome = finished.outcome;
                 self.give(Ok(Completed {
                     id,
-                    outcome,
+                    cost: finished.cost,
+                    outcome: finished.outcome,
                     replayed: true,
                 }));
             }
@@ -233,15 +245,11 @@ impl<L: CoordinatorEnd> Engine<L> {
                 Command::Send { to, message } => self.send(to, &message),
                 Command::Store(finished) => self.record(Event::Finished(finished)),
                 Command::Record(event) => self.record(event),
-                Command::Deliver { id, outcome } => {
+                Command::Deliver(completed) => {
                     if let Some(workers) = &self.workers {
                         workers.note_result();
                     }
-                    self.give(Ok(Completed {
-                        id,
-                        outcome,
-                        replayed: false,
-                    }));
+                    self.give(Ok(completed));
                 }
                 Command::Notice(notice) if notice.is_routine() => tracing::info!("{notice}"),
                 Command::Notice(notice) => tracing::warn!("{notice}"),

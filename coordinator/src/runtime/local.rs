@@ -6,12 +6,12 @@
 //!
 //! One thread owns them all and lives as long as they do, because the parent-death signal that
 //! ends them follows the thread that started them. They also end when their standard input does.
-use super::DispatchError;
+use super::error::DispatchError;
 use link::locator::Locator;
 use std::{
     io,
     os::unix::process::{CommandExt, ExitStatusExt},
-    path::{Path, PathBuf},
+    path::PathBuf,
     process::{Child, Command, ExitStatus, Stdio},
     sync::{
         Arc,
@@ -58,14 +58,17 @@ pub(super) struct LocalWorkers {
 impl LocalWorkers {
     /// Starts `count` workers with one slot each.
     pub(super) fn start(
-        program: PathBuf,
+        path: PathBuf,
         connect: &Locator,
         count: usize,
     ) -> Result<Self, DispatchError> {
         let (say, events) = unbounded_channel();
         let (end, ended) = mpsc::channel();
         let (begun_to, begun) = mpsc::channel();
-        let connect = connect.to_string();
+        let program = Program {
+            path,
+            connect: connect.to_string(),
+        };
         let results = Arc::new(AtomicU64::new(0));
         let progress = Arc::clone(&results);
         let tend = move || {
@@ -74,7 +77,7 @@ impl LocalWorkers {
             // and none is started once the end is asked for
             while places.len() < count && matches!(ended.try_recv(), Err(mpsc::TryRecvError::Empty))
             {
-                match Place::start(&program, &connect) {
+                match Place::start(&program) {
                     Ok(place) => places.push(place),
                     Err(error) if places.is_empty() => {
                         drop(begun_to.send(Err(error)));
@@ -92,8 +95,7 @@ impl LocalWorkers {
                     drop(begun_to.send(Ok(())));
                 }
             }
-            let started = (program.as_path(), connect.as_str());
-            tend(&mut places, started, &progress, &say, &ended);
+            tend(&mut places, &program, &progress, &say, &ended);
             end_all(places);
         };
         let thread = thread::Builder::new()
@@ -134,6 +136,12 @@ impl Drop for LocalWorkers {
     }
 }
 
+/// What is started, and where it connects to.
+struct Program {
+    path: PathBuf,
+    connect: String,
+}
+
 /// One worker and its history.
 struct Place {
     child: Option<Child>,
@@ -148,9 +156,9 @@ struct Place {
 }
 
 impl Place {
-    fn start(program: &Path, connect: &str) -> io::Result<Self> {
-        let child = Command::new(program)
-            .args(["--connect", connect, "--slots", "1", "--embedded"])
+    fn start(program: &Program) -> io::Result<Self> {
+        let child = Command::new(&program.path)
+            .args(["--connect", &program.connect, "--slots", "1", "--embedded"])
             .env_remove("HORSEHEAD_IDLE_TIMEOUT")
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
@@ -196,10 +204,10 @@ impl Place {
     }
 
     /// Starts it again if it is time; what is wrong if that fails.
-    fn restart_when_due(&mut self, program: &Path, connect: &str) -> Option<String> {
+    fn restart_when_due(&mut self, program: &Program) -> Option<String> {
         self.again_at.filter(|at| *at <= Instant::now())?;
         self.again_at = None;
-        match Self::start(program, connect) {
+        match Self::start(program) {
             Ok(started) => {
                 (self.child, self.begun) = (started.child, started.begun);
                 None
@@ -211,7 +219,7 @@ impl Place {
 
 fn tend(
     places: &mut [Place],
-    (program, connect): (&Path, &str),
+    program: &Program,
     results: &AtomicU64,
     say: &UnboundedSender<LocalEvent>,
     end: &mpsc::Receiver<()>,
@@ -221,7 +229,7 @@ fn tend(
         for place in &mut *places {
             let results = results.load(Ordering::Relaxed);
             let ended = place.ended().map(|how| place.again(how, results));
-            let restarted = place.restart_when_due(program, connect);
+            let restarted = place.restart_when_due(program);
             let failed = restarted.map(|error| place.again(error, results));
             for event in ended.into_iter().chain(failed) {
                 let gone = match &event {

@@ -1,8 +1,8 @@
 //! Tables on their way to files: rows are gathered and handed on by the thousand, so that an export
 //! needs no more memory for a million results than for ten thousand.
 use super::{
-    StoreError,
     column::{Column, Columns, Value},
+    error::StoreError,
 };
 use std::{collections::BTreeMap, mem};
 

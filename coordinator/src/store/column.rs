@@ -2,6 +2,9 @@
 //!
 //! Knows neither what the rows are of nor in which form they are written.
 
+/// The name of every job column: databases look rows up by it.
+pub(super) const JOB: &str = "job";
+
 /// What a field holds.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Value {
@@ -64,7 +67,7 @@ impl<R: 'static> Columns<R> {
         }
     }
 
-    fn add(mut self, (name, about): (&str, &str), kind: Kind, read: Read<R>) -> Self {
+    fn add(mut self, name: &str, about: &str, kind: Kind, read: Read<R>) -> Self {
         self.columns.push(Column {
             name: name.to_owned(),
             kind,
@@ -85,7 +88,7 @@ impl<R: 'static> Columns<R> {
             let number = read(row).and_then(|number| i64::try_from(number).ok());
             number.map_or(Value::Null, Value::Integer)
         };
-        self.add((name, about), Kind::Integer, Box::new(value))
+        self.add(name, about, Kind::Integer, Box::new(value))
     }
 
     /// A column of numbers; what is not finite is none.
@@ -99,7 +102,7 @@ impl<R: 'static> Columns<R> {
             let number = read(row).filter(|number| number.is_finite());
             number.map_or(Value::Null, Value::Real)
         };
-        self.add((name, about), Kind::Real, Box::new(value))
+        self.add(name, about, Kind::Real, Box::new(value))
     }
 
     /// A column of words; no words are none, since not every form can tell the two apart.
@@ -113,7 +116,7 @@ impl<R: 'static> Columns<R> {
             let words = read(row).filter(|words| !words.is_empty());
             words.map_or(Value::Null, Value::Text)
         };
-        self.add((name, about), Kind::Text, Box::new(value))
+        self.add(name, about, Kind::Text, Box::new(value))
     }
 
     /// The columns of a part of the row.

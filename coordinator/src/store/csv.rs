@@ -1,8 +1,8 @@
 //! Tables as text: one file each, an empty field where a value does not exist, all digits of numbers.
 use super::{
-    StoreError,
     book::{Shape, Sink},
     column::Value,
+    error::StoreError,
 };
 use std::{
     fs::File,

@@ -1,8 +1,8 @@
 //! Tables as Parquet: one file each, every column optional, texts as UTF-8.
 use super::{
-    StoreError,
     book::{Shape, Sink},
     column::{Kind, Value},
+    error::StoreError,
 };
 use parquet::{
     basic::{LogicalType, Repetition, Type as Physical},

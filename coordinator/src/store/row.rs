@@ -3,7 +3,8 @@ use crate::core;
 use protocol::{
     event::Finished,
     id::{JobId, WorkerId},
-    job::{ChannelScore, Counters, Failure, Outcome, Verdict},
+    job::{Answer, ChannelScore, Counters, Failure, Outcome, Verdict},
+    message::Cost,
 };
 
 /// What a journal says of one result, without its curves.
@@ -14,7 +15,7 @@ pub(super) struct Brief {
     /// The process of the run that offered it, and the offers of its job that went before there.
     pub(super) offered: Option<(u32, u32)>,
     pub(super) worker: Option<WorkerId>,
-    pub(super) wall_us: u64,
+    pub(super) cost: Cost,
     pub(super) simulated: Option<(Verdict, Counters)>,
     pub(super) fitness_mpa2: Option<f64>,
     pub(super) scores: Vec<ChannelScore>,
@@ -23,28 +24,20 @@ pub(super) struct Brief {
 
 impl Brief {
     pub(super) fn of(finished: &Finished) -> Self {
-        let (mut fitness_mpa2, mut scores, mut failure) = (None, Vec::new(), None);
-        match &finished.outcome {
-            Outcome::Scored(evaluation) => {
-                fitness_mpa2 = Some(evaluation.fitness);
-                scores.clone_from(&evaluation.channels);
-            }
-            Outcome::Failed(why) => failure = Some(why.clone()),
-            Outcome::Simulated(_)
-            | Outcome::Observed(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Described(_)
-            | Outcome::Nothing(_) => {}
-        }
+        let evaluation = finished.outcome.answer().and_then(Answer::evaluation);
+        let failure = match &finished.outcome {
+            Outcome::Failed(why) => Some(why.clone()),
+            Outcome::Done(_) => None,
+        };
         Self {
             job: finished.job(),
             kind: finished.outcome.kind(),
             offered: core::offered(finished.attempt.attempt),
             worker: finished.worker,
-            wall_us: finished.wall_us,
+            cost: finished.cost,
             simulated: finished.outcome.simulation(),
-            fitness_mpa2,
-            scores,
+            fitness_mpa2: evaluation.map(|evaluation| evaluation.fitness),
+            scores: evaluation.map_or_else(Vec::new, |evaluation| evaluation.channels.clone()),
             failure,
         }
     }

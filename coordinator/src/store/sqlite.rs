@@ -2,10 +2,9 @@
 //!
 //! Nobody sees the file before it is complete, so nothing is spent on surviving a crash meanwhile.
 use super::{
-    StoreError,
     book::{Shape, Sink},
-    column::{Kind, Value},
-    table::JOB,
+    column::{JOB, Kind, Value},
+    error::StoreError,
 };
 use rusqlite::{
     Connection, ToSql, params_from_iter,

@@ -1,11 +1,12 @@
 //! Where an export goes: written beside its place and moved there when it is complete, so that a
 //! reader finds the old one or the new one. What is not an export of ours is left alone.
 use super::{
-    StoreError,
     book::Sink,
     csv::CsvFiles,
+    error::StoreError,
     parquet::ParquetFiles,
     sqlite::{APPLICATION, Database},
+    table,
 };
 use std::{
     collections::BTreeSet,
@@ -176,7 +177,7 @@ fn is_our_database(path: &Path) -> io::Result<bool> {
 fn is_our_folder(path: &Path, format: Format) -> io::Result<bool> {
     let files = entries(path)?;
     let file = |table: &str| format!("{table}.{}", format.as_str());
-    let ours: BTreeSet<String> = super::table::NAMES.iter().map(|name| file(name)).collect();
+    let ours: BTreeSet<String> = table::NAMES.iter().map(|name| file(name)).collect();
     let complete = files.contains(&file("dictionary"));
     Ok(files.is_empty() || (complete && files.iter().all(|name| ours.contains(name))))
 }

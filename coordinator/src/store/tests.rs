@@ -1,7 +1,7 @@
 //! Where an export may go, and that nobody finds half of one.
-use super::{table::NAMES, *};
+use super::{Exported, Format, Store, StoreError, Target, read_back, table::NAMES};
 use crate::study::tests::case;
-use std::fs;
+use std::{fs, path::Path};
 
 fn target(path: &Path, format: Format, force: bool) -> Target {
     Target {

@@ -1,12 +1,22 @@
 //! The loop: ask, submit, wait, tell.
-use super::{Ending, Entry, EvaluationLog, Evaluator, ProgressView, StudyError};
+use super::{
+    error::StudyError,
+    evaluator::Evaluator,
+    log::{Ending, Entry, EvaluationLog},
+    progress::ProgressView,
+    stop::{Stop, or_stop},
+    watch::Watch,
+};
 use protocol::{
     case::Case,
-    job::{Job, Outcome, ScoreSpec},
+    id::JobId,
+    job::{Answer, Individual, Job, Outcome, Reply, SimulateSpec},
 };
-use search::strategy::{Best, Finish, Proposal, Purpose, Strategy};
+use search::strategy::{Best, Finish, Proposal, Strategy};
 use std::collections::BTreeMap;
-use tokio::sync::watch;
+
+/// Individuals that must have failed before a search is given up because nothing else has happened.
+const LEAST_TRIED: usize = 8;
 
 /// A finished search.
 #[derive(Clone, Debug, PartialEq)]
@@ -19,31 +29,16 @@ pub struct Calibrated {
     pub log: EvaluationLog,
 }
 
-/// Watches a calibration.
-pub trait Observe {
-    /// An evaluation came back, or the search planned anew.
-    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> super::Crew);
-
-    /// Before anything else: how many results an earlier session left.
-    fn resumed(&mut self, _recorded: usize) {}
-
-    /// An individual is going to be evaluated.
-    fn asked(&mut self, _proposal: &Proposal) {}
-}
-
-/// Becomes true when the user wants to stop.
-pub type Stop = watch::Receiver<bool>;
-
 /// Runs a search to its end; proposals are submitted under their own ids.
 ///
 /// # Errors
-/// If the case or the workers make every evaluation impossible, if the whole initial population
-/// fails, if nobody evaluates any more, or if the user stops it.
+/// If the case or the workers make every evaluation impossible, if everything that
+/// the search begins with fails, if nobody evaluates any more, or if the user stops it.
 pub async fn calibrate<E: Evaluator>(
     evaluator: &mut E,
     case: &Case,
     strategy: &mut dyn Strategy,
-    observer: &mut dyn Observe,
+    watch: &mut dyn Watch<ProgressView>,
     stop: &mut Stop,
 ) -> Result<Calibrated, StudyError> {
     let mut open: BTreeMap<u64, Proposal> = BTreeMap::new();
@@ -51,20 +46,24 @@ pub async fn calibrate<E: Evaluator>(
     let mut view = ProgressView::default();
     loop {
         for proposal in strategy.ask() {
-            observer.asked(&proposal);
-            evaluator.submit(proposal.id, score(case, &proposal))?;
+            watch.asked(proposal.id, &proposal);
+            evaluator.submit(JobId(proposal.id), score(case, &proposal))?;
             open.insert(proposal.id, proposal);
         }
         view.plan(&strategy.progress());
-        observer.progress(&view, &|| evaluator.crew());
+        watch.progress(&view, &|| evaluator.crew());
         if let (Some(finish), Some(best)) = (strategy.finished(), strategy.best()) {
-            return Ok(Calibrated { best, finish, log });
+            return if best.complete {
+                Ok(Calibrated { best, finish, log })
+            } else {
+                Err(all_failed(&log))
+            };
         }
         let completed = or_stop(evaluator.next(), stop).await??;
-        let Some(proposal) = open.remove(&completed.id) else {
+        let Some(proposal) = open.remove(&completed.id.0) else {
             continue;
         };
-        if let Outcome::Scored(evaluation) = &completed.outcome
+        if let Some(evaluation) = completed.outcome.answer().and_then(Answer::evaluation)
             && !evaluation.residual_mpa.is_empty()
         {
             strategy.tell_residual(proposal.id, evaluation.residual_mpa.clone());
@@ -73,68 +72,56 @@ pub async fn calibrate<E: Evaluator>(
         strategy.tell(entry.id, entry.told());
         view.apply(&entry, completed.replayed);
         log.insert(entry);
-        check_initial(&log, &open)?;
-    }
-}
-
-/// A future's result, unless the user stops first.
-pub(super) async fn or_stop<T>(
-    future: impl Future<Output = T>,
-    stop: &mut Stop,
-) -> Result<T, StudyError> {
-    let stopped = async {
-        // a sender that is gone can no longer stop anything
-        if stop.wait_for(|stopped| *stopped).await.is_err() {
-            std::future::pending::<()>().await;
-        }
-    };
-    tokio::select! {
-        biased;
-        () = stopped => Err(StudyError::Interrupted),
-        result = future => Ok(result),
+        check_beginning(&log, &open)?;
     }
 }
 
 fn score(case: &Case, proposal: &Proposal) -> Job {
-    Job::Score(ScoreSpec {
-        condition: case.objective.condition,
-        genes: proposal.genes.clone(),
-        effects: Vec::new(),
+    let individual = Individual::new(case.objective.condition, proposal.genes.clone());
+    let reply = Reply::Score {
         with_residual: proposal.purpose.wants_residual(),
-    })
+    };
+    Job::Simulate(SimulateSpec::new(individual, reply))
 }
 
 /// What came back of a proposal. A failure that every other individual would meet too ends the
 /// study; one that concerns this individual alone makes it the worst of all.
 fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
     match outcome {
-        Outcome::Scored(evaluation) => Ok(Entry::scored(proposal, &evaluation)),
+        Outcome::Done(answer) => match answer.into_scored() {
+            Ok(evaluation) => Ok(Entry::scored(proposal, &evaluation)),
+            Err(_) => Err(StudyError::WrongKind {
+                id: JobId(proposal.id),
+            }),
+        },
         Outcome::Failed(failure) => match StudyError::hopeless(&failure) {
             Some(error) => Err(error),
             None => Ok(Entry::lost(proposal, failure)),
         },
-        Outcome::Simulated(_)
-        | Outcome::Observed(_)
-        | Outcome::Described(_)
-        | Outcome::HeadReduced(_)
-        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: proposal.id }),
     }
 }
 
-/// Nothing can be bred from a population in which everything failed; the search would go on, but
-/// a case or a machine that is set up wrongly is by far the more likely reason.
-fn check_initial(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<(), StudyError> {
-    let initial_open = open
-        .values()
-        .any(|proposal| proposal.purpose == Purpose::Initial);
-    let all_failed = log.entries().all(|entry| entry.ending != Ending::Complete);
-    if initial_open || !all_failed {
+/// Whether nothing is open any more of what the search began with, its first generation, and all that
+/// has come back failed. The search might go on, but a case or a machine that is set up wrongly is by
+/// far the more likely reason.
+fn check_beginning(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Result<(), StudyError> {
+    if log.entries().any(|entry| entry.ending == Ending::Complete) {
         return Ok(());
     }
+    let tried = log.entries().map(|entry| entry.generation);
+    let untried = open.values().map(|proposal| proposal.generation);
+    let first = tried.chain(untried.clone()).min();
+    if log.len() < LEAST_TRIED || untried.min().is_some_and(|open| Some(open) == first) {
+        return Ok(());
+    }
+    Err(all_failed(log))
+}
+
+fn all_failed(log: &EvaluationLog) -> StudyError {
     let (how, physics) = log.failures();
-    Err(StudyError::AllFailed {
+    StudyError::AllFailed {
         count: log.len(),
         how,
         physics,
-    })
+    }
 }

@@ -1,8 +1,13 @@
 //! Scores and curves of chosen parameter sets under chosen conditions.
-use super::{Evaluator, Stop, StudyError, calibrate::or_stop};
+use super::{
+    error::StudyError,
+    evaluator::Evaluator,
+    stop::{Stop, or_stop},
+};
 use protocol::{
     case::Case,
-    job::{Evaluation, Job, Outcome, ScoreSpec, SimulateSpec, Simulation},
+    id::JobId,
+    job::{Evaluation, Individual, Job, Reply, SimulateSpec, Simulation},
 };
 use std::collections::BTreeMap;
 
@@ -69,50 +74,42 @@ pub async fn compare<E: Evaluator>(
             .is_some_and(|c| c.record.is_some());
         for (position, (_, genes)) in one.individuals.iter().enumerate() {
             let first = first_id(one.condition, position);
+            let simulate = |reply| {
+                let individual = Individual::new(one.condition, genes.clone());
+                Job::Simulate(SimulateSpec::new(individual, reply))
+            };
             if recorded {
-                let (condition, genes) = (one.condition, genes.clone());
-                let spec = ScoreSpec {
-                    condition,
-                    genes,
-                    effects: Vec::new(),
+                let reply = Reply::Score {
                     with_residual: false,
                 };
-                evaluator.submit(first, Job::Score(spec))?;
+                evaluator.submit(JobId(first), simulate(reply))?;
                 open.insert(first, (group, position));
             }
-            let spec = SimulateSpec {
-                condition: one.condition,
-                genes: genes.clone(),
-                effects: Vec::new(),
+            let reply = Reply::Curves {
                 motion_step_deg: one.motion_step_deg,
-                integration: None,
             };
-            evaluator.submit(first + 1, Job::Simulate(spec))?;
+            evaluator.submit(JobId(first + 1), simulate(reply))?;
             open.insert(first + 1, (group, position));
         }
     }
     let mut pairs: BTreeMap<(usize, usize), Pair> = BTreeMap::new();
     while !open.is_empty() {
         let completed = or_stop(evaluator.next(), stop).await??;
-        let Some(place) = open.remove(&completed.id) else {
+        let Some(place) = open.remove(&completed.id.0) else {
             continue;
         };
         let pair = pairs.entry(place).or_default();
-        match completed.outcome {
-            Outcome::Scored(evaluation) => pair.evaluation = Some(evaluation),
-            Outcome::Simulated(simulation) => pair.simulation = Some(*simulation),
-            Outcome::Observed(_)
-            | Outcome::Described(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Nothing(_) => {
-                return Err(StudyError::WrongKind { id: completed.id });
-            }
-            Outcome::Failed(failure) => {
-                return Err(StudyError::Unavailable {
-                    what: name(case, wanted, place),
-                    failure,
-                });
-            }
+        let id = completed.id;
+        let answer = completed.outcome.done();
+        let answer = answer.map_err(|failure| StudyError::Unavailable {
+            what: name(case, wanted, place),
+            failure,
+        })?;
+        let wrong = |_| StudyError::WrongKind { id };
+        if answer.evaluation().is_some() {
+            pair.evaluation = Some(answer.into_scored().map_err(wrong)?);
+        } else {
+            pair.simulation = Some(*answer.into_curves().map_err(wrong)?);
         }
     }
     let groups = wanted.iter().enumerate();
@@ -143,7 +140,7 @@ fn collect(
     let mut individuals = Vec::with_capacity(one.individuals.len());
     for (position, (name, genes)) in one.individuals.iter().enumerate() {
         let pair = pairs.remove(&(group, position)).unwrap_or_default();
-        let id = first_id(one.condition, position) + 1;
+        let id = JobId(first_id(one.condition, position) + 1);
         let simulation = pair.simulation.ok_or(StudyError::WrongKind { id })?;
         individuals.push(Curves {
             name: name.clone(),

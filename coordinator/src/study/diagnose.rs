@@ -2,19 +2,25 @@
 //!
 //! Experiments are numbered in the order in which the diagnosis asks for them, and that order depends
 //! on results alone: a run that is opened again finds every one of them in its journal.
-use super::{Crew, Evaluator, Stop, StudyError, calibrate::or_stop};
+use super::{
+    error::StudyError,
+    evaluator::Evaluator,
+    stop::{Stop, or_stop},
+    watch::{View, Watch},
+};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::{Laboratory, Stage};
 use protocol::{
     announce::EffectDescriptor,
-    job::{Job, Observation, ObserveSpec, Outcome, Verdict},
+    id::JobId,
+    job::{Answer, Job, Observation, SimulateSpec, Verdict},
 };
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 /// What one stage has cost so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Account {
+pub struct StageCost {
     /// Experiments that came back.
     pub experiments: u64,
     /// Of those, how many did not run to their end.
@@ -25,13 +31,19 @@ pub struct Account {
     pub wall: Duration,
 }
 
-/// Watches a diagnosis.
-pub trait Watch {
-    /// An experiment of a stage came back; `open` more of its batch are awaited.
-    fn progress(&mut self, stage: Stage, done: u64, open: usize, crew: &dyn Fn() -> Crew);
+/// How far a stage has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StageView {
+    /// The stage.
+    pub stage: Stage,
+    /// Experiments of it that came back.
+    pub done: u64,
+    /// How many more of their batch are awaited.
+    pub open: usize,
+}
 
-    /// An experiment of a stage is going to be done, as the job of this id.
-    fn asked(&mut self, _stage: Stage, _id: u64) {}
+impl View for StageView {
+    type Reason = Stage;
 }
 
 /// A finished diagnosis, and what it cost.
@@ -40,7 +52,7 @@ pub struct Diagnosed {
     /// The answer.
     pub diagnosis: Diagnosis,
     /// Stages that did experiments.
-    pub accounts: Vec<(Stage, Account)>,
+    pub accounts: Vec<(Stage, StageCost)>,
 }
 
 /// The id of the question for the effects that the workers know.
@@ -54,22 +66,9 @@ pub async fn library<E: Evaluator>(
     evaluator: &mut E,
     stop: &mut Stop,
 ) -> Result<Vec<EffectDescriptor>, StudyError> {
-    evaluator.submit(LIBRARY, Job::Describe)?;
+    evaluator.submit(JobId(LIBRARY), Job::Describe)?;
     let completed = or_stop(evaluator.next(), stop).await??;
-    match completed.outcome {
-        Outcome::Described(effects) => Ok(effects),
-        Outcome::Failed(failure) => Err(StudyError::hopeless(&failure).unwrap_or(
-            StudyError::Unavailable {
-                what: "the list of effects".to_owned(),
-                failure,
-            },
-        )),
-        Outcome::Scored(_)
-        | Outcome::Simulated(_)
-        | Outcome::Observed(_)
-        | Outcome::HeadReduced(_)
-        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: completed.id }),
-    }
+    completed.take(Answer::into_described, || "the list of effects".to_owned())
 }
 
 /// Diagnoses on an evaluator.
@@ -79,7 +78,7 @@ pub async fn library<E: Evaluator>(
 pub async fn diagnose_on<E: Evaluator>(
     evaluator: &mut E,
     inputs: &Inputs,
-    watch: &mut dyn Watch,
+    watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Diagnosed, StudyError> {
     let mut jobs = Jobs {
@@ -87,22 +86,22 @@ pub async fn diagnose_on<E: Evaluator>(
         watch,
         stop,
         next_id: LIBRARY + 1,
-        accounts: BTreeMap::new(),
+        costs: BTreeMap::new(),
     };
     let diagnosis = diagnose(&mut jobs, inputs).await?;
     Ok(Diagnosed {
         diagnosis,
-        accounts: jobs.accounts.into_iter().collect(),
+        accounts: jobs.costs.into_iter().collect(),
     })
 }
 
 /// Experiments as jobs.
 struct Jobs<'a, E> {
     evaluator: &'a mut E,
-    watch: &'a mut dyn Watch,
+    watch: &'a mut dyn Watch<StageView>,
     stop: &'a mut Stop,
     next_id: u64,
-    accounts: BTreeMap<Stage, Account>,
+    costs: BTreeMap<Stage, StageCost>,
 }
 
 impl<E: Evaluator> Laboratory for Jobs<'_, E> {
@@ -111,54 +110,53 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
     async fn observe(
         &mut self,
         stage: Stage,
-        batch: Vec<ObserveSpec>,
+        batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, StudyError> {
         let started = Instant::now();
         let first = self.next_id;
         let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
         let mut open = batch.len();
         for spec in batch {
-            self.watch.asked(stage, self.next_id);
-            self.evaluator.submit(self.next_id, Job::Observe(spec))?;
+            self.watch.asked(self.next_id, &stage);
+            self.evaluator
+                .submit(JobId(self.next_id), Job::Simulate(spec))?;
             self.next_id += 1;
         }
         while open > 0 {
             let completed = or_stop(self.evaluator.next(), self.stop).await??;
             let place = completed
                 .id
+                .0
                 .checked_sub(first)
                 .and_then(|k| usize::try_from(k).ok());
             let Some(slot) = place.and_then(|k| results.get_mut(k)) else {
                 continue;
             };
-            let account = self.accounts.entry(stage).or_default();
-            account.experiments += 1;
-            match completed.outcome {
-                Outcome::Observed(seen) => {
-                    account.failed += u64::from(seen.verdict != Verdict::Complete);
+            let cost = self.costs.entry(stage).or_default();
+            cost.experiments += 1;
+            let id = completed.id;
+            match completed.outcome.done() {
+                Ok(answer) => {
+                    let seen = answer.into_channels();
+                    let seen = seen.map_err(|_| StudyError::WrongKind { id })?;
+                    cost.failed += u64::from(seen.verdict != Verdict::Complete);
                     *slot = Some(seen);
                 }
                 // a failure that every experiment would meet ends the diagnosis
-                Outcome::Failed(failure) => match StudyError::hopeless(&failure) {
+                Err(failure) => match StudyError::hopeless(&failure) {
                     Some(error) => return Err(error),
-                    None => account.failed += 1,
+                    None => cost.failed += 1,
                 },
-                Outcome::Scored(_)
-                | Outcome::Simulated(_)
-                | Outcome::Described(_)
-                | Outcome::HeadReduced(_)
-                | Outcome::Nothing(_) => {
-                    return Err(StudyError::WrongKind { id: completed.id });
-                }
             }
             open -= 1;
             let evaluator = &*self.evaluator;
-            self.watch
-                .progress(stage, account.experiments, open, &|| evaluator.crew());
+            let done = cost.experiments;
+            let view = StageView { stage, done, open };
+            self.watch.progress(&view, &|| evaluator.crew());
         }
-        let account = self.accounts.entry(stage).or_default();
-        account.batches += u64::from(!results.is_empty());
-        account.wall += started.elapsed();
+        let cost = self.costs.entry(stage).or_default();
+        cost.batches += u64::from(!results.is_empty());
+        cost.wall += started.elapsed();
         Ok(results)
     }
 }

@@ -49,14 +49,7 @@ pub fn simulation_digest(simulation: &Simulation) -> String {
     ] {
         number(value);
     }
-    let counters = simulation.counters;
-    for count in [
-        counters.steps,
-        counters.rejected_steps,
-        counters.newton_iterations,
-        counters.jacobians,
-        counters.factorizations,
-    ] {
+    for (_, _, count) in simulation.counters.named() {
         hasher.update(&count.to_le_bytes());
     }
     hasher.update(word.as_bytes());

@@ -1,7 +1,27 @@
 //! Why a study stopped without a result.
-use super::EvaluatorError;
-use protocol::job::{Failure, PhysicsFailure};
+use protocol::{
+    id::JobId,
+    job::{Failure, PhysicsFailure},
+};
 use search::strategy::SettingsError;
+use std::fmt;
+
+/// Why an evaluator gave up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EvaluatorError {
+    /// What happened.
+    pub message: String,
+    /// What to do about it, if anything.
+    pub help: Option<String>,
+}
+
+impl fmt::Display for EvaluatorError {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for EvaluatorError {}
 
 /// Why a study stopped without a result.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -27,10 +47,10 @@ pub enum StudyError {
         /// What they say.
         reason: String,
     },
-    /// The whole initial population failed.
-    #[error("all {count} individuals of the initial population failed: {how}")]
+    /// Everything that the search began with failed.
+    #[error("all of the first {count} individuals failed: {how}")]
     AllFailed {
-        /// How many.
+        /// How many were tried.
         count: usize,
         /// Which failures, the most frequent first.
         how: String,
@@ -40,22 +60,16 @@ pub enum StudyError {
     /// A parameter set that is to be compared could not be evaluated.
     #[error("{what} could not be evaluated: {failure}")]
     Unavailable {
-        /// Which.
+        /// Which parameter set, and under which condition.
         what: String,
         /// What happened.
         failure: Failure,
-    },
-    /// Not even the most accurate run completes a revolution.
-    #[error("the individual does not complete a revolution: {}", kind.as_str())]
-    NoTruth {
-        /// How it ends.
-        kind: PhysicsFailure,
     },
     /// A worker answered a job with the result of another kind of job.
     #[error("job {id} was answered with the result of another kind of job")]
     WrongKind {
         /// The job.
-        id: u64,
+        id: JobId,
     },
     /// The user asked to stop.
     #[error("interrupted")]
@@ -101,7 +115,6 @@ impl StudyError {
             Self::AllFailed { physics: None, .. } => {
                 "no simulation was even finished: look at the workers' own messages"
             }
-            Self::NoTruth { .. } => "choose one that does, with --genes FILE",
             Self::Unavailable { .. } => "the same command tries again",
             Self::WrongKind { .. } => "the worker is of another version: replace it",
             Self::Interrupted => return None,

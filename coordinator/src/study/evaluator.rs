@@ -1,10 +1,12 @@
 //! What a study needs of whoever evaluates: take jobs, give results, say who is at work.
-use super::StudyError;
+use super::error::{EvaluatorError, StudyError};
+use crate::core::Completed;
 use protocol::{
     event::Spent,
-    job::{Job, Outcome, Simulation},
+    id::JobId,
+    job::{Answer, Job, WrongKind},
 };
-use std::fmt;
+use std::time::Duration;
 
 /// Evaluates jobs in any order.
 pub trait Evaluator {
@@ -13,7 +15,7 @@ pub trait Evaluator {
     ///
     /// # Errors
     /// If the evaluator can no longer take jobs.
-    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError>;
+    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError>;
 
     /// The next result. Dropping the future loses nothing.
     ///
@@ -25,48 +27,24 @@ pub trait Evaluator {
     fn crew(&self) -> Crew;
 }
 
-/// A job that is done.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Completed {
-    /// The id it was submitted with.
-    pub id: u64,
-    /// Its outcome.
-    pub outcome: Outcome,
-    /// Whether the result is from an earlier session.
-    pub replayed: bool,
-}
-
 impl Completed {
-    /// The simulation that was asked for.
-    pub(super) fn simulated(self, what: impl FnOnce() -> String) -> Result<Simulation, StudyError> {
-        match self.outcome {
-            Outcome::Simulated(simulation) => Ok(*simulation),
-            Outcome::Failed(failure) => Err(StudyError::of(failure, what)),
-            Outcome::Scored(_)
-            | Outcome::Observed(_)
-            | Outcome::Described(_)
-            | Outcome::HeadReduced(_)
-            | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: self.id }),
-        }
+    /// The answer of the kind that was asked for, as `take` takes it; `what` it was about.
+    ///
+    /// # Errors
+    /// If the job failed, or was answered as another kind of job.
+    pub(super) fn take<T>(
+        self,
+        take: impl FnOnce(Answer) -> Result<T, WrongKind>,
+        what: impl FnOnce() -> String,
+    ) -> Result<T, StudyError> {
+        let id = self.id;
+        let answer = self
+            .outcome
+            .done()
+            .map_err(|failure| StudyError::of(failure, what))?;
+        take(answer).map_err(|_| StudyError::WrongKind { id })
     }
 }
-
-/// Why an evaluator gave up.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct EvaluatorError {
-    /// What happened.
-    pub message: String,
-    /// What to do about it, if anything.
-    pub help: Option<String>,
-}
-
-impl fmt::Display for EvaluatorError {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        to.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for EvaluatorError {}
 
 /// Everyone who evaluates.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -79,6 +57,9 @@ pub struct Crew {
     pub running: usize,
     /// How all slots spent their time in this session.
     pub spent: Spent,
+    /// For how long anybody has been computing in this session: waiting for workers, and for them to
+    /// build the model, is not part of it.
+    pub computing: Duration,
 }
 
 /// One worker.

@@ -3,11 +3,16 @@
 //! Quasi-static stress needs no dynamics: a rope of tension T wrapped from its fixed end to where it
 //! leaves presses with T per radian and pulls its end with T. Exact statics are influence lines
 //! integrated over the wrap; mode displacement is `sum_k s_k f_k / w_k^2` of the same forces.
-use super::{Evaluator, Stop, StudyError, calibrate::or_stop};
-use crate::case::QuasiStatic;
+use super::{
+    error::StudyError,
+    evaluator::Evaluator,
+    stop::{Stop, or_stop},
+};
+use crate::{case::QuasiStatic, line::held};
 use protocol::{
     case::{Influence, ModalHead},
-    job::{Job, Outcome, ReduceHeadSpec, ReducedHead},
+    id::JobId,
+    job::{Answer, Job, ReduceHeadSpec, ReducedHead},
 };
 
 /// Shapes smaller than this share of the table's largest move nothing.
@@ -22,19 +27,12 @@ pub async fn reduce_head(
     spec: ReduceHeadSpec,
     stop: &mut Stop,
 ) -> Result<ReducedHead, StudyError> {
-    evaluator.submit(0, Job::ReduceHead(Box::new(spec)))?;
+    evaluator.submit(JobId(0), Job::ReduceHead(Box::new(spec)))?;
     let completed = or_stop(evaluator.next(), stop).await??;
-    match completed.outcome {
-        Outcome::HeadReduced(head) => Ok(*head),
-        Outcome::Failed(failure) => Err(StudyError::of(failure, || {
-            "the reduction of the back head".to_owned()
-        })),
-        Outcome::Scored(_)
-        | Outcome::Simulated(_)
-        | Outcome::Observed(_)
-        | Outcome::Described(_)
-        | Outcome::Nothing(_) => Err(StudyError::WrongKind { id: completed.id }),
-    }
+    let what = || "the reduction of the back head".to_owned();
+    completed
+        .take(Answer::into_head_reduced, what)
+        .map(|head| *head)
 }
 
 /// A new head beside the case's tables.
@@ -257,16 +255,7 @@ impl<'a> Line<'a> {
     }
 
     fn at(&self, x: f64) -> f64 {
-        let right = self.x.partition_point(|knot| *knot < x);
-        let value = |k: usize| self.y.get(k).copied().unwrap_or(0.0);
-        if right == 0 {
-            return value(0);
-        }
-        let (Some(from), Some(to)) = (self.x.get(right - 1), self.x.get(right)) else {
-            return value(self.x.len().saturating_sub(1));
-        };
-        let share = (x - from) / (to - from);
-        value(right - 1) * (1.0 - share) + value(right) * share
+        held(self.x, self.y, x)
     }
 
     /// Exact integral of the line between two places, in the unit of x times that of y.

@@ -11,26 +11,27 @@ mod digest;
 mod error;
 mod evaluator;
 mod head;
-mod integrators;
 mod log;
 mod progress;
 mod recorded;
-mod whole_box;
+mod stop;
+mod watch;
 
-pub use calibrate::{Calibrated, Observe, Stop, calibrate};
+pub use crate::core::Completed;
+pub use calibrate::{Calibrated, calibrate};
 pub use compare::{Compared, Curves, Wanted, compare};
-pub use diagnose::{Account, Diagnosed, Watch, diagnose_on, library};
+pub use diagnose::{Diagnosed, StageCost, StageView, diagnose_on, library};
 pub use digest::simulation_digest;
-pub use error::StudyError;
-pub use evaluator::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus};
+pub use error::{EvaluatorError, StudyError};
+pub use evaluator::{Crew, Evaluator, WorkerStatus};
 pub use head::{
     HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, reduce_head, wrapped_turn,
 };
-pub use integrators::{WorkPlan, WorkPoint, WorkPrecision, work_precision};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 pub use recorded::Recorded;
-pub use whole_box::{BoxClass, BoxPlan, BoxPoint, box_classes, whole_box};
+pub use stop::Stop;
+pub use watch::{View, Watch};
 
 #[cfg(test)]
 pub(crate) mod tests;

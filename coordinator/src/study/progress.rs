@@ -1,8 +1,11 @@
 //! How far a calibration has come, as a fold over completed evaluations in the order of arrival.
 //!
 //! It is for people to watch: unlike the log it depends on arrival, and decides nothing.
-use super::{Ending, Entry};
-use search::strategy::Progress;
+use super::{
+    log::{Ending, Entry},
+    watch::View,
+};
+use search::strategy::{Progress, Proposal};
 use std::time::Duration;
 
 /// What a progress display shows.
@@ -22,6 +25,10 @@ pub struct ProgressView {
     pub replayed: u64,
     /// Smallest fitness of a complete individual so far `MPa^2`.
     pub best: Option<f64>,
+}
+
+impl View for ProgressView {
+    type Reason = Proposal;
 }
 
 impl ProgressView {
@@ -46,16 +53,17 @@ impl ProgressView {
         self.expected = progress.expected_evaluations.max(self.completed);
     }
 
-    /// Evaluations per second of this session; none before the first.
-    pub fn rate(&self, elapsed: Duration) -> Option<f64> {
+    /// Evaluations per second of this session, in which workers have been computing for so long; none
+    /// before the first.
+    pub fn rate(&self, computing: Duration) -> Option<f64> {
         let fresh = self.completed - self.replayed;
-        let seconds = elapsed.as_secs_f64();
+        let seconds = computing.as_secs_f64();
         (fresh > 0 && seconds > 0.0).then(|| fresh as f64 / seconds)
     }
 
     /// Time to the expected end; none before the first evaluation of this session.
-    pub fn remaining(&self, elapsed: Duration) -> Option<Duration> {
-        let rate = self.rate(elapsed)?;
+    pub fn remaining(&self, computing: Duration) -> Option<Duration> {
+        let rate = self.rate(computing)?;
         let ahead = self.expected.saturating_sub(self.completed) as f64;
         Some(Duration::from_secs_f64((ahead / rate).min(1e9)))
     }

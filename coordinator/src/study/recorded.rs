@@ -2,8 +2,11 @@
 //!
 //! A study that runs on it takes the path that the run took, as far as the journal goes, and
 //! leaves no trace in the run's folder.
-use super::{Completed, Crew, Evaluator, EvaluatorError};
-use crate::{core::work_hash, journal::Recording};
+use super::{
+    error::EvaluatorError,
+    evaluator::{Crew, Evaluator},
+};
+use crate::{core::Completed, journal::Recording};
 use protocol::{event::Finished, id::JobId, job::Job};
 use std::collections::VecDeque;
 
@@ -14,7 +17,7 @@ type Seen<'a> = &'a mut dyn FnMut(&Job, &Finished) -> Result<(), EvaluatorError>
 pub struct Recorded<'a> {
     recording: &'a Recording,
     seen: Seen<'a>,
-    asked: VecDeque<(u64, Job)>,
+    asked: VecDeque<(JobId, Job)>,
     unknown: u64,
     ended: bool,
 }
@@ -41,16 +44,16 @@ impl<'a> Recorded<'a> {
         self.ended
     }
 
-    fn result(&mut self, id: u64, job: &Job) -> Result<Option<Completed>, EvaluatorError> {
+    fn result(&mut self, id: JobId, job: &Job) -> Result<Option<Completed>, EvaluatorError> {
         let failed = |error: &dyn std::fmt::Display| EvaluatorError {
             message: error.to_string(),
             help: None,
         };
-        let found = self.recording.recall(JobId(id));
+        let found = self.recording.recall(id);
         let Some(finished) = found.map_err(|error| failed(&error))? else {
             return Ok(None);
         };
-        if finished.work != work_hash(job) {
+        if finished.work != job.work_hash() {
             return Err(failed(&format_args!(
                 "job {id} of the journal is not the one that the run's settings lead to"
             )));
@@ -58,6 +61,7 @@ impl<'a> Recorded<'a> {
         (self.seen)(job, &finished)?;
         Ok(Some(Completed {
             id,
+            cost: finished.cost,
             outcome: finished.outcome,
             replayed: true,
         }))
@@ -65,7 +69,7 @@ impl<'a> Recorded<'a> {
 }
 
 impl Evaluator for Recorded<'_> {
-    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
         self.asked.push_back((id, job));
         Ok(())
     }

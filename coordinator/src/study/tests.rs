@@ -2,15 +2,20 @@
 use super::*;
 use protocol::{
     case::Case,
+    id::JobId,
     job::{
-        ChannelScore, Counters, Energy, Evaluation, Failure, Job, Outcome, PhysicsFailure, Reached,
-        ScoreSpec, Simulation, Verdict,
+        Answer, ChannelScore, Counters, Energy, Evaluation, Failure, Individual, Job, Outcome,
+        PhysicsFailure, Reached, Reply, Simulation, Verdict,
     },
+    message::Cost,
 };
 use search::{
     random::{Phase, Stream, Streams},
     space::Space,
-    strategy::{Settings, memetic::MemeticSettings},
+    strategy::{
+        Archive, Best, Finish, Progress, Proposal, Purpose, Settings, Strategy, Told, build,
+        memetic::MemeticSettings,
+    },
     test_function::RESONANCE,
 };
 use std::{collections::BTreeMap, path::Path};
@@ -19,11 +24,11 @@ use tokio::sync::watch;
 /// Answers jobs in a random order; `known` are results of an earlier session.
 pub(crate) struct Oracle {
     space: Space,
-    open: Vec<(u64, Job)>,
+    open: Vec<(JobId, Job)>,
     order: Stream,
-    answer: fn(&Space, u64, &ScoreSpec) -> Outcome,
-    known: BTreeMap<u64, Outcome>,
-    answered: BTreeMap<u64, Outcome>,
+    answer: fn(&Space, u64, &Individual) -> Outcome,
+    known: BTreeMap<JobId, Outcome>,
+    answered: BTreeMap<JobId, Outcome>,
     computed: usize,
 }
 
@@ -31,7 +36,7 @@ impl Oracle {
     pub(crate) fn new(
         case: &Case,
         order: u64,
-        answer: fn(&Space, u64, &ScoreSpec) -> Outcome,
+        answer: fn(&Space, u64, &Individual) -> Outcome,
     ) -> Self {
         Self {
             space: Space::new(&case.genes).unwrap(),
@@ -46,7 +51,7 @@ impl Oracle {
 }
 
 impl Evaluator for Oracle {
-    fn submit(&mut self, id: u64, job: Job) -> Result<(), EvaluatorError> {
+    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
         assert!(
             self.open.iter().all(|(other, _)| *other != id),
             "{id} submitted twice"
@@ -64,16 +69,19 @@ impl Evaluator for Oracle {
         let known = self.known.get(&id).cloned();
         let replayed = known.is_some();
         self.computed += usize::from(!replayed);
-        let outcome = known.unwrap_or_else(|| match &job {
-            Job::Score(spec) => (self.answer)(&self.space, id, spec),
-            Job::Simulate(spec) => Outcome::Simulated(Box::new(curves(spec.genes[0]))),
-            Job::Observe(_) | Job::ReduceHead(_) | Job::Describe | Job::Nothing { .. } => {
-                Outcome::Nothing(Vec::new())
+        let outcome = known.unwrap_or_else(|| {
+            let Job::Simulate(spec) = &job else {
+                return Outcome::Done(Answer::Nothing(Vec::new()));
+            };
+            if matches!(spec.reply, Reply::Score { .. }) {
+                return (self.answer)(&self.space, id.0, &spec.individual);
             }
+            Outcome::Done(Answer::Curves(Box::new(curves(spec.individual.genes[0]))))
         });
         self.answered.insert(id, outcome.clone());
         Ok(Completed {
             id,
+            cost: Cost::default(),
             outcome,
             replayed,
         })
@@ -89,7 +97,7 @@ impl Evaluator for Oracle {
 
 struct Quiet(Vec<ProgressView>);
 
-impl Observe for Quiet {
+impl Watch<ProgressView> for Quiet {
     fn progress(&mut self, view: &ProgressView, _crew: &dyn Fn() -> Crew) {
         self.0.push(view.clone());
     }
@@ -145,8 +153,8 @@ fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
     }
 }
 
-pub(crate) fn physics(space: &Space, _id: u64, spec: &ScoreSpec) -> Outcome {
-    let told = RESONANCE.tell(space, &spec.genes);
+pub(crate) fn physics(space: &Space, _id: u64, individual: &Individual) -> Outcome {
+    let told = RESONANCE.tell(space, &individual.genes);
     let kind = PhysicsFailure::LoadNotLifted;
     let verdict = if told.complete {
         Verdict::Complete
@@ -156,11 +164,11 @@ pub(crate) fn physics(space: &Space, _id: u64, spec: &ScoreSpec) -> Outcome {
             reached: Reached::LoadFraction(0.5),
         }
     };
-    Outcome::Scored(evaluation(told.fitness, verdict))
+    Outcome::Done(Answer::Scored(evaluation(told.fitness, verdict)))
 }
 
 fn settings() -> Settings {
-    Settings::Memetic(MemeticSettings {
+    Settings::of(&MemeticSettings {
         generations: 4,
         population: 30,
         ..MemeticSettings::paper()
@@ -168,7 +176,7 @@ fn settings() -> Settings {
 }
 
 async fn run(oracle: &mut Oracle, case: &Case) -> Result<(Calibrated, Quiet), StudyError> {
-    let mut strategy = settings().build(&oracle.space, 3)?;
+    let mut strategy = build(&settings(), &oracle.space, 3)?;
     let (_sender, mut stop) = watch::channel(false);
     let mut observer = Quiet(Vec::new());
     let found = calibrate(oracle, case, strategy.as_mut(), &mut observer, &mut stop).await?;
@@ -220,11 +228,11 @@ async fn a_run_that_is_opened_again_computes_nothing_twice() {
 
 #[test]
 fn the_digest_sees_every_part_of_an_entry() {
-    let proposal = |id, gene| search::strategy::Proposal {
+    let proposal = |id, gene| Proposal {
         id,
         genes: vec![gene, 2.0],
         generation: 0,
-        purpose: search::strategy::Purpose::Initial,
+        purpose: Purpose::Initial,
     };
     let digest = |id, gene, fitness| {
         let mut log = EvaluationLog::default();
@@ -244,7 +252,7 @@ fn the_digest_sees_every_part_of_an_entry() {
 #[tokio::test]
 async fn a_case_that_cannot_be_built_ends_the_study_with_its_field() {
     let case = case();
-    let answer = |_: &Space, _: u64, _: &ScoreSpec| {
+    let answer = |_: &Space, _: u64, _: &Individual| {
         let (field, problem) = ("run.modes".to_owned(), "7 of 6 modes".to_owned());
         Outcome::Failed(Failure::Misconfigured { field, problem })
     };
@@ -262,7 +270,7 @@ async fn a_case_that_cannot_be_built_ends_the_study_with_its_field() {
 #[tokio::test]
 async fn if_the_whole_initial_population_fails_the_study_says_how() {
     let case = case();
-    let answer = |_: &Space, id: u64, _: &ScoreSpec| {
+    let answer = |_: &Space, id: u64, _: &Individual| {
         let kind = if id < 4 {
             PhysicsFailure::Budget
         } else {
@@ -272,7 +280,7 @@ async fn if_the_whole_initial_population_fails_the_study_says_how() {
             kind,
             reached: Reached::LoadFraction(0.1),
         };
-        Outcome::Scored(evaluation(1e6, verdict))
+        Outcome::Done(Answer::Scored(evaluation(1e6, verdict)))
     };
     let error = run(&mut Oracle::new(&case, 1, answer), &case)
         .await
@@ -280,7 +288,7 @@ async fn if_the_whole_initial_population_fails_the_study_says_how() {
         .unwrap();
     assert_eq!(
         error.to_string(),
-        "all 30 individuals of the initial population failed: 26 x load not lifted, 4 x budget"
+        "all of the first 30 individuals failed: 26 x load not lifted, 4 x budget"
     );
     assert!(error.help().unwrap().contains("simulate"));
 }
@@ -288,11 +296,11 @@ async fn if_the_whole_initial_population_fails_the_study_says_how() {
 #[tokio::test]
 async fn an_individual_that_is_lost_is_the_worst_and_the_search_goes_on() {
     let case = case();
-    let answer = |space: &Space, id: u64, spec: &ScoreSpec| {
+    let answer = |space: &Space, id: u64, individual: &Individual| {
         if id.is_multiple_of(7) {
             return Outcome::Failed(Failure::Lost { workers: 2 });
         }
-        physics(space, id, spec)
+        physics(space, id, individual)
     };
     let (found, _) = run(&mut Oracle::new(&case, 1, answer), &case)
         .await
@@ -310,7 +318,7 @@ async fn the_user_can_stop_while_nothing_comes_back() {
     let case = case();
     let mut oracle = Oracle::new(&case, 1, physics);
     let (sender, mut stop) = watch::channel(false);
-    let stopped = async { calibrate::or_stop(oracle.next(), &mut stop).await.err() };
+    let stopped = async { stop::or_stop(oracle.next(), &mut stop).await.err() };
     let stopper = async { sender.send(true).unwrap() };
     assert_eq!(
         tokio::join!(stopped, stopper).0,
@@ -356,7 +364,7 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
 async fn a_comparison_that_cannot_be_made_names_the_individual() {
     let case = case();
     let answer =
-        |_: &Space, _: u64, _: &ScoreSpec| Outcome::Failed(Failure::Deadline { limit_ms: 1500 });
+        |_: &Space, _: u64, _: &Individual| Outcome::Failed(Failure::Deadline { limit_ms: 1500 });
     let mut oracle = Oracle::new(&case, 1, answer);
     let (_sender, mut stop) = watch::channel(false);
     let individuals = vec![("recommended".to_owned(), case.recommended())];
@@ -372,5 +380,102 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
     assert_eq!(
         error.to_string(),
         "the recommended individual at 5rpm could not be evaluated: it ran longer than 1.5 s"
+    );
+}
+
+/// Asks for one individual after the other, and calls none of them initial.
+struct OneByOne {
+    genes: Vec<f64>,
+    asked: u64,
+    results: Vec<Told>,
+    archive: Archive,
+}
+
+impl Strategy for OneByOne {
+    fn ask(&mut self) -> Vec<Proposal> {
+        let id = self.asked;
+        if self.results.len() as u64 != id {
+            return Vec::new();
+        }
+        self.asked += 1;
+        vec![Proposal {
+            id,
+            genes: self.genes.clone(),
+            generation: 0,
+            purpose: Purpose::Scan,
+        }]
+    }
+
+    fn tell(&mut self, _id: u64, result: Told) {
+        self.results.push(result);
+    }
+
+    fn finished(&self) -> Option<Finish> {
+        self.results.last()?.complete.then_some(Finish::Planned)
+    }
+
+    fn progress(&self) -> Progress {
+        Progress {
+            generation: 0,
+            generations: 0,
+            evaluations: self.results.len() as u64,
+            expected_evaluations: 20,
+            best_fitness: None,
+        }
+    }
+
+    fn best(&self) -> Option<Best> {
+        let last = self.results.last()?;
+        Some(Best {
+            id: self.results.len() as u64 - 1,
+            genes: self.genes.clone(),
+            fitness: last.fitness,
+            complete: last.complete,
+        })
+    }
+
+    fn archive(&self) -> &Archive {
+        &self.archive
+    }
+}
+
+/// A result that is a failure of the machine for all ids below one.
+fn failing_below(from: u64, id: u64) -> Outcome {
+    let verdict = if id < from {
+        Verdict::Failed {
+            kind: PhysicsFailure::LoadNotLifted,
+            reached: Reached::LoadFraction(0.5),
+        }
+    } else {
+        Verdict::Complete
+    };
+    Outcome::Done(Answer::Scored(evaluation(1.0, verdict)))
+}
+
+/// Runs a search that asks for one after the other; which was the best.
+async fn one_by_one(answer: fn(&Space, u64, &Individual) -> Outcome) -> Result<u64, StudyError> {
+    let case = case();
+    let mut oracle = Oracle::new(&case, 1, answer);
+    let mut strategy = OneByOne {
+        genes: case.recommended(),
+        asked: 0,
+        results: Vec::new(),
+        archive: Archive::default(),
+    };
+    let (_sender, mut stop) = watch::channel(false);
+    let mut quiet = Quiet(Vec::new());
+    let found = calibrate(&mut oracle, &case, &mut strategy, &mut quiet, &mut stop).await;
+    found.map(|found| found.best.id)
+}
+
+/// What a strategy calls its proposals decides nothing: a few that fail first do not end the study,
+/// and many do.
+#[tokio::test]
+async fn a_search_that_begins_with_failures_goes_on_until_there_are_too_many() {
+    assert_eq!(one_by_one(|_, id, _| failing_below(5, id)).await, Ok(5));
+    let error = one_by_one(|_, id, _| failing_below(100, id)).await;
+    assert_eq!(
+        error.unwrap_err().to_string(),
+        "all of the first 8 individuals failed: 8 x load not lifted"
     );
 }

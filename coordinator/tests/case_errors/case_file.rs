@@ -409,18 +409,33 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "`objective.gauges[1].weight` = -1", "above 0"],
     ),
     (
-        "weight axes unknown",
-        |c| c.replace(TOML, "\"exchanged\"", "\"swapped\""),
-        &[
-            "case.toml",
-            "unknown variant `swapped`",
-            "physical, exchanged",
-        ],
-    ),
-    (
         "more modes than there are",
         |c| c.replace(TOML, "modes = 6", "modes = 13"),
         &["case.toml", "`run.modes` = 13", "0 to 12"],
+    ),
+    (
+        "no objective beside a record",
+        |c| c.cut(TOML, "[objective]", "[run]"),
+        &[
+            "case.toml",
+            "`objective` = absent",
+            "condition `5rpm` has a record_file",
+            "add [objective]",
+        ],
+    ),
+    (
+        "a coefficient missing",
+        |c| c.replace(TOML, "kb4  = {", "# kb4  = {"),
+        &["case.toml", "without `kb4`", "add `kb4 = {"],
+    ),
+    (
+        "a budget too small",
+        |c| c.replace(TOML, "modes = 6", "modes = 6\niteration_budget = 10"),
+        &[
+            "case.toml",
+            "`run.iteration_budget` = 10",
+            "100 to 1e9 iterations",
+        ],
     ),
     (
         "objective without condition",

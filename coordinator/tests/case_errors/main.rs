@@ -11,7 +11,7 @@ mod spoilt;
 mod twins;
 
 use coordinator::case::{self, Overrides};
-use protocol::case::{Scale, WeightAxes};
+use protocol::case::Scale;
 use spoilt::{Copy, MODES, RECORD, SHEET, TOML, assert_each_is_named, scaled};
 use std::fs;
 
@@ -116,10 +116,59 @@ fn another_test_of_the_same_machine_replaces_the_records() {
     assert_eq!(replaced.conditions[1], plain.conditions[1]);
 }
 
+/// A machine that nobody has measured is simulated all the same: load cards are enough, and what needs a
+/// record says which field is missing.
+#[test]
+fn a_case_may_have_load_cards_alone() {
+    let copy = Copy::new();
+    let text = fs::read_to_string(copy.path(TOML)).unwrap();
+    let bare = text.lines().filter(|line| !line.starts_with("record_file"));
+    let bare = bare.collect::<Vec<_>>().join("\n");
+    for file in [
+        RECORD,
+        SHEET,
+        "measured/test_4rpm.csv.gz",
+        "measured/test_4rpm.toml",
+    ] {
+        fs::remove_file(copy.path(file)).unwrap();
+    }
+    fs::write(copy.path(TOML), bare).unwrap();
+    for has_objective in [true, false] {
+        if !has_objective {
+            copy.cut(TOML, "[objective]", "[run]");
+        }
+        let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
+        assert!(
+            case.conditions
+                .iter()
+                .all(|condition| condition.record.is_none())
+        );
+        assert_eq!(case.objective.condition, 0);
+        let summary = case::check(copy.folder.path()).unwrap().to_string();
+        assert_eq!(
+            summary.matches("no record: simulated only").count(),
+            2,
+            "{summary}"
+        );
+        let refused = case::require_record(copy.folder.path(), &case, 0);
+        let message = refused.unwrap_err().to_string();
+        for expected in [
+            "case.toml: `conditions[0].record_file` = absent",
+            "a gauge record of condition `5rpm`",
+            "help: add record_file = \"measured/test_5rpm.csv.gz\"",
+        ] {
+            assert!(message.contains(expected), "no `{expected}` in\n{message}");
+        }
+    }
+    let with = Copy::new();
+    let case = case::load(with.folder.path(), &Overrides::default()).unwrap();
+    case::require_record(with.folder.path(), &case, 0).unwrap();
+}
+
 #[test]
 fn what_is_doubtful_is_a_note() {
     let copy = Copy::new();
-    copy.replace(SHEET, "samples_recorded = 5972", "");
+    copy.replace(SHEET, "samples_recorded = 5970", "");
     copy.replace(
         SHEET,
         "revolutions = 5",
@@ -136,7 +185,7 @@ fn what_is_doubtful_is_a_note() {
     let notes = notes.join("\n");
     for expected in [
         "test_5rpm.toml: `operator` is not used",
-        "the time column lacks 49 samples, the data sheet says 28",
+        "the time column lacks 33 samples, the data sheet says 30",
         "2 whole cycles: the noise model is rough",
         "grid angles lack a cycle",
     ] {
@@ -152,10 +201,10 @@ fn what_is_doubtful_is_a_note() {
 #[test]
 fn one_cycle_has_no_spread() {
     let copy = Copy::new();
-    copy.replace(SHEET, "samples_recorded = 5972", "");
+    copy.replace(SHEET, "samples_recorded = 5970", "");
     copy.lines(RECORD, |_, line| {
         let time = line.split(',').next().unwrap().parse::<f64>();
-        time.map_or(true, |time| (35.0..49.5).contains(&time))
+        time.map_or(true, |time| (23.0..37.5).contains(&time))
             .then(|| line.to_owned())
     });
     let loaded = case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap();
@@ -169,18 +218,6 @@ fn one_cycle_has_no_spread() {
     );
     let text = format!("{:?}", loaded.notes);
     assert!(text.contains("one whole cycle only"), "{text}");
-}
-
-#[test]
-fn the_weight_is_physical_unless_stated() {
-    let copy = Copy::new();
-    let axes = || {
-        let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
-        case.modal_head.weight_axes
-    };
-    assert_eq!(axes(), WeightAxes::Exchanged);
-    copy.replace(TOML, "weight_axes = \"exchanged\"", "");
-    assert_eq!(axes(), WeightAxes::Physical);
 }
 
 /// A parameter with an interval to search is a gene, after the coefficients; without, it is fixed, and

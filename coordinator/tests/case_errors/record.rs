@@ -46,8 +46,8 @@ pub(super) const FAULTS: &[Spoilt] = &[
         |c| {
             c.replace(
                 SHEET,
-                "the crank turns clockwise",
-                "the crank turns counter-clockwise",
+                "sense = \"clockwise\"",
+                "sense = \"counter_clockwise\"",
             );
         },
         &[
@@ -55,6 +55,77 @@ pub(super) const FAULTS: &[Spoilt] = &[
             "`crank.sense` is counter_clockwise",
             "crank.sense = \"clockwise\"",
         ],
+    ),
+    (
+        "sense in prose",
+        |c| {
+            c.replace(
+                SHEET,
+                "sense = \"clockwise\"",
+                "sense = \"the crank turns clockwise\"",
+            );
+        },
+        &[
+            "test_5rpm.toml",
+            "`crank.sense` = \"the crank turns clockwise\"",
+            "\"clockwise\" or \"counter_clockwise\"",
+            "seen with the well on the right",
+        ],
+    ),
+    (
+        "sense of the crank in capitals",
+        |c| {
+            c.replace(
+                SHEET,
+                "sense = \"clockwise\"",
+                "sense = \"Counter-Clockwise\"",
+            );
+        },
+        &[
+            "test_5rpm.toml",
+            "`crank.sense` = \"Counter-Clockwise\"",
+            "\"clockwise\" or \"counter_clockwise\"",
+        ],
+    ),
+    (
+        "tolerance misspelt",
+        |c| c.replace(SHEET, "gauge_factor = 0.005", "gauge_factr = 0.005"),
+        &[
+            "test_5rpm.toml",
+            "unknown field `gauge_factr`",
+            "gauge_factr = 0.005",
+            "did you mean `gauge_factor`?",
+        ],
+    ),
+    (
+        "tolerance of an instrument that there is not",
+        |c| {
+            c.replace(SHEET, "gauge_factor = 0.005", "thermometer_kelvin = 0.005");
+        },
+        &[
+            "test_5rpm.toml",
+            "unknown field `thermometer_kelvin`",
+            "remove it; known here: gauge_factor, index_deg",
+        ],
+    ),
+    (
+        "negative tolerance",
+        |c| c.replace(SHEET, "load_cell = 0.003", "load_cell = -0.003"),
+        &[
+            "test_5rpm.toml",
+            "`tolerance.load_cell` = -0.003",
+            "a standard deviation: a finite number, 0 or greater",
+        ],
+    ),
+    (
+        "infinite tolerance",
+        |c| c.replace(SHEET, "balance_nm = 200 ", "balance_nm = inf "),
+        &["test_5rpm.toml", "`tolerance.balance_nm` = inf", "finite"],
+    ),
+    (
+        "tolerance in words",
+        |c| c.replace(SHEET, "torque = 0.005", "torque = \"good\""),
+        &["test_5rpm.toml", "torque = \"good\"", "expected a number"],
     ),
     (
         "one gauge not recorded",
@@ -182,7 +253,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
         },
         &[
             "test_5rpm.csv.gz",
-            "row 3",
+            "row 4",
             "`crank_deg`",
             "reverse its sense",
         ],
@@ -205,7 +276,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
     (
         "rows contradict the sheet",
         |c| c.lines(RECORD, |at, line| (at < 4000).then(|| line.to_owned())),
-        &["test_5rpm.csv.gz", "3998", "samples_recorded = 5972"],
+        &["test_5rpm.csv.gz", "3998", "samples_recorded = 5970"],
     ),
     (
         "sheet's speed contradicts the case",
@@ -228,13 +299,13 @@ pub(super) const FAULTS: &[Spoilt] = &[
         |c| {
             fs::copy(c.path("measured/test_4rpm.csv.gz"), c.path(RECORD)).unwrap();
         },
-        &["test_5rpm.csv.gz", "4.002 /min", "speed_rpm = 5"],
+        &["test_5rpm.csv.gz", "4.001 /min", "speed_rpm = 5"],
     ),
     (
         "less than a revolution",
         |c| {
             c.lines(RECORD, |at, line| (at < 900).then(|| line.to_owned()));
-            c.replace(SHEET, "samples_recorded = 5972", "");
+            c.replace(SHEET, "samples_recorded = 5970", "");
         },
         &["test_5rpm.csv.gz", "no whole revolution", "index pulse"],
     ),
@@ -248,7 +319,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                     .is_none_or(|angle| !(100.0..106.0).contains(&angle))
                     .then(|| line.to_owned())
             });
-            c.replace(SHEET, "samples_recorded = 5972", "");
+            c.replace(SHEET, "samples_recorded = 5970", "");
         },
         &[
             "test_5rpm.csv.gz",

@@ -52,6 +52,14 @@ impl Copy {
         fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
     }
 
+    /// Takes out what stands from one text up to another.
+    pub(super) fn cut(&self, file: &str, from: &str, until: &str) {
+        let text = fs::read_to_string(self.path(file)).unwrap();
+        let (before, rest) = text.split_once(from).unwrap();
+        let (_, after) = rest.split_once(until).unwrap();
+        fs::write(self.path(file), format!("{before}{until}{after}")).unwrap();
+    }
+
     /// Adds an effect with further lines.
     pub(super) fn effect(&self, lines: &str) {
         let added = format!("[[effects]]\nid = \"pivot_friction\"\n{lines}\n\n[objective]");

@@ -9,14 +9,7 @@ use std::{fs, path::Path, process::Command};
 /// Runs a command with `--output json`; its object.
 fn json(arguments: &[&str]) -> Value {
     let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-    let program = Path::new(env!("CARGO_BIN_EXE_horsehead"));
-    let mut command = Command::new(program);
-    // the worker that the tests of the workspace have built: asked for by `cargo run`, cargo would
-    // compile most dependencies a second time, without what only tests need of them
-    if program.with_file_name("horsehead-worker").is_file() {
-        command.env_remove("CARGO");
-    }
-    let output = command
+    let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
         .args(arguments.iter().map(|word| match *word {
             "CASE" => case.as_os_str(),
             other => other.as_ref(),
@@ -91,39 +84,6 @@ fn head_picks_the_modes_that_couple() {
         let symmetric = mode["family"] == "symmetric";
         assert_eq!(number(&mode["coupling"]) > 0.0, symmetric, "{mode}");
     }
-}
-
-/// Methods side by side: every run complete, the more accurate method more accurate, figure and table
-/// written; the fixed step, which takes a minute, only when it is asked for.
-#[test]
-fn bench_integrators_measures_error_and_work() {
-    let scratch = tempfile::tempdir().unwrap();
-    let folder = scratch.path().to_str().unwrap();
-    let object = json(&[
-        "bench",
-        "integrators",
-        "CASE",
-        "--methods",
-        "tr_bdf2,rodas4",
-        "--levels",
-        "2",
-        "--out",
-        folder,
-    ]);
-    assert!(number(&object["resolution"]) < 1e-3);
-    let points = object["points"].as_array().unwrap();
-    assert_eq!(points.len(), 4);
-    assert!(points.iter().all(|point| point["complete"] == true));
-    let [coarse, _, rodas, finer] = [0, 1, 2, 3].map(|k| number(&points[k]["error"]));
-    assert!(
-        rodas < coarse && finer < rodas && finer < 0.01,
-        "{points:?}"
-    );
-    assert!(object["fixed_step"].is_null());
-    let svg = fs::read_to_string(scratch.path().join("integrators.svg")).unwrap();
-    assert!(svg.contains("RODAS4") && svg.contains("wall time"));
-    let rows = fs::read_to_string(scratch.path().join("integrators.csv")).unwrap();
-    assert_eq!(rows.lines().count(), 5);
 }
 
 /// Connections that say nothing are held, closed by the coordinator and opened again, and the rate

@@ -2,7 +2,7 @@
 use crate::suspicion::{self, Made};
 use crate::{check_page, names, words};
 use coordinator::case::CaseEffect;
-use coordinator::report::diagnosis;
+use coordinator::report::{self, diagnosis};
 use discrepancy::verdict::Verdict;
 use protocol::unit::EFFECT_UNITS;
 use roxmltree::Document;
@@ -17,9 +17,13 @@ const ALL: [Verdict; 5] = [
 ];
 
 fn page(made: &Made) -> String {
-    let page = diagnosis::page(&made.subject()).expect("a page");
+    let page = report::page(&diagnosis::report(&made.subject()));
     check_page(&page);
     page
+}
+
+fn text(subject: &diagnosis::Subject<'_>) -> String {
+    report::text(&diagnosis::report(subject), false)
 }
 
 #[test]
@@ -27,7 +31,7 @@ fn every_verdict_makes_a_page_and_a_text_without_numbers_that_are_none() {
     for verdict in ALL {
         let made = suspicion::diagnosis(verdict);
         let page = words(&page(&made));
-        let text = diagnosis::text(&made.subject());
+        let text = text(&made.subject());
         for said in [&page, &text] {
             let mut tokens = said.split(|c: char| !c.is_alphanumeric());
             let none = tokens.find(|token| matches!(*token, "NaN" | "inf"));
@@ -102,7 +106,7 @@ fn a_name_stands_with_its_size_its_rival_and_what_to_do() {
 #[test]
 fn every_suspect_is_told_why_it_was_kept_or_dropped() {
     let made = suspicion::diagnosis(Verdict::Ambiguous);
-    let text = diagnosis::text(&made.subject());
+    let text = text(&made.subject());
     for (id, why) in [
         (
             "pin_clearance",
@@ -174,13 +178,13 @@ fn what_is_not_known_is_said() {
     assert!(said.contains("The reason: there is no record of the calibrated condition."));
     assert!(said.contains("The noise was assumed, not seen"));
     assert!(!said.contains("What it shows"));
-    assert!(diagnosis::text(&stopped.subject()).starts_with("UNRESOLVED\n"));
+    assert!(text(&stopped.subject()).starts_with("UNRESOLVED\n"));
 }
 
 #[test]
 fn two_rounds_are_two_things_that_are_missing() {
     let made = suspicion::two_rounds();
-    let text = diagnosis::text(&made.subject());
+    let text = text(&made.subject());
     let said = "The simulation lacks clearance of the <pins> & their \"bores\" (pin_clearance) and one \
                 of drift of the gauges (gauge_drift) or lag of the load cell (load_cell_lag); this \
                 record does not tell which.";
@@ -192,7 +196,7 @@ fn two_rounds_are_two_things_that_are_missing() {
 #[test]
 fn a_force_without_a_cause_has_a_size_and_a_gap() {
     let made = suspicion::diagnosis(Verdict::Unlisted);
-    let text = diagnosis::text(&made.subject()).replace('\u{a0}', " ");
+    let text = text(&made.subject()).replace('\u{a0}', " ");
     for said in [
         "amplitude 420 N (95 % interval 380 to 460 N)",
         "With that force, ",
@@ -206,7 +210,7 @@ fn a_force_without_a_cause_has_a_size_and_a_gap() {
 #[test]
 fn a_suspect_under_assumed_noise_is_shown_and_not_named() {
     let made = suspicion::assumed();
-    let text = diagnosis::text(&made.subject());
+    let text = text(&made.subject());
     let page = words(&page(&made));
     for said in [&text, &page] {
         assert!(

@@ -1,6 +1,6 @@
 //! Genes that are parameters of effects, in tables, figures and words.
 use crate::sample;
-use coordinator::report::{chart, html, table};
+use coordinator::report::{chart, table};
 use protocol::case::{EffectSetting, Gene, Quantity};
 
 #[test]
@@ -35,15 +35,15 @@ fn a_parameter_of_an_effect_is_shown_beside_the_coefficients() {
         "{text}"
     );
     // in its panel the individuals are spread evenly
-    let figure = chart::genes(&calibration).expect("a figure");
+    let figure = chart::genes(&calibration);
     assert!(figure.svg.contains("load_offset [N]"));
     assert!(figure.caption.contains("linear ones"), "{}", figure.caption);
-    let plain = chart::genes(&sample::calibration(200)).expect("a figure");
+    let plain = chart::genes(&sample::calibration(200));
     assert!(!plain.caption.contains("linear ones"));
     let dots = |svg: &str| svg.matches("<circle").count();
     // all individuals once more, and the best
     let complete = calibration.history.iter().filter(|p| p.complete).count();
     assert_eq!(dots(&figure.svg), dots(&plain.svg) + complete + 1);
-    let page = html::calibration(&calibration).expect("a page");
+    let page = crate::page_of(&calibration);
     assert!(page.contains("load_offset.force ended at its lower bound"));
 }

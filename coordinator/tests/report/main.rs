@@ -7,7 +7,7 @@ mod sample;
 mod suspicion;
 
 use coordinator::report::{
-    Calibration, SingleRun, chart, html, table, write_calibration, write_simulation,
+    self, Calibration, Figure, SingleRun, chart, table, write_calibration, write_simulation,
 };
 use protocol::job::{PhysicsFailure, Reached, Verdict};
 use roxmltree::{Document, ParsingOptions};
@@ -88,7 +88,7 @@ fn check_page(page: &str) {
     }
 }
 
-fn check_figure(figure: &chart::Figure) {
+fn check_figure(figure: &Figure) {
     let document = Document::parse(&figure.svg).expect("well-formed SVG");
     let root = document.root_element();
     assert_eq!(root.tag_name().name(), "svg");
@@ -98,6 +98,11 @@ fn check_figure(figure: &chart::Figure) {
         .filter(|node| node.has_tag_name(("http://www.w3.org/2000/svg", "text")));
     assert!(texts.count() > 3, "{} has hardly any text", figure.name);
     assert!(!figure.svg.contains("NaN"), "{}", figure.name);
+}
+
+/// The page of a calibration.
+fn page_of(calibration: &Calibration) -> String {
+    report::page(&report::calibration(calibration))
 }
 
 /// The words of a page.
@@ -162,8 +167,22 @@ fn a_calibration_is_written_with_its_data() {
     }
     let page = std::fs::read_to_string(&written[0]).unwrap();
     check_page(&page);
-    let sections = page.matches("<section id=").count();
-    assert_eq!(sections, 11, "every section has something to say here");
+    let whole = report::calibration(&calibration);
+    assert_eq!(whole.silent, [""; 0], "every section has something to say");
+    for section in &whole.sections {
+        assert!(page.contains(&format!("<section id=\"{}\">", section.id)));
+    }
+    // what the page shows as tables stands in the plain text too, and every figure in a file
+    let tables = std::fs::read_to_string(&written[1]).unwrap();
+    assert_eq!(
+        page.matches("<figure class=\"table\">").count(),
+        tables.lines().filter(|line| line.starts_with('═')).count(),
+        "{tables}"
+    );
+    for figure in whole.figures() {
+        assert!(page.contains(&figure.svg));
+        assert!(names.contains(&format!("figures/{}.svg", figure.name)));
+    }
     assert!(page.contains("What remains unexplained under condition 5rpm"));
     let text = words(&page);
     for gene in &calibration.case.genes {
@@ -182,11 +201,7 @@ fn a_calibration_is_written_with_its_data() {
     ] {
         assert!(text.contains(part), "{part}");
     }
-    assert_eq!(
-        page,
-        html::calibration(&calibration).unwrap(),
-        "not the same bytes again"
-    );
+    assert_eq!(page, page_of(&calibration), "not the same bytes again");
 }
 
 #[test]
@@ -196,8 +211,8 @@ fn a_simulation_is_written_with_its_data() {
     let written = write_simulation(&folder, &run).unwrap();
     let page = std::fs::read_to_string(&written[0]).unwrap();
     check_page(&page);
-    for figure in chart::simulation(&run.case, 0, &run.simulation).unwrap() {
-        check_figure(&figure);
+    for figure in report::simulation(&run).figures() {
+        check_figure(figure);
         assert!(
             written
                 .iter()
@@ -211,13 +226,16 @@ fn a_simulation_is_written_with_its_data() {
 fn every_figure_of_a_calibration_is_well_formed() {
     let calibration = sample::calibration(500);
     let case = &calibration.case;
-    let result = &calibration.conditions[0];
-    let mut figures = chart::overlays(case, result).unwrap();
-    assert_eq!(figures.len(), 4);
-    figures.push(chart::convergence(&calibration.history, Some(38.0)).unwrap());
-    figures.push(chart::genes(&calibration).unwrap());
-    figures.extend(chart::workers(&calibration.workers).unwrap());
-    figures.extend(chart::machine_curves(case, 0, &result.optimised.simulation).unwrap());
+    let overlays = chart::overlays(case, &calibration.conditions[0]);
+    assert_eq!(overlays.len(), 4);
+    let whole = report::calibration(&calibration);
+    let figures = whole.figures();
+    for name in ["convergence", "genes", "workers", "rope_tension", "contact"] {
+        assert!(figures.iter().any(|figure| figure.name == name), "{name}");
+    }
+    for overlay in &overlays {
+        assert!(figures.contains(&overlay), "{}", overlay.name);
+    }
     for figure in &figures {
         check_figure(figure);
     }
@@ -234,7 +252,7 @@ fn every_figure_of_a_calibration_is_well_formed() {
 fn both_columns_of_an_overlay_share_their_scales() {
     let calibration = sample::calibration(0);
     let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 1);
-    let svg = overlay.unwrap().expect("the record has gauge 1").svg;
+    let svg = overlay.expect("the record has gauge 1").svg;
     // the measured mean is drawn in both columns with the same pen: same heights, shifted sideways
     let mean = curves(&svg, "#222222", "13");
     assert_eq!(mean.len(), 2);
@@ -272,9 +290,9 @@ fn a_simulation_that_differs_by_its_zero_only_lies_on_the_measured_curve() {
     let run = &mut calibration.conditions[0].optimised;
     run.simulation.gauge_mpa[0] = measured.iter().map(|stress| stress - 5.0).collect();
     run.evaluation = sample::score(&calibration.case, 0, &run.simulation);
-    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 1).unwrap();
+    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 1);
     let svg = overlay.expect("the record has gauge 1").svg;
-    let (mean, simulated) = (curves(&svg, "#222222", "13"), curves(&svg, "#C84B11", "11"));
+    let (mean, simulated) = (curves(&svg, "#222222", "13"), curves(&svg, "#c84b11", "11"));
     assert_eq!((mean.len(), simulated.len()), (2, 2));
     assert_eq!(
         mean[1], simulated[1],
@@ -286,7 +304,7 @@ fn a_simulation_that_differs_by_its_zero_only_lies_on_the_measured_curve() {
     let document = Document::parse(&svg).unwrap();
     let zero = document
         .descendants()
-        .filter(|node| node.attribute("stroke") == Some("#B9B9B5"))
+        .filter(|node| node.attribute("stroke") == Some("#b9b9b5"))
         .filter_map(|node| node.attribute("points")?.split([',', ' ']).nth(1))
         .filter_map(|y| y.parse::<i64>().ok())
         .max()
@@ -298,7 +316,7 @@ fn a_simulation_that_differs_by_its_zero_only_lies_on_the_measured_curve() {
 
 #[test]
 fn a_gauge_that_got_worse_is_said_to_be_worse() {
-    let page = html::calibration(&sample::calibration(100)).unwrap();
+    let page = page_of(&sample::calibration(100));
     let text = words(&page);
     assert!(
         text.contains("Point 4: worse: mean squared error rose"),
@@ -314,7 +332,7 @@ fn a_search_that_found_nothing_better_says_so() {
     let result = &mut calibration.conditions[0];
     result.optimised = result.recommended.clone();
     result.optimised.evaluation.fitness *= 1.1;
-    let text = words(&html::calibration(&calibration).unwrap());
+    let text = words(&page_of(&calibration));
     assert!(text.contains("The search found nothing better than the recommended parameters"));
 }
 
@@ -331,13 +349,13 @@ fn a_failed_recommended_run_draws_what_exists_and_says_so() {
         "{text}"
     );
     assert!(text.contains("no error to compare with"));
-    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 3).unwrap();
+    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 3);
     let svg = overlay.expect("the record has gauge 3").svg;
     let simulated = |svg: &str| {
         let document = Document::parse(svg).unwrap();
         let curves = document
             .descendants()
-            .filter(|node| node.attribute("stroke") == Some("#C84B11"))
+            .filter(|node| node.attribute("stroke") == Some("#c84b11"))
             .filter_map(|node| node.attribute("points"));
         let mut lengths: Vec<_> = curves
             .map(|points| points.split_whitespace().count())
@@ -363,7 +381,7 @@ fn an_optimum_that_failed_is_not_sold_as_a_result() {
     for point in &mut calibration.history {
         point.complete = false;
     }
-    let page = html::calibration(&calibration).unwrap();
+    let page = page_of(&calibration);
     check_page(&page);
     let text = words(&page);
     assert!(text.contains("No usable parameters were found"), "{text}");
@@ -377,7 +395,7 @@ fn nothing_at_all_still_makes_a_page() {
     calibration.workers.clear();
     calibration.notes.clear();
     calibration.optimised.genes.clear();
-    check_page(&html::calibration(&calibration).unwrap());
+    check_page(&page_of(&calibration));
 
     let mut run: SingleRun = sample::single();
     run.simulation = sample::failed(run.simulation.clone(), 0);
@@ -387,9 +405,11 @@ fn nothing_at_all_still_makes_a_page() {
     };
     run.evaluation = None;
     run.case.conditions[0].record = None;
-    let page = html::simulation(&run).unwrap();
+    let page = report::page(&report::simulation(&run));
     check_page(&page);
-    assert!(words(&page).contains("the iteration budget was used up"));
+    assert!(words(&page).contains(
+        "the iteration budget was used up; `iteration_budget` in [run] of case.toml raises it"
+    ));
 }
 
 #[test]
@@ -408,7 +428,7 @@ fn numbers_that_are_none_are_left_out() {
     calibration.history[8].genes[2] = f64::NAN;
     calibration.history[9].genes.clear();
     calibration.workers[0].present_s = 0.0;
-    let page = html::calibration(&calibration).unwrap();
+    let page = page_of(&calibration);
     check_page(&page);
     assert!(!words(&page).contains("NaN"));
     let frames = page.matches("\"path\":[").count();
@@ -419,8 +439,8 @@ fn numbers_that_are_none_are_left_out() {
         "a snapshot without places is left out"
     );
     let case = &calibration.case;
-    let overlay = chart::overlay(case, &calibration.conditions[0], 1).unwrap();
-    let simulated = curves(&overlay.unwrap().svg, "#C84B11", "11");
+    let overlay = chart::overlay(case, &calibration.conditions[0], 1);
+    let simulated = curves(&overlay.unwrap().svg, "#c84b11", "11");
     let lengths: Vec<_> = simulated.iter().map(Vec::len).collect();
     // recommended, then optimised on both sides of its gap (a stretch of 100 is not listed)
     assert_eq!(lengths, [720, 580]);
@@ -432,7 +452,7 @@ fn huge_histories_stay_small() {
     let run = &mut calibration.conditions[0].optimised;
     run.simulation = sample::simulation(&calibration.case, 0.08, 0.5);
     assert_eq!(run.simulation.motion.len(), 720);
-    let page = html::calibration(&calibration).unwrap();
+    let page = page_of(&calibration);
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
     check_page(&page);
 }
@@ -469,7 +489,7 @@ fn terminal_tables_are_styled_only_on_demand() {
 fn a_gene_at_its_bound_is_marked() {
     let mut calibration = sample::calibration(10);
     calibration.optimised.genes[8] = calibration.case.genes[8].upper;
-    let text = words(&html::calibration(&calibration).unwrap());
+    let text = words(&page_of(&calibration));
     assert!(text.contains("kc ended at its upper bound"));
     assert!(text.contains("* at a bound of the search: kc at its upper bound"));
 }
@@ -477,7 +497,7 @@ fn a_gene_at_its_bound_is_marked() {
 #[test]
 fn the_film_shows_the_machine_where_it_was() {
     let run = sample::single();
-    let page = html::simulation(&run).unwrap();
+    let page = report::page(&report::simulation(&run));
     let xml = as_xml(&page);
     let options = ParsingOptions {
         allow_dtd: true,
@@ -524,7 +544,7 @@ fn an_absolute_error_that_rose_behind_a_free_offset_is_said() {
     assert!(after.mse_mpa2 < before.mse_mpa2);
     after.mse_fixed_offset_mpa2 = 3.0 * before.mse_fixed_offset_mpa2 + 1.0;
     let said = "the absolute mean squared error (offset not removed) got worse";
-    let text = words(&html::calibration(&calibration).unwrap());
+    let text = words(&page_of(&calibration));
     assert!(text.contains(said), "{text}");
     let printed = table::text(&table::table_3(&calibration), false);
     assert!(printed.contains(said) && printed.contains("MSE, absolute (offset not removed)"));
@@ -547,8 +567,29 @@ fn the_fitted_condition_is_not_called_unseen() {
 fn computed_records_are_not_passed_off_as_measured() {
     let mut calibration = sample::calibration(10);
     let said = "The gauge records of this case are synthetic";
-    let page = |calibration: &Calibration| words(&html::calibration(calibration).unwrap());
+    let page = |calibration: &Calibration| words(&page_of(calibration));
     assert!(!page(&calibration).contains(said));
-    calibration.provenance.synthetic = true;
+    calibration.origin.synthetic = true;
     assert!(page(&calibration).contains(said));
+}
+
+/// The slowest stand first, processor time beside wall time.
+#[test]
+fn the_slowest_simulations_are_listed_with_what_they_cost() {
+    let calibration = sample::calibration(1000);
+    let text = report::text(&report::calibration(&calibration), false);
+    let (_, list) = text.split_once("The slowest simulations").expect("a table");
+    let (list, note) = list
+        .split_once("All 1\u{202f}000 simulations")
+        .expect("a note");
+    let rows: Vec<&str> = list.lines().filter(|line| line.contains(" s ")).collect();
+    assert_eq!(rows.len(), 10, "{list}");
+    for (row, individual) in rows.iter().zip([907, 807, 707]) {
+        assert!(
+            row.trim_start().starts_with(&individual.to_string()),
+            "{row}"
+        );
+        assert!(row.contains("0.401 s") && row.contains("0.601 s"), "{row}");
+    }
+    assert!(note.contains("the slowest took 2.0 times that"), "{note}");
 }

@@ -1,7 +1,8 @@
 //! A case and its results, synthesised: the machine's geometry, curves of its shape, a search log.
 use crate::geometry::{self, Pose};
+use coordinator::account::JobCost;
 use coordinator::report::{
-    Calibration, ConditionResult, HistoryPoint, Individual, Provenance, Run, SingleRun, WorkerUse,
+    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
 use protocol::case::{
     BackHead, Beam, Case, Coefficient, Condition, Contact, Crank, FrontHead, GaugeRecord,
@@ -97,6 +98,7 @@ pub(crate) fn case() -> Case {
         beam: Beam {
             inertia_kg_m2: 2.4e4,
             gravity_moment_n_m: 0.0,
+            gravity_height_moment_n_m: 0.0,
         },
         crank: Crank {
             center_x_m: -2.6,
@@ -145,7 +147,6 @@ pub(crate) fn case() -> Case {
             tangential: Vec::new(),
             gauge_stress_mpa: Vec::new(),
             participation: Vec::new(),
-            weight_axes: protocol::case::WeightAxes::Physical,
             stress: protocol::case::StressRecovery::ModeAcceleration,
             inertia_stress_mpa: [[0.0; 4]; 3],
             mass_kg: 881.0,
@@ -173,6 +174,7 @@ pub(crate) fn case() -> Case {
             longest_step_s: 0.03,
             tolerance: 1.0,
             modes: 6,
+            iteration_budget: 25_000,
         },
     };
     for index in 0..case.conditions.len() {
@@ -417,6 +419,17 @@ pub(crate) fn run(case: &Case, condition: usize, error: f64) -> Run {
     }
 }
 
+/// What an individual cost: every hundredth twice as much as the others, the later the more.
+fn cost(index: usize) -> JobCost {
+    let slow = if index % 100 == 7 { 2.0 } else { 1.0 };
+    let processor_s = 0.2 * slow + 1e-6 * index as f64;
+    JobCost {
+        wall_s: 1.5 * processor_s,
+        processor_s,
+        newton_iterations: 2000,
+    }
+}
+
 /// A search log: a population that closes in on `best` over the generations.
 fn history(case: &Case, best: &[f64], count: usize) -> Vec<HistoryPoint> {
     let mut noise = Noise(5);
@@ -452,13 +465,14 @@ fn history(case: &Case, best: &[f64], count: usize) -> Vec<HistoryPoint> {
                 fitness: if complete { fitness } else { 1e6 + fitness },
                 complete,
                 failure: (!complete).then(|| "overstretched_rope".to_owned()),
+                cost: Some(cost(index)),
             }
         })
         .collect()
 }
 
-fn provenance() -> Provenance {
-    Provenance {
+fn origin() -> Origin {
+    Origin {
         program: "horsehead 0.1.0".to_owned(),
         command: "horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7".to_owned(),
         run: "cyjs10-5-37hb-7".to_owned(),
@@ -498,7 +512,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
     conditions[1].optimised.evaluation.channels[3].mse_mpa2 =
         1.2 * conditions[1].recommended.evaluation.channels[3].mse_mpa2;
     Calibration {
-        provenance: provenance(),
+        origin: origin(),
         recommended: Individual {
             id: None,
             genes: case.recommended(),
@@ -542,11 +556,11 @@ pub(crate) fn single() -> SingleRun {
     let case = case();
     let simulation = simulation(&case, 0.3, 2.0);
     SingleRun {
-        provenance: Provenance {
+        origin: Origin {
             preset: None,
             seed: None,
             command: "horsehead simulate cases/cyjs10-5-37hb".to_owned(),
-            ..provenance()
+            ..origin()
         },
         condition: 0,
         genes_name: "recommended".to_owned(),

@@ -1,22 +1,24 @@
 //! A finished diagnosis, synthesised: fits of a linear model, suspects with tests, the maps.
 use crate::sample;
-use coordinator::report::Provenance;
+use coordinator::report::Origin;
 use coordinator::report::diagnosis::Subject;
-use coordinator::study::{Account, Diagnosed};
-use discrepancy::bench::Fit;
-use discrepancy::diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, Round};
+use coordinator::study::{Diagnosed, StageCost};
+use discrepancy::cause::refit::Refitted;
+use discrepancy::cause::suspect::Suspect;
+use discrepancy::diagnose::{
+    Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round,
+};
+use discrepancy::ground::preflight::Preflight;
 use discrepancy::laboratory::Stage;
-use discrepancy::locate::wander::{Part, Shift, Wander};
-use discrepancy::locate::{angle, joint, order};
+use discrepancy::linear::score::Score;
+use discrepancy::model::Fit;
 use discrepancy::model::Model;
+use discrepancy::place::wander::{Part, Shift, Wander};
+use discrepancy::place::whereabouts::Where;
+use discrepancy::place::{angle, joint, order};
+use discrepancy::proof::closed::closed;
+use discrepancy::proof::compare::Row;
 use discrepancy::record::{Curves, Record, Source, Stated};
-use discrepancy::score::Score;
-use discrepancy::show::closed;
-use discrepancy::stage::preflight::Preflight;
-use discrepancy::stage::refit::Refitted;
-use discrepancy::stage::show::Row;
-use discrepancy::stage::suspect::Suspect;
-use discrepancy::stage::whereabouts::Where;
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
@@ -46,14 +48,14 @@ impl Made {
             records: &self.records,
             library: &self.library,
             diagnosed: &self.diagnosed,
-            provenance: Provenance {
+            origin: Origin {
                 program: "horsehead 0.1.0".to_owned(),
                 command: "horsehead diagnose cases/cyjs10-5-37hb".to_owned(),
                 run: "runs/cyjs10-5-37hb-diagnose-seed1".to_owned(),
                 case_hash: "3f9ad0c1b2e4".repeat(5),
                 measured_name: "the case's own records".to_owned(),
                 seed: Some(1),
-                ..Provenance::default()
+                ..Origin::default()
             },
             notes: &self.notes,
             wall_s: 412.0,
@@ -133,9 +135,8 @@ fn library() -> Vec<EffectDescriptor> {
 /// as unknowns; `size` is the length of its residual.
 fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> Fit {
     let space = Space::new(&case.genes).expect("the sample's genes are sound");
-    let model = added
-        .iter()
-        .fold(Model::plain(space), |model, effect| model.with(effect));
+    let mut model = Model::plain(space);
+    model.added.extend(added.iter().copied().cloned());
     let variables = model.variables(&[]);
     let residual = |x: &[f64]| {
         DVector::from_fn(ENTRIES, |i, _| {
@@ -359,8 +360,13 @@ fn limits(library: &[EffectDescriptor]) -> Vec<Limit> {
 
 fn estimate(effect: &EffectDescriptor, value: f64, ln_evidence: f64) -> Estimate {
     let parameters = effect.parameters.iter().map(|p| {
-        let interval = [value - 0.1, value + 0.1];
-        (p.name.clone(), p.unit.clone(), value, interval)
+        let (name, unit) = (p.name.clone(), p.unit.clone());
+        ParameterEstimate {
+            name,
+            unit,
+            value,
+            interval: [value - 0.1, value + 0.1],
+        }
     });
     Estimate {
         id: effect.id.clone(),
@@ -371,8 +377,8 @@ fn estimate(effect: &EffectDescriptor, value: f64, ln_evidence: f64) -> Estimate
     }
 }
 
-fn accounts() -> Vec<(Stage, Account)> {
-    let account = |experiments, failed, seconds| Account {
+fn accounts() -> Vec<(Stage, StageCost)> {
+    let account = |experiments, failed, seconds| StageCost {
         experiments,
         failed,
         batches: 7,

@@ -13,7 +13,9 @@
 //! router's access control still goes by certificate, and the gate knows nothing of the bus but
 //! how many streams there are.
 mod inner;
+mod passing;
 mod refusal;
+pub(crate) mod terms;
 
 pub(crate) use inner::Inner;
 
@@ -22,9 +24,9 @@ use crate::{
     keys::{Keys, certificate_name, provider},
     locator::Locator,
 };
+use passing::join;
 use quinn::{
-    Connection, ConnectionError, Endpoint, Incoming, RecvStream, SendStream, TransportConfig,
-    VarInt,
+    Connection, ConnectionError, Endpoint, Incoming, TransportConfig, VarInt,
     crypto::rustls::{HandshakeData, QuicServerConfig},
 };
 use refusal::Refusals;
@@ -35,30 +37,15 @@ use std::{
     sync::Arc,
     time::Duration,
 };
+use terms::{BUS, CONNECTIONS, CROWDED, HANDSHAKE, KNOCK, UNLISTED, WELCOME};
 use tokio::{sync::Semaphore, task::JoinHandle, time::timeout};
 
-/// What a worker shows that only asks whether it may come in.
-pub(crate) const KNOCK: &[u8] = b"horsehead-knock";
-/// Protocol of the router: a stream for each priority.
-pub(crate) const BUS: &[u8] = b"zenoh-ms";
 /// Streams of the bus in one direction: one for each priority but the highest.
 const STREAMS: u32 = 7;
-/// Answer to a knock, and to whoever may not come in.
-pub(crate) const WELCOME: u32 = 0;
-/// The same: its name is not on the list.
-pub(crate) const UNLISTED: u32 = 1;
-/// The same: its certificate has all the connections that one may have.
-const CROWDED: u32 = 2;
-/// How long shaking hands may take.
-const HANDSHAKE: Duration = Duration::from_secs(3);
 /// Peers with which hands are shaken at a time.
 const PENDING: usize = 1024;
-/// Connections, and workers, of one certificate: the router's sessions are for all.
-pub(crate) const CONNECTIONS: usize = 1024;
 /// Beyond so many, peers must show first that they are where they say.
 const TRUSTING: usize = 64;
-/// Bytes passed on at a time.
-const PIECE: usize = 64 << 10;
 /// How long the last words may take at the end.
 const FAREWELL: Duration = Duration::from_millis(200);
 
@@ -228,63 +215,4 @@ fn asks_only(connection: &Connection) -> bool {
     let data = connection.handshake_data();
     let data = data.and_then(|data| data.downcast::<HandshakeData>().ok());
     data.is_some_and(|data| data.protocol.as_deref() == Some(KNOCK))
-}
-
-/// Passes everything on between two connections until one of them ends; then the other does.
-async fn join(outer: &Connection, inner: &Connection) {
-    // streams stand for priorities by their order, which `accept` and `open` keep
-    let passing = async {
-        tokio::join!(
-            both_ways(outer, inner),
-            one_way(outer, inner),
-            one_way(inner, outer)
-        )
-    };
-    let why = tokio::select! {
-        _ = passing => outer.closed().await,
-        why = outer.closed() => why,
-        why = inner.closed() => why,
-    };
-    tracing::debug!(%why, "a worker's connection ended");
-    for connection in [outer, inner] {
-        connection.close(VarInt::from_u32(WELCOME), b"closed");
-    }
-}
-
-/// The one stream that goes both ways: the worker opens it.
-async fn both_ways(outer: &Connection, inner: &Connection) -> Result<(), ConnectionError> {
-    let (outer_send, outer_receive) = outer.accept_bi().await?;
-    let (inner_send, inner_receive) = inner.open_bi().await?;
-    tokio::join!(
-        pass(outer_receive, inner_send),
-        pass(inner_receive, outer_send)
-    );
-    Ok(())
-}
-
-/// All streams that go one way.
-async fn one_way(from: &Connection, to: &Connection) -> Result<(), ConnectionError> {
-    let mut passing = tokio::task::JoinSet::new();
-    for priority in 0.. {
-        let receive = from.accept_uni().await?;
-        let send = to.open_uni().await?;
-        // as the bus does it: the first stream is the most urgent
-        if send.set_priority(-1 - priority).is_err() {
-            break;
-        }
-        passing.spawn(pass(receive, send));
-    }
-    Ok(())
-}
-
-/// Passes bytes on; the receiver's pace is the sender's.
-async fn pass(mut from: RecvStream, mut to: SendStream) {
-    while let Ok(Some(piece)) = from.read_chunk(PIECE, true).await {
-        if to.write_chunk(piece.bytes).await.is_err() {
-            return;
-        }
-    }
-    if to.finish().is_err() {
-        tracing::trace!("a stream was closed before");
-    }
 }

@@ -5,7 +5,7 @@
 //! is closed, a certificate that one of the two ends does not accept.
 use crate::{
     LinkError,
-    gate::{KNOCK, UNLISTED, WELCOME},
+    gate::terms::{KNOCK, UNLISTED, WELCOME},
     keys::{Keys, provider},
     locator::Locator,
 };
@@ -189,7 +189,7 @@ fn distrust(words: &str, to: &Locator, keys: &Keys) -> String {
     if has("not valid for name") || has("NotValidForName") {
         return format!(
             "its certificate is not for \"{}\": dial a name or address that was given to \
-             `horsehead keys new --host` ({words})",
+             `horsehead keys new keys --host NAME` ({words})",
             to.host
         );
     }

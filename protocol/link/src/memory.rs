@@ -3,13 +3,16 @@
 //! Reordering needs no rule of its own: each copy of a frame waits its own time.
 use crate::{Blob, CoordinatorEnd, Heard, LinkError, WorkerEnd};
 use protocol::{
-    id::{ContentHash, RunId, WorkerId},
+    id::{ContentHash, RunId, WorkerId, draw},
     key::Lane,
 };
 use std::{
     collections::BTreeMap,
     future::Future,
-    sync::{Arc, Mutex, PoisonError},
+    sync::{
+        Arc, Mutex, PoisonError,
+        atomic::{AtomicU64, Ordering},
+    },
     time::Duration,
 };
 use tokio::sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel};
@@ -41,21 +44,18 @@ impl Faults {
 #[derive(Debug)]
 struct Shared {
     faults: Faults,
-    state: Mutex<u64>,
+    drawn: AtomicU64,
     blob: Blob,
     to_coordinator: UnboundedSender<Heard>,
     workers: Mutex<BTreeMap<WorkerId, UnboundedSender<Vec<u8>>>>,
 }
 
 impl Shared {
-    /// A uniform number in [0, 1): `SplitMix64`.
+    /// A uniform number in [0, 1).
     fn draw(&self) -> f64 {
-        let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
-        *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = *state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+        let count = self.drawn.fetch_add(1, Ordering::Relaxed);
+        let place = u128::from(self.faults.seed) << 64 | u128::from(count);
+        (draw("faults", place) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Hands something on as often and as late as the faults say.
@@ -92,7 +92,7 @@ impl Hub {
         let (to_coordinator, heard) = unbounded_channel();
         let shared = Arc::new(Shared {
             faults,
-            state: Mutex::new(faults.seed),
+            drawn: AtomicU64::new(0),
             blob,
             to_coordinator,
             workers: Mutex::default(),

@@ -23,26 +23,12 @@ pub struct ModalHead {
     /// Static gauge stress per unit base acceleration in x, y [MPa per m/s2] and about the pivot
     /// [MPa per rad/s2]; 3 x 4.
     pub inertia_stress_mpa: [[f64; 4]; 3],
-    /// How the records of the case hold the head's own weight.
-    pub weight_axes: WeightAxes,
     /// How gauge stress follows from modes and forces.
     pub stress: StressRecovery,
     /// Mass of the meshed steel \[kg\].
     pub mass_kg: f64,
     /// Exact static gauge stress per newton.
     pub influence: Influence,
-}
-
-/// How gauge records hold the head's own weight.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum WeightAxes {
-    /// As physics has it: the weight acts downwards in the ground frame.
-    #[default]
-    Physical,
-    /// With the x and y components in the beam frame exchanged. No machine does that; records made
-    /// by another program may.
-    Exchanged,
 }
 
 /// How gauge stress follows from modal coordinates and forces.

@@ -12,6 +12,10 @@ pub struct Beam {
     pub inertia_kg_m2: f64,
     /// Static moment of the assembly's weight at beam angle 0 [N m]; positive lowers the front.
     pub gravity_moment_n_m: f64,
+    /// The weight times the height of its centre of mass above the pivot at beam angle 0 [N m]; 0,
+    /// on a line with the pivot, where none is stated. Positive where the beam is top-heavy.
+    #[serde(default)]
+    pub gravity_height_moment_n_m: f64,
 }
 
 /// Sense in which the crank turns, seen with the well on the right.

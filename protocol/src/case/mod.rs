@@ -14,7 +14,7 @@ mod twin;
 pub use condition::{Condition, GaugeRecord, GaugeTrace, LoadCard, Smoothing};
 pub use effect::{EffectSetting, merged};
 pub use gene::{Coefficient, Gene, Quantity, Scale};
-pub use head::{Influence, ModalHead, StressRecovery, WeightAxes};
+pub use head::{Influence, ModalHead, StressRecovery};
 pub use machine::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
 };
@@ -88,6 +88,13 @@ pub struct RunSettings {
     pub tolerance: f64,
     /// Number of head modes that are simulated.
     pub modes: usize,
+    /// Newton iterations that one run may take before it is given up.
+    #[serde(default = "iterations")]
+    pub iteration_budget: u64,
+}
+
+const fn iterations() -> u64 {
+    25_000
 }
 
 const fn half() -> f64 {

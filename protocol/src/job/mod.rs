@@ -2,32 +2,60 @@
 //!
 //! A bad candidate is *not* an error: its [`Verdict`] is data for the search and is never
 //! retried. [`Failure`] is infrastructure: the job could not be done.
-pub mod kind;
-mod observe;
+//!
+//! # What a new kind of job costs
+//! Eight files. Here: a file with what is asked and what is answered, and in this one a variant of
+//! [`Job`] and of [`Answer`], its name, and how to take the answer. In `worker/src/handler`: a file
+//! that does it and a line in `mod.rs`. In `coordinator/src/study`: a file that asks for it and a line
+//! in `mod.rs`. The wire changes with it: `wire::VERSION` and `protocol/tests/wire_form.txt`. Nobody
+//! else lists the kinds. Another reply of a simulation is cheaper: a variant of [`Reply`] and of
+//! [`Answer`], and a file in `worker/src/handler`.
+mod channels;
+mod curves;
+mod failure;
 mod reduce_head;
 mod score;
 mod simulate;
 mod verdict;
 
-pub use observe::{Observation, ObserveSpec, Refinement};
+pub use channels::Observation;
+pub use curves::{Energy, Motion, Simulation};
+pub use failure::{Failure, WrongKind};
 pub use reduce_head::{
     ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily,
     ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
 };
-pub use score::{ChannelScore, Evaluation, ScoreSpec};
-pub use simulate::{Energy, Integration, Motion, SimulateSpec, Simulation};
+pub use score::{ChannelScore, Evaluation};
+pub use simulate::{Discretisation, Individual, Reply, SimulateSpec};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
-use crate::announce::EffectDescriptor;
+use crate::{announce::EffectDescriptor, id::ContentHash, wire};
 use serde::{Deserialize, Serialize};
-use std::fmt;
+
+/// Names of the kinds of jobs, simulations by their reply: what workers announce, what tables show,
+/// and by what time limits are kept, since one kind takes minutes where others take seconds.
+pub mod kind {
+    /// Simulate and compare with the records.
+    pub const SCORE: &str = "score";
+    /// Simulate and return the measured channels.
+    pub const CHANNELS: &str = "channels";
+    /// Simulate and return everything that can be drawn.
+    pub const CURVES: &str = "curves";
+    /// Reduce the flexible back head.
+    pub const REDUCE_HEAD: &str = "reduce_head";
+    /// Say which effects there are.
+    pub const DESCRIBE: &str = "describe";
+    /// Do nothing.
+    pub const NOTHING: &str = "nothing";
+
+    /// All that a worker of this build does, in the order in which it says so.
+    pub const ALL: [&str; 6] = [SCORE, CHANNELS, CURVES, REDUCE_HEAD, DESCRIBE, NOTHING];
+}
 
 /// One unit of work; a pure function of itself and the case it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Job {
-    /// Simulate and compare with the records: fitness, and the residual on demand.
-    Score(ScoreSpec),
-    /// Simulate and return the curves.
+    /// Simulate a revolution.
     Simulate(SimulateSpec),
     /// Reduce the flexible back head from its mesh to modes and influence lines.
     ReduceHead(Box<ReduceHeadSpec>),
@@ -43,54 +71,102 @@ pub enum Job {
         /// How long the slot is held \[ms\].
         delay_ms: u32,
     },
-    /// Simulate and return the measured channels alone.
-    Observe(ObserveSpec),
 }
 
 impl Job {
     /// Name of the kind, as workers announce it.
     pub const fn kind(&self) -> &'static str {
         match self {
-            Self::Score(_) => kind::SCORE,
-            Self::Simulate(_) => kind::SIMULATE,
-            Self::Observe(_) => kind::OBSERVE,
+            Self::Simulate(spec) => match spec.reply {
+                Reply::Score { .. } => kind::SCORE,
+                Reply::Channels => kind::CHANNELS,
+                Reply::Curves { .. } => kind::CURVES,
+            },
             Self::ReduceHead(_) => kind::REDUCE_HEAD,
             Self::Describe => kind::DESCRIBE,
             Self::Nothing { .. } => kind::NOTHING,
         }
     }
+
+    /// What is simulated; none where nothing is.
+    pub const fn individual(&self) -> Option<&Individual> {
+        match self {
+            Self::Simulate(spec) => Some(&spec.individual),
+            Self::ReduceHead(_) | Self::Describe | Self::Nothing { .. } => None,
+        }
+    }
+
+    /// The name of this piece of work: the hash of the encoded job.
+    pub fn work_hash(&self) -> ContentHash {
+        // a job that cannot be encoded cannot be sent either; all of those share one name
+        ContentHash::of(&wire::encode(self).unwrap_or_default())
+    }
 }
 
-/// The answer to a [`Job`] that was done.
+/// What a [`Job`] that was done came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Outcome {
-    /// Of [`Job::Score`].
+pub enum Answer {
+    /// Of [`Reply::Score`].
     Scored(Evaluation),
-    /// Of [`Job::Simulate`].
-    Simulated(Box<Simulation>),
+    /// Of [`Reply::Channels`].
+    Channels(Observation),
+    /// Of [`Reply::Curves`].
+    Curves(Box<Simulation>),
     /// Of [`Job::ReduceHead`].
     HeadReduced(Box<ReducedHead>),
     /// Of [`Job::Describe`].
     Described(Vec<EffectDescriptor>),
     /// Of [`Job::Nothing`].
     Nothing(#[serde(with = "serde_bytes")] Vec<u8>),
-    /// The job could not be done.
-    Failed(Failure),
-    /// Of [`Job::Observe`].
-    Observed(Observation),
 }
 
-impl Outcome {
-    /// Name of the kind of job that it answers, as [`Job::kind`]; `failed` if it was not done.
+/// How to take an answer of the kind that was asked for.
+macro_rules! taken {
+    ($($name:ident: $variant:ident -> $content:ty, $what:literal;)*) => {$(
+        #[doc = $what]
+        ///
+        /// # Errors
+        /// [`WrongKind`] if it is another kind's.
+        pub fn $name(self) -> Result<$content, WrongKind> {
+            match self {
+                Self::$variant(content) => Ok(content),
+                other => Err(WrongKind { answered: other.kind() }),
+            }
+        }
+    )*};
+}
+
+impl Answer {
+    taken! {
+        into_scored: Scored -> Evaluation, "The answer to [`Reply::Score`].";
+        into_channels: Channels -> Observation, "The answer to [`Reply::Channels`].";
+        into_curves: Curves -> Box<Simulation>, "The answer to [`Reply::Curves`].";
+        into_head_reduced: HeadReduced -> Box<ReducedHead>, "The answer to [`Job::ReduceHead`].";
+        into_described: Described -> Vec<EffectDescriptor>, "The answer to [`Job::Describe`].";
+        into_nothing: Nothing -> Vec<u8>, "The answer to [`Job::Nothing`].";
+    }
+
+    /// Name of the kind of job that it answers, as [`Job::kind`].
     pub const fn kind(&self) -> &'static str {
         match self {
             Self::Scored(_) => kind::SCORE,
-            Self::Simulated(_) => kind::SIMULATE,
-            Self::Observed(_) => kind::OBSERVE,
+            Self::Channels(_) => kind::CHANNELS,
+            Self::Curves(_) => kind::CURVES,
             Self::HeadReduced(_) => kind::REDUCE_HEAD,
             Self::Described(_) => kind::DESCRIBE,
             Self::Nothing(_) => kind::NOTHING,
-            Self::Failed(_) => "failed",
+        }
+    }
+
+    /// Agreement with the record; none where nothing was compared.
+    pub const fn evaluation(&self) -> Option<&Evaluation> {
+        match self {
+            Self::Scored(evaluation) => Some(evaluation),
+            Self::Channels(_)
+            | Self::Curves(_)
+            | Self::HeadReduced(_)
+            | Self::Described(_)
+            | Self::Nothing(_) => None,
         }
     }
 
@@ -98,73 +174,58 @@ impl Outcome {
     pub fn simulation(&self) -> Option<(Verdict, Counters)> {
         match self {
             Self::Scored(evaluation) => Some((evaluation.verdict, evaluation.counters)),
-            Self::Simulated(simulation) => Some((simulation.verdict, simulation.counters)),
-            Self::Observed(seen) => Some((seen.verdict, seen.counters)),
-            Self::HeadReduced(_) | Self::Described(_) | Self::Nothing(_) | Self::Failed(_) => None,
+            Self::Channels(seen) => Some((seen.verdict, seen.counters)),
+            Self::Curves(simulation) => Some((simulation.verdict, simulation.counters)),
+            Self::HeadReduced(_) | Self::Described(_) | Self::Nothing(_) => None,
         }
     }
-
-    /// How the simulation ended; none where nothing was simulated.
-    pub fn verdict(&self) -> Option<Verdict> {
-        self.simulation().map(|(verdict, _)| verdict)
-    }
 }
 
-/// Why a job could not be done.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Failure {
-    /// It ran longer than its deadline and was ended.
-    Deadline {
-        /// The deadline \[ms\].
-        limit_ms: u64,
-    },
-    /// The process that computed it ended by itself.
-    Crashed {
-        /// Exit status or signal, in words.
-        how: String,
-    },
-    /// The worker that computed it was lost, as often as the retry limit allows.
-    Lost {
-        /// How many workers were lost over it.
-        workers: u32,
-    },
-    /// The worker will not do this kind of job.
-    Refused {
-        /// Why.
-        reason: String,
-    },
-    /// The case cannot be built into a model.
-    Misconfigured {
-        /// Which field of the case.
-        field: String,
-        /// What is wrong with it and what to do.
-        problem: String,
-    },
+/// What came of a [`Job`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Outcome {
+    /// It was done.
+    Done(Answer),
+    /// It could not be done.
+    Failed(Failure),
 }
 
-impl Failure {
-    /// Name of the kind, as written in tables.
+impl Outcome {
+    /// Name of the kind of job that was done, as [`Job::kind`]; `failed` if it was not.
     pub const fn kind(&self) -> &'static str {
         match self {
-            Self::Deadline { .. } => "deadline",
-            Self::Crashed { .. } => "crashed",
-            Self::Lost { .. } => "lost",
-            Self::Refused { .. } => "refused",
-            Self::Misconfigured { .. } => "misconfigured",
+            Self::Done(answer) => answer.kind(),
+            Self::Failed(_) => "failed",
         }
+    }
+
+    /// The answer, if the job was done.
+    pub const fn answer(&self) -> Option<&Answer> {
+        match self {
+            Self::Done(answer) => Some(answer),
+            Self::Failed(_) => None,
+        }
+    }
+
+    /// The answer, or why there is none.
+    ///
+    /// # Errors
+    /// [`Failure`] if the job could not be done.
+    pub fn done(self) -> Result<Answer, Failure> {
+        match self {
+            Self::Done(answer) => Ok(answer),
+            Self::Failed(failure) => Err(failure),
+        }
+    }
+
+    /// How the simulation ended and what it cost; none where nothing was simulated.
+    pub fn simulation(&self) -> Option<(Verdict, Counters)> {
+        self.answer()?.simulation()
     }
 }
 
-impl fmt::Display for Failure {
-    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Deadline { limit_ms } => {
-                write!(to, "it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
-            }
-            Self::Crashed { how } => write!(to, "the process that computed it ended: {how}"),
-            Self::Lost { workers } => write!(to, "{workers} workers were lost over it"),
-            Self::Refused { reason } => write!(to, "the worker refused it: {reason}"),
-            Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),
-        }
+impl From<Result<Answer, Failure>> for Outcome {
+    fn from(result: Result<Answer, Failure>) -> Self {
+        result.map_or_else(Self::Failed, Self::Done)
     }
 }

@@ -1,20 +1,6 @@
-//! Simulate a condition and compare it with its gauge record.
-use super::{Counters, Verdict};
-use crate::case::EffectSetting;
+//! A simulation compared with its gauge record.
+use super::verdict::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
-
-/// Which individual to score, against what.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ScoreSpec {
-    /// Index of the condition in the case.
-    pub condition: usize,
-    /// Gene values in declared units, in the case's order.
-    pub genes: Vec<f64>,
-    /// Effects beside those of the case; the same identifier replaces the case's.
-    pub effects: Vec<EffectSetting>,
-    /// Whether the residual vector is wanted too.
-    pub with_residual: bool,
-}
 
 /// What scoring found.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

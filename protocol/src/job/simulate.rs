@@ -1,113 +1,101 @@
-//! Simulate a condition and return everything that can be drawn.
-use super::{Counters, Verdict};
+//! What to simulate, how finely, and what to say of it: the one job of all simulations.
 use crate::case::{EffectSetting, Integrator};
 use serde::{Deserialize, Serialize};
 
-/// What to simulate.
+/// A simulation of one revolution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulateSpec {
+    /// Of what.
+    pub individual: Individual,
+    /// How finely.
+    pub discretisation: Discretisation,
+    /// What is wanted of it.
+    pub reply: Reply,
+}
+
+impl SimulateSpec {
+    /// A simulation that is discretised as the case says.
+    pub const fn new(individual: Individual, reply: Reply) -> Self {
+        Self {
+            individual,
+            discretisation: Discretisation::OF_THE_CASE,
+            reply,
+        }
+    }
+}
+
+/// A machine under a condition: values of the genes, and effects beside those of the case.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Individual {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
     /// Effects beside those of the case; the same identifier replaces the case's.
     pub effects: Vec<EffectSetting>,
-    /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
-    pub motion_step_deg: f64,
-    /// How to integrate, instead of as the case says.
-    pub integration: Option<Integration>,
 }
 
-/// How one run is integrated, for comparisons of methods.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Integration {
-    /// Method.
-    pub integrator: Integrator,
+impl Individual {
+    /// With the effects of the case alone.
+    pub const fn new(condition: usize, genes: Vec<f64>) -> Self {
+        Self {
+            condition,
+            genes,
+            effects: Vec::new(),
+        }
+    }
+}
+
+/// How space and time are divided; what is absent stays as the case has it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Discretisation {
+    /// Length of a rope cylinder \[m\]; both ropes keep their lengths, which it must divide.
+    pub cylinder_length_m: Option<f64>,
+    /// Crank angle that is run before the recorded revolution \[deg\].
+    pub lead_in_deg: Option<f64>,
+    /// Number of head modes.
+    pub modes: Option<usize>,
+    /// Method of integration.
+    pub integrator: Option<Integrator>,
     /// Longest step \[s\].
-    pub longest_step_s: f64,
-    /// Tolerance, relative to the built-in error scales; so large a one that no step is ever
-    /// rejected makes the longest step a fixed one.
-    pub tolerance: f64,
-    /// Newton iterations after which the run ends; without, as many as any run may take.
+    pub longest_step_s: Option<f64>,
+    /// Whether the longest step stays as long on a machine that swings fast, where it would be
+    /// shortened otherwise: comparisons of methods are made at the step that they name.
+    pub step_as_stated: bool,
+    /// Tolerance of the integrator, relative to its built-in error scales; so large a one that no
+    /// step is ever rejected makes the longest step a fixed one.
+    pub tolerance: Option<f64>,
+    /// Newton iterations after which the run ends.
     pub budget: Option<u64>,
 }
 
-/// Curves of one revolution; every vector has one entry per crank angle reached.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Simulation {
-    /// How it ended.
-    pub verdict: Verdict,
-    /// What it cost.
-    pub counters: Counters,
-    /// Wall time on the worker \[s\]; not part of the digest.
-    pub wall_s: f64,
-    /// Crank angle from bottom dead centre \[deg\].
-    pub turn_deg: Vec<f64>,
-    /// Stress at gauges 1 to 4 \[MPa\].
-    pub gauge_mpa: [Vec<f64>; 4],
-    /// Axial force in the back rope's first joint, at the crossbeam; of two ropes together \[N\].
-    pub back_rope_tension_n: Vec<f64>,
-    /// Axial force in the front rope's joint at the suspension; of two ropes together \[N\].
-    pub front_rope_tension_n: Vec<f64>,
-    /// By how much of two ropes the one at +z pulls more, back and front \[N\]; empty where there is
-    /// one.
-    pub tension_difference_n: [Vec<f64>; 2],
-    /// Beam angle \[deg\].
-    pub beam_deg: Vec<f64>,
-    /// Suspension height above its lowest design position \[m\].
-    pub suspension_m: Vec<f64>,
-    /// Suspension velocity [m/s].
-    pub suspension_velocity_m_s: Vec<f64>,
-    /// Suspension acceleration [m/s2].
-    pub suspension_acceleration_m_s2: Vec<f64>,
-    /// Net torque at the crank shaft, counterweight included [N m].
-    pub crank_torque_n_m: Vec<f64>,
-    /// Modal coordinates of the back head, mode by mode [kg^1/2 m].
-    pub modal: Vec<Vec<f64>>,
-    /// Energy over the recorded revolution.
-    pub energy: Energy,
-    /// Shapes for the moving machine; empty unless asked for.
-    pub motion: Vec<Motion>,
+impl Discretisation {
+    /// Nothing is divided otherwise than in the case.
+    pub const OF_THE_CASE: Self = Self {
+        cylinder_length_m: None,
+        lead_in_deg: None,
+        modes: None,
+        integrator: None,
+        longest_step_s: None,
+        step_as_stated: false,
+        tolerance: None,
+        budget: None,
+    };
 }
 
-/// Where the energy of the recorded revolution went \[J\].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Energy {
-    /// Work of the crank pin on the rod.
-    pub input_j: f64,
-    /// Work on the polished-rod load.
-    pub output_j: f64,
-    /// Lost in rope joints, contact and head damping.
-    pub dissipated_j: f64,
-    /// Gain of kinetic, gravitational and elastic energy.
-    pub stored_j: f64,
-    /// |input - output - dissipated - stored| over the larger of input and output work.
-    pub relative_error: f64,
-}
-
-/// One snapshot of the machine in the ground frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
-    /// Crank angle from bottom dead centre \[deg\].
-    pub turn_deg: f64,
-    /// Crank pin x, y \[m\].
-    pub crank_pin_m: [f32; 2],
-    /// Beam angle \[deg\].
-    pub beam_deg: f32,
-    /// Crossbeam end of the rod x, y \[m\].
-    pub crossbeam_m: [f32; 2],
-    /// Suspension point x, y \[m\].
-    pub suspension_m: [f32; 2],
-    /// Centres of the back rope's cylinders from the crossbeam on, x, y \[m\].
-    pub back_rope_m: Vec<[f32; 2]>,
-    /// Axial force in the joint before each of those cylinders \[N\].
-    pub back_tension_n: Vec<f32>,
-    /// Contact force on each of those cylinders \[N\].
-    pub back_contact_n: Vec<f32>,
-    /// Centres of the front rope's cylinders from the suspension on, x, y \[m\].
-    pub front_rope_m: Vec<[f32; 2]>,
-    /// Axial force in the joint before each of those cylinders \[N\].
-    pub front_tension_n: Vec<f32>,
-    /// Contact force on each of those cylinders \[N\].
-    pub front_contact_n: Vec<f32>,
+/// What is wanted of a simulation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Reply {
+    /// Agreement with the gauge record: an [`super::Evaluation`].
+    Score {
+        /// Whether the residual vector is wanted too.
+        with_residual: bool,
+    },
+    /// The measured channels alone: an [`super::Observation`].
+    Channels,
+    /// Everything that can be drawn: a [`super::Simulation`].
+    Curves {
+        /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
+        motion_step_deg: f64,
+    },
 }

@@ -106,3 +106,21 @@ pub struct Counters {
     /// Factorisations.
     pub factorizations: u64,
 }
+
+impl Counters {
+    /// Each with the name that tables and files give it and with what it counts, in one order for
+    /// all of them.
+    pub const fn named(&self) -> [(&'static str, &'static str, u64); 5] {
+        [
+            ("steps", "accepted steps", self.steps),
+            ("rejected_steps", "rejected steps", self.rejected_steps),
+            (
+                "newton_iterations",
+                "Newton iterations",
+                self.newton_iterations,
+            ),
+            ("jacobians", "tangent evaluations", self.jacobians),
+            ("factorizations", "factorisations", self.factorizations),
+        ]
+    }
+}

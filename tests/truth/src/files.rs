@@ -107,7 +107,7 @@ samples_lost = {lost}
 
 [crank]
 zero = \"bottom dead centre of the design kinematics\"
-sense = \"crank_deg increases with time; the crank turns clockwise seen with the well on the right\"
+sense = \"clockwise\"
 angle_resolution_deg = 0.1
 index_pulses_per_revolution = 1
 index_tolerance_deg = 0.2
@@ -132,6 +132,16 @@ noise_rms_m = {position}
 [torque]
 noise_rms_nm = {torque}
 meaning = \"net torque at the crank shaft including counterweight\"
+
+[tolerance]  # the instruments of this record are exact but for their noise
+gauge_factor = 0
+index_deg = 0
+load_cell = 0
+amplifier_lag_s = 0
+position = 0
+torque = 0
+bearing_friction_nm = 0
+balance_nm = 0
 "
     )
 }

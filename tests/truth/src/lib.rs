@@ -10,6 +10,8 @@ pub mod draw;
 pub mod files;
 pub mod interval;
 pub mod judge;
+#[cfg(test)]
+mod judged;
 pub mod law;
 pub mod machine;
 pub mod plan;

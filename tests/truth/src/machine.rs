@@ -5,8 +5,8 @@ use crate::law::Hidden;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
 use protocol::case::{Case, Coefficient};
-use protocol::job::{Failure, Refinement};
-use simulation::effect::{Effect, Selection};
+use protocol::job::{Discretisation, Failure};
+use simulation::effect::Effect;
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::TR_BDF2;
 use simulation::model::Machine;
@@ -115,10 +115,10 @@ pub fn turn(
     fineness: &Fineness,
 ) -> anyhow::Result<Turn> {
     let available = case.modal_head.frequencies_hz.len();
-    let finer = Refinement {
+    let finer = Discretisation {
         cylinder_length_m: Some(fineness.cylinder),
         modes: Some((case.run.modes + fineness.more_modes).min(available)),
-        ..Refinement::default()
+        ..Discretisation::default()
     };
     let case = worker::convert::refined(case, &finer).map_err(|why| refused(&why))?;
     let law = worker::convert::rope_law(&case, genes).map_err(|why| refused(&why))?;
@@ -130,7 +130,7 @@ pub fn turn(
         effect
     });
     let varied: Arc<dyn Effect> = Arc::new(variation);
-    let effects = Selection::of(laws.chain([varied]).collect());
+    let effects: Vec<Arc<dyn Effect>> = laws.chain([varied]).collect();
     let machine = Machine::with_effects(description, plain.layout.modes, &effects)?;
     let settings = RunSettings {
         method: Method::from(&TR_BDF2),

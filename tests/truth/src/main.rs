@@ -89,7 +89,7 @@ struct Open {
     /// File of the answers.
     #[arg(long)]
     answers: PathBuf,
-    /// Folder of the verdicts: NAME.json is what `horsehead diagnose --measured .../NAME --output json`
+    /// Folder of the verdicts: NAME.json is what `horsehead diagnose CASE --measured .../NAME --output json`
     /// printed.
     #[arg(long)]
     verdicts: PathBuf,

@@ -1,10 +1,10 @@
 //! One turn of a machine as a recorder with perfect sensors would see it: samples at equal times.
-use simulation::integrator::State;
 use simulation::math::spline::Splines;
 use simulation::model::description::RopeLaw;
 use simulation::model::{Individual, Machine};
 use simulation::observe::Recorder;
 use simulation::run::Observe;
+use simulation::system::State;
 use simulation::system::System;
 
 /// Curves over one turn, samples at equal times from turn 0 on; the sample after the last is the

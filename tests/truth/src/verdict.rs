@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
-/// What is read of a verdict: the contract of `horsehead diagnose --output json`.
+/// What is read of a verdict: the contract of `horsehead diagnose CASE --output json`.
 #[derive(Clone, Debug, Default, Deserialize)]
 pub struct Verdict {
     /// `nothing_detected`, `named`, `ambiguous`, `unlisted` or `unresolved`.

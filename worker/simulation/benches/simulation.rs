@@ -10,7 +10,7 @@ use simulation::reference;
 use simulation::rig::{End, Rig, Setup};
 use simulation::run::{RunSettings, simulate};
 use simulation::settle::{guess, minimize};
-use simulation::system::{Equations, System};
+use simulation::system::{Equations, Shift, StateRef, System};
 
 /// The reference machine with the real unit's 72 + 114 cylinders of 50 mm.
 fn machine() -> Machine {
@@ -49,21 +49,24 @@ fn kernels(criterion: &mut Criterion) {
     let q = guess(&machine, &ropes, &state).expect("the mechanism closes");
     let v = vec![0.0; q.len()];
     let mut force = vec![0.0; q.len()];
+    let at = StateRef::new(0.0, &q, &v);
     let mut group = criterion.benchmark_group("kernel, 186 cylinders");
     group.bench_function("forces", |b| {
-        b.iter(|| system.forces(0.0, &q, &v, &mut force));
-    });
-    let mut matrix = system.equations.matrix();
-    let coefficients = (1600.0, 40.0);
-    group.bench_function("tangent", |b| {
         b.iter(|| {
-            system
-                .equations
-                .tangent(0.0, (&q, &v), coefficients, &mut matrix);
+            system.forces(at, &mut force);
         });
     });
+    let mut matrix = system.equations.matrix();
+    let shift = Shift {
+        mass: 1600.0,
+        damping: 40.0,
+    };
+    let mut loads = system.forces(at, &mut force);
+    group.bench_function("tangent", |b| {
+        b.iter(|| loads.tangent(shift, &mut matrix));
+    });
     group.bench_function("tangent and factorisation", |b| {
-        b.iter(|| system.factorize(0.0, (&q, &v), coefficients));
+        b.iter(|| loads.factorize(shift));
     });
     group.bench_function("solution", |b| {
         b.iter(|| {

@@ -1,6 +1,6 @@
 //! Prescribed motion of the crank and load at the suspension point.
-use crate::math::elementary::sin_cos;
-use crate::model::Machine;
+//!
+//! How a machine turns the one into the other: `Machine::drive_state`.
 use nalgebra::Vector2;
 
 type V2 = Vector2<f64>;
@@ -17,8 +17,10 @@ pub struct Drive {
 }
 
 /// Crank and load at one instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct DriveState {
+    /// Time since the machine stood still \[s\].
+    pub time: f64,
     /// Turn angle from bottom dead centre \[rad\].
     pub turn: f64,
     /// Crank pin in W \[m\], its velocity and acceleration.
@@ -55,28 +57,6 @@ impl Drive {
     /// Time at which a turn angle beyond the ramp is reached \[s\].
     pub fn time_at(&self, turn: f64) -> f64 {
         (turn - self.start) / self.speed + 0.5 * self.ramp
-    }
-
-    /// Crank and load at time `t`.
-    pub fn state(&self, machine: &Machine, t: f64) -> DriveState {
-        let [turn, rate, acceleration] = machine.hooks.turn(self.turn(t));
-        let crank = &machine.description.crank;
-        let angle = machine.bottom.pin + crank.sense * turn;
-        let (w, dw) = (crank.sense * rate, crank.sense * acceleration);
-        let (s, c) = sin_cos(angle);
-        let arm = V2::new(c, s) * crank.radius;
-        let across = V2::new(-arm.y, arm.x);
-        DriveState {
-            turn,
-            pin: [
-                V2::new(crank.center[0], crank.center[1]) + arm,
-                across * w,
-                across * dw - arm * (w * w),
-            ],
-            pin_angle: angle,
-            pin_rate: w,
-            load: machine.card.value(turn, 0),
-        }
     }
 }
 

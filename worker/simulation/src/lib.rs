@@ -11,7 +11,7 @@
 //! one that may leave it ([`model`] chooses).
 #![expect(
     non_snake_case,
-    reason = "notation of mechanics: R_WB is a rotation, r_wb would be another thing"
+    reason = "notation of mechanics: R_WB, orientation of B in W, is a matrix and r_wb would be a vector"
 )]
 pub mod drive;
 pub mod effect;
@@ -27,6 +27,7 @@ pub mod reference;
 pub mod rig;
 pub mod run;
 pub mod settle;
+mod state;
 pub mod statistics;
 pub mod system;
 pub mod verdict;

@@ -3,7 +3,7 @@
 //!
 //! Two programs that agree on every bit of [`bits`] integrate the same equations with the same
 //! arithmetic; a changed law, tolerance or elementary function shows.
-use crate::effect::{Asked, Parameter, Selection, catalogue};
+use crate::effect::{Asked, Effect, Parameter, Selection, catalogue};
 use crate::element::{bushing::Bushing, impact::Impact};
 use crate::model::Machine;
 use crate::model::description::{
@@ -48,6 +48,7 @@ pub fn description() -> Description {
         gravity: 9.81,
         beam_inertia: 2.4e4,
         beam_gravity_moment: 700.0,
+        beam_gravity_height: 0.0,
         crank: Crank {
             center: [-2.6, -5.1],
             radius: 1.0973,
@@ -132,7 +133,7 @@ pub fn law() -> RopeLaw {
 ///
 /// Empty if the description is refused, which a test rules out.
 pub fn bits() -> (Vec<u64>, Statistics) {
-    bits_with(&Selection::default())
+    bits_with(&[])
 }
 
 /// The same with every named effect at its typical size and every generic force at a tenth of it.
@@ -150,12 +151,12 @@ pub fn bits_with_effects() -> (Vec<u64>, Statistics) {
         .collect();
     Selection::new(&asked).map_or_else(
         |_| (Vec::new(), Statistics::default()),
-        |selection| bits_with(&selection),
+        |selection| bits_with(selection.effects()),
     )
 }
 
-fn bits_with(selection: &Selection) -> (Vec<u64>, Statistics) {
-    let Ok(machine) = Machine::with_effects(description(), 2, selection) else {
+fn bits_with(effects: &[std::sync::Arc<dyn Effect>]) -> (Vec<u64>, Statistics) {
+    let Ok(machine) = Machine::with_effects(description(), 2, effects) else {
         return (Vec::new(), Statistics::default());
     };
     let settings = RunSettings {

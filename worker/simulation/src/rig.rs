@@ -8,12 +8,12 @@ use crate::element::{
     impact::Impact,
 };
 use crate::linear::{BLOCK, Bordered};
+use crate::math::rotation::about_z;
 use crate::model::chain::{Chain, ChainState, Held, Joints};
 use crate::model::contact::Surface;
 use crate::model::description::Arc;
-use crate::model::{Powers, turned};
 use crate::norm::{cylinders_error, cylinders_newton};
-use crate::system::{Equations, Static};
+use crate::system::{Equations, Loaded, Powers, Shift, StateRef, Static};
 use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
@@ -97,7 +97,7 @@ impl End {
                 rho: V3::zeros(),
                 v: V3::zeros(),
                 w: V3::zeros(),
-                R: turned(s, c),
+                R: about_z(s, c),
             },
             law,
             pinned: false,
@@ -154,6 +154,9 @@ impl Rig {
     /// Kinetic plus potential energy, that of the dead loads included, at a state \[J\].
     pub fn energy(&mut self, q: &[f64], v: &[f64]) -> f64 {
         self.setup.chain.pose(q, v, &mut self.state);
+        if let Some((surface, law)) = self.surface() {
+            self.setup.chain.touch(&surface, &law, &mut self.state);
+        }
         let mut momentum = vec![0.0; v.len()];
         self.subtract_inertia(q, v, &mut momentum);
         let kinetic: f64 = momentum.iter().zip(v).map(|(p, v)| -0.5 * p * v).sum();
@@ -189,12 +192,11 @@ impl Rig {
 
     fn potential_energy(&self, q: &[f64]) -> f64 {
         let mut sum = 0.0;
-        let surface = self.surface();
         self.setup.chain.add_potential(
             &mut sum,
             &self.setup.gravity,
             &self.setup.joints(),
-            surface.as_ref().map(|(surface, law)| (surface, law)),
+            self.setup.drum.as_ref().map(|drum| &drum.law),
             &self.state,
         );
         for (j, along, force, [twist, turn]) in self.dead_loads() {
@@ -211,7 +213,7 @@ impl Equations for Rig {
         Bordered::space(&[self.setup.chain.count], [0; 2])
     }
 
-    fn forces(&mut self, _t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
+    fn forces(&mut self, StateRef { q, v, .. }: StateRef<'_>, force: &mut [f64]) {
         let chain = self.setup.chain;
         force.fill(0.0);
         chain.pose(q, v, &mut self.state);
@@ -238,19 +240,14 @@ impl Equations for Rig {
         self.setup.chain.subtract_inertia(q, a, out);
     }
 
-    fn tangent(
-        &mut self,
-        _t: f64,
-        (q, _): (&[f64], &[f64]),
-        (mu, gamma): (f64, f64),
-        matrix: &mut Bordered,
-    ) {
+    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered) {
+        let Shift { mass, damping } = shift;
         let chain = self.setup.chain;
         matrix.clear();
-        chain.add_inertia_blocks(q, mu, matrix);
-        chain.add_joint_tangent(&self.setup.joints(), &self.state, gamma, matrix);
+        chain.add_inertia_blocks(at.state().q, mass, matrix);
+        chain.add_joint_tangent(&self.setup.joints(), &self.state, damping, matrix);
         if let Some((surface, law)) = self.surface() {
-            chain.add_contact_tangent(&surface, &law, &self.state, gamma, matrix);
+            chain.add_contact_tangent(&surface, &law, &self.state, damping, matrix);
         }
         for (j, along, force, _) in self.dead_loads() {
             let bends = self.state.poses[j].axis_by_twice();
@@ -262,8 +259,9 @@ impl Equations for Rig {
         }
     }
 
-    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered) {
-        self.setup.chain.add_spin_tangent(state, gamma, matrix);
+    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered) {
+        let chain = self.setup.chain;
+        chain.add_spin_tangent(at, a, damping, matrix);
     }
 
     fn newton_norm(&self, change: &[f64]) -> f64 {
@@ -274,7 +272,7 @@ impl Equations for Rig {
         cylinders_error(0.0, error, BLOCK)
     }
 
-    fn powers(&mut self, _t: f64, _q: &[f64], _v: &[f64], _a: &[f64]) -> Powers {
+    fn powers(&self, _: Loaded<'_>, _: &[f64]) -> Powers {
         Powers {
             dissipated: self.state.losses(),
             ..Powers::default()
@@ -283,8 +281,8 @@ impl Equations for Rig {
 }
 
 impl Static for Rig {
-    fn potential(&mut self, _t: f64, q: &[f64], _still: &[f64]) -> f64 {
-        self.potential_energy(q)
+    fn potential(&self, at: Loaded<'_>) -> f64 {
+        self.potential_energy(at.state().q)
     }
 
     fn add_static_weight(&self, lambda: f64, matrix: &mut Bordered) {

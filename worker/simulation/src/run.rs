@@ -1,14 +1,14 @@
 //! One simulation: settle, lead in, one recorded revolution.
 use crate::drive::Drive;
 use crate::integrator::adaptive::{Adaptive, StepUnderflow};
+use crate::integrator::dense::interpolate;
 use crate::integrator::method::Method;
 use crate::integrator::tableau::ESDIRK4;
-use crate::integrator::{State, dense::interpolate};
 use crate::model::description::RopeLaw;
-use crate::model::{Individual, Machine, Powers};
+use crate::model::{Individual, Machine};
 use crate::settle::{Damping, equilibrium, overload, swing_rate};
 use crate::statistics::Statistics;
-use crate::system::System;
+use crate::system::{Powers, State, System};
 use crate::verdict::{Failure, Limits, Reached, Verdict};
 use std::f64::consts::TAU;
 
@@ -74,7 +74,7 @@ impl RunSettings {
 
 /// Receives what happens at each sample of the recorded revolution.
 pub trait Observe {
-    /// `state` is the interpolated state at sample `index`; the loads of `system` belong to it.
+    /// `state` is the interpolated state at sample `index`; whose loads `system` keeps is not said.
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
 
     /// The revolution is complete; its samples lie `spacing` \[s\] apart.
@@ -199,14 +199,7 @@ fn revolve(
             Ok(None) => continue,
             Ok(Some(done)) => done,
         };
-        let individual = &system.equations;
-        if let Some(kind) = settings.limits.broken(
-            individual.machine,
-            &individual.ropes.joint,
-            &to.q,
-            swing,
-            &individual.scratch,
-        ) {
+        if let Some(kind) = settings.limits.broken(&system.equations, &to.q, swing) {
             break failed(kind);
         }
         ledger.add(
@@ -262,9 +255,7 @@ impl Ledger {
         if self.first.is_none() {
             self.first = Some(individual.energy(from));
         }
-        self.work.input += work.input;
-        self.work.output += work.output;
-        self.work.dissipated += work.dissipated;
+        self.work.add(1.0, work);
         if to.t >= end - 1e-9 {
             self.last = individual.energy(to);
         }

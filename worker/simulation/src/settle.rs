@@ -11,7 +11,7 @@ mod overload;
 mod swing;
 
 use crate::model::Individual;
-use crate::system::System;
+use crate::system::{StateRef, System};
 use crate::verdict::{Failure, Limits};
 
 pub use continuation::follow;
@@ -45,15 +45,9 @@ pub fn equilibrium(
     };
     let still = vec![0.0; q.len()];
     let mut force = vec![0.0; q.len()];
-    system.forces(0.0, &q, &still, &mut force);
-    let individual = &system.equations;
-    let broken = limits.broken(
-        individual.machine,
-        &individual.ropes.joint,
-        &q,
-        swing,
-        &individual.scratch,
-    );
+    let at = StateRef::new(0.0, &q, &still);
+    let loads = system.forces(at, &mut force);
+    let broken = limits.broken(loads.equations(), &q, swing);
     broken.map_or(Ok(q), Err)
 }
 

@@ -1,7 +1,6 @@
 //! How a simulation ended; every run ends in one of these, none hangs or panics.
-use crate::element::bushing::Bushing;
+use crate::model::Individual;
 use crate::model::layout::Motion;
-use crate::model::{Machine, Scratch};
 
 /// What ended a simulation early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,18 +70,23 @@ impl Default for Limits {
 }
 
 impl Limits {
-    /// The first limit that a state with loads in `scratch` breaks.
-    ///
-    /// `joint` is that between two cylinders; `swing` is the beam's range on the inextensible mechanism \[rad\].
+    /// The first limit that an individual breaks at coordinates `q`, up to Newton's accuracy those of
+    /// its last loads; `swing` is the beam's range on the inextensible mechanism \[rad\].
     pub fn broken(
         &self,
-        machine: &Machine,
-        joint: &Bushing,
+        individual: &Individual<'_>,
         q: &[f64],
         swing: [f64; 2],
-        scratch: &Scratch,
     ) -> Option<Failure> {
-        let most = joint.pull_at(self.extension * machine.description.rope.pitch);
+        let Individual {
+            machine,
+            ropes,
+            scratch,
+            ..
+        } = individual;
+        let most = ropes
+            .joint
+            .pull_at(self.extension * machine.description.rope.pitch);
         for state in &scratch.chains {
             if (0..state.joints.len()).any(|joint| state.tension(joint) > most) {
                 return Some(Failure::OverstretchedRope);

@@ -1,9 +1,9 @@
 //! What a simulation takes of the heap: nothing in a step, little in all.
-use simulation::integrator::State;
 use simulation::integrator::method::CATALOGUE;
 use simulation::model::{Individual, Machine};
 use simulation::reference;
 use simulation::run::{Observe, RunSettings, simulate};
+use simulation::system::State;
 use simulation::system::System;
 
 #[global_allocator]

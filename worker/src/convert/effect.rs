@@ -1,5 +1,5 @@
 //! Effects: their descriptions as they travel, and settings as the dynamics take them.
-use super::misconfigured;
+use super::genes::individual;
 use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
 use protocol::case::{Case, EffectSetting, Quantity};
 use protocol::job::Failure;
@@ -67,7 +67,7 @@ pub fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
             Some(name) => format!("{place}.parameters.{name}"),
             None => format!("{place}.id"),
         };
-        misconfigured(&field, problem(&refused))
+        Failure::misconfigured(&field, problem(&refused))
     })
 }
 
@@ -84,8 +84,8 @@ pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<
         for ((name, _), unit) in setting.parameters.iter().zip(units) {
             let parameter = descriptor.parameters.iter().find(|p| p.name == name);
             if let Some(own) = parameter.map(|p| p.unit.symbol()).filter(|own| own != unit) {
-                return Err(misconfigured(
-                    &format!("effects[{k}].parameters.{name}.unit"),
+                return Err(Failure::misconfigured(
+                    format!("effects[{k}].parameters.{name}.unit"),
                     format!("is \"{unit}\"; `{}` takes it in {own}", setting.id),
                 ));
             }
@@ -101,13 +101,13 @@ pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<
 /// effect that the case does not have.
 pub fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, Failure> {
     let mut effects = case.effects.clone();
-    for (quantity, value) in super::individual(case, genes)? {
+    for (quantity, value) in individual(case, genes)? {
         let Quantity::Effect { id, parameter, .. } = quantity else {
             continue;
         };
         let Some(effect) = effects.iter_mut().find(|effect| effect.id == *id) else {
-            return Err(misconfigured(
-                &format!("genes.{}", quantity.label()),
+            return Err(Failure::misconfigured(
+                format!("genes.{}", quantity.label()),
                 format!("the case has no effect `{id}`"),
             ));
         };
@@ -148,8 +148,8 @@ pub fn check_genes(case: &Case) -> Result<(), Failure> {
         let mut known = known.into_iter().flat_map(|d| d.parameters.iter());
         let own = known.find(|p| p.name == parameter);
         if let Some(own) = own.map(|p| p.unit.symbol()).filter(|own| own != unit) {
-            return Err(misconfigured(
-                &format!("genes.{}.unit", gene.label()),
+            return Err(Failure::misconfigured(
+                format!("genes.{}.unit", gene.label()),
                 format!("is \"{unit}\"; `{id}` takes it in {own}"),
             ));
         }
@@ -160,8 +160,8 @@ pub fn check_genes(case: &Case) -> Result<(), Failure> {
 /// The same failure, said of the interval that a search may use.
 fn of_search(failure: Failure, label: &str) -> Failure {
     if let Failure::Misconfigured { field, problem } = failure {
-        return misconfigured(
-            &format!("{field}.search"),
+        return Failure::misconfigured(
+            format!("{field}.search"),
             format!("of gene {label}: {problem}"),
         );
     }

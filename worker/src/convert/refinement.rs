@@ -1,15 +1,14 @@
 //! The same machine, discretised otherwise.
-use super::misconfigured;
 use protocol::case::Case;
-use protocol::job::{Failure, Refinement};
+use protocol::job::{Discretisation, Failure};
 
 /// A case with another discretisation.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] when cylinders do not fill the ropes.
-pub fn refined(case: &Case, refinement: &Refinement) -> Result<Case, Failure> {
+pub fn refined(case: &Case, discretisation: &Discretisation) -> Result<Case, Failure> {
     let mut case = case.clone();
-    if let Some(length) = refinement.cylinder_length_m {
+    if let Some(length) = discretisation.cylinder_length_m {
         for count in [
             &mut case.ropes.back_cylinders,
             &mut case.ropes.front_cylinders,
@@ -19,8 +18,8 @@ pub fn refined(case: &Case, refinement: &Refinement) -> Result<Case, Failure> {
             let fits = (3.0..=MOST_CYLINDERS).contains(&fitting)
                 && (fitting * length - rope).abs() < 1e-6 * rope;
             if !fits {
-                return Err(misconfigured(
-                    "refinement.cylinder_length_m",
+                return Err(Failure::misconfigured(
+                    "discretisation.cylinder_length_m",
                     format!("is {length}; it must divide a rope of {rope} m into 3 to 5000 parts"),
                 ));
             }
@@ -34,10 +33,10 @@ pub fn refined(case: &Case, refinement: &Refinement) -> Result<Case, Failure> {
         }
         case.ropes.cylinder_length_m = length;
     }
-    if let Some(modes) = refinement.modes {
+    if let Some(modes) = discretisation.modes {
         if modes > case.modal_head.frequencies_hz.len() {
-            return Err(misconfigured(
-                "refinement.modes",
+            return Err(Failure::misconfigured(
+                "discretisation.modes",
                 format!(
                     "is {modes}; the head has {}",
                     case.modal_head.frequencies_hz.len()
@@ -46,29 +45,32 @@ pub fn refined(case: &Case, refinement: &Refinement) -> Result<Case, Failure> {
         }
         case.run.modes = modes;
     }
+    if let Some(integrator) = discretisation.integrator {
+        case.run.integrator = integrator;
+    }
     let positive = |field: &str, value: f64| {
         if value > 0.0 && value.is_finite() {
             return Ok(value);
         }
-        Err(misconfigured(
+        Err(Failure::misconfigured(
             field,
             format!("is {value}; it must be a positive number"),
         ))
     };
-    if let Some(step) = refinement.longest_step_s {
-        case.run.longest_step_s = positive("refinement.longest_step_s", step)?;
+    if let Some(step) = discretisation.longest_step_s {
+        case.run.longest_step_s = positive("discretisation.longest_step_s", step)?;
     }
-    if let Some(lead_in) = refinement.lead_in_deg {
+    if let Some(lead_in) = discretisation.lead_in_deg {
         if !(0.0..=3600.0).contains(&lead_in) {
-            return Err(misconfigured(
-                "refinement.lead_in_deg",
+            return Err(Failure::misconfigured(
+                "discretisation.lead_in_deg",
                 format!("is {lead_in}; it must lie between 0 and 3600"),
             ));
         }
         case.run.lead_in_deg = lead_in;
     }
-    if let Some(tolerance) = refinement.tolerance {
-        case.run.tolerance = positive("refinement.tolerance", tolerance)?;
+    if let Some(tolerance) = discretisation.tolerance {
+        case.run.tolerance = positive("discretisation.tolerance", tolerance)?;
     }
     Ok(case)
 }

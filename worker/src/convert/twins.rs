@@ -1,5 +1,5 @@
 //! Twin ropes of a case as the dynamics take them.
-use super::{PASCAL_PER_MEGAPASCAL, curves, misconfigured};
+use super::head::{PASCAL_PER_MEGAPASCAL, curves};
 use protocol::case::{Case, TwinHead, TwinRopes};
 use protocol::job::Failure;
 use simulation::model::description::{Sway, Twins};
@@ -35,13 +35,13 @@ fn check(case: &Case, twins: &TwinRopes) -> Result<(), Failure> {
     ];
     let least = available.into_iter().min().unwrap_or(0);
     if modes > least {
-        return Err(misconfigured(
+        return Err(Failure::misconfigured(
             "twin_ropes.modes",
             format!("is {modes}; the head has {least} out of its plane"),
         ));
     }
     if head.influence.psi_deg != case.modal_head.influence.psi_deg {
-        return Err(misconfigured(
+        return Err(Failure::misconfigured(
             "twin_ropes.head.influence.psi_deg",
             "has other stations than the influence lines of the plane".to_owned(),
         ));

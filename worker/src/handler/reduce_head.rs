@@ -51,16 +51,9 @@ pub(super) fn run(spec: &ReduceHeadSpec) -> Result<ReducedHead, Failure> {
         families: &families,
         fields: spec.fields.is_some(),
     })
-    .map_err(|error| misconfigured("flexible_head", error.to_string()))?;
+    .map_err(|error| Failure::misconfigured("flexible_head", error.to_string()))?;
     let wall_s = started.elapsed().as_secs_f64();
     Ok(assemble(spec, &reduction, wall_s))
-}
-
-fn misconfigured(field: &str, problem: String) -> Failure {
-    Failure::Misconfigured {
-        field: field.to_owned(),
-        problem,
-    }
 }
 
 /// Numbers that no reduction can be made with.
@@ -78,14 +71,14 @@ fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
     ];
     for (field, value) in positive {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(misconfigured(
+            return Err(Failure::misconfigured(
                 field,
                 format!("is {value}; it must be a positive number"),
             ));
         }
     }
     if !(0.0..0.5).contains(&spec.poisson) {
-        return Err(misconfigured(
+        return Err(Failure::misconfigured(
             "poisson",
             format!("is {}; it must be 0 to below 0.5", spec.poisson),
         ));
@@ -93,15 +86,15 @@ fn check(spec: &ReduceHeadSpec) -> Result<(), Failure> {
     if let Some(pair) = &spec.pair
         && !(pair.offset_m > 0.0 && pair.offset_m.is_finite())
     {
-        return Err(misconfigured(
+        return Err(Failure::misconfigured(
             "pair.offset_m",
             format!("is {}; it must be a positive number", pair.offset_m),
         ));
     }
     if spec.modes == 0 || spec.families.is_empty() {
-        return Err(misconfigured(
+        return Err(Failure::misconfigured(
             "modes",
-            "ask for at least one mode of at least one family".to_owned(),
+            "ask for at least one mode of at least one family",
         ));
     }
     Ok(())

@@ -1,31 +1,31 @@
-//! Scores an individual: simulates a condition and compares the gauges with the record.
+//! A simulation compared with the gauge record of its condition.
 //!
 //! A run that fails is graded: every complete run beats a failure in motion (the later the
 //! better), which beats a failure under static load (the more load carried the better).
-use crate::convert;
-use crate::handler::Prepared;
+use super::machines::Machines;
+use super::ran::Ran;
 use protocol::case::{GaugeTrace, Objective, Offset};
-use protocol::job::{ChannelScore, Evaluation, Failure, Reached, ScoreSpec, Verdict};
+use protocol::job::{ChannelScore, Evaluation, Failure, Reached, SimulateSpec, Verdict};
 use simulation::observe::Recorder;
-use simulation::run::simulate;
 
 /// Fitness of a failure in motion just before the end, and under load just before full load
 /// \[MPa^2\]; far above the error of any run that completes.
 const FAILED_IN_MOTION: f64 = 1e6;
 const FAILED_UNDER_LOAD: f64 = 1e7;
 
-/// Runs a score job.
+/// Simulates and compares.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when genes, condition or record do not fit the case.
-pub(super) fn run(prepared: &Prepared, spec: &ScoreSpec) -> Result<Evaluation, Failure> {
-    let law = convert::rope_law(&prepared.case, &spec.genes)?;
-    let settings = convert::run_settings(&prepared.case);
-    let machine = prepared.machine_with(spec.condition, (&spec.genes, &spec.effects))?;
-    let mut recorder = Recorder::gauges_only();
-    let result = simulate(&machine, &law, &settings, &mut recorder);
-    let verdict = convert::verdict(&result.verdict);
-    let counters = convert::counters(&result.statistics);
+/// As [`Ran::new`], and if the condition has no record.
+pub(super) fn run(
+    machines: &Machines,
+    spec: &SimulateSpec,
+    with_residual: bool,
+) -> Result<Evaluation, Failure> {
+    let ran = Ran::new(machines, spec, Recorder::gauges_only())?;
+    let Ran {
+        verdict, counters, ..
+    } = ran;
     if let Verdict::Failed { reached, .. } = verdict {
         return Ok(Evaluation {
             verdict,
@@ -35,30 +35,28 @@ pub(super) fn run(prepared: &Prepared, spec: &ScoreSpec) -> Result<Evaluation, F
             counters,
         });
     }
-    let case = &prepared.case;
-    let record = case
-        .conditions
-        .get(spec.condition)
+    let case = &machines.case;
+    let condition = case.conditions.get(spec.individual.condition);
+    let record = condition
         .and_then(|condition| condition.record.as_ref())
-        .ok_or_else(|| Failure::Misconfigured {
-            field: "conditions.record".to_owned(),
-            problem: "there is no gauge record to score against".to_owned(),
+        .ok_or_else(|| {
+            Failure::misconfigured(
+                "conditions.record",
+                "there is no gauge record to score against",
+            )
         })?;
     let compared: Vec<Compared> = record
         .gauges
         .iter()
         .map(|trace| {
-            Compared::new(
-                trace,
-                &recorder.curves.gauge[usize::from(trace.gauge) - 1],
-                case.objective.offset,
-            )
+            let simulated = &ran.curves.gauge[usize::from(trace.gauge) - 1];
+            Compared::new(trace, simulated, case.objective.offset)
         })
         .collect();
     Ok(Evaluation {
         verdict,
         fitness: weighted(&case.objective, &compared)?,
-        residual_mpa: if spec.with_residual {
+        residual_mpa: if with_residual {
             residual(&case.objective, &compared)
         } else {
             Vec::new()
@@ -132,9 +130,9 @@ fn weighted(objective: &Objective, compared: &[Compared]) -> Result<f64, Failure
     let mut sum = 0.0;
     for &(gauge, weight) in &objective.gauges {
         let found = compared.iter().find(|c| c.score.gauge == gauge);
-        let found = found.ok_or_else(|| Failure::Misconfigured {
-            field: "objective.gauges".to_owned(),
-            problem: format!("the record has no gauge {gauge}"),
+        let found = found.ok_or_else(|| {
+            let problem = format!("the record has no gauge {gauge}");
+            Failure::misconfigured("objective.gauges", problem)
         })?;
         sum += weight * found.score.mse_mpa2;
     }

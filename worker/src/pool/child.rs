@@ -1,5 +1,5 @@
 //! The process of one slot, seen from its worker.
-use super::{CaseBytes, SlotOptions};
+use super::task::{CaseBytes, SlotOptions};
 use crate::{slot, stream};
 use protocol::{
     id::ContentHash,

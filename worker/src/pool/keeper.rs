@@ -3,10 +3,11 @@
 //! Time for which the slot's process was ready to run and got no processor does not count: a job
 //! that is overdue on a busy machine would be given up, and the result of a run would depend on what
 //! else the machine does.
-use super::{Freed, SlotOptions, Task, child::Child};
+use super::child::Child;
+use super::task::{Freed, SlotOptions, Task};
 use protocol::{
     job::{Failure, Outcome},
-    message::{Attempt, FromSlot},
+    message::{Attempt, Cost, FromSlot},
 };
 use std::{
     sync::mpsc::{Receiver, RecvTimeoutError, Sender},
@@ -135,7 +136,7 @@ impl Keeper {
         if let Err(error) = given {
             let end = self.child.take().map_or_else(String::new, Child::ended);
             let how = format!("the slot's process takes no job: {error} {end}");
-            self.finish(Some(Outcome::Failed(Failure::Crashed { how })));
+            self.finish(Some(Outcome::Failed(Failure::Crashed { how })), 0);
         }
     }
 
@@ -158,17 +159,17 @@ impl Keeper {
             .is_some_and(|current| current.attempt == attempt)
         {
             self.child = None;
-            self.finish(None);
+            self.finish(None, 0);
         }
     }
 
     fn said(&mut self, message: Option<FromSlot>) {
         match message {
             Some(FromSlot::Ready) => {}
-            Some(FromSlot::Done(outcome)) => self.finish(Some(*outcome)),
+            Some(FromSlot::Done { outcome, cpu_us }) => self.finish(Some(*outcome), cpu_us),
             None => {
                 let how = self.child.take().map_or_else(String::new, Child::ended);
-                self.finish(Some(Outcome::Failed(Failure::Crashed { how })));
+                self.finish(Some(Outcome::Failed(Failure::Crashed { how })), 0);
             }
         }
     }
@@ -177,20 +178,20 @@ impl Keeper {
         let overdue = self.is_overdue().then_some(self.current).flatten();
         if let Some(current) = overdue {
             self.child = None;
-            let limit_ms = super::millis(current.deadline);
-            self.finish(Some(Outcome::Failed(Failure::Deadline { limit_ms })));
+            let limit_ms = u64::try_from(current.deadline.as_millis()).unwrap_or(u64::MAX);
+            self.finish(Some(Outcome::Failed(Failure::Deadline { limit_ms })), 0);
         }
     }
 
-    fn finish(&mut self, outcome: Option<Outcome>) {
+    fn finish(&mut self, outcome: Option<Outcome>, cpu_us: u64) {
         let Some(current) = self.current.take() else {
             return;
         };
-        let wall = current.begun.elapsed();
+        let wall_us = u64::try_from(current.begun.elapsed().as_micros()).unwrap_or(u64::MAX);
         let freed = Freed {
             slot: self.slot,
             attempt: current.attempt,
-            wall,
+            cost: Cost { wall_us, cpu_us },
             outcome,
         };
         // a session that has ended needs no results

@@ -8,7 +8,7 @@ use crate::pool::{CaseBytes, Task};
 use protocol::{
     case::Case,
     id::{AttemptId, ContentHash, JobId},
-    job::{Failure, Job, Outcome, ScoreSpec},
+    job::{Failure, Individual, Job, Outcome, Reply, SimulateSpec},
     message::Attempt,
     wire,
 };
@@ -67,12 +67,17 @@ impl Proof {
 pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
-    let job = Job::Score(ScoreSpec {
-        effects: Vec::new(),
-        condition: decoded.objective.condition,
-        genes: decoded.recommended(),
-        with_residual: true,
-    });
+    let condition = decoded.objective.condition;
+    let measured = decoded.conditions.get(condition);
+    let reply = if measured.is_some_and(|condition| condition.record.is_some()) {
+        Reply::Score {
+            with_residual: true,
+        }
+    } else {
+        Reply::Channels
+    };
+    let reference = Individual::new(condition, decoded.recommended());
+    let job = Job::Simulate(SimulateSpec::new(reference, reply));
     Ok(Task {
         attempt: ATTEMPT,
         deadline: DEADLINE,
@@ -84,17 +89,15 @@ pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use protocol::job::Answer;
 
     #[test]
     fn a_proof_names_every_bit_and_only_a_case_may_be_at_fault() {
         let of = |outcome| Proof::of(Some(outcome)).map(|proof| proof.known());
-        let one = of(Outcome::Nothing(vec![1])).unwrap();
+        let one = of(Outcome::Done(Answer::Nothing(vec![1]))).unwrap();
         assert!(one.is_some());
-        assert_ne!(one, of(Outcome::Nothing(vec![2])).unwrap());
-        let case_at_fault = Failure::Misconfigured {
-            field: "beam".to_owned(),
-            problem: "no mass".to_owned(),
-        };
+        assert_ne!(one, of(Outcome::Done(Answer::Nothing(vec![2]))).unwrap());
+        let case_at_fault = Failure::misconfigured("beam", "no mass");
         assert!(of(Outcome::Failed(case_at_fault)).unwrap().is_some());
         let how = "ended by signal 6".to_owned();
         let refused = of(Outcome::Failed(Failure::Crashed { how })).unwrap_err();

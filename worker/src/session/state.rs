@@ -1,7 +1,7 @@
 //! What a worker holds, and what it does with each message.
 use super::{
-    Ending, SessionOptions,
     case::Incoming,
+    options::{Ending, SessionOptions},
     proof::{self, Proof},
 };
 use crate::{
@@ -12,7 +12,6 @@ use link::{LinkError, WorkerEnd};
 use protocol::{
     announce::Announcement,
     id::{ContentHash, RunId},
-    job::Job,
     key::Lane,
     message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
     wire::{self, Kind, WireError},
@@ -232,7 +231,7 @@ impl State {
             else {
                 return;
             };
-            let work = work_hash(&job);
+            let work = job.work_hash();
             self.running.insert(slot, (attempt, work));
             let deadline = Duration::from_millis(deadline_ms);
             let case = self.case.clone();
@@ -283,11 +282,10 @@ impl State {
             return Step::Go;
         }
         if let (Some(outcome), Some((attempt, work))) = (freed.outcome, held) {
-            let wall_us = u64::try_from(freed.wall.as_micros()).unwrap_or(u64::MAX);
             let done = Done {
                 attempt,
                 work,
-                wall_us,
+                cost: freed.cost,
                 outcome,
             };
             if !self.outbox.is_settled(attempt) {
@@ -401,9 +399,4 @@ impl State {
             self.pool.cancel(*slot, *attempt);
         }
     }
-}
-
-/// The name of a piece of work: the hash of its encoded job.
-fn work_hash(job: &Job) -> ContentHash {
-    ContentHash::of(&wire::encode(job).unwrap_or_default())
 }

@@ -14,6 +14,8 @@
 )]
 mod case;
 mod composed;
+mod data_value;
+mod healthy;
 mod machine;
 mod maps;
 mod nothing;
@@ -24,4 +26,3 @@ mod strata;
 mod trial;
 mod truth;
 mod valley;
-mod worth;

@@ -1,35 +1,45 @@
 //! The maps of where: false alarms on noise that comes as cycles, not as the metric imagines it.
 use crate::case::{ORDERS, space};
+use crate::healthy::healthy;
 use crate::strata::{named, planted};
 use crate::trial::{MACHINE, diagnose_usual, say, trials};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::laboratory::channels;
-use discrepancy::locate::wander::Wander;
-use discrepancy::locate::{angle, joint, order};
-use discrepancy::metric::Metric;
-use discrepancy::model::Model;
-use discrepancy::noise::Noise;
+use discrepancy::linear::score::score;
+use discrepancy::linear::tangent::Tangent;
+use discrepancy::model::{Model, Point, probe};
+use discrepancy::place::residual::Residual;
+use discrepancy::place::wander::Wander;
+use discrepancy::place::whereabouts::Where;
+use discrepancy::place::{angle, joint, order};
+use discrepancy::record::metric::Metric;
+use discrepancy::record::noise::Noise;
+use discrepancy::record::spectrum::Orders;
 use discrepancy::record::{Curves, Record, mean_of};
-use discrepancy::score::score;
-use discrepancy::spectrum::Orders;
-use discrepancy::stage::whereabouts::{Where, is_sine, probe_order};
-use discrepancy::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
-use protocol::job::Refinement;
+use protocol::job::Discretisation;
 use search::least_squares::{Linearized, Variable};
 
-fn simulate(model: &Model, x: &[f64]) -> Curves {
-    let spec = model.experiment(x, 0, Refinement::default());
+fn simulate(point: &Point) -> Curves {
+    let spec = point.experiment(0, Discretisation::default());
     channels(&MACHINE.observe(&spec), &ALL).expect("complete")
 }
 
+/// The machine without effects.
+fn plain(genes: &[f64]) -> Point {
+    Point {
+        model: Model::plain(space()),
+        x: genes.to_vec(),
+    }
+}
+
 /// Change of the curves per decade of each gene.
-fn slopes(model: &Model, x: &[f64]) -> Vec<Curves> {
+fn slopes(x: &[f64]) -> Vec<Curves> {
     const STEP: f64 = 0.01;
     let at = |k: usize, step: f64| {
         let mut moved = x.to_vec();
         moved[k] += step;
-        simulate(model, &moved)
+        simulate(&plain(&moved))
     };
     let slope = |k: usize| -> Curves {
         let (up, down) = (at(k, STEP), at(k, -STEP));
@@ -71,13 +81,13 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     let sets = trials(200);
     let truth = Truth::healthy(9100);
     let model = Model::plain(space());
-    let at = simulate(&model, &truth.genes);
-    let slopes = slopes(&model, &truth.genes);
+    let at = simulate(&plain(&truth.genes));
+    let slopes = slopes(&truth.genes);
     let variables = model.variables(&truth.genes);
     let orders = Orders::new(at[0].len(), ORDERS);
     let template = record(&truth, 0, &ALL, 6);
     let clean = mean_of(&[&at]);
-    let latents = latents(&model, &truth.genes, &at);
+    let latents = latents(&truth.genes, &at);
     let (mut angles, mut peaks, mut joints, mut clear) = (0, 0, 0, 0);
     for set in 0..sets {
         // noise of its own: cycles of a machine whose curves are the model's
@@ -90,9 +100,14 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
         let deviations: Vec<DVector<f64>> = cycles
             .map(|cycle| tangent.project(&(metric.whiten(cycle) - &measured)))
             .collect();
-        let angle = angle::map(&residual, &deviations, (&metric, &tangent), 200, 0.05);
+        let all = Residual {
+            left: &residual,
+            metric: &metric,
+            tangent: &tangent,
+        };
+        let angle = angle::map(&all, &deviations, 200, 0.05);
         angles += usize::from(!angle.windows.is_empty());
-        let order = order::map(&residual, &metric, &tangent, noise.freedom, 0.05);
+        let order = order::map(&all, noise.freedom, 0.05);
         peaks += usize::from(!order.peaks.is_empty());
         let seen: Vec<joint::Latent> = latents.iter().map(|l| l.seen(&metric)).collect();
         let ranked = joint::rank(&seen, &residual, &tangent);
@@ -143,15 +158,14 @@ impl Forces {
 }
 
 /// Those of every joint, at their usual size.
-fn latents(model: &Model, x: &[f64], at: &Curves) -> Vec<Forces> {
+fn latents(x: &[f64], at: &Curves) -> Vec<Forces> {
     let mut all: Vec<Forces> = Vec::new();
     for effect in MACHINE.library().iter().filter(|e| e.generic) {
-        let Some(order) = probe_order(&effect.id) else {
+        let Some(order) = probe::order(&effect.id) else {
             continue;
         };
-        let own: Vec<f64> = x.iter().copied().chain([1.0]).collect();
         let less = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
-        let seen = simulate(&model.with(effect), &own);
+        let seen = simulate(&plain(x).with(effect, &[1.0]));
         let change: Curves = seen.iter().zip(at).map(less).collect();
         let known = all.iter().position(|f| f.joint == effect.joint);
         let k = known.unwrap_or_else(|| {
@@ -165,7 +179,7 @@ fn latents(model: &Model, x: &[f64], at: &Curves) -> Vec<Forces> {
         all[k].changes.push(change);
         all[k].parts.push(joint::Harmonic {
             order,
-            sine: is_sine(&effect.id),
+            sine: probe::is_sine(&effect.id),
             amplitude: effect.parameters[0].scale,
         });
     }
@@ -194,8 +208,8 @@ fn noise_of(truth: &Truth, set: u64, clean: &Curves, template: &Record) -> Recor
 fn scores_do_not_see_what_recalibration_explains() {
     let truth = Truth::healthy(9200);
     let model = Model::plain(space());
-    let at = simulate(&model, &truth.genes);
-    let slopes = slopes(&model, &truth.genes);
+    let at = simulate(&plain(&truth.genes));
+    let slopes = slopes(&truth.genes);
     let variables: Vec<Variable> = model
         .variables(&truth.genes)
         .into_iter()
@@ -216,12 +230,12 @@ fn scores_do_not_see_what_recalibration_explains() {
         let k = discrepancy::model::sizes(effect)[0];
         let mut own = discrepancy::model::absent(effect);
         own[k] = 0.1;
-        let x: Vec<f64> = truth.genes.iter().copied().chain(own).collect();
-        let column = (metric.whiten(&simulate(&model.with(effect), &x)) - &base) * 10.0;
+        let seen = simulate(&plain(&truth.genes).with(effect, &own));
+        let column = (metric.whiten(&seen) - &base) * 10.0;
         let signature = DMatrix::from_columns(std::slice::from_ref(&column));
         let statistic = |r: &DVector<f64>| {
             let fitted = tangent.project(r);
-            score(&fitted, &signature, &[], &tangent, 1.0).statistic
+            score(&fitted, &signature, &[], &tangent).statistic
         };
         let (one, other) = (statistic(&residual), statistic(&moved));
         largest = largest.max((other - one).abs() / one.max(1.0));
@@ -242,7 +256,7 @@ fn parameters_wander_with_what_is_missing_and_not_with_the_answer() {
     };
     let sets = trials(30);
     let healthy = (0..sets)
-        .filter(|seed| least(&diagnose_usual(&Truth::healthy(2000 + seed)).wander) < 0.05)
+        .filter(|seed| least(&healthy(2000 + seed, 1.0).wander) < 0.05)
         .count();
     let (mut before, mut after, mut named_right) = (0, 0, 0);
     for (k, effect) in named().into_iter().enumerate() {

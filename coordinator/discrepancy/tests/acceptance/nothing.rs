@@ -1,6 +1,7 @@
 //! Where nothing can be said, nothing is: healthy machines, effects far below their limits, effects
 //! that are not in the library.
-use crate::strata::{NOISES, named, planted};
+use crate::healthy::healthy;
+use crate::strata::{machine, named, planted};
 use crate::trial::{Setup, diagnose_usual, diagnosed, line, say, trials};
 use crate::truth::Truth;
 use discrepancy::verdict::Verdict;
@@ -12,11 +13,13 @@ fn healthy_machines_are_left_alone() {
     let mut claims = Vec::new();
     let mut unresolved = 0;
     for seed in 0..sets {
-        let answer = diagnose_usual(&Truth::healthy(2000 + seed));
+        let answer = healthy(2000 + seed, 1.0);
         match answer.verdict {
             Verdict::NothingDetected => {}
             Verdict::Unresolved => unresolved += 1,
-            Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => claims.push(line(&answer)),
+            Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => {
+                claims.push(answer.line.clone());
+            }
         }
     }
     say(&format!(
@@ -36,9 +39,7 @@ fn effects_far_below_their_limits_are_not_claimed() {
     let mut loud = Vec::new();
     for (k, effect) in named().into_iter().enumerate() {
         for seed in 0..each {
-            let level = (k + seed as usize) % NOISES.len();
-            let healthy = Truth::healthy(5000 + 100 * k as u64 + seed).noisy(NOISES[level]);
-            let truth = planted(healthy, effect, 0.3);
+            let truth = planted(machine(k, seed), effect, 0.3);
             let answer = diagnose_usual(&truth);
             let limits = answer.limits.iter().filter(|l| l.id == effect.id);
             // a recalibration that does not converge has none, and says nothing
@@ -67,7 +68,7 @@ fn without_a_library_there_is_never_a_name() {
     for probes in [true, false] {
         let mut setup = Setup::default();
         let off = setup.library.iter().filter(|e| !(probes && e.generic));
-        setup.settings.without = off.map(|e| e.id.clone()).collect();
+        setup.thresholds.without = off.map(|e| e.id.clone()).collect();
         let mut forces = 0;
         for (k, multiple) in [0.0, 3.0, 6.0, 12.0].into_iter().enumerate() {
             let truth = planted(Truth::healthy(5900 + k as u64), named()[k], multiple);

@@ -5,7 +5,7 @@ use crate::strata::{named, planted};
 use crate::trial::{Setup, diagnosed, line};
 use crate::truth::Truth;
 use discrepancy::diagnose::Diagnosis;
-use discrepancy::stage::preflight::Preflight;
+use discrepancy::ground::preflight::Preflight;
 use discrepancy::verdict::Verdict;
 
 fn with(numerics: Numerics) -> Setup {

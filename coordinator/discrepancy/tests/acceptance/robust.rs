@@ -3,8 +3,8 @@
 use crate::strata::{named, planted};
 use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
-use discrepancy::bench::Fit;
 use discrepancy::diagnose::{Diagnosis, Round};
+use discrepancy::model::Fit;
 use discrepancy::record::Source;
 use discrepancy::verdict::Verdict;
 

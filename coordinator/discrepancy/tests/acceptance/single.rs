@@ -1,11 +1,10 @@
 //! One effect at a time, at multiples of its printed limit.
-use crate::strata::{NOISES, limits, named, planted, planted_at};
+use crate::strata::{NOISES, limits, machine, named, planted, planted_at};
 use crate::trial::{Setup, diagnose_usual, line, say, trials};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::Diagnosis;
-use discrepancy::isolability::{APART, distances};
+use discrepancy::linear::isolability::{APART, distances};
 use discrepancy::model::sizes;
-use discrepancy::tangent::Tangent;
 use discrepancy::verdict::Verdict;
 use protocol::announce::EffectDescriptor;
 use statrs::distribution::{Binomial, DiscreteCDF};
@@ -22,9 +21,8 @@ fn every_effect_is_named_at_three_times_its_limit() {
     let mut missed = Vec::new();
     for (k, effect) in named().into_iter().enumerate() {
         for seed in 0..each {
-            let level = seed as usize % NOISES.len();
-            let healthy = Truth::healthy(100 + 100 * k as u64 + seed).noisy(NOISES[level]);
-            let truth = planted(healthy, effect, 3.0);
+            let level = (k + seed as usize) % NOISES.len();
+            let truth = planted(machine(k, seed), effect, 3.0);
             let answer = diagnose_usual(&truth);
             of_level[level].1 += 1;
             let first = answer.rounds.first().map_or(&[][..], |round| &round.set);
@@ -95,9 +93,9 @@ fn size_of(answer: &Diagnosis, effect: &EffectDescriptor, truth: &Truth) -> (boo
     let (Some(k), Some(estimate)) = (k, estimate) else {
         return (false, 1.0);
     };
-    let (_, _, value, [low, high]) = &estimate.parameters[k];
-    let inside = (*low..=*high).contains(&planted[k]);
-    (inside, (value / planted[k] - 1.0).abs())
+    let own = &estimate.parameters[k];
+    let inside = (own.interval[0]..=own.interval[1]).contains(&planted[k]);
+    (inside, (own.value / planted[k] - 1.0).abs())
 }
 
 /// Whether the isolability matrix said that this rival could not be told from the effect at three
@@ -112,12 +110,11 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str
         .filter_map(|id| suspects.iter().find(|s| s.effect.id == *id))
         .collect();
     let k = sizes(effect)[0];
-    let limits = limits(truth, &Setup::default());
+    let limits = limits(truth);
     let limit = limits.iter().find(|l| l.id == effect.id);
     let size = limit.map_or(f64::INFINITY, |l| 3.0 * l.size / effect.parameters[k].scale);
     let signatures: Vec<_> = pair.iter().map(|s| s.signature.clone()).collect();
-    let tangent = Tangent::new(before.search.best(), before.variables());
-    size * size * distances(&signatures, &tangent)[(0, 1)] < APART
+    size * size * distances(&signatures, &before.tangent())[(0, 1)] < APART
 }
 
 /// Acceptance 8, second half, over the levels of noise: the printed limit is within a factor 1.5 of
@@ -125,19 +122,17 @@ fn expected(answer: &Diagnosis, effect: &EffectDescriptor, (rival, truth): (&str
 #[test]
 fn printed_limits_are_those_of_ninety_per_cent_power() {
     let each = trials(2);
-    let detected = |multiple: f64, offset: u64| {
+    let detected = |multiple: f64| {
         let mut seen = 0;
         for (k, effect) in named().into_iter().enumerate() {
             for seed in 0..each {
-                let level = (k + seed as usize) % NOISES.len();
-                let healthy = Truth::healthy(offset + 100 * k as u64 + seed).noisy(NOISES[level]);
-                let answer = diagnose_usual(&planted(healthy, effect, multiple));
+                let answer = diagnose_usual(&planted(machine(k, seed), effect, multiple));
                 seen += usize::from(answer.verdict != Verdict::NothingDetected);
             }
         }
         seen as f64 / (each as f64 * named().len() as f64)
     };
-    let (above, below) = (detected(1.5, 10_000), detected(1.0 / 1.5, 20_000));
+    let (above, below) = (detected(1.5), detected(1.0 / 1.5));
     say(&format!(
         "detected at 1.5 x limit {:.0} %, at limit / 1.5 {:.0} %",
         100.0 * above,
@@ -160,7 +155,7 @@ fn four_gauges_alone_name_most_effects() {
     for seed in 0..trials(1) {
         for (k, effect) in named().into_iter().enumerate() {
             let healthy = Truth::healthy(30_000 + 100 * k as u64 + seed);
-            let limits = limits(&healthy, &setup);
+            let limits = crate::trial::diagnosed(&healthy, &setup).0.limits;
             let scale = effect.parameters[sizes(effect)[0]].scale;
             let limit = limits.iter().find(|l| l.id == effect.id);
             if limit.is_none_or(|l| l.size >= 2.0 * scale) {

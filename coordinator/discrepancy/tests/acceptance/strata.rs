@@ -1,5 +1,6 @@
 //! The strata of truths that the pipeline is held against.
-use crate::trial::{MACHINE, Setup, diagnosed};
+use crate::healthy::healthy;
+use crate::trial::MACHINE;
 use crate::truth::{Truth, Unlisted};
 use discrepancy::diagnose::Limit;
 use discrepancy::model::{shapes, sizes};
@@ -9,20 +10,21 @@ use search::random::{Phase, Streams};
 /// Levels of noise, as factors of the usual one, through which strata go.
 pub(crate) const NOISES: [f64; 3] = [0.3, 1.0, 3.0];
 
+/// The machine of a stratum in which the `k`-th effect is planted: from one seed, and from one effect,
+/// to the next through the levels of noise. Strata that plant at other multiples share it.
+pub(crate) fn machine(k: usize, seed: u64) -> Truth {
+    let level = (k + seed as usize) % NOISES.len();
+    Truth::healthy(100 + 100 * k as u64 + seed).noisy(NOISES[level])
+}
+
 /// The detection limits that a diagnosis of this machine, with the same noise and nothing hidden in
 /// it, prints; those of another such machine if its recalibration does not converge.
-pub(crate) fn limits(truth: &Truth, setup: &Setup) -> Vec<Limit> {
-    let healthy = Truth {
-        effects: Vec::new(),
-        unlisted: None,
-        ..truth.clone()
-    };
-    let own = diagnosed(&healthy, setup).0.limits;
-    if own.is_empty() {
-        let other = Truth::healthy(9001).noisy(truth.noise);
-        return diagnosed(&other, setup).0.limits;
+pub(crate) fn limits(truth: &Truth) -> Vec<Limit> {
+    let own = healthy(truth.seed, truth.noise);
+    if own.limits.is_empty() {
+        return healthy(9001, truth.noise).limits.clone();
     }
-    own
+    own.limits.clone()
 }
 
 /// The named effects.
@@ -33,7 +35,7 @@ pub(crate) fn named() -> Vec<&'static EffectDescriptor> {
 /// An effect of the library at a multiple of its limit: one of its sizes, its shapes where the
 /// library tries none.
 pub(crate) fn planted(truth: Truth, effect: &EffectDescriptor, multiple: f64) -> Truth {
-    let limits = limits(&truth, &Setup::default());
+    let limits = limits(&truth);
     planted_at(truth, effect, multiple, &limits)
 }
 

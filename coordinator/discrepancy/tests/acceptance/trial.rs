@@ -4,9 +4,9 @@ use crate::machine::{AtOnce, Machine, Numerics, ripple};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::record::Source;
-use discrepancy::settings::Settings;
+use discrepancy::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
-use protocol::job::Refinement;
+use protocol::job::Discretisation;
 use std::convert::Infallible;
 use std::pin::pin;
 use std::sync::LazyLock;
@@ -23,7 +23,7 @@ pub(crate) struct Setup {
     /// Cycles of the record.
     pub(crate) cycles: usize,
     /// Thresholds.
-    pub(crate) settings: Settings,
+    pub(crate) thresholds: Thresholds,
     /// The library.
     pub(crate) library: Vec<EffectDescriptor>,
     /// One run in so many is lost; none if 0.
@@ -43,10 +43,10 @@ impl Default for Setup {
         Self {
             channels: ALL.to_vec(),
             cycles: 8,
-            settings: Settings {
+            thresholds: Thresholds {
                 orders: ORDERS,
                 draws: 100,
-                ..Settings::default()
+                ..Thresholds::default()
             },
             library: MACHINE.library().to_vec(),
             lost_every: 0,
@@ -87,14 +87,14 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
                 .map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 })
                 .collect(),
         ),
-        usual: Refinement::default(),
-        finer: Refinement {
+        usual: Discretisation::default(),
+        finer: Discretisation {
             cylinder_length_m: Some(0.025),
             longest_step_s: Some(0.01),
-            ..Refinement::default()
+            ..Discretisation::default()
         },
         seed: 1,
-        settings: setup.settings.clone(),
+        thresholds: setup.thresholds.clone(),
     };
     let mut lab = AtOnce::new(&MACHINE, setup.lost_every, &setup.labels, setup.numerics);
     let answer = now(diagnose(&mut lab, &inputs));
@@ -129,13 +129,7 @@ pub(crate) fn line(diagnosis: &Diagnosis) -> String {
                 .refits
                 .iter()
                 .take(3)
-                .map(|f| {
-                    format!(
-                        "{} {:.0}",
-                        f.id,
-                        (f.log_evidence - r.null_evidence) / (r.phi * r.phi)
-                    )
-                })
+                .map(|f| format!("{} {:.0}", f.id, r.nats(f.log_evidence)))
                 .collect();
             format!(
                 "[p {:.1e} phi {:.2} set {:?} best {}]",

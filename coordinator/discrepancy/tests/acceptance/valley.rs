@@ -5,21 +5,20 @@
 //! Each test also goes without the look: what it asserts is that the look is needed, and enough.
 use crate::case;
 use crate::trial::now;
-use discrepancy::bench::{Bench, Fit};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::{Laboratory, Stage};
-use discrepancy::metric::Metric;
-use discrepancy::model::Model;
-use discrepancy::noise::Noise;
+use discrepancy::model::experiments::Experiments;
+use discrepancy::model::{Fit, Model, Point};
+use discrepancy::record::spectrum::Orders;
+use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Source, Stated};
-use discrepancy::settings::Settings;
-use discrepancy::spectrum::Orders;
-use discrepancy::stage::valley;
+use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
+use discrepancy::{cause::low_orders, cause::signature, ground::valley};
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
 use protocol::case::{Coefficient, Gene};
-use protocol::job::{Counters, Observation, ObserveSpec, Refinement, Verdict as Ended};
+use protocol::job::{Counters, Discretisation, Observation, SimulateSpec, Verdict as Ended};
 use protocol::unit::Unit;
 use search::least_squares;
 use search::random::{Phase, Streams};
@@ -125,18 +124,19 @@ impl Laboratory for Ropes {
     async fn observe(
         &mut self,
         _: Stage,
-        batch: Vec<ObserveSpec>,
+        batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, Infallible> {
         Ok(batch.iter().map(|spec| Some(observed(spec))).collect())
     }
 }
 
-fn observed(spec: &ObserveSpec) -> Observation {
+fn observed(spec: &SimulateSpec) -> Observation {
     let amount = |id: &str| {
-        let given = spec.effects.iter().find(|e| e.id == id);
+        let given = spec.individual.effects.iter().find(|e| e.id == id);
         given.map_or(0.0, |e| e.parameters[0].1)
     };
-    let genes = [spec.genes[0], spec.genes[1], spec.genes[2]];
+    let genes = &spec.individual.genes;
+    let genes = [genes[0], genes[1], genes[2]];
     let (clock, lag) = (amount("card_time_shift"), amount("load_cell_lag"));
     let mut curves = gauges(genes, clock, lag, amount("load_cell_gain")).into_iter();
     Observation {
@@ -168,6 +168,29 @@ fn record(truth: Ringing) -> Record {
     }
 }
 
+/// The record under a metric of its own noise.
+fn whole(truth: Ringing) -> WhitenedRecord {
+    let orders = Orders::new(SAMPLES, ORDERS);
+    WhitenedRecord::under_own_noise(record(truth), orders, Discretisation::default())
+}
+
+/// Experiments on it.
+fn basin<'a>(lab: &'a mut Ropes, on: &'a WhitenedRecord) -> Experiments<'a, Ropes> {
+    Experiments {
+        lab,
+        on,
+        stage: Stage::Basin,
+    }
+}
+
+/// The machine without effects at some genes.
+fn at(genes: [f64; 3]) -> Point {
+    Point {
+        model: Model::plain(space()),
+        x: genes.to_vec(),
+    }
+}
+
 /// A diagnosis with looks for another valley from that misfit on.
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
@@ -175,13 +198,13 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         records: vec![record(truth)],
         library: library(),
         start: None,
-        usual: Refinement::default(),
-        finer: Refinement::default(),
+        usual: Discretisation::default(),
+        finer: Discretisation::default(),
         seed: 1,
-        settings: Settings {
+        thresholds: Thresholds {
             draws: 20,
             valley,
-            ..Settings::default()
+            ..Thresholds::default()
         },
     };
     now(diagnose(&mut Ropes, &inputs))
@@ -202,29 +225,20 @@ fn a_fit_outside_the_valley_finds_its_way_into_it() {
         damping: 0.2,
         clock: 0.0,
     };
-    let record = record(truth);
-    let orders = Orders::new(SAMPLES, ORDERS);
-    let noise = Noise::estimate(&record, &orders, &[]);
-    let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
-    let bench = Bench::new(record, metric, Refinement::default());
-    let model = Model::plain(space());
-    let left = |fit: &Fit| fit.chi_squared() / bench.metric.len() as f64;
-    let fitted = |start: [f64; 3], iterations: u32| {
-        let how = least_squares::Settings {
-            iterations,
-            ..least_squares::Settings::default()
-        };
-        let starts = vec![(model.clone(), start.to_vec())];
-        let fits = now(bench.fit(&mut Ropes, Stage::Basin, starts, how));
-        fits.into_iter().flatten().next().expect("it simulates")
-    };
-    let outside = fitted([0.6, 0.2, 0.0], 1);
+    let whole = whole(truth);
+    let mut ropes = Ropes;
+    let mut experiments = basin(&mut ropes, &whole);
+    let left = |fit: &Fit| fit.chi_squared() / whole.metric.len() as f64;
+    let outside = now(experiments.fit(at([0.6, 0.2, 0.0]), least_squares::Settings::short(1)));
+    let outside = outside.expect("it simulates");
     assert!(left(&outside) > 9.0, "{}", left(&outside));
-    let found = now(valley::enter(&mut Ropes, (&bench, Stage::Basin), &outside)).expect("a valley");
+    let found = now(valley::enter(&mut experiments, &outside)).expect("a valley");
     assert!(left(&found) < 1.3, "{}", left(&found));
     assert!((found.x()[0] - truth.stiffness).abs() < 0.01);
-    let inside = fitted([truth.stiffness, truth.damping, 0.1], 8);
-    assert!(now(valley::enter(&mut Ropes, (&bench, Stage::Basin), &inside)).is_none());
+    let inside = at([truth.stiffness, truth.damping, 0.1]);
+    let inside = now(experiments.fit(inside, least_squares::Settings::short(8)));
+    let inside = inside.expect("it simulates");
+    assert!(now(valley::enter(&mut experiments, &inside)).is_none());
 }
 
 /// A load card a degree and a half late: without that clock there is no valley to calibrate to.
@@ -237,13 +251,42 @@ fn an_effect_that_hides_the_valley_is_named_from_inside_it() {
     };
     let (left, _) = end(&diagnosed(truth, f64::INFINITY));
     assert!(left > 9.0, "{left}: the refits found the valley alone");
-    let answer = diagnosed(truth, Settings::default().valley);
+    let answer = diagnosed(truth, Thresholds::default().valley);
     let said = crate::trial::line(&answer);
     let (left, stiffness) = end(&answer);
     assert_eq!(answer.verdict, Verdict::Named, "{said}");
     assert_eq!(answer.effects[0].id, "card_time_shift", "{said}");
-    let (_, _, clock, _) = answer.effects[0].parameters[0];
+    let clock = answer.effects[0].parameters[0].value;
     assert!((clock / truth.clock - 1.0).abs() < 0.02, "{clock}");
     assert!(left < 1.3, "{left}: {said}");
     assert!((stiffness - truth.stiffness).abs() < 0.01, "{stiffness}");
+}
+
+/// From a fit that has thrown the modes out, the test of all orders sees a third of the clock; the low orders
+/// see the whole of it, and the stiffness.
+#[test]
+fn low_orders_see_the_size_that_the_modes_hide() {
+    let truth = Ringing {
+        stiffness: 0.14,
+        damping: 0.2,
+        clock: 4.0,
+    };
+    let whole = whole(truth);
+    let mut ropes = Ropes;
+    let mut experiments = basin(&mut ropes, &whole);
+    let lost = now(experiments.fit(at([1.9, -1.9, 0.0]), least_squares::Settings::short(6)));
+    let lost = lost.expect("it simulates");
+    let library = library();
+    let clock = |scaled: f64| scaled * library[0].parameters[0].scale;
+    let all = now(signature::examine(&mut experiments, &lost, &library));
+    assert!(
+        clock(all[0].start[0]) < 0.5 * truth.clock,
+        "{:?}",
+        all[0].start
+    );
+    let found = now(low_orders::likeliest(&mut experiments, &lost, &library));
+    let Point { model, x } = &found[0];
+    assert_eq!(model.added[0].id, "card_time_shift");
+    assert!((clock(x[3]) / truth.clock - 1.0).abs() < 0.01, "{x:?}");
+    assert!((x[0] - truth.stiffness).abs() < 0.01, "{x:?}");
 }

@@ -1,6 +1,6 @@
 //! Columns of a Jacobian by differences, with a second try on the other side for a point that could
 //! not be evaluated.
-use super::{Settings, Variable};
+use super::problem::{Settings, Variable};
 use nalgebra::{DMatrix, DVector};
 
 /// One evaluation beside the point.

@@ -1,5 +1,5 @@
 //! Damped Gauss-Newton steps inside a box.
-use super::{Linearized, Variable};
+use super::problem::{Linearized, Variable};
 use nalgebra::{DMatrix, DVector};
 
 /// Dampings that are tried at once, relative to the last one that was taken.

@@ -1,5 +1,6 @@
 //! The search on functions whose minimum is known, with failures and bounds in the way.
 use super::*;
+use nalgebra::{DMatrix, DVector};
 
 fn variable(start: f64, lower: f64, upper: f64) -> Variable {
     Variable {

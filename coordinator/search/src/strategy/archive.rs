@@ -1,5 +1,5 @@
 //! Everything a run has evaluated, in id order.
-use super::Told;
+use super::told::Told;
 use std::collections::BTreeMap;
 
 /// One evaluated individual.

@@ -3,8 +3,12 @@
 //! It knows batches, not algorithms. The state is a function of the longest unbroken run of
 //! results from id 0; later ones wait in a buffer.
 use super::{
-    Archive, Batch, Best, Draft, Evaluated, Finish, Piece, Progress, Proposal, Strategy, Told,
-    archive::key,
+    archive::{Archive, Evaluated, key},
+    ask_tell::Strategy,
+    outcome::{Best, Finish, Progress},
+    piece::{Batch, Draft, Piece},
+    proposal::Proposal,
+    told::Told,
 };
 use std::collections::{BTreeMap, VecDeque};
 

@@ -3,9 +3,17 @@
 //! The residual of an individual, in units in which its squared length is the fitness, says for
 //! every sample which way to go; a step of this piece costs one point per gene and a fan of damped
 //! tries, and near a minimum gains more than any search that sees the fitness alone.
-use super::{Archive, Batch, Draft, Evaluated, Piece, Purpose, SettingsError, require};
+use super::{
+    archive::{Archive, Evaluated},
+    piece::{Batch, Draft, Piece},
+    proposal::Purpose,
+    setting::{Setting, SettingsError, Values, check},
+};
 use crate::{
-    least_squares::{LeastSquares, Settings, Variable},
+    least_squares::{
+        problem::{Settings, Variable},
+        search::LeastSquares,
+    },
     space::Space,
 };
 use nalgebra::DVector;
@@ -25,32 +33,29 @@ pub struct LevenbergSettings {
     pub step: f64,
 }
 
-impl LevenbergSettings {
-    /// # Errors
-    /// If a setting lies outside its range.
-    pub(super) fn check(&self) -> Result<(), SettingsError> {
-        let (starts, iterations) = (self.starts as f64, f64::from(self.iterations));
-        require(
-            self.starts >= 1,
-            "least-squares starts",
-            starts,
-            "at least 1",
-        )?;
-        require(
-            self.iterations >= 1,
-            "least-squares iterations",
-            iterations,
-            "at least 1",
-        )?;
-        require(
-            self.apart >= 0.0,
-            "least-squares apart",
-            self.apart,
-            "0 or more",
-        )?;
-        require(self.step > 0.0, "least-squares step", self.step, "above 0")
-    }
-}
+/// What can be set by name.
+pub(super) const SETTINGS: &[Setting] = &[
+    Setting::new(
+        "starts",
+        Values::Whole(1, 1000),
+        "descents of the residual side by side",
+    ),
+    Setting::new(
+        "iterations",
+        Values::Whole(1, 1000),
+        "most Jacobians of each descent",
+    ),
+    Setting::new(
+        "apart",
+        Values::Real(0.0, 10.0),
+        "how far two starts lie apart in some gene [decade]",
+    ),
+    Setting::new(
+        "step",
+        Values::Real(1e-9, 1.0),
+        "first difference step [decade]",
+    ),
+];
 
 /// Descents as a piece of a strategy.
 pub struct Levenberg {
@@ -65,7 +70,7 @@ impl Levenberg {
     /// # Errors
     /// If a setting lies outside its range.
     pub fn new(settings: LevenbergSettings, space: &Space) -> Result<Self, SettingsError> {
-        settings.check()?;
+        check(&settings, SETTINGS)?;
         Ok(Self {
             settings,
             space: space.clone(),

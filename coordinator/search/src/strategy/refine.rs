@@ -6,7 +6,12 @@
 //! inverse is needed). It learns that a stiffer rope and a softer contact make up for each other,
 //! which no search along the axes does. It uses only the order of the results, so failures are
 //! merely last.
-use super::{Archive, Batch, Draft, Evaluated, Piece, Purpose, SettingsError, require};
+use super::{
+    archive::{Archive, Evaluated},
+    piece::{Batch, Draft, Piece},
+    proposal::Purpose,
+    setting::{Setting, SettingsError, Values, check, require},
+};
 use crate::{
     random::{Phase, Streams},
     space::Space,
@@ -30,24 +35,28 @@ impl RefineSettings {
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
-        require(
-            self.batch >= 4,
-            "refine batch",
-            self.batch as f64,
-            "at least 4",
-        )?;
+        check(self, SETTINGS)?;
         let spreads = self.spread.len();
         let one_each = "one number per gene";
-        require(
-            spreads == space.dimension(),
-            "refine spread",
-            spreads as f64,
-            one_each,
-        )?;
-        let worst = self.spread.iter().copied().fold(0.0, f64::min);
-        require(worst >= 0.0, "refine spread", worst, "0 or more")
+        require(spreads == space.dimension(), "spread", spreads, one_each)?;
+        let negative = self.spread.iter().filter(|spread| **spread < 0.0).count();
+        require(negative == 0, "negative spreads", negative, "none")
     }
 }
+
+/// What can be set by name.
+pub(super) const SETTINGS: &[Setting] = &[
+    Setting::new(
+        "batch",
+        Values::Whole(4, 100_000),
+        "points per round of the refinement",
+    ),
+    Setting::new(
+        "rounds",
+        Values::Whole(0, 100_000),
+        "rounds of the refinement",
+    ),
+];
 
 /// A local refinement as a piece of a strategy.
 pub struct Refine {

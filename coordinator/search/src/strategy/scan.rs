@@ -2,7 +2,12 @@
 //!
 //! A narrow valley that no random step meets is found by brute force along the one axis that is
 //! known to be narrow. All stations are independent, so any number of workers is busy at once.
-use super::{Archive, Batch, Draft, Evaluated, Piece, Purpose, SettingsError, require};
+use super::{
+    archive::{Archive, Evaluated},
+    piece::{Batch, Draft, Piece},
+    proposal::Purpose,
+    setting::{Setting, SettingsError, Values, check, require},
+};
 use crate::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -63,34 +68,47 @@ impl ScanSettings {
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
-        let known = |gene: usize| gene < space.dimension();
+        check(self, SETTINGS)?;
+        let least = "at least one";
         require(
-            known(self.gene),
-            "scan gene",
-            self.gene as f64,
-            "the position of a gene",
+            self.below + self.above > 0.0,
+            "length of a scan",
+            0,
+            "above 0",
         )?;
-        let length = self.below + self.above;
-        require(
-            length > 0.0 && length <= 20.0,
-            "scan length",
-            length,
-            "above 0, at most 20",
-        )?;
-        require(self.step >= 2e-4, "scan step", self.step, "at least 0.0002")?;
-        require(!self.lines.is_empty(), "scan lines", 0.0, "at least 1")?;
-        for shift in self.lines.iter().flatten() {
-            let gene = shift.gene;
-            require(
-                known(gene),
-                "shifted gene",
-                gene as f64,
-                "the position of a gene",
-            )?;
+        require(!self.lines.is_empty(), "lines of a scan", 0, least)?;
+        let shifted = self.lines.iter().flatten().map(|shift| shift.gene);
+        for gene in shifted.chain([self.gene]) {
+            let known = gene < space.dimension();
+            require(known, "gene of a scan", gene, "the position of a gene")?;
         }
         Ok(())
     }
 }
+
+/// What can be set by name.
+pub(super) const SETTINGS: &[Setting] = &[
+    Setting::new(
+        "below",
+        Values::Real(0.0, 10.0),
+        "how far below its centre the scan begins [decade]",
+    ),
+    Setting::new(
+        "above",
+        Values::Real(0.0, 10.0),
+        "how far above its centre the scan ends [decade]",
+    ),
+    Setting::new(
+        "step",
+        Values::Real(2e-4, 1.0),
+        "spacing of the scan [decade]; a valley narrower than twice this may be missed",
+    ),
+    Setting::new(
+        "points",
+        Values::Whole(1, 1000),
+        "how many of the best points are scanned",
+    ),
+];
 
 /// A line scan as a piece of a strategy.
 pub struct Scan {

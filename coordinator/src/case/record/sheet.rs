@@ -4,7 +4,7 @@ use super::super::{
     error::CaseError,
     note::Note,
 };
-use discrepancy::record::{Source, Stated};
+use discrepancy::record::{Source, Stated, Tolerance};
 use protocol::case::TurnSense;
 use serde::Deserialize;
 use std::path::Path;
@@ -25,6 +25,8 @@ pub(super) struct Sheet {
     position: Position,
     #[serde(default)]
     torque: Torque,
+    #[serde(default)]
+    tolerance: Tolerance,
 }
 
 /// The crank's part of a data sheet.
@@ -74,20 +76,33 @@ const KNOWN: &[&str] = &[
     "load",
     "position",
     "torque",
+    "tolerance",
 ];
 
+/// Every sense in which a crank may turn.
+const SENSES: [TurnSense; 2] = [TurnSense::Clockwise, TurnSense::CounterClockwise];
+
 impl Sheet {
-    /// The sense in which the sheet's prose says that the crank turns, seen with the well on the
-    /// right; none where it does not say so plainly.
-    pub(super) fn sense(&self) -> Option<TurnSense> {
-        let prose = self.crank.sense.as_ref()?.to_ascii_lowercase();
-        let against = ["counter-clockwise", "counterclockwise", "anticlockwise"];
-        let against = against.iter().any(|word| prose.contains(word));
-        let plain = !prose.contains("left") && prose.contains("clockwise");
-        plain.then_some(if against {
-            TurnSense::CounterClockwise
-        } else {
-            TurnSense::Clockwise
+    /// The sense in which the crank turns, seen with the well on the right; none where the sheet says
+    /// nothing of it.
+    ///
+    /// # Errors
+    /// Any value that is none of the two, prose too.
+    pub(super) fn sense(&self, document: &Document) -> Result<Option<TurnSense>, CaseError> {
+        let Some(stated) = &self.crank.sense else {
+            return Ok(None);
+        };
+        let sense = SENSES
+            .into_iter()
+            .find(|sense| sense.to_string() == *stated);
+        sense.map(Some).ok_or_else(|| {
+            document.field(
+                &[Step::Key("crank"), Step::Key("sense")],
+                format!("\"{stated}\""),
+                SENSES.map(|sense| format!("\"{sense}\"")).join(" or "),
+                "write one of the two: how the crank turns while crank_deg grows, seen with the \
+                 well on the right",
+            )
         })
     }
 
@@ -107,6 +122,7 @@ impl Sheet {
                 .gauges
                 .noise_correlation_per_sample
                 .map_or(0.0, |rho| libm::pow(rho, 1.0 / grid)),
+            tolerance: self.tolerance,
             ..Stated::default()
         }
     }
@@ -174,6 +190,7 @@ impl Sheet {
                 document.within(field, value, 0.0..=highest, unit)?;
             }
         }
+        check_tolerance(&document, &sheet.tolerance)?;
         if sheet.gauges.unit != "MPa" {
             return Err(document.field(
                 &[Step::Key("gauges"), Step::Key("unit")],
@@ -193,4 +210,19 @@ impl Sheet {
             .collect();
         Ok((sheet, document, notes))
     }
+}
+
+/// Standard deviations are finite and not negative.
+fn check_tolerance(document: &Document, tolerance: &Tolerance) -> Result<(), CaseError> {
+    for (name, value) in tolerance.stated() {
+        if !(value.is_finite() && value >= 0.0) {
+            return Err(document.field(
+                &[Step::Key("tolerance"), Step::Key(name)],
+                value,
+                "a standard deviation: a finite number, 0 or greater",
+                "state how good the instrument is, or leave the key out",
+            ));
+        }
+    }
+    Ok(())
 }

@@ -40,7 +40,7 @@ fn time_on_the_way_counts_as_starved() {
         delay: Duration::from_millis(400),
         ..Setting::even(4)
     });
-    policy_of_one.core.options.policy.per_slot = 1;
+    policy_of_one.core.options.policy.jobs_per_slot = 1;
     policy_of_one.run(&mut Generations::new(100, 3), LIMIT);
     let spent = balanced(&policy_of_one);
     let computed = policy_of_one.computed.as_secs_f64();
@@ -74,7 +74,7 @@ fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one()
         Command::Record(event) => Some(event),
         Command::Send { .. }
         | Command::Store(_)
-        | Command::Deliver { .. }
+        | Command::Deliver(_)
         | Command::Notice(_)
         | Command::Stop(_) => None,
     });
@@ -98,4 +98,27 @@ fn accounts_of_all_workers_are_in_the_journal_and_are_the_same_as_the_live_one()
         folded.add(&row.spent);
     }
     assert_eq!(folded, live);
+}
+
+/// Time left is told from this: workers that start, fetch the case and build the model evaluate
+/// nothing.
+#[test]
+fn waiting_for_workers_and_for_them_to_get_ready_is_not_computing() {
+    let mut scene = Scene::new();
+    scene.submit(0..2);
+    scene.wait(60, &[]);
+    let computing = |scene: &Scene| scene.core.snapshot(scene.now).computing;
+    scene.announce(1, 1, "m");
+    scene.hear(1, FromWorker::Beat(Beat::default()));
+    scene.wait(2, &[]);
+    assert_eq!(computing(&scene), Duration::ZERO);
+    scene.beat(1, &[]);
+    scene.wait(3, &[1]);
+    assert_eq!(computing(&scene), Duration::from_secs(3));
+    for (worker, attempt) in scene.given() {
+        scene.finish(worker, attempt);
+    }
+    scene.wait(5, &[1]);
+    assert_eq!(computing(&scene), Duration::from_secs(3));
+    assert!(scene.core.snapshot(scene.now).done == 2);
 }

@@ -21,7 +21,7 @@ fn refusal(scene: &Scene, id: u64) -> Option<String> {
         Command::Send { .. }
         | Command::Store(_)
         | Command::Record(_)
-        | Command::Deliver { .. }
+        | Command::Deliver(_)
         | Command::Notice(_)
         | Command::Stop(_) => None,
     })?;
@@ -313,9 +313,9 @@ fn early_results_are_kept_of_members_and_up_to_a_budget() {
             job: JobId(job),
             attempt: AttemptId(1),
         },
-        work: work_hash(&super::job(job)),
-        wall_us: 1,
-        outcome: Outcome::Nothing(vec![0; bytes]),
+        work: super::job(job).work_hash(),
+        cost: cost(1),
+        outcome: Outcome::Done(Answer::Nothing(vec![0; bytes])),
     };
     let mut scene = Scene::new();
     scene.core.options.expected = [WorkerId(7)].into();

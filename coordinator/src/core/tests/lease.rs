@@ -60,11 +60,11 @@ fn an_answer_to_another_question_is_not_taken() {
     scene.submit(0..1);
     let (_, attempt) = scene.given()[0];
     let work = ContentHash::of(b"another job");
-    let outcome = Outcome::Nothing(Vec::new());
+    let outcome = Outcome::Done(Answer::Nothing(Vec::new()));
     let done = Done {
         attempt,
         work,
-        wall_us: 1,
+        cost: cost(1),
         outcome,
     };
     scene.hear(1, FromWorker::Done(Box::new(done)));
@@ -90,8 +90,8 @@ fn an_answer_to_another_question_is_not_taken() {
         FromWorker::Done(Box::new(Done {
             attempt: late,
             work,
-            wall_us: 1,
-            outcome: Outcome::Nothing(Vec::new()),
+            cost: cost(1),
+            outcome: Outcome::Done(Answer::Nothing(Vec::new())),
         })),
     );
     assert_eq!(scene.acknowledged.last(), Some(&(WorkerId(1), late)));
@@ -156,7 +156,7 @@ fn people_are_told_once_that_nobody_is_there() {
 fn a_disk_that_falls_behind_holds_up_the_workers_and_does_not_fill_the_memory() {
     let mut scene = Scene::new();
     scene.join(1, 64);
-    let limit = scene.core.options.policy.unstored;
+    let limit = scene.core.options.policy.most_unstored;
     let jobs = 3 * limit as u64;
     scene.submit(0..jobs);
     let mut finished = 0;

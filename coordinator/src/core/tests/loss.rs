@@ -195,7 +195,10 @@ fn what_waited_on_lost_workers_is_suspected_too_and_clears_itself_alone() {
     scene.join(5, 1);
     let (_, innocent) = scene.given()[0];
     scene.finish(5, innocent);
-    assert_eq!(scene.delivered[1], (1, Outcome::Nothing(vec![1])));
+    assert_eq!(
+        scene.delivered[1],
+        (1, Outcome::Done(Answer::Nothing(vec![1])))
+    );
 }
 
 /// A job that an idle worker takes over may have been begun by the one it was taken from, and may be

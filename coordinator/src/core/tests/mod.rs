@@ -2,9 +2,16 @@
 use super::*;
 use protocol::{
     announce::Announcement,
-    id::AttemptId,
-    job::{Failure, Outcome},
-    message::{Beat, Done, FromWorker, Order},
+    event::{Event, Spent},
+    id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
+    job::{Answer, Failure, Job, Outcome},
+    message::{Attempt, Beat, Cost, Done, FromWorker, Order, ToWorker},
+    wire,
+};
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    mem,
+    time::Duration,
 };
 
 mod accounting;
@@ -31,6 +38,14 @@ struct Scene {
     other: Vec<Command>,
     /// What workers say that a job took.
     wall_us: u64,
+}
+
+/// So long in the slot.
+const fn cost(wall_us: u64) -> Cost {
+    Cost {
+        wall_us,
+        cpu_us: wall_us,
+    }
 }
 
 impl Scene {
@@ -83,7 +98,7 @@ impl Scene {
                     self.acknowledged
                         .extend(attempts.into_iter().map(|attempt| (to, attempt)));
                 }
-                Command::Deliver { id, outcome } => self.delivered.push((id.0, outcome)),
+                Command::Deliver(done) => self.delivered.push((done.id.0, done.outcome)),
                 Command::Store(finished) => self.storing.push(finished.job()),
                 other @ (Command::Send { .. }
                 | Command::Record(_)
@@ -107,8 +122,7 @@ impl Scene {
                 !self.core.has_finished(*id),
                 "job {id} is pending or finished"
             );
-            let suspect =
-                membership::is_suspect(pending.failures, self.core.options.policy.suspect);
+            let suspect = self.core.must_run_alone(pending);
             assert_eq!(
                 suspect,
                 self.core.suspects.contains(id),
@@ -119,7 +133,7 @@ impl Scene {
             }
         }
         for member in self.core.members.values() {
-            let most = self.core.options.policy.per_slot * member.slots();
+            let most = self.core.options.policy.jobs_per_slot * member.slots();
             assert!(member.leases.len() <= most, "more than {most} outstanding");
         }
     }
@@ -167,7 +181,7 @@ impl Scene {
     }
 
     fn finish(&mut self, from: u64, attempt: Attempt) {
-        self.answer(from, attempt, Outcome::Nothing(vec![1]));
+        self.answer(from, attempt, Outcome::Done(Answer::Nothing(vec![1])));
     }
 
     fn fail(&mut self, from: u64, attempt: Attempt, failure: Failure) {
@@ -175,11 +189,11 @@ impl Scene {
     }
 
     fn answer(&mut self, from: u64, attempt: Attempt, outcome: Outcome) {
-        let work = work_hash(&job(attempt.job.0));
+        let work = job(attempt.job.0).work_hash();
         let done = Done {
             attempt,
             work,
-            wall_us: self.wall_us,
+            cost: cost(self.wall_us),
             outcome,
         };
         self.hear(from, FromWorker::Done(Box::new(done)));

@@ -2,37 +2,18 @@
 //!
 //! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes
 //! a fraction of a second and is the same each time.
+mod happening;
 mod source;
 mod worker;
 
+pub(super) use happening::Fault;
 pub(super) use source::{Generations, Search, Source};
 
 use super::*;
+use happening::What;
 use protocol::event::Event;
 use search::random::{Phase, Streams};
 use worker::Worker;
-
-/// What happens to workers.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Fault {
-    /// It dies with all it holds, the transport says so, and another one comes in its place.
-    Kill,
-    /// It stands still; its connection stays.
-    Freeze,
-    /// It goes on.
-    Thaw,
-}
-
-#[derive(Clone)]
-enum What {
-    Up(WorkerId, FromWorker),
-    Down(WorkerId, ToWorker),
-    End(WorkerId, Attempt),
-    Beat(WorkerId),
-    Tick,
-    Stored(Vec<JobId>),
-    Fault(u64, Fault),
-}
 
 /// What a cluster is like.
 #[derive(Clone, Copy)]
@@ -266,7 +247,7 @@ impl Cluster {
             What::Down(_, ToWorker::Stored(attempts)) => worker.settle(attempts),
             What::End(_, attempt) => {
                 if let Some(done) = worker.finish(attempt, now) {
-                    self.computed += Duration::from_micros(done.wall_us);
+                    self.computed += Duration::from_micros(done.cost.wall_us);
                     self.send(What::Up(id, FromWorker::Done(Box::new(done))));
                 }
             }
@@ -311,7 +292,7 @@ impl Cluster {
             match command {
                 Command::Send { to, message } => self.send(What::Down(to, message)),
                 Command::Store(finished) => storing.push(finished.job()),
-                Command::Deliver { id, outcome } => self.fresh.push((id, outcome)),
+                Command::Deliver(done) => self.fresh.push((done.id, done.outcome)),
                 Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
                 Command::Record(_) => {}
                 Command::Notice(notice) => self.notices.push(notice),

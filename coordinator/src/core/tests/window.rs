@@ -6,7 +6,7 @@ use super::{
 };
 use search::{
     strategy::{
-        Settings,
+        Settings, build,
         memetic::{MemeticSettings, window::WindowSettings},
     },
     test_function::CLIFF,
@@ -15,7 +15,7 @@ use search::{
 const LIMIT: Duration = Duration::from_hours(20);
 
 fn settings(window: usize, generations: u32) -> Settings {
-    Settings::Window(WindowSettings {
+    Settings::of(&WindowSettings {
         window,
         memetic: MemeticSettings {
             population: 30,
@@ -31,7 +31,7 @@ fn settings(window: usize, generations: u32) -> Settings {
 fn run(settings: &Settings, mut cluster: Cluster) -> (String, Cluster) {
     let space = CLIFF.space();
     let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
-    let mut source = Search::new(settings.build(&space, 11).unwrap(), &tell);
+    let mut source = Search::new(build(settings, &space, 11).unwrap(), &tell);
     cluster.run(&mut source, LIMIT);
     (source.digest(), cluster)
 }
@@ -42,7 +42,7 @@ fn one_three_seven_and_forty_workers_with_delays_losses_and_kills_make_the_same_
     let space = CLIFF.space();
     let tell = |genes: &[f64]| CLIFF.tell(&space, genes);
     // the reference is told in id order, without any cluster
-    let mut alone = Search::new(settings.build(&space, 11).unwrap(), &tell);
+    let mut alone = Search::new(build(&settings, &space, 11).unwrap(), &tell);
     while alone.strategy.finished().is_none() {
         for proposal in alone.strategy.ask() {
             alone.strategy.tell(proposal.id, tell(&proposal.genes));

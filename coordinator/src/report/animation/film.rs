@@ -1,7 +1,8 @@
 //! The snapshots of a simulation, thinned, rounded and packed for the player.
 //!
 //! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, small in a file.
-use crate::report::number::{NONE, fixed, quantile};
+use crate::quantile;
+use crate::report::number::{NONE, fixed};
 use maud::{Markup, html};
 use protocol::case::Case;
 use protocol::job::{Motion, Simulation};
@@ -171,13 +172,13 @@ impl Film {
                 .flat_map(|m| m.back_contact_n.iter().chain(&m.front_contact_n).copied())
                 .filter(|&force| force > 0.0),
         );
-        let end = |share| quantile(&tensions, share).map_or(0.0, |newtons| 1e-2 * newtons);
+        let end = |percent| quantile::of(&tensions, percent).map_or(0.0, |newtons| 1e-2 * newtons);
         let (low, high) = (
-            (end(0.02) / 50.0).floor() * 50.0,
-            (end(0.98) / 50.0).ceil() * 50.0,
+            (end(2) / 50.0).floor() * 50.0,
+            (end(98) / 50.0).ceil() * 50.0,
         );
         // the strong contacts of ordinary running are drawn about 0.35 m high
-        let strong_n = quantile(&contacts, 0.9).unwrap_or(1.0).max(1.0);
+        let strong_n = quantile::of(&contacts, 90).unwrap_or(1.0).max(1.0);
         let mm_per_newton = 350.0 / strong_n;
         let rope = |points: &[[f32; 2]], tension: &[f32], contact: &[f32]| {
             RopeFrame::new(points, tension, contact, mm_per_newton)
@@ -271,7 +272,7 @@ fn readouts(case: &Case, simulation: &Simulation, frames: &[&Motion]) -> Vec<Rea
             .iter()
             .map(|frame| {
                 let turn = &simulation.turn_deg;
-                let value = crate::report::chart::interpolated(turn, values, frame.turn_deg)?;
+                let value = crate::line::interpolated(turn, values, frame.turn_deg)?;
                 rounded(factor * value, decimals)
             })
             .collect(),

@@ -7,7 +7,7 @@ mod drawing;
 mod film;
 mod rope;
 
-use super::chart::{self, ChartError};
+use super::chart;
 use maud::{Markup, PreEscaped, html};
 use protocol::case::Case;
 use protocol::job::Simulation;
@@ -16,25 +16,16 @@ use protocol::job::Simulation;
 const PLAYER: &str = include_str!("player.js");
 
 /// Draws the machine with its player; none without snapshots.
-///
-/// # Errors
-/// [`ChartError`] when the curves beside it cannot be drawn.
-pub(super) fn machine(
-    case: &Case,
-    condition: usize,
-    simulation: &Simulation,
-) -> Result<Option<Markup>, ChartError> {
-    let Some(film) = film::Film::new(case, condition, simulation) else {
-        return Ok(None);
-    };
-    let (curves, span) = chart::player(case, simulation)?;
+pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Option<Markup> {
+    let film = film::Film::new(case, condition, simulation)?;
+    let (curves, span) = chart::player(case, simulation);
     let [left, right, top, bottom] = span.map(|share| 100.0 * share);
     let span = format!(
         "left:{left:.3}%;width:{:.3}%;top:{top:.3}%;height:{:.3}%",
         right - left,
         bottom - top
     );
-    Ok(Some(html! {
+    Some(html! {
         div.machine id="machine" {
             div.stage {
                 (drawing::drawing(case, &film))
@@ -69,5 +60,5 @@ pub(super) fn machine(
             script id="machine-film" type="application/json" { (PreEscaped(film.json())) }
             script { (PreEscaped("/*<![CDATA[*/\n")) (PreEscaped(PLAYER)) (PreEscaped("/*]]>*/")) }
         }
-    }))
+    })
 }

@@ -40,7 +40,7 @@ fn rope(id: &str, frame: &RopeFrame, ends: &[[f64; 2]; 2], film: &Film) -> Marku
             @for (index, pair) in points.windows(2).enumerate() {
                 line x1=(format!("{:.1}", pair[0][0] / MM)) y1=(format!("{:.1}", -pair[0][1] / MM))
                     x2=(format!("{:.1}", pair[1][0] / MM)) y2=(format!("{:.1}", -pair[1][1] / MM))
-                    stroke=(color::css(color::tension(tension(index)))) {}
+                    stroke=(color::tension(tension(index))) {}
             }
         }
     }

@@ -1,23 +1,20 @@
 //! Crank angle x channel: where in the revolution the residual is no noise.
-use super::canvas::{Canvas, Pen, render};
+use super::canvas::{Canvas, Pen, WIDTH, render};
 use super::panel::{CRANK_TITLE, Panel};
-use super::rows;
+use super::rows::{self, Key};
 use super::scale::Scale;
-use super::{ChartError, Figure, INK, WIDTH};
-use crate::report::color;
+use crate::report::color::{self, INK};
+use crate::report::document::Figure;
 use crate::report::number::{fixed, range};
-use discrepancy::locate::angle::{AngleMap, BINS, WIDTHS, Window};
+use discrepancy::place::angle::{AngleMap, BINS, WIDTHS, Window};
 
 /// The colour scale ends here at the earliest (standard deviations): noise stays pale.
 const LEAST: f64 = 5.0;
 
 /// Draws the map; rows are `channels`, in the map's order. None of an empty map.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn angle_map(map: &AngleMap, channels: &[String]) -> Result<Option<Figure>, ChartError> {
+pub(in crate::report) fn angle_map(map: &AngleMap, channels: &[String]) -> Option<Figure> {
     if map.strength.is_empty() || map.strength.len() != channels.len() {
-        return Ok(None);
+        return None;
     }
     let end =
         range(map.strength.iter().flatten().map(|s| s.abs())).map_or(LEAST, |(_, s)| s.max(LEAST));
@@ -28,17 +25,22 @@ pub fn angle_map(map: &AngleMap, channels: &[String]) -> Result<Option<Figure>, 
         let high = format!("simulated too high  −{}", fixed(end, 0));
         let low = format!("+{}  too low", fixed(end, 0));
         let signed = |share| color::signed(2.0 * share - 1.0);
-        rows::key(canvas, signed, (&high, &low, 120.0))?;
+        let key = Key {
+            before: &high,
+            behind: &low,
+            room: 120.0,
+        };
+        rows::key(canvas, signed, &key);
         for (row, strengths) in map.strength.iter().enumerate() {
-            cells(canvas, &panel, (row, strengths), end)?;
+            cells(canvas, &panel, row, strengths, end);
         }
         for window in &map.windows {
-            outline(canvas, &panel, window)?;
+            outline(canvas, &panel, window);
         }
-        rows::names(canvas, &panel, channels)?;
-        panel.lower_axis(canvas, true, CRANK_TITLE)
-    })?;
-    Ok(Some(Figure {
+        rows::names(canvas, &panel, channels);
+        panel.lower_axis(canvas, true, CRANK_TITLE);
+    });
+    Some(Figure {
         name: "where_angle".to_owned(),
         caption: format!(
             "{title}: mean of the recalibrated model's residual over {:.0} deg, in its own standard \
@@ -47,16 +49,11 @@ pub fn angle_map(map: &AngleMap, channels: &[String]) -> Result<Option<Figure>, 
             WIDTHS[0] as f64 * 360.0 / BINS as f64
         ),
         svg,
-    }))
+    })
 }
 
 /// One channel: a cell per bin, at the centre of the window that begins there.
-fn cells(
-    canvas: &Canvas<'_>,
-    panel: &Panel,
-    (row, strengths): (usize, &[f64]),
-    end: f64,
-) -> Result<(), ChartError> {
+fn cells(canvas: &mut Canvas, panel: &Panel, row: usize, strengths: &[f64], end: f64) {
     let bin_deg = 360.0 / BINS as f64;
     let (top, bottom) = (panel.at_y(row as f64), panel.at_y(row as f64 + 1.0));
     for (bin, strength) in strengths.iter().enumerate() {
@@ -67,18 +64,14 @@ fn cells(
             (from, top),
             ((to + rows::OVERLAP).min(panel.right()), bottom),
             color::signed(strength / end),
-        )?;
+        );
     }
-    Ok(())
 }
 
 /// A significant window; in two parts where it runs through bottom dead centre.
-fn outline(canvas: &Canvas<'_>, panel: &Panel, window: &Window) -> Result<(), ChartError> {
+fn outline(canvas: &mut Canvas, panel: &Panel, window: &Window) {
     const INSET: f64 = 2.5;
-    let pen = Pen {
-        color: INK,
-        width: 1.3,
-    };
+    let pen = Pen::new(INK, 1.3);
     let top = panel.at_y(window.channel as f64) + INSET;
     let bottom = panel.at_y(window.channel as f64 + 1.0) - INSET;
     let (from, to) = (window.from_deg, window.to_deg);
@@ -89,15 +82,14 @@ fn outline(canvas: &Canvas<'_>, panel: &Panel, window: &Window) -> Result<(), Ch
     };
     for (from, to) in parts {
         let (left, right) = (panel.at_x(from), panel.at_x(to));
-        canvas.line(&[(left, top), (right, top)], pen)?;
-        canvas.line(&[(left, bottom), (right, bottom)], pen)?;
+        canvas.line(&[(left, top), (right, top)], pen);
+        canvas.line(&[(left, bottom), (right, bottom)], pen);
         // a part that goes on beyond bottom dead centre stays open there
         if from > 0.0 || window.from_deg <= 0.0 {
-            canvas.line(&[(left, top), (left, bottom)], pen)?;
+            canvas.line(&[(left, top), (left, bottom)], pen);
         }
         if to < 360.0 || window.to_deg <= 360.0 {
-            canvas.line(&[(right, top), (right, bottom)], pen)?;
+            canvas.line(&[(right, top), (right, bottom)], pen);
         }
     }
-    Ok(())
 }

@@ -1,72 +1,85 @@
-//! The sheet a figure is drawn on: plotters' SVG writer, in tenths of a pixel.
+//! The sheet that a figure is drawn on: it writes SVG elements, in whole tenths of a pixel.
 //!
-//! plotters places everything on whole units; drawing ten times too large and scaling down by the
-//! view box keeps curves smooth. Knows nothing of axes or of physics.
-use super::ChartError;
-use plotters::coord::Shift;
-use plotters::prelude::{
-    Circle, Color, DrawingArea, IntoDrawingArea, PathElement, Polygon, RGBColor, Rectangle,
-    SVGBackend, ShapeStyle, Text,
-};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{FontStyle, FontTransform, IntoFont, TextStyle};
+//! Tenths keep curves smooth and are shorter in a file than decimals. Knows nothing of axes or of
+//! physics; what is not finite is not drawn.
+use crate::report::color::Color;
+use maud::{Markup, PreEscaped, Render, html};
 
+/// Width of every full-width figure [px].
+pub(super) const WIDTH: f64 = 960.0;
 /// Units of the SVG per pixel on screen.
 const FINENESS: f64 = 10.0;
-/// plotters divides font sizes by this when it writes SVG.
-const FONT_FACTOR: f64 = 1.24;
 /// Typeface of every figure; the report's style sheet may replace it.
 const FONT: &str = "Helvetica, Arial, sans-serif";
 
 /// A pen.
 #[derive(Clone, Copy)]
 pub(super) struct Pen {
-    /// Colour.
-    pub color: RGBColor,
-    /// Width [px].
-    pub width: f64,
+    color: Color,
+    width: f64,
+}
+
+impl Pen {
+    /// A pen of a colour and a width [px].
+    pub(super) const fn new(color: Color, width: f64) -> Self {
+        Self { color, width }
+    }
 }
 
 /// Where a text's anchor point lies in it, and how it looks.
 #[derive(Clone, Copy)]
 pub(super) struct Lettering {
     /// Size [px].
-    pub size: f64,
-    /// Colour.
-    pub color: RGBColor,
-    /// Horizontal place of the anchor.
-    pub horizontal: HPos,
-    /// Vertical place of the anchor.
-    pub vertical: VPos,
-    /// Weight and slant.
-    pub style: FontStyle,
-    /// Whether it reads upwards.
-    pub upwards: bool,
+    size: f64,
+    color: Color,
+    /// Where along the text the anchor is, as SVG names it.
+    along: &'static str,
+    /// By how much the base line lies below the anchor, over the size.
+    drop: f64,
+    bold: bool,
+    upwards: bool,
 }
 
 impl Lettering {
     /// Upright text that starts at its anchor, centred vertically.
-    pub(super) const fn new(size: f64, color: RGBColor) -> Self {
+    pub(super) const fn new(size: f64, color: Color) -> Self {
         Self {
             size,
             color,
-            horizontal: HPos::Left,
-            vertical: VPos::Center,
-            style: FontStyle::Normal,
+            along: "start",
+            drop: 0.32,
+            bold: false,
             upwards: false,
         }
     }
 
-    /// The same with another anchor.
-    pub(super) const fn at(mut self, horizontal: HPos, vertical: VPos) -> Self {
-        self.horizontal = horizontal;
-        self.vertical = vertical;
+    /// The same, ending at its anchor.
+    pub(super) const fn right(mut self) -> Self {
+        self.along = "end";
+        self
+    }
+
+    /// The same with the anchor in its middle.
+    pub(super) const fn centered(mut self) -> Self {
+        self.along = "middle";
+        self
+    }
+
+    /// The same, standing on its anchor.
+    pub(super) const fn above(mut self) -> Self {
+        self.drop = -0.2;
+        self
+    }
+
+    /// The same, hanging from its anchor.
+    pub(super) const fn below(mut self) -> Self {
+        self.drop = 0.76;
         self
     }
 
     /// The same in bold.
     pub(super) const fn bold(mut self) -> Self {
-        self.style = FontStyle::Bold;
+        self.bold = true;
         self
     }
 
@@ -78,8 +91,8 @@ impl Lettering {
 }
 
 /// A sheet; all positions in pixels from its upper left corner.
-pub(super) struct Canvas<'a> {
-    area: DrawingArea<SVGBackend<'a>, Shift>,
+pub(super) struct Canvas {
+    body: String,
 }
 
 /// Nearest unit of the SVG; points far off the sheet are brought to a distance that fits.
@@ -92,151 +105,111 @@ fn unit(pixels: f64) -> i32 {
     unit
 }
 
-fn place((x, y): (f64, f64)) -> (i32, i32) {
-    (unit(x), unit(y))
+fn is_finite((x, y): (f64, f64)) -> bool {
+    x.is_finite() && y.is_finite()
 }
 
-fn width(pen: Pen) -> ShapeStyle {
-    pen.color.stroke_width(unit(pen.width).unsigned_abs())
+/// Points as SVG lists them.
+fn list(points: &[(f64, f64)]) -> String {
+    let places = points
+        .iter()
+        .map(|&(x, y)| format!("{},{}", unit(x), unit(y)));
+    places.collect::<Vec<_>>().join(" ")
 }
 
-impl Canvas<'_> {
+impl Canvas {
+    fn draw(&mut self, element: &Markup) {
+        element.render_to(&mut self.body);
+        self.body.push('\n');
+    }
+
     /// A curve; broken wherever a point is not finite.
-    pub(super) fn line(&self, points: &[(f64, f64)], pen: Pen) -> Result<(), ChartError> {
-        for run in points.split(|(x, y)| !(x.is_finite() && y.is_finite())) {
+    pub(super) fn line(&mut self, points: &[(f64, f64)], pen: Pen) {
+        for run in points.split(|&point| !is_finite(point)) {
             if run.len() > 1 {
-                let path: Vec<_> = run.iter().copied().map(place).collect();
-                self.area.draw(&PathElement::new(path, width(pen)))?;
+                self.draw(&html! {
+                    polyline fill="none" stroke=(pen.color) stroke-width=(unit(pen.width))
+                        points=(list(run)) {}
+                });
             }
         }
-        Ok(())
     }
 
     /// A straight dashed line.
-    pub(super) fn dashed(
-        &self,
-        from: (f64, f64),
-        to: (f64, f64),
-        pen: Pen,
-    ) -> Result<(), ChartError> {
+    pub(super) fn dashed(&mut self, from: (f64, f64), to: (f64, f64), pen: Pen) {
         const DASH: f64 = 5.0;
         const GAP: f64 = 3.5;
-        let length = (to.0 - from.0).hypot(to.1 - from.1);
-        if !(length.is_finite() && length > 0.0) {
-            return Ok(());
+        if is_finite(from) && is_finite(to) {
+            self.draw(&html! {
+                polyline fill="none" stroke=(pen.color) stroke-width=(unit(pen.width))
+                    stroke-dasharray=(format!("{} {}", unit(DASH), unit(GAP)))
+                    points=(list(&[from, to])) {}
+            });
         }
-        let along = |s: f64| {
-            let share = s.min(length) / length;
-            (
-                from.0 + share * (to.0 - from.0),
-                from.1 + share * (to.1 - from.1),
-            )
-        };
-        let mut start = 0.0;
-        while start < length {
-            self.line(&[along(start), along(start + DASH)], pen)?;
-            start += DASH + GAP;
-        }
-        Ok(())
     }
 
     /// A filled polygon; nothing if a corner is not finite.
-    pub(super) fn fill(&self, points: &[(f64, f64)], color: RGBColor) -> Result<(), ChartError> {
-        if points.len() < 3
-            || points
-                .iter()
-                .any(|(x, y)| !(x.is_finite() && y.is_finite()))
-        {
-            return Ok(());
+    pub(super) fn fill(&mut self, points: &[(f64, f64)], color: Color) {
+        if points.len() > 2 && points.iter().all(|&point| is_finite(point)) {
+            self.draw(&html! { polygon fill=(color) points=(list(points)) {} });
         }
-        let corners: Vec<_> = points.iter().copied().map(place).collect();
-        Ok(self.area.draw(&Polygon::new(corners, color.filled()))?)
     }
 
     /// A filled rectangle between two corners.
-    pub(super) fn rectangle(
-        &self,
-        from: (f64, f64),
-        to: (f64, f64),
-        color: RGBColor,
-    ) -> Result<(), ChartError> {
-        Ok(self
-            .area
-            .draw(&Rectangle::new([place(from), place(to)], color.filled()))?)
+    pub(super) fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), color: Color) {
+        if !(is_finite(from) && is_finite(to)) {
+            return;
+        }
+        let (left, right) = (unit(from.0.min(to.0)), unit(from.0.max(to.0)));
+        let (top, bottom) = (unit(from.1.min(to.1)), unit(from.1.max(to.1)));
+        self.draw(&html! {
+            rect fill=(color) x=(left) y=(top) width=(right - left) height=(bottom - top) {}
+        });
     }
 
     /// A filled disc.
-    pub(super) fn dot(
-        &self,
-        at: (f64, f64),
-        radius: f64,
-        color: RGBColor,
-    ) -> Result<(), ChartError> {
-        Ok(self
-            .area
-            .draw(&Circle::new(place(at), unit(radius), color.filled()))?)
+    pub(super) fn dot(&mut self, at: (f64, f64), radius: f64, color: Color) {
+        if is_finite(at) {
+            self.draw(&html! {
+                circle fill=(color) cx=(unit(at.0)) cy=(unit(at.1)) r=(unit(radius)) {}
+            });
+        }
     }
 
     /// One line of text.
-    pub(super) fn text(
-        &self,
-        at: (f64, f64),
-        text: &str,
-        lettering: Lettering,
-    ) -> Result<(), ChartError> {
-        let font = (
-            FONT,
-            lettering.size * FINENESS * FONT_FACTOR,
-            lettering.style,
-        )
-            .into_font();
-        let font = if lettering.upwards {
-            font.transform(FontTransform::Rotate270)
-        } else {
-            font
-        };
-        let style = TextStyle::from(font)
-            .color(&lettering.color)
-            .pos(Pos::new(lettering.horizontal, lettering.vertical));
-        Ok(self.area.draw(&Text::new(text, place(at), style))?)
+    pub(super) fn text(&mut self, at: (f64, f64), text: &str, lettering: Lettering) {
+        if !is_finite(at) {
+            return;
+        }
+        let (x, y) = (unit(at.0), unit(at.1));
+        let turn = lettering.upwards.then(|| format!("rotate(-90 {x} {y})"));
+        let weight = lettering.bold.then_some("bold");
+        self.draw(&html! {
+            text x=(x) y=(y) dy=(format!("{}em", lettering.drop)) text-anchor=(lettering.along)
+                font-size=(unit(lettering.size)) font-weight=[weight] fill=(lettering.color)
+                transform=[turn] { (text) }
+        });
     }
 }
 
 /// Draws one figure and returns its SVG: an element that can stand in HTML as well as in a file.
-///
-/// # Errors
-/// [`ChartError`] when plotters cannot write.
 pub(super) fn render(
-    (width_px, height_px): (f64, f64),
+    (width, height): (f64, f64),
     title: &str,
-    paint: impl FnOnce(&Canvas<'_>) -> Result<(), ChartError>,
-) -> Result<String, ChartError> {
-    let size = (
-        unit(width_px).unsigned_abs(),
-        unit(height_px).unsigned_abs(),
-    );
-    let mut svg = String::new();
-    {
-        let area = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        let canvas = Canvas { area };
-        paint(&canvas)?;
-        canvas.area.present()?;
-    }
-    // plotters' own opening tag fixes the size in its units; ours shrinks it to pixels
-    let body = svg.split_once('>').map_or("", |(_, body)| body);
-    Ok(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"{width_px}\" \
-         height=\"{height_px}\" viewBox=\"0 0 {} {}\" stroke-linejoin=\"round\">\n\
-         <title>{}</title>{body}",
-        size.0,
-        size.1,
-        escape(title),
-    ))
-}
-
-/// Escapes text content for XML.
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
+    paint: impl FnOnce(&mut Canvas),
+) -> String {
+    let mut canvas = Canvas {
+        body: String::new(),
+    };
+    paint(&mut canvas);
+    let drawn = html! {
+        svg xmlns="http://www.w3.org/2000/svg" role="img" width=(width) height=(height)
+            viewBox=(format!("0 0 {} {}", unit(width), unit(height)))
+            stroke-linejoin="round" font-family=(FONT) {
+            title { (title) }
+            (PreEscaped("\n"))
+            (PreEscaped(canvas.body))
+        }
+    };
+    drawn.into_string()
 }

@@ -2,9 +2,10 @@
 use super::canvas::{Lettering, Pen, render};
 use super::panel::Panel;
 use super::scale::Scale;
-use super::{ChartError, Figure, GREY, INK, VERMILLION, interpolated};
+use crate::line::periodic;
+use crate::report::color::{GREY, INK, VERMILLION};
+use crate::report::document::Figure;
 use crate::report::words::condition_name;
-use plotters::style::text_anchor::{HPos, VPos};
 use protocol::case::{Case, LoadCard};
 use protocol::job::Simulation;
 
@@ -12,28 +13,16 @@ const SIZE: (f64, f64) = (620.0, 330.0);
 
 /// Load of a periodic card at any crank angle \[N\].
 fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
-    let turn = turn_deg.rem_euclid(360.0);
-    interpolated(&card.turn_deg, &card.load_n, turn).or_else(|| {
-        // between the last entry and 360, which is the first entry again
-        let (x0, y0) = (*card.turn_deg.last()?, *card.load_n.last()?);
-        let y1 = *card.load_n.first()?;
-        let load = y0 + (y1 - y0) * (turn - x0) / (360.0 - x0);
-        load.is_finite().then_some(load)
-    })
+    periodic(&card.turn_deg, &card.load_n, turn_deg, 360.0)
 }
 
 /// Draws the card; none if the simulation has no position.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn card(
+pub(in crate::report) fn card(
     case: &Case,
     condition: usize,
     simulation: &Simulation,
-) -> Result<Option<Figure>, ChartError> {
-    let Some(found) = case.conditions.get(condition) else {
-        return Ok(None);
-    };
+) -> Option<Figure> {
+    let found = case.conditions.get(condition)?;
     let rows: Vec<_> = simulation
         .turn_deg
         .iter()
@@ -44,7 +33,7 @@ pub fn card(
         })
         .collect();
     if rows.len() < 2 {
-        return Ok(None);
+        return None;
     }
     let name = condition_name(case, condition);
     let title = format!("Dynamometer card, condition {name}");
@@ -57,17 +46,14 @@ pub fn card(
         y: Scale::linear(rows.iter().map(|row| row.2), 5.0),
     };
     let svg = render(SIZE, &title, |canvas| {
-        panel.guides(canvas)?;
+        panel.guides(canvas);
         let mut path: Vec<_> = rows.iter().map(|row| (row.1, row.2)).collect();
         let whole = rows.last().is_some_and(|row| row.0 > 355.0);
         if whole && let Some(&first) = path.first() {
             path.push(first);
         }
-        let pen = Pen {
-            color: VERMILLION,
-            width: 1.4,
-        };
-        panel.curve(canvas, &path, pen)?;
+        let pen = Pen::new(VERMILLION, 1.4);
+        panel.curve(canvas, &path, pen);
         let (x0, x1) = panel.x.ends();
         let (y0, y1) = panel.y.ends();
         let middle = panel.at((0.5 * (x0 + x1), 0.5 * (y0 + y1)));
@@ -76,23 +62,23 @@ pub fn card(
                 continue;
             };
             let (x, y) = panel.at((row.1, row.2));
-            canvas.dot((x, y), 2.6, INK)?;
+            canvas.dot((x, y), 2.6, INK);
             // outside the loop, away from its middle
             let (dx, dy) = (x - middle.0, y - middle.1);
             let away = 15.0 / dx.hypot(dy).max(1.0);
-            let lettering = Lettering::new(10.0, GREY).at(HPos::Center, VPos::Center);
+            let lettering = Lettering::new(10.0, GREY).centered();
             let at = (x + away * dx, y + away * dy);
-            canvas.text(at, &format!("{mark:.0}°"), lettering)?;
+            canvas.text(at, &format!("{mark:.0}°"), lettering);
         }
-        panel.left_axis(canvas, true, "load [kN]")?;
-        panel.lower_axis(canvas, true, "position of the suspension [m]")
-    })?;
-    Ok(Some(Figure {
+        panel.left_axis(canvas, true, "load [kN]");
+        panel.lower_axis(canvas, true, "position of the suspension [m]");
+    });
+    Some(Figure {
         name: format!("card_{name}"),
         caption: format!(
             "{title}: prescribed load over the simulated position of the suspension; marks at \
              crank angles."
         ),
         svg,
-    }))
+    })
 }

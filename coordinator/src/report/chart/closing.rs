@@ -2,12 +2,14 @@
 //! before, after and the best rejected rival on one scale.
 use super::scale::Scale;
 use super::strip::{Curve, Strip, curve, stack, strip};
-use super::{BLUE, ChartError, Figure, GREEN, INK, VERMILLION};
+use crate::report::color::{BLUE, GREEN, INK, VERMILLION};
+use crate::report::document::Figure;
 use crate::report::number::{figure, range};
+use crate::report::words::capitalised;
 
 /// What is compared of one channel under one condition; all curves on the grid of `turn_deg`.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Closing<'a> {
+pub(in crate::report) struct Closing<'a> {
     /// Condition, as `5rpm`.
     pub condition: &'a str,
     /// Channel, as `gauge 1`.
@@ -34,7 +36,7 @@ pub struct Closing<'a> {
 
 impl Closing<'_> {
     /// Measured less simulated mean, where that is free.
-    pub fn shift(&self, simulated: &[f64]) -> f64 {
+    pub(in crate::report) fn shift(&self, simulated: &[f64]) -> f64 {
         let n = self.measured.len().min(simulated.len()).max(1) as f64;
         let difference = self.measured.iter().zip(simulated).map(|(m, s)| m - s);
         if self.free_offset {
@@ -45,7 +47,7 @@ impl Closing<'_> {
     }
 
     /// Measured less simulated, shifted.
-    pub fn residual(&self, simulated: &[f64]) -> Vec<f64> {
+    pub(in crate::report) fn residual(&self, simulated: &[f64]) -> Vec<f64> {
         let shift = self.shift(simulated);
         let pairs = self.measured.iter().zip(simulated);
         pairs.map(|(m, s)| m - s - shift).collect()
@@ -60,12 +62,9 @@ impl Closing<'_> {
 }
 
 /// Draws one channel. None without a curve.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn closing(of: &Closing<'_>) -> Result<Option<Figure>, ChartError> {
+pub(in crate::report) fn closing(of: &Closing<'_>) -> Option<Figure> {
     if of.measured.len() < 2 || of.before.len() != of.measured.len() {
-        return Ok(None);
+        return None;
     }
     let shifted = |simulated: &[f64]| -> Vec<f64> {
         let shift = of.shift(simulated);
@@ -94,13 +93,12 @@ pub fn closing(of: &Closing<'_>) -> Result<Option<Figure>, ChartError> {
     }];
     strips.extend(residuals(of));
     let title = format!("{}, condition {}", capitalised(of.channel), of.condition);
-    stack(
+    Some(stack(
         format!("proof_{}_{}", of.condition, of.channel.replace(' ', "_")),
         &title,
         caption(of, &title),
         &strips,
-    )
-    .map(Some)
+    ))
 }
 
 /// Strips of the residuals, on one scale, over the standard error of the measured mean.
@@ -139,13 +137,6 @@ const fn axis(unit: &str) -> &'static str {
         b"N m" => "torque [N·m]",
         _ => "",
     }
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
 }
 
 fn caption(of: &Closing<'_>, title: &str) -> String {

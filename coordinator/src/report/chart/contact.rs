@@ -1,11 +1,11 @@
 //! Contact between back rope and head: force per length over crank angle and place on the arc.
-use super::canvas::{Canvas, Lettering, render};
+use super::canvas::{Canvas, Lettering, WIDTH, render};
 use super::panel::{CRANK_TITLE, Panel};
+use super::points::thinned;
 use super::scale::Scale;
-use super::{ChartError, Figure, GREY, INK, WIDTH, thinned};
-use crate::report::color;
-use crate::report::number::quantile;
-use plotters::style::text_anchor::{HPos, VPos};
+use crate::quantile;
+use crate::report::color::{self, GREY, INK};
+use crate::report::document::Figure;
 use protocol::case::Case;
 use protocol::job::{Motion, Simulation};
 
@@ -71,18 +71,13 @@ fn cells(case: &Case, simulation: &Simulation) -> Vec<Cell> {
 }
 
 /// Draws the map; none without snapshots or without any contact.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn contact(case: &Case, simulation: &Simulation) -> Result<Option<Figure>, ChartError> {
+pub(in crate::report) fn contact(case: &Case, simulation: &Simulation) -> Option<Figure> {
     let half_deg = 0.5 * (case.ropes.cylinder_length_m / case.back_head.radius_m).to_degrees();
     let cells = cells(case, simulation);
     let mut sorted: Vec<f64> = cells.iter().map(|cell| cell.force).collect();
     sorted.sort_by(f64::total_cmp);
     // a few cylinders may carry many times the rest: saturate, and say so
-    let Some(top) = quantile(&sorted, 0.98).filter(|&top| top > 0.0) else {
-        return Ok(None);
-    };
+    let top = quantile::of(&sorted, 98).filter(|&top| top > 0.0)?;
     let angles = cells
         .iter()
         .flat_map(|cell| [cell.psi_deg - half_deg, cell.psi_deg + half_deg]);
@@ -104,13 +99,13 @@ pub fn contact(case: &Case, simulation: &Simulation) -> Result<Option<Figure>, C
                 (left, upper - OVERLAP),
                 ((right + OVERLAP).min(panel.right()), lower),
                 color::pressure(cell.force / top),
-            )?;
+            );
         }
-        panel.left_axis(canvas, true, "angle on the arc, beam frame [deg]")?;
-        panel.lower_axis(canvas, true, CRANK_TITLE)?;
-        ramp(canvas, &panel, top)
-    })?;
-    Ok(Some(Figure {
+        panel.left_axis(canvas, true, "angle on the arc, beam frame [deg]");
+        panel.lower_axis(canvas, true, CRANK_TITLE);
+        ramp(canvas, &panel, top);
+    });
+    Some(Figure {
         name: "contact".to_owned(),
         caption: format!(
             "{title}: force per length of rope over crank angle and place on the arc (as seen \
@@ -118,11 +113,11 @@ pub fn contact(case: &Case, simulation: &Simulation) -> Result<Option<Figure>, C
              cells may carry more."
         ),
         svg,
-    }))
+    })
 }
 
 /// The colour scale beside the map.
-fn ramp(canvas: &Canvas<'_>, panel: &Panel, top: f64) -> Result<(), ChartError> {
+fn ramp(canvas: &mut Canvas, panel: &Panel, top: f64) {
     const STEPS: i32 = 48;
     let bar = Panel {
         left: panel.right() + 22.0,
@@ -140,17 +135,16 @@ fn ramp(canvas: &Canvas<'_>, panel: &Panel, top: f64) -> Result<(), ChartError> 
             (left, upper - OVERLAP),
             bar.at((1.0, share * top)),
             color::pressure(share),
-        )?;
+        );
     }
-    let head = Lettering::new(10.5, GREY).at(HPos::Left, VPos::Center);
-    canvas.text((bar.left - 4.0, panel.top + 8.0), "kN per metre", head)?;
+    let head = Lettering::new(10.5, GREY);
+    canvas.text((bar.left - 4.0, panel.top + 8.0), "kN per metre", head);
     let label = Lettering::new(10.5, INK);
     for tick in bar.y.ticks() {
         canvas.text(
             (bar.right() + 5.0, bar.at_y(tick.value)),
             &tick.label,
             label,
-        )?;
+        );
     }
-    Ok(())
 }

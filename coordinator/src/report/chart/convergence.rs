@@ -1,11 +1,12 @@
 //! Convergence of the population: best, median and spread over evaluations, failed share below.
-use super::canvas::{Canvas, Lettering, Pen, render};
+use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::{Panel, spread};
 use super::scale::Scale;
-use super::{BAND, ChartError, Figure, GREY, INK, VERMILLION, WIDTH};
+use crate::quantile;
+use crate::report::color::{BAND, GREY, INK, VERMILLION};
 use crate::report::data::HistoryPoint;
-use crate::report::number::{count, figure, percent, quantile};
-use plotters::style::text_anchor::{HPos, VPos};
+use crate::report::document::Figure;
+use crate::report::number::{count, figure, percent};
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 120.0;
@@ -48,7 +49,7 @@ fn generations(history: &[HistoryPoint], most: usize) -> Vec<Generation> {
                 .map(|point| point.fitness)
                 .collect();
             complete.sort_by(f64::total_cmp);
-            let quantiles = [0.1, 0.5, 0.9].map(|share| quantile(&complete, share));
+            let quantiles = [10, 50, 90].map(|percent| quantile::of(&complete, percent));
             let failed = members.iter().filter(|point| !point.complete).count();
             Generation {
                 from: from as f64,
@@ -84,13 +85,7 @@ fn best_so_far(history: &[HistoryPoint]) -> Vec<(f64, f64)> {
 
 /// Draws the convergence of a search whose starting point had the fitness `recommended` (none if
 /// it was not complete).
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn convergence(
-    history: &[HistoryPoint],
-    recommended: Option<f64>,
-) -> Result<Figure, ChartError> {
+pub(in crate::report) fn convergence(history: &[HistoryPoint], recommended: Option<f64>) -> Figure {
     let generations = generations(history, 400);
     let best = best_so_far(history);
     let quantiles = generations.iter().filter_map(|g| g.quantiles).flatten();
@@ -114,31 +109,24 @@ pub fn convergence(
     };
     let title = "Convergence of the population";
     let svg = render((WIDTH, HEIGHT), title, |canvas| {
-        panel.guides(canvas)?;
-        population(canvas, &panel, &generations)?;
-        panel.curve(
-            canvas,
-            &best,
-            Pen {
-                color: VERMILLION,
-                width: 1.8,
-            },
-        )?;
-        labels(canvas, &panel, &generations, &best, recommended)?;
+        panel.guides(canvas);
+        population(canvas, &panel, &generations);
+        panel.curve(canvas, &best, Pen::new(VERMILLION, 1.8));
+        labels(canvas, &panel, &generations, &best, recommended);
         if best.is_empty() {
-            panel.remark(canvas, "no individual completed a revolution")?;
+            panel.remark(canvas, "no individual completed a revolution");
         }
-        panel.left_axis(canvas, true, "objective [MPa²]")?;
-        panel.lower_axis(canvas, false, "")?;
+        panel.left_axis(canvas, true, "objective [MPa²]");
+        panel.lower_axis(canvas, false, "");
         for generation in &generations {
             canvas.rectangle(
                 strip.at((generation.from, 100.0 * generation.failed_share)),
                 strip.at((generation.to, 0.0)),
                 BAND,
-            )?;
+            );
         }
-        strip.left_axis(canvas, true, "failed [%]")?;
-        strip.lower_axis(canvas, true, "evaluations, in index order")?;
+        strip.left_axis(canvas, true, "failed [%]");
+        strip.lower_axis(canvas, true, "evaluations, in index order");
         let failed = history.iter().filter(|point| !point.complete).count();
         let share = failed as f64 / history.len().max(1) as f64;
         let text = format!("{} in all", percent(share));
@@ -146,9 +134,9 @@ pub fn convergence(
             (strip.right() + 7.0, strip.top + 0.5 * STRIP),
             &text,
             Lettering::new(11.0, GREY),
-        )
-    })?;
-    Ok(Figure {
+        );
+    });
+    Figure {
         name: "convergence".to_owned(),
         caption: format!(
             "{title} over {} evaluations: best individual so far, and per generation or stage of the search the median \
@@ -157,15 +145,11 @@ pub fn convergence(
             count(history.len() as u64)
         ),
         svg,
-    })
+    }
 }
 
 /// Median and band as steps, one per generation.
-fn population(
-    canvas: &Canvas<'_>,
-    panel: &Panel,
-    generations: &[Generation],
-) -> Result<(), ChartError> {
+fn population(canvas: &mut Canvas, panel: &Panel, generations: &[Generation]) {
     let mut band = Vec::new();
     let mut median = Vec::new();
     for generation in generations {
@@ -175,22 +159,19 @@ fn population(
             median.push((x, middle));
         }
     }
-    panel.band(canvas, &band, BAND)?;
-    let pen = Pen {
-        color: INK,
-        width: 1.0,
-    };
-    panel.curve(canvas, &median, pen)
+    panel.band(canvas, &band, BAND);
+    let pen = Pen::new(INK, 1.0);
+    panel.curve(canvas, &median, pen);
 }
 
 /// Direct labels at the right edge.
 fn labels(
-    canvas: &Canvas<'_>,
+    canvas: &mut Canvas,
     panel: &Panel,
     generations: &[Generation],
     best: &[(f64, f64)],
     recommended: Option<f64>,
-) -> Result<(), ChartError> {
+) {
     let mut labels = Vec::new();
     if let Some(&(_, value)) = best.last() {
         labels.push((value, format!("best {}", figure(value)), VERMILLION));
@@ -200,20 +181,16 @@ fn labels(
     }
     if let Some(value) = recommended.filter(|value| value.is_finite() && *value > 0.0) {
         let y = panel.at_y(value);
-        let pen = Pen {
-            color: GREY,
-            width: 0.8,
-        };
-        canvas.dashed((panel.left, y), (panel.right(), y), pen)?;
+        let pen = Pen::new(GREY, 0.8);
+        canvas.dashed((panel.left, y), (panel.right(), y), pen);
         labels.push((value, format!("recommended {}", figure(value)), GREY));
     }
     let wanted: Vec<_> = labels.iter().map(|label| panel.at_y(label.0)).collect();
     let places = spread(&wanted, 13.0, panel.top, panel.bottom());
     for ((_, text, color), y) in labels.iter().zip(places) {
-        let lettering = Lettering::new(11.0, *color).at(HPos::Left, VPos::Center);
-        canvas.text((panel.right() + 7.0, y), text, lettering)?;
+        let lettering = Lettering::new(11.0, *color);
+        canvas.text((panel.right() + 7.0, y), text, lettering);
     }
-    Ok(())
 }
 
 #[cfg(test)]
@@ -233,6 +210,7 @@ mod tests {
                 fitness,
                 complete: fitness < 1e6,
                 failure: None,
+                cost: None,
             })
             .collect()
     }
@@ -259,7 +237,7 @@ mod tests {
         let found = generations(&log, 10);
         let medians: Vec<_> = found.iter().map(|g| g.quantiles.map(|q| q[1])).collect();
         let failed: Vec<_> = found.iter().map(|g| g.failed_share).collect();
-        assert_eq!(medians, [Some(7.0), Some(4.0)]);
+        assert_eq!(medians, [Some(7.0), Some(3.0)]);
         assert_eq!(failed, [0.25, 0.5]);
         assert_eq!(generations(&log, 1).len(), 1);
         assert!(generations(&[], 10).is_empty());

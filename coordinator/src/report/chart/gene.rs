@@ -1,14 +1,14 @@
 //! Where the search looked: every evaluated individual, gene by gene, between the gene's bounds.
-use super::canvas::{Canvas, Lettering, Pen, render};
+use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::Panel;
+use super::points::thinned;
 use super::scale::Scale;
-use super::{AXIS, ChartError, Figure, GREY, INK, VERMILLION, WIDTH, thinned};
+use crate::report::color::{AXIS, Color, GREY, INK, VERMILLION};
 use crate::report::data::Calibration;
+use crate::report::document::Figure;
 use crate::report::number::{figure, unit};
-use crate::report::table::meaning;
-use plotters::prelude::RGBColor;
-use plotters::style::text_anchor::{HPos, VPos};
-use protocol::case::{self, Gene, Quantity};
+use crate::report::words::meaning;
+use protocol::case::{self, Quantity};
 
 const COLUMNS: usize = 5;
 const LEFT: f64 = 58.0;
@@ -20,8 +20,8 @@ const PLOT: f64 = 104.0;
 const MOST: usize = 700;
 /// How many of the best are always drawn.
 const ELITE: usize = 100;
-const CLOUD: RGBColor = RGBColor(0x9a, 0xa3, 0xab);
-const FAILED: RGBColor = RGBColor(0xd8, 0xd8, 0xd4);
+const CLOUD: Color = Color(0x9a, 0xa3, 0xab);
+const FAILED: Color = Color(0xd8, 0xd8, 0xd4);
 
 /// The individuals to draw, as indices into the history, worst first: the best, and an even
 /// selection of the others.
@@ -44,10 +44,7 @@ fn selection(calibration: &Calibration) -> Vec<usize> {
 }
 
 /// Draws one small panel per gene.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn genes(calibration: &Calibration) -> Result<Figure, ChartError> {
+pub fn genes(calibration: &Calibration) -> Figure {
     let genes = &calibration.case.genes;
     let chosen = selection(calibration);
     let complete = calibration.history.iter().filter(|point| point.complete);
@@ -57,7 +54,7 @@ pub fn genes(calibration: &Calibration) -> Result<Figure, ChartError> {
     let width = (WIDTH - LEFT - 12.0 - BETWEEN * (COLUMNS - 1) as f64) / COLUMNS as f64;
     let title = "Genes between their bounds";
     let svg = render((WIDTH, height), title, |canvas| {
-        key(canvas)?;
+        key(canvas);
         for (index, gene) in genes.iter().enumerate() {
             let panel = Panel {
                 left: LEFT + (index % COLUMNS) as f64 * (width + BETWEEN),
@@ -70,11 +67,10 @@ pub fn genes(calibration: &Calibration) -> Result<Figure, ChartError> {
                 },
                 y: fitness,
             };
-            small(canvas, &panel, calibration, (index, gene), &chosen)?;
+            small(canvas, &panel, calibration, index, &chosen);
         }
-        Ok(())
-    })?;
-    Ok(Figure {
+    });
+    Figure {
         name: "genes".to_owned(),
         caption: format!(
             "{title}: objective over the value of each gene, on logarithmic axes{}; every panel \
@@ -94,31 +90,26 @@ pub fn genes(calibration: &Calibration) -> Result<Figure, ChartError> {
             }
         ),
         svg,
-    })
+    }
 }
 
 /// One gene.
 fn small(
-    canvas: &Canvas<'_>,
+    canvas: &mut Canvas,
     panel: &Panel,
     calibration: &Calibration,
-    (index, gene): (usize, &Gene),
+    index: usize,
     chosen: &[usize],
-) -> Result<(), ChartError> {
-    let bound = Pen {
-        color: AXIS,
-        width: 0.7,
-    };
+) {
+    let gene = &calibration.case.genes[index];
+    let bound = Pen::new(AXIS, 0.7);
     for value in [gene.lower, gene.upper] {
         let x = panel.at_x(value);
-        canvas.dashed((x, panel.top), (x, panel.bottom()), bound)?;
+        canvas.dashed((x, panel.top), (x, panel.bottom()), bound);
     }
     let x = panel.at_x(gene.recommended);
-    let pen = Pen {
-        color: INK,
-        width: 0.7,
-    };
-    canvas.line(&[(x, panel.top), (x, panel.bottom())], pen)?;
+    let pen = Pen::new(INK, 0.7);
+    canvas.line(&[(x, panel.top), (x, panel.bottom())], pen);
     for &member in chosen {
         let point = &calibration.history[member];
         let Some(&value) = point.genes.get(index) else {
@@ -131,14 +122,11 @@ fn small(
         if point.complete {
             let y = panel.at_y(point.fitness);
             if y.is_finite() {
-                canvas.dot((x, y), 1.1, CLOUD)?;
+                canvas.dot((x, y), 1.1, CLOUD);
             }
         } else {
-            let pen = Pen {
-                color: FAILED,
-                width: 0.6,
-            };
-            canvas.line(&[(x, panel.top - 5.0), (x, panel.top - 1.0)], pen)?;
+            let pen = Pen::new(FAILED, 0.6);
+            canvas.line(&[(x, panel.top - 5.0), (x, panel.top - 1.0)], pen);
         }
     }
     let best = calibration.optimised.genes.get(index).copied();
@@ -148,55 +136,44 @@ fn small(
     if let (Some(value), Some(fitness)) = (best, fitness) {
         let at = panel.at((value, fitness));
         if at.0.is_finite() && at.1.is_finite() {
-            canvas.dot(at, 4.0, VERMILLION)?;
+            canvas.dot(at, 4.0, VERMILLION);
         }
     }
-    let name = Lettering::new(11.5, INK)
-        .bold()
-        .at(HPos::Left, VPos::Bottom);
+    let name = Lettering::new(11.5, INK).bold().above();
     let (heading, about) = match &gene.quantity {
         Quantity::Coefficient { name, .. } => (name.as_str(), meaning(*name)),
         Quantity::Effect { id, parameter, .. } => (parameter.as_str(), id.as_str()),
     };
-    canvas.text((panel.left, panel.top - 7.0), heading, name)?;
-    let right = Lettering::new(10.5, VERMILLION).at(HPos::Right, VPos::Bottom);
+    canvas.text((panel.left, panel.top - 7.0), heading, name);
+    let right = Lettering::new(10.5, VERMILLION).right().above();
     let text = best.map_or_else(String::new, figure);
-    canvas.text((panel.right(), panel.top - 7.0), &text, right)?;
-    let first = index % COLUMNS == 0;
-    panel.left_axis(canvas, first, if first { "objective [MPa²]" } else { "" })?;
+    canvas.text((panel.right(), panel.top - 7.0), &text, right);
+    let first = index.is_multiple_of(COLUMNS);
+    panel.left_axis(canvas, first, if first { "objective [MPa²]" } else { "" });
     let title = format!("{about} [{}]", unit(gene.unit()));
-    panel.lower_axis(canvas, true, &title)
+    panel.lower_axis(canvas, true, &title);
 }
 
 /// The key above the panels.
-fn key(canvas: &Canvas<'_>) -> Result<(), ChartError> {
+fn key(canvas: &mut Canvas) {
     let y = 14.0;
     let text = Lettering::new(10.5, INK);
     let mut x = LEFT;
-    canvas.dot((x + 4.0, y), 1.8, CLOUD)?;
-    canvas.text((x + 13.0, y), "evaluated individual", text)?;
+    canvas.dot((x + 4.0, y), 1.8, CLOUD);
+    canvas.text((x + 13.0, y), "evaluated individual", text);
     x += 138.0;
-    canvas.dot((x + 4.0, y), 4.0, VERMILLION)?;
-    canvas.text((x + 13.0, y), "optimum", text)?;
+    canvas.dot((x + 4.0, y), 4.0, VERMILLION);
+    canvas.text((x + 13.0, y), "optimum", text);
     x += 78.0;
-    let pen = Pen {
-        color: INK,
-        width: 0.7,
-    };
-    canvas.line(&[(x + 4.0, y - 7.0), (x + 4.0, y + 7.0)], pen)?;
-    canvas.text((x + 13.0, y), "recommended value", text)?;
+    let pen = Pen::new(INK, 0.7);
+    canvas.line(&[(x + 4.0, y - 7.0), (x + 4.0, y + 7.0)], pen);
+    canvas.text((x + 13.0, y), "recommended value", text);
     x += 130.0;
-    let pen = Pen {
-        color: AXIS,
-        width: 0.7,
-    };
-    canvas.dashed((x + 4.0, y - 7.0), (x + 4.0, y + 7.0), pen)?;
-    canvas.text((x + 13.0, y), "bound of the search", text)?;
+    let pen = Pen::new(AXIS, 0.7);
+    canvas.dashed((x + 4.0, y - 7.0), (x + 4.0, y + 7.0), pen);
+    canvas.text((x + 13.0, y), "bound of the search", text);
     x += 134.0;
-    let pen = Pen {
-        color: GREY,
-        width: 0.6,
-    };
-    canvas.line(&[(x + 4.0, y - 3.0), (x + 4.0, y + 3.0)], pen)?;
-    canvas.text((x + 13.0, y), "failed", text)
+    let pen = Pen::new(GREY, 0.6);
+    canvas.line(&[(x + 4.0, y - 3.0), (x + 4.0, y + 3.0)], pen);
+    canvas.text((x + 13.0, y), "failed", text);
 }

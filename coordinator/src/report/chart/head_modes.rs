@@ -2,11 +2,11 @@
 //! outline of the head, with pins and gauges.
 //!
 //! Only the deflection along the arc is drawn, as the rope feels it; whole fields are for `ParaView`.
-use super::canvas::{Canvas, Lettering, Pen, render};
-use super::{BLUE, ChartError, Figure, GREY, GUIDE, INK, VERMILLION, WIDTH};
+use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use crate::report::color::{BLUE, GREY, GUIDE, INK, VERMILLION};
+use crate::report::document::Figure;
 use crate::report::number::fixed;
 use crate::report::words::mode_family;
-use plotters::style::text_anchor::{HPos, VPos};
 use protocol::job::{HeadGauge, HeadMode};
 
 /// Pictures side by side.
@@ -42,10 +42,7 @@ pub struct HeadPicture<'a> {
 }
 
 /// Draws all modes; every deflection is scaled to the same size, for a mode has none of its own.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn head_modes(picture: &HeadPicture<'_>) -> Result<Figure, ChartError> {
+pub fn head_modes(picture: &HeadPicture<'_>) -> Figure {
     let frame = Frame::around(picture);
     let rows = picture.modes.len().div_ceil(COLUMNS);
     let height = rows as f64 * frame.pitch();
@@ -55,25 +52,24 @@ pub fn head_modes(picture: &HeadPicture<'_>) -> Result<Figure, ChartError> {
     let svg = render((WIDTH, height), title, |canvas| {
         for (index, mode) in picture.modes.iter().enumerate() {
             let (row, column) = (index / COLUMNS, index % COLUMNS);
-            let sheet = Sheet {
+            let mut sheet = Sheet {
                 canvas,
                 frame: &frame,
                 left: column as f64 * WIDTH / COLUMNS as f64 + MARGIN,
                 top: row as f64 * frame.pitch() + LABEL,
             };
-            sheet.head(picture, &outline)?;
-            sheet.mode(picture, mode, index + 1, largest(mode) > INERT * most)?;
+            sheet.head(picture, &outline);
+            sheet.mode(picture, mode, index + 1, largest(mode) > INERT * most);
         }
-        Ok(())
-    })?;
-    Ok(Figure {
+    });
+    Figure {
         name: "head_modes".to_owned(),
         caption: format!(
             "{title}, pin holes held: grey the arc at rest, coloured deflected, each to the same \
              largest deflection; rings are the pins, numbered dots the gauges."
         ),
         svg,
-    })
+    }
 }
 
 fn largest(mode: &HeadMode) -> f64 {
@@ -172,14 +168,14 @@ impl Frame {
 }
 
 /// One picture.
-struct Sheet<'a, 'b> {
-    canvas: &'a Canvas<'b>,
+struct Sheet<'a> {
+    canvas: &'a mut Canvas,
     frame: &'a Frame,
     left: f64,
     top: f64,
 }
 
-impl Sheet<'_, '_> {
+impl Sheet<'_> {
     fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let Frame { corner, scale, .. } = self.frame;
         (
@@ -189,53 +185,44 @@ impl Sheet<'_, '_> {
     }
 
     /// What all pictures share.
-    fn head(&self, picture: &HeadPicture<'_>, outline: &[(f64, f64)]) -> Result<(), ChartError> {
+    fn head(&mut self, picture: &HeadPicture<'_>, outline: &[(f64, f64)]) {
         let corners: Vec<_> = outline.iter().map(|&point| self.at(point)).collect();
-        self.canvas.fill(&corners, GUIDE)?;
+        self.canvas.fill(&corners, GUIDE);
         for pin in picture.pins {
             let nodes = pin.iter().filter_map(|&node| picture.nodes_m.get(node));
             let count = nodes.clone().count() as f64;
             let mean = |axis: usize| nodes.clone().map(|node| node[axis]).sum::<f64>() / count;
             if count > 0.0 {
                 let place = self.at((mean(0), mean(1)));
-                self.canvas.dot(place, 4.0, GREY)?;
-                self.canvas.dot(place, 2.6, GUIDE)?;
+                self.canvas.dot(place, 4.0, GREY);
+                self.canvas.dot(place, 2.6, GUIDE);
             }
         }
         for (number, gauge) in (1_u32..).zip(picture.gauges) {
             let [x, y, _] = gauge.position_m;
             let place = self.at((x, y));
-            self.canvas.dot(place, 1.8, BLUE)?;
-            let lettering = Lettering::new(9.0, BLUE).at(HPos::Left, VPos::Bottom);
+            self.canvas.dot(place, 1.8, BLUE);
+            let lettering = Lettering::new(9.0, BLUE).above();
             self.canvas
-                .text((place.0 + 3.0, place.1), &number.to_string(), lettering)?;
+                .text((place.0 + 3.0, place.1), &number.to_string(), lettering);
         }
         let rest = picture.arc_deg.iter();
         let rest: Vec<_> = rest
             .map(|&deg| self.at(on_arc(picture, deg, [0.0; 2])))
             .collect();
-        let pen = Pen {
-            color: GREY,
-            width: 1.0,
-        };
-        self.canvas.line(&rest, pen)
+        let pen = Pen::new(GREY, 1.0);
+        self.canvas.line(&rest, pen);
     }
 
-    fn mode(
-        &self,
-        picture: &HeadPicture<'_>,
-        mode: &HeadMode,
-        number: usize,
-        moves: bool,
-    ) -> Result<(), ChartError> {
+    fn mode(&mut self, picture: &HeadPicture<'_>, mode: &HeadMode, number: usize, moves: bool) {
         let hz = fixed(mode.frequency_hz, 1);
         let still = if moves { "" } else { ", arc at rest" };
         let label = format!("{number}: {hz} Hz, {}{still}", mode_family(mode.family));
-        let lettering = Lettering::new(11.5, INK).at(HPos::Left, VPos::Center);
+        let lettering = Lettering::new(11.5, INK);
         self.canvas
-            .text((self.left, self.top - 0.5 * LABEL), &label, lettering)?;
+            .text((self.left, self.top - 0.5 * LABEL), &label, lettering);
         if !moves {
-            return Ok(());
+            return;
         }
         let scale = self.frame.deflection / largest(mode);
         let moved = picture
@@ -247,11 +234,8 @@ impl Sheet<'_, '_> {
                 self.at(on_arc(picture, deg, [scale * radial, scale * tangential]))
             })
             .collect();
-        let pen = Pen {
-            color: VERMILLION,
-            width: 1.6,
-        };
-        self.canvas.line(&moved, pen)
+        let pen = Pen::new(VERMILLION, 1.6);
+        self.canvas.line(&moved, pen);
     }
 }
 
@@ -287,7 +271,7 @@ mod tests {
             arc_deg: &[150.0, 180.0, 210.0],
             modes,
         };
-        head_modes(&picture).unwrap().svg
+        head_modes(&picture).svg
     }
 
     /// A curve per mode that moves the arc, a label for each, gauges and pins in every picture.

@@ -1,9 +1,9 @@
 //! Joints at which an unknown periodic force would explain the residual: Bayes factors as bars.
 use super::canvas::{Lettering, Pen, render};
-use super::{BAND, BLUE, ChartError, Figure, GREY, INK};
+use crate::report::color::{BAND, BLUE, GREY, INK};
+use crate::report::document::Figure;
 use crate::report::number::fixed;
-use discrepancy::locate::joint::JointEvidence;
-use plotters::style::text_anchor::{HPos, VPos};
+use discrepancy::place::joint::JointEvidence;
 
 const WIDTH: f64 = 720.0;
 const ROW: f64 = 24.0;
@@ -13,13 +13,8 @@ const BAR: f64 = 380.0;
 
 /// Draws a ranking, the best first, the first `equivalent` of which are not told apart. None of an
 /// empty one.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn joints(ranked: &[JointEvidence], equivalent: usize) -> Result<Option<Figure>, ChartError> {
-    let Some(best) = ranked.first() else {
-        return Ok(None);
-    };
+pub(in crate::report) fn joints(ranked: &[JointEvidence], equivalent: usize) -> Option<Figure> {
+    let best = ranked.first()?;
     let end = best.log_bayes.max(1.0);
     let height = TOP + ROW * ranked.len() as f64 + 8.0;
     let title = "Where a periodic force would explain the residual";
@@ -29,32 +24,26 @@ pub fn joints(ranked: &[JointEvidence], equivalent: usize) -> Result<Option<Figu
             (LEFT, 14.0),
             "log Bayes factor against no force [nats]",
             head,
-        )?;
+        );
         for (index, one) in ranked.iter().enumerate() {
             let y = TOP + (index as f64 + 0.5) * ROW - 2.0;
             let inside = index < equivalent;
             let ink = if inside { INK } else { GREY };
-            let name = Lettering::new(11.0, ink).at(HPos::Right, VPos::Center);
-            canvas.text((LEFT - 10.0, y), &one.joint.replace('_', " "), name)?;
+            let name = Lettering::new(11.0, ink).right();
+            canvas.text((LEFT - 10.0, y), &one.joint.replace('_', " "), name);
             let length = BAR * (one.log_bayes / end).clamp(0.0, 1.0);
             let color = if inside { BLUE } else { BAND };
-            canvas.rectangle((LEFT, y - 7.0), (LEFT + length, y + 7.0), color)?;
+            canvas.rectangle((LEFT, y - 7.0), (LEFT + length, y + 7.0), color);
             let value = fixed(one.log_bayes, 1);
-            canvas.text((LEFT + length + 8.0, y), &value, Lettering::new(11.0, ink))?;
+            canvas.text((LEFT + length + 8.0, y), &value, Lettering::new(11.0, ink));
         }
         // one bracket around those that are not told apart
-        let (x, pen) = (
-            LEFT + BAR + 70.0,
-            Pen {
-                color: BLUE,
-                width: 1.3,
-            },
-        );
+        let (x, pen) = (LEFT + BAR + 70.0, Pen::new(BLUE, 1.3));
         let (top, bottom) = (TOP, TOP + ROW * equivalent.max(1) as f64 - 4.0);
         canvas.line(
             &[(x - 5.0, top), (x, top), (x, bottom), (x - 5.0, bottom)],
             pen,
-        )?;
+        );
         let said = match equivalent {
             0 | 1 => "told apart from the rest",
             _ => "not told apart",
@@ -63,9 +52,9 @@ pub fn joints(ranked: &[JointEvidence], equivalent: usize) -> Result<Option<Figu
             (x + 8.0, 0.5 * (top + bottom)),
             said,
             Lettering::new(11.0, BLUE),
-        )
-    })?;
-    Ok(Some(Figure {
+        );
+    });
+    Some(Figure {
         name: "where_joint".to_owned(),
         caption: format!(
             "{title}: log Bayes factor of an unknown force pair at each joint against none. On a slow \
@@ -73,5 +62,5 @@ pub fn joints(ranked: &[JointEvidence], equivalent: usize) -> Result<Option<Figu
              look, not the answer; the joints in blue are one set."
         ),
         svg,
-    }))
+    })
 }

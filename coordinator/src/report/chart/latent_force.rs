@@ -1,7 +1,8 @@
 //! The periodic force that would explain the residual, over the revolution, at the likeliest joints.
 use super::strip::{curve, stack, strip};
-use super::{BLUE, ChartError, Figure};
-use discrepancy::locate::joint::JointEvidence;
+use crate::report::color::BLUE;
+use crate::report::document::Figure;
+use discrepancy::place::joint::JointEvidence;
 
 /// Joints that are drawn at most.
 const DRAWN: usize = 3;
@@ -10,13 +11,10 @@ const STEP: usize = 2;
 
 /// Draws the forces at the first `equivalent` joints of a ranking, which are not told apart; those that
 /// explain anything. None where no force does.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn latent_forces(
+pub(in crate::report) fn latent_forces(
     ranked: &[JointEvidence],
     equivalent: usize,
-) -> Result<Option<Figure>, ChartError> {
+) -> Option<Figure> {
     let turn: Vec<f64> = (0..=360).step_by(STEP).map(f64::from).collect();
     let drawn: Vec<(String, &JointEvidence)> = ranked
         .iter()
@@ -31,7 +29,7 @@ pub fn latent_forces(
         })
         .collect();
     if drawn.is_empty() {
-        return Ok(None);
+        return None;
     }
     let strips: Vec<_> = drawn
         .iter()
@@ -51,6 +49,6 @@ pub fn latent_forces(
              friction, a bump at one angle a spot, a wave with the load a stiffness."
         ),
         &strips,
-    )?;
-    Ok(Some(figure))
+    );
+    Some(figure)
 }

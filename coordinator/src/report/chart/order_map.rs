@@ -1,29 +1,25 @@
 //! Channel x order of the crank: which coefficients of the residual are no noise.
-use super::canvas::render;
-use super::rows;
+use super::canvas::{WIDTH, render};
+use super::rows::{self, Key};
 use super::scale::Scale;
-use super::{ChartError, Figure, INK, WIDTH};
-use crate::report::color;
+use crate::report::color::{self, Color, INK};
+use crate::report::document::Figure;
 use crate::report::number::{figure, range};
-use discrepancy::locate::order::OrderMap;
-use plotters::prelude::RGBColor;
+use discrepancy::place::order::OrderMap;
 
 /// The colour scale ends here at the earliest: noise stays pale.
 const LEAST: f64 = 10.0;
 
 /// Draws the map; rows are `channels`, in the map's order; `speed_rpm` turns orders into
 /// frequencies. None of an empty map.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn order_map(
+pub(in crate::report) fn order_map(
     map: &OrderMap,
     channels: &[String],
     speed_rpm: f64,
-) -> Result<Option<Figure>, ChartError> {
+) -> Option<Figure> {
     let orders = map.ratio.iter().map(Vec::len).max().unwrap_or(0);
     if orders == 0 || map.ratio.len() != channels.len() {
-        return Ok(None);
+        return None;
     }
     let end = range(map.ratio.iter().flatten().copied()).map_or(LEAST, |(_, r)| r.max(LEAST));
     let height = rows::height(channels.len());
@@ -35,7 +31,12 @@ pub fn order_map(
         );
         let high = figure(end);
         let noise = "power over that of noise  1";
-        rows::key(canvas, color::pressure, (noise, &high, 70.0))?;
+        let key = Key {
+            before: noise,
+            behind: &high,
+            room: 70.0,
+        };
+        rows::key(canvas, color::pressure, &key);
         for (row, ratios) in map.ratio.iter().enumerate() {
             let (top, bottom) = (panel.at_y(row as f64), panel.at_y(row as f64 + 1.0));
             for (k, ratio) in ratios.iter().enumerate() {
@@ -44,13 +45,13 @@ pub fn order_map(
                     (from, top),
                     ((to + rows::OVERLAP).min(panel.right()), bottom),
                     color::pressure(share(*ratio, end)),
-                )?;
+                );
             }
         }
-        rows::names(canvas, &panel, channels)?;
+        rows::names(canvas, &panel, channels);
         for peak in &map.peaks {
             let at = panel.at((peak.order as f64, peak.channel as f64 + 0.5));
-            canvas.dot(at, 1.9, mark(share(peak.ratio, end)))?;
+            canvas.dot(at, 1.9, mark(share(peak.ratio, end)));
         }
         let hertz = speed_rpm / 60.0;
         panel.lower_axis(
@@ -60,16 +61,16 @@ pub fn order_map(
                 "order of the crank (order 60 is {} Hz)",
                 figure(60.0 * hertz)
             ),
-        )
-    })?;
-    Ok(Some(Figure {
+        );
+    });
+    Some(Figure {
         name: "where_order".to_owned(),
         caption: format!(
             "{title}: power of the recalibrated model's residual over what noise would have there, on \
              a logarithmic scale. Dots: entries of which at most one in twenty is noise."
         ),
         svg,
-    }))
+    })
 }
 
 /// Where a ratio lies on the colour scale: noise and less is paper.
@@ -82,9 +83,9 @@ fn share(ratio: f64, end: f64) -> f64 {
 }
 
 /// Colour of a dot that is seen on its cell.
-fn mark(share: f64) -> RGBColor {
+fn mark(share: f64) -> Color {
     if share > 0.45 {
-        RGBColor(0xff, 0xff, 0xff)
+        Color(0xff, 0xff, 0xff)
     } else {
         INK
     }

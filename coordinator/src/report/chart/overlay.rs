@@ -1,13 +1,15 @@
 //! Measured against simulated stress at one gauge, recommended beside optimised on shared scales,
 //! with the residual below (paper, Figs. 7, 9 and 10).
-use super::canvas::{Canvas, Lettering, Pen, render};
+use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::{CRANK_TITLE, Panel};
+use super::points::points;
 use super::scale::Scale;
-use super::{BAND, ChartError, Figure, GREY, INK, VERMILLION, WIDTH, interpolated, points};
+use crate::line::interpolated;
+use crate::report::color::{BAND, GREY, INK, VERMILLION};
 use crate::report::data::{ConditionResult, Run};
+use crate::report::document::Figure;
 use crate::report::number::{fixed, percent};
 use crate::report::words;
-use plotters::style::text_anchor::{HPos, VPos};
 use protocol::case::{Case, GaugeRecord, GaugeTrace, Offset};
 use protocol::job::Verdict;
 
@@ -49,7 +51,8 @@ impl Side {
         heading: &'static str,
         case: &Case,
         run: &Run,
-        (record, trace): (&GaugeRecord, &GaugeTrace),
+        record: &GaugeRecord,
+        trace: &GaugeTrace,
     ) -> Self {
         let turn = &run.simulation.turn_deg;
         let values = stress(run, trace.gauge);
@@ -101,28 +104,15 @@ fn half_range(trace: &GaugeTrace) -> f64 {
 
 /// Draws the overlay of one gauge under one condition; none if the condition or its record does
 /// not have it.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn overlay(
-    case: &Case,
-    result: &ConditionResult,
-    gauge: u8,
-) -> Result<Option<Figure>, ChartError> {
-    let Some(condition) = case.conditions.get(result.condition) else {
-        return Ok(None);
-    };
-    let Some(record) = &condition.record else {
-        return Ok(None);
-    };
-    let Some(trace) = record.gauges.iter().find(|trace| trace.gauge == gauge) else {
-        return Ok(None);
-    };
+pub fn overlay(case: &Case, result: &ConditionResult, gauge: u8) -> Option<Figure> {
+    let condition = case.conditions.get(result.condition)?;
+    let record = condition.record.as_ref()?;
+    let trace = record.gauges.iter().find(|trace| trace.gauge == gauge)?;
     let sides = [
         ("Recommended parameters", &result.recommended),
         ("Optimised parameters", &result.optimised),
     ]
-    .map(|(heading, run)| Side::new(heading, case, run, (record, trace)));
+    .map(|(heading, run)| Side::new(heading, case, run, record, trace));
     let cycles = record.cycles;
     let band: Vec<_> = record
         .turn_deg
@@ -147,11 +137,11 @@ pub fn overlay(
         residuals,
     };
     let svg = render((WIDTH, HEIGHT), &title, |canvas| {
-        key(canvas, gauge, cycles)?;
+        key(canvas, gauge, cycles);
         let [recommended, optimised] = &sides;
-        column(canvas, &record, recommended, true)?;
-        column(canvas, &record, optimised, false)
-    })?;
+        column(canvas, &record, recommended, true);
+        column(canvas, &record, optimised, false);
+    });
     let free = match case.objective.offset {
         Offset::Free => {
             " Complete simulated curves are shifted to the measured mean, because a strain bridge \
@@ -159,14 +149,14 @@ pub fn overlay(
         }
         Offset::Fixed => "",
     };
-    Ok(Some(Figure {
+    Some(Figure {
         name: format!("stress_{}_gauge_{gauge}", condition.name),
         caption: format!(
             "{title}: measured and simulated over one crank revolution, on shared scales; below, \
              measured minus simulated.{free}"
         ),
         svg,
-    }))
+    })
 }
 
 /// The measured side of both columns, and the scales they share.
@@ -179,12 +169,7 @@ struct Measured {
 }
 
 /// One parameter set: stress above, residual below. Only the first column labels its scales.
-fn column(
-    canvas: &Canvas<'_>,
-    measured: &Measured,
-    side: &Side,
-    first: bool,
-) -> Result<(), ChartError> {
+fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
     let left = if first { LEFT } else { LEFT + width + BETWEEN };
     let panel = Panel {
@@ -196,65 +181,68 @@ fn column(
         y: measured.stresses,
     };
     let title = |title| if first { title } else { "" };
-    panel.guides(canvas)?;
-    panel.band(canvas, &measured.band, BAND)?;
-    panel.curve(canvas, &measured.mean, MEASURED)?;
-    panel.curve(canvas, &side.simulated, SIMULATED)?;
-    panel.left_axis(canvas, first, title("stress [MPa]"))?;
-    panel.lower_axis(canvas, false, "")?;
+    panel.guides(canvas);
+    panel.band(canvas, &measured.band, BAND);
+    panel.curve(canvas, &measured.mean, MEASURED);
+    panel.curve(canvas, &side.simulated, SIMULATED);
+    panel.left_axis(canvas, first, title("stress [MPa]"));
+    panel.lower_axis(canvas, false, "");
     if side.simulated.len() < 2 {
-        panel.remark(canvas, "no simulated curve: the run failed before it")?;
+        panel.remark(canvas, "no simulated curve: the run failed before it");
     }
     let heading = Lettering::new(12.0, INK).bold();
-    canvas.text((left, TOP - 27.0), side.heading, heading)?;
-    canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY))?;
+    canvas.text((left, TOP - 27.0), side.heading, heading);
+    canvas.text((left, TOP - 12.0), &side.remark, Lettering::new(10.5, GREY));
     let strip = Panel {
         top: RESIDUAL_TOP,
         height: RESIDUAL_HEIGHT,
         y: measured.residuals,
         ..panel
     };
-    strip.guides(canvas)?;
-    strip.curve(canvas, &side.residual, RESIDUAL)?;
-    strip.left_axis(canvas, first, title("residual [MPa]"))?;
-    strip.lower_axis(canvas, true, CRANK_TITLE)
+    strip.guides(canvas);
+    strip.curve(canvas, &side.residual, RESIDUAL);
+    strip.left_axis(canvas, first, title("residual [MPa]"));
+    strip.lower_axis(canvas, true, CRANK_TITLE);
 }
 
-const MEASURED: Pen = Pen {
-    color: INK,
-    width: 1.3,
-};
-const SIMULATED: Pen = Pen {
-    color: VERMILLION,
-    width: 1.1,
-};
-const RESIDUAL: Pen = Pen {
-    color: INK,
-    width: 0.8,
-};
+const MEASURED: Pen = Pen::new(INK, 1.3);
+const SIMULATED: Pen = Pen::new(VERMILLION, 1.1);
+const RESIDUAL: Pen = Pen::new(INK, 0.8);
 
-/// The key above both panels.
-fn key(canvas: &Canvas<'_>, gauge: u8, cycles: usize) -> Result<(), ChartError> {
+/// The key above both panels: each mark before its words, with room for the widest typeface, since the
+/// width of a text is not known here.
+fn key(canvas: &mut Canvas, gauge: u8, cycles: usize) {
+    const LETTER: f64 = 6.4;
+    const MARK: f64 = 22.0;
     let y = 12.0;
-    canvas.text(
-        (LEFT, y),
-        &format!("Gauge {gauge}"),
-        Lettering::new(13.0, INK).bold(),
-    )?;
-    let text = Lettering::new(10.5, INK);
-    let mut x = WIDTH - 10.0;
-    let right = text.at(HPos::Right, VPos::Center);
-    canvas.text((x, y), "simulated", right)?;
-    x -= 52.0;
-    canvas.line(&[(x - 22.0, y), (x, y)], SIMULATED)?;
-    x -= 40.0;
+    let heading = Lettering::new(13.0, INK).bold();
+    canvas.text((LEFT, y), &format!("Gauge {gauge}"), heading);
     let measured = match cycles {
         0 | 1 => "measured, one cycle".to_owned(),
         _ => format!("measured, mean of {cycles} cycles ± one standard deviation"),
     };
-    canvas.text((x, y), &measured, right)?;
-    // the width of the text is not known here: 5.1 px a letter at this size, on the safe side
-    x -= 5.15 * measured.chars().count() as f64 + 4.0;
-    canvas.rectangle((x - 22.0, y - 4.0), (x, y + 4.0), BAND)?;
-    canvas.line(&[(x - 22.0, y), (x, y)], MEASURED)
+    let text = Lettering::new(10.5, INK);
+    let place = |text: &str, right: f64| right - LETTER * text.chars().count() as f64;
+    let x = place("simulated", WIDTH - 10.0);
+    canvas.text((x, y), "simulated", text);
+    canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], SIMULATED);
+    let x = place(&measured, x - MARK - 24.0);
+    canvas.text((x, y), &measured, text);
+    canvas.rectangle((x - 6.0 - MARK, y - 4.0), (x - 6.0, y + 4.0), BAND);
+    canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], MEASURED);
+}
+
+/// Every overlay of a condition: the objective's gauges first, then the others of the record.
+pub fn overlays(case: &Case, result: &ConditionResult) -> Vec<Figure> {
+    let condition = case.conditions.get(result.condition);
+    let record = condition.and_then(|condition| condition.record.as_ref());
+    let fitted: Vec<u8> = case.objective.gauges.iter().map(|&(g, _)| g).collect();
+    let mut gauges: Vec<u8> = record.map_or_else(Vec::new, |record| {
+        record.gauges.iter().map(|trace| trace.gauge).collect()
+    });
+    gauges.sort_by_key(|gauge| (!fitted.contains(gauge), *gauge));
+    let figures = gauges.into_iter();
+    figures
+        .filter_map(|gauge| overlay(case, result, gauge))
+        .collect()
 }

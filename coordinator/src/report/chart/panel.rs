@@ -1,9 +1,7 @@
 //! One pair of axes on a sheet: places values, draws ticks, curves and bands.
 use super::canvas::{Canvas, Lettering, Pen};
 use super::scale::Scale;
-use super::{AXIS, ChartError, GREY, GUIDE, INK};
-use plotters::prelude::RGBColor;
-use plotters::style::text_anchor::{HPos, VPos};
+use crate::report::color::{AXIS, Color, GREY, GUIDE, INK, ZERO};
 
 /// Length of a labelled tick [px]; others are half as long.
 const TICK: f64 = 4.0;
@@ -53,118 +51,89 @@ impl Panel {
     }
 
     /// Guide lines behind the curves, and a firmer one at zero.
-    pub(super) fn guides(&self, canvas: &Canvas<'_>) -> Result<(), ChartError> {
+    pub(super) fn guides(&self, canvas: &mut Canvas) {
         let (low, high) = self.y.ends();
         let ticks = self.y.ticks();
         for tick in ticks.iter().filter(|tick| !tick.label.is_empty()) {
             let zero = tick.value.abs() < 1e-9 * (high - low).abs();
-            let color = if zero {
-                RGBColor(0xb9, 0xb9, 0xb5)
-            } else {
-                GUIDE
-            };
+            let color = if zero { ZERO } else { GUIDE };
             let y = self.at_y(tick.value);
-            canvas.line(
-                &[(self.left, y), (self.right(), y)],
-                Pen { color, width: 0.6 },
-            )?;
+            canvas.line(&[(self.left, y), (self.right(), y)], Pen::new(color, 0.6));
         }
-        Ok(())
     }
 
     /// The left axis with ticks, labels on demand and its title.
-    pub(super) fn left_axis(
-        &self,
-        canvas: &Canvas<'_>,
-        labels: bool,
-        title: &str,
-    ) -> Result<(), ChartError> {
+    pub(super) fn left_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
-        canvas.line(&[(self.left, self.top), (self.left, self.bottom())], pen)?;
+        canvas.line(&[(self.left, self.top), (self.left, self.bottom())], pen);
         for tick in self.y.ticks() {
             let y = self.at_y(tick.value);
             let length = tick_length(&tick.label);
-            canvas.line(&[(self.left - length, y), (self.left, y)], pen)?;
+            canvas.line(&[(self.left - length, y), (self.left, y)], pen);
             if labels && !tick.label.is_empty() {
-                let lettering = Lettering::new(LABEL, INK).at(HPos::Right, VPos::Center);
-                canvas.text((self.left - TICK - 3.0, y), &tick.label, lettering)?;
+                let lettering = Lettering::new(LABEL, INK).right();
+                canvas.text((self.left - TICK - 3.0, y), &tick.label, lettering);
             }
         }
         if title.is_empty() {
-            return Ok(());
+            return;
         }
-        let lettering = Lettering::new(LABEL, GREY).at(HPos::Center, VPos::Bottom);
+        let lettering = Lettering::new(LABEL, GREY).centered().above();
         canvas.text(
             (self.left - 40.0, self.top + 0.5 * self.height),
             title,
             lettering.upwards(),
-        )
+        );
     }
 
     /// The lower axis with ticks, labels on demand and its title.
-    pub(super) fn lower_axis(
-        &self,
-        canvas: &Canvas<'_>,
-        labels: bool,
-        title: &str,
-    ) -> Result<(), ChartError> {
+    pub(super) fn lower_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
         let y = self.bottom();
-        canvas.line(&[(self.left, y), (self.right(), y)], pen)?;
+        canvas.line(&[(self.left, y), (self.right(), y)], pen);
         for tick in self.x.ticks() {
             let x = self.at_x(tick.value);
             let length = tick_length(&tick.label);
-            canvas.line(&[(x, y), (x, y + length)], pen)?;
+            canvas.line(&[(x, y), (x, y + length)], pen);
             if labels && !tick.label.is_empty() {
-                let lettering = Lettering::new(LABEL, INK).at(HPos::Center, VPos::Top);
-                canvas.text((x, y + TICK + 3.0), &tick.label, lettering)?;
+                let lettering = Lettering::new(LABEL, INK).centered().below();
+                canvas.text((x, y + TICK + 3.0), &tick.label, lettering);
             }
         }
         if title.is_empty() {
-            return Ok(());
+            return;
         }
-        let lettering = Lettering::new(LABEL, GREY).at(HPos::Center, VPos::Top);
+        let lettering = Lettering::new(LABEL, GREY).centered().below();
         canvas.text(
             (self.left + 0.5 * self.width, y + TICK + 18.0),
             title,
             lettering,
-        )
+        );
     }
 
     /// A curve.
-    pub(super) fn curve(
-        &self,
-        canvas: &Canvas<'_>,
-        points: &[(f64, f64)],
-        pen: Pen,
-    ) -> Result<(), ChartError> {
+    pub(super) fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)], pen: Pen) {
         let path: Vec<_> = points.iter().map(|&point| self.at(point)).collect();
-        canvas.line(&path, pen)
+        canvas.line(&path, pen);
     }
 
     /// The area between two curves over the same abscissas, for every stretch that is finite.
-    pub(super) fn band(
-        &self,
-        canvas: &Canvas<'_>,
-        rows: &[(f64, f64, f64)],
-        color: RGBColor,
-    ) -> Result<(), ChartError> {
+    pub(super) fn band(&self, canvas: &mut Canvas, rows: &[(f64, f64, f64)], color: Color) {
         for run in rows.split(|(x, low, high)| !(x + low + high).is_finite()) {
             let upper = run.iter().map(|&(x, _, high)| self.at((x, high)));
             let lower = run.iter().rev().map(|&(x, low, _)| self.at((x, low)));
-            canvas.fill(&upper.chain(lower).collect::<Vec<_>>(), color)?;
+            canvas.fill(&upper.chain(lower).collect::<Vec<_>>(), color);
         }
-        Ok(())
     }
 
     /// A remark in the middle of the panel.
-    pub(super) fn remark(&self, canvas: &Canvas<'_>, text: &str) -> Result<(), ChartError> {
-        let lettering = Lettering::new(11.5, GREY).at(HPos::Center, VPos::Center);
+    pub(super) fn remark(&self, canvas: &mut Canvas, text: &str) {
+        let lettering = Lettering::new(11.5, GREY).centered();
         canvas.text(
             (self.left + 0.5 * self.width, self.top + 0.5 * self.height),
             text,
             lettering,
-        )
+        );
     }
 }
 
@@ -172,10 +141,7 @@ impl Panel {
 pub(super) const CRANK_TITLE: &str = "crank angle from bottom dead centre [deg]";
 
 const fn axis_pen() -> Pen {
-    Pen {
-        color: AXIS,
-        width: 0.8,
-    }
+    Pen::new(AXIS, 0.8)
 }
 
 const fn tick_length(label: &str) -> f64 {

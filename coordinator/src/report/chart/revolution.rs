@@ -1,20 +1,14 @@
 //! The curves of one simulation over the crank angle: gauges, rope tensions, motion of the
 //! suspension, crank torque.
 use super::strip::{Curve, Strip, curve, span, stack, strip};
-use super::{BLUE, ChartError, Figure, GREEN, INK, PURPLE, VERMILLION};
+use crate::report::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
+use crate::report::document::Figure;
 use crate::report::words::condition_name;
 use protocol::case::Case;
 use protocol::job::Simulation;
 
 /// Stress at all four gauges, with the measured mean and its spread where there is a record.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn gauges(
-    case: &Case,
-    condition: usize,
-    simulation: &Simulation,
-) -> Result<Figure, ChartError> {
+pub(in crate::report) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> Figure {
     let name = condition_name(case, condition);
     let record = case
         .conditions
@@ -84,10 +78,7 @@ fn tensions(simulation: &Simulation) -> Vec<Curve> {
 }
 
 /// Axial force of both ropes at their free ends.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn tension(simulation: &Simulation) -> Result<Figure, ChartError> {
+pub(in crate::report) fn tension(simulation: &Simulation) -> Figure {
     let strips = [strip("tension [kN]", 150.0, tensions(simulation))];
     stack(
         "rope_tension",
@@ -99,10 +90,7 @@ pub fn tension(simulation: &Simulation) -> Result<Figure, ChartError> {
 }
 
 /// Motion of the suspension point.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn motion(simulation: &Simulation) -> Result<Figure, ChartError> {
+pub(in crate::report) fn motion(simulation: &Simulation) -> Figure {
     let turn = &simulation.turn_deg;
     let strips = [
         strip(
@@ -144,10 +132,7 @@ pub fn motion(simulation: &Simulation) -> Result<Figure, ChartError> {
 }
 
 /// Net torque at the crank shaft.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub fn torque(simulation: &Simulation) -> Result<Figure, ChartError> {
+pub(in crate::report) fn torque(simulation: &Simulation) -> Figure {
     let strips = [strip(
         "torque [kN m]",
         130.0,
@@ -171,13 +156,7 @@ pub fn torque(simulation: &Simulation) -> Result<Figure, ChartError> {
 
 /// The strips beside the moving machine, and where their crank axis lies: left, right, upper and
 /// lower end as shares of the figure's width and height.
-///
-/// # Errors
-/// [`ChartError`] when the drawing library fails.
-pub(in crate::report) fn player(
-    case: &Case,
-    simulation: &Simulation,
-) -> Result<(Figure, [f64; 4]), ChartError> {
+pub(in crate::report) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4]) {
     let turn = &simulation.turn_deg;
     let colors = [VERMILLION, INK, GREEN, PURPLE];
     let stress = case
@@ -212,6 +191,6 @@ pub(in crate::report) fn player(
         "Simulated stress, rope tension and crank torque; the vertical line follows the machine."
             .to_owned(),
         &strips,
-    )?;
-    Ok((figure, span(&strips)))
+    );
+    (figure, span(&strips))
 }

@@ -1,10 +1,8 @@
 //! What maps with a row per channel share: frame, names of the rows, colour scale.
-use super::canvas::{Canvas, Lettering};
+use super::canvas::{Canvas, Lettering, WIDTH};
 use super::panel::Panel;
 use super::scale::Scale;
-use super::{ChartError, GREY, INK, WIDTH};
-use plotters::prelude::RGBColor;
-use plotters::style::text_anchor::{HPos, VPos};
+use crate::report::color::{Color, GREY, INK};
 
 const LEFT: f64 = 104.0;
 const RIGHT: f64 = 20.0;
@@ -32,38 +30,38 @@ pub(super) fn panel(rows: usize, x: Scale) -> Panel {
 }
 
 /// Names of the rows.
-pub(super) fn names(
-    canvas: &Canvas<'_>,
-    panel: &Panel,
-    channels: &[String],
-) -> Result<(), ChartError> {
-    let lettering = Lettering::new(11.0, INK).at(HPos::Right, VPos::Center);
+pub(super) fn names(canvas: &mut Canvas, panel: &Panel, channels: &[String]) {
+    let lettering = Lettering::new(11.0, INK).right();
     for (row, name) in channels.iter().enumerate() {
-        canvas.text((LEFT - 10.0, panel.at_y(row as f64 + 0.5)), name, lettering)?;
+        canvas.text((LEFT - 10.0, panel.at_y(row as f64 + 0.5)), name, lettering);
     }
-    Ok(())
 }
 
-/// The colour scale above the map: colours by the share of its length, what stands before it and
-/// behind it, and how much room that takes [px].
-pub(super) fn key(
-    canvas: &Canvas<'_>,
-    color: impl Fn(f64) -> RGBColor,
-    (before, behind, room): (&str, &str, f64),
-) -> Result<(), ChartError> {
+/// What stands beside a colour scale.
+pub(super) struct Key<'a> {
+    /// Before it.
+    pub before: &'a str,
+    /// Behind it.
+    pub behind: &'a str,
+    /// How much room that takes [px].
+    pub room: f64,
+}
+
+/// The colour scale above the map: colours by the share of its length, and what stands beside it.
+pub(super) fn key(canvas: &mut Canvas, color: impl Fn(f64) -> Color, key: &Key<'_>) {
     const BAR: f64 = 180.0;
     const STEPS: usize = 60;
     let y = 15.0;
-    let left = WIDTH - RIGHT - BAR - room;
+    let left = WIDTH - RIGHT - BAR - key.room;
     for step in 0..STEPS {
         let x = left + BAR * step as f64 / STEPS as f64;
         canvas.rectangle(
             (x, y - 5.0),
             (x + BAR / STEPS as f64 + OVERLAP, y + 5.0),
             color((step as f64 + 0.5) / STEPS as f64),
-        )?;
+        );
     }
     let text = Lettering::new(10.5, GREY);
-    canvas.text((left - 8.0, y), before, text.at(HPos::Right, VPos::Center))?;
-    canvas.text((left + BAR + 8.0, y), behind, text)
+    canvas.text((left - 8.0, y), key.before, text.right());
+    canvas.text((left + BAR + 8.0, y), key.behind, text);
 }

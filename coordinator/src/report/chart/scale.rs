@@ -1,10 +1,11 @@
 //! Axes as arithmetic: a range of values, linear or logarithmic, and the ticks that suit it.
+
 use crate::report::number::{fixed, range, superscript};
 
 /// A mark on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
-    /// Where.
+    /// The value that it marks.
     pub value: f64,
     /// What is written there; empty for a minor tick.
     pub label: String,

@@ -1,10 +1,11 @@
 //! Curves over the crank angle in strips one above the other on one axis, labelled at their right
 //! ends. What is drawn in them is not known here.
-use super::canvas::{Lettering, Pen, render};
+use super::canvas::{Lettering, Pen, WIDTH, render};
 use super::panel::{CRANK_TITLE, Panel, spread};
+use super::points::points;
 use super::scale::Scale;
-use super::{BAND, ChartError, Figure, WIDTH, points};
-use plotters::prelude::RGBColor;
+use crate::report::color::{BAND, Color};
+use crate::report::document::Figure;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 96.0;
@@ -15,7 +16,7 @@ const FOOT: f64 = 44.0;
 /// One curve with the label at its right end.
 pub(super) struct Curve {
     label: String,
-    pen: Pen,
+    color: Color,
     points: Vec<(f64, f64)>,
 }
 
@@ -36,14 +37,14 @@ pub(super) struct Strip<'a> {
 /// A curve over the crank angle, its values times a factor.
 pub(super) fn curve(
     label: impl Into<String>,
-    color: RGBColor,
+    color: Color,
     turn_deg: &[f64],
     values: &[f64],
     factor: f64,
 ) -> Curve {
     Curve {
         label: label.into(),
-        pen: Pen { color, width: 1.2 },
+        color,
         points: points(turn_deg, values)
             .into_iter()
             .map(|(x, y)| (x, factor * y))
@@ -86,7 +87,7 @@ pub(super) fn stack(
     title: &str,
     caption: String,
     strips: &[Strip<'_>],
-) -> Result<Figure, ChartError> {
+) -> Figure {
     let width = WIDTH - LEFT - RIGHT;
     let svg = render((WIDTH, height(strips)), title, |canvas| {
         let mut top = TOP;
@@ -106,10 +107,10 @@ pub(super) fn stack(
                     )
                 }),
             };
-            panel.guides(canvas)?;
-            panel.band(canvas, &strip.band, BAND)?;
+            panel.guides(canvas);
+            panel.band(canvas, &strip.band, BAND);
             for curve in &strip.curves {
-                panel.curve(canvas, &curve.points, curve.pen)?;
+                panel.curve(canvas, &curve.points, Pen::new(curve.color, 1.2));
             }
             let ends: Vec<_> = strip
                 .curves
@@ -121,22 +122,21 @@ pub(super) fn stack(
                 .collect();
             let places = spread(&ends, 13.0, top, panel.bottom());
             for (curve, y) in strip.curves.iter().zip(places) {
-                let lettering = Lettering::new(11.0, curve.pen.color);
-                canvas.text((panel.right() + 7.0, y), &curve.label, lettering)?;
+                let lettering = Lettering::new(11.0, curve.color);
+                canvas.text((panel.right() + 7.0, y), &curve.label, lettering);
             }
             if strip.curves.iter().all(|curve| curve.points.len() < 2) {
-                panel.remark(canvas, "nothing was simulated")?;
+                panel.remark(canvas, "nothing was simulated");
             }
             let last = index + 1 == strips.len();
-            panel.left_axis(canvas, true, strip.title)?;
-            panel.lower_axis(canvas, last, if last { CRANK_TITLE } else { "" })?;
+            panel.left_axis(canvas, true, strip.title);
+            panel.lower_axis(canvas, last, if last { CRANK_TITLE } else { "" });
             top = panel.bottom() + GAP;
         }
-        Ok(())
-    })?;
-    Ok(Figure {
+    });
+    Figure {
         name: name.into(),
         caption,
         svg,
-    })
+    }
 }

@@ -1,9 +1,9 @@
 //! The data behind the figures and tables of a diagnosis as CSV.
 //!
 //! An empty field is a value that does not exist; numbers are written with all their digits.
-use super::Subject;
 use super::judgement::{judge, ranked};
 use super::shown::shown;
+use super::subject::Subject;
 use crate::report::csv::field;
 use std::io::Write;
 
@@ -73,7 +73,7 @@ const SUSPECTS: [&str; 11] = [
 pub(super) fn suspects(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
     writer.write_record(SUSPECTS)?;
-    for (number, round) in (1..).zip(&subject.diagnosed.diagnosis.rounds) {
+    for (number, round) in (1..).zip(&subject.diagnosis().rounds) {
         let generics = round
             .generics
             .iter()

@@ -1,5 +1,5 @@
 //! What was found, as entries of a model file.
-use super::Subject;
+use super::subject::Subject;
 use crate::case::{CaseEffect, CaseParameter, Provenance, write_effects};
 use discrepancy::diagnose::Estimate;
 use discrepancy::model::bounds;
@@ -8,42 +8,47 @@ use protocol::announce::ParameterDescriptor;
 /// `[[effects]]` tables of the added effects, with intervals and where they come from, as a case file
 /// takes them; nothing if no effect was added.
 pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
-    let diagnosis = &subject.diagnosed.diagnosis;
-    let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
-        let id = round.added.as_ref()?;
-        let found = diagnosis.effects.iter().find(|effect| effect.id == *id)?;
-        Some(entry(subject, found, (number, &round.set)))
-    });
-    let effects: Vec<CaseEffect> = found.collect();
+    let effects = effects(subject);
     (!effects.is_empty()).then(|| write_effects(&effects))
 }
 
-fn entry(subject: &Subject<'_>, found: &Estimate, (round, set): (u32, &[String])) -> CaseEffect {
+/// The added effects, with intervals and where they come from.
+pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
+    let diagnosis = subject.diagnosis();
+    let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
+        let id = round.added.as_ref()?;
+        let found = diagnosis.effects.iter().find(|effect| effect.id == *id)?;
+        Some(entry(subject, found, number, &round.set))
+    });
+    found.collect()
+}
+
+fn entry(subject: &Subject<'_>, found: &Estimate, round: u32, set: &[String]) -> CaseEffect {
     let descriptor = subject.library.iter().find(|effect| effect.id == found.id);
-    let parameters = found.parameters.iter().map(|(name, unit, value, ci95)| {
-        let [low, high] = *ci95;
+    let parameters = found.parameters.iter().map(|own| {
+        let (value, [low, high]) = (own.value, own.interval);
         // a value at its bound has no interval around it
-        let ci95 =
-            (low.is_finite() && high.is_finite() && (low..=high).contains(value)).then_some(*ci95);
+        let ci95 = (low.is_finite() && high.is_finite() && (low..=high).contains(&value))
+            .then_some(own.interval);
         let mut known = descriptor.iter().flat_map(|effect| &effect.parameters);
-        let known = known.find(|p| p.name == *name);
+        let known = known.find(|p| p.name == own.name);
         let parameter = CaseParameter {
-            value: *value,
-            unit: unit.clone(),
+            value,
+            unit: own.unit.clone(),
             ci95,
             search: ci95
                 .zip(known)
-                .and_then(|(ci95, known)| search(*value, ci95, known)),
+                .and_then(|(ci95, known)| search(value, ci95, known)),
         };
-        (name.clone(), parameter)
+        (own.name.clone(), parameter)
     });
     let verdict = if set.len() > 1 { "ambiguous" } else { "named" };
     CaseEffect {
         id: found.id.clone(),
         parameters: parameters.collect(),
         provenance: Some(Provenance {
-            dataset: Some(subject.provenance.case_hash.clone()),
-            run: Some(subject.provenance.run.clone()),
+            dataset: Some(subject.origin.case_hash.clone()),
+            run: Some(subject.origin.run.clone()),
             verdict: Some(verdict.to_owned()),
             set: set.to_vec(),
             ln_evidence_gain: found.ln_evidence.is_finite().then_some(found.ln_evidence),
@@ -63,7 +68,9 @@ const SHARE: f64 = 0.25;
 fn search(value: f64, [low, high]: [f64; 2], of: &ParameterDescriptor) -> Option<[f64; 2]> {
     let half = (high - value).max(value - low);
     let reach = (REACH * half).max(SHARE * (value - of.absent).abs());
-    let [least, most] = bounds(of).map(|scaled| of.absent + scaled * of.scale);
+    // back and forth between units a bound loses its last digit, and the model refuses what lies beyond
+    let unscaled = |scaled: f64| (of.absent + scaled * of.scale).clamp(of.lower, of.upper);
+    let [least, most] = bounds(of).map(unscaled);
     let interval @ [from, to] = [(value - reach).max(least), (value + reach).min(most)];
     (from < to && (from..=to).contains(&value)).then_some(interval)
 }
@@ -98,5 +105,18 @@ mod tests {
             search(1900.0, [1800.0, 2000.0], &friction),
             Some([1400.0, 2000.0])
         );
+        // nor by the last digit that a change of units costs
+        let speed = ParameterDescriptor {
+            role: Role::Shape,
+            sign: Sign::Either,
+            lower: 0.002,
+            upper: 0.3,
+            absent: 0.02,
+            typical: 0.02,
+            scale: 0.05,
+            ..friction
+        };
+        let [lowest, _] = search(0.01, [0.004, 0.016], &speed).unwrap();
+        assert_eq!(lowest.to_bits(), 0.002_f64.to_bits());
     }
 }

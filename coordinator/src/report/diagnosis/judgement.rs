@@ -1,9 +1,9 @@
 //! What became of every suspect, and why: one sentence each.
 use super::words::{equals, nats, p_value};
+use discrepancy::cause::refit::Refitted;
+use discrepancy::cause::suspect::Suspect;
 use discrepancy::diagnose::Round;
-use discrepancy::score::{chi_squared_tail, family_wise};
-use discrepancy::stage::refit::Refitted;
-use discrepancy::stage::suspect::Suspect;
+use discrepancy::linear::score::{chi_squared_tail, family_wise};
 use protocol::announce::Sign;
 
 /// Beyond this share a recalibration hides an effect for practical purposes.

@@ -1,6 +1,5 @@
 //! The curves of a diagnosis condition by condition: measured, before, after, best rejected rival.
-use super::Subject;
-use super::words;
+use super::subject::Subject;
 use crate::report::chart::Closing;
 use crate::report::words::condition_name;
 use discrepancy::record::{Curves, Record, Source};
@@ -60,7 +59,7 @@ impl Shown<'_> {
 /// Every condition that was compared, the calibrated one first; before a comparison, the calibrated
 /// one alone.
 pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
-    let diagnosis = &subject.diagnosed.diagnosis;
+    let diagnosis = subject.diagnosis();
     let found = diagnosis.rounds.iter().any(|round| round.added.is_some());
     let mut all: Vec<Shown<'a>> = Vec::new();
     let mut seen = Vec::new();
@@ -73,29 +72,24 @@ pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
             let row = rows.iter().find(|other| other.condition == row.condition)?;
             Some((id.as_str(), &row.after))
         });
-        let after = found.then_some(&row.after);
-        all.extend(one(subject, row.condition, &row.before, (after, rival)));
+        all.extend(
+            before(subject, row.condition, &row.before).map(|shown| Shown {
+                after: found.then_some(&row.after),
+                rival,
+                ..shown
+            }),
+        );
     }
     if let (true, Some(fit)) = (all.is_empty(), &diagnosis.before) {
-        all.extend(one(
-            subject,
-            subject.case.objective.condition,
-            &fit.curves,
-            (None, None),
-        ));
+        let calibrated = subject.case.objective.condition;
+        all.extend(before(subject, calibrated, &fit.curves));
     }
     all
 }
 
-type Others<'a> = (Option<&'a Curves>, Option<(&'a str, &'a Curves)>);
-
-fn one<'a>(
-    subject: &Subject<'a>,
-    condition: usize,
-    before: &'a Curves,
-    (after, rival): Others<'a>,
-) -> Option<Shown<'a>> {
-    let record = words::record(subject, condition)?;
+/// A condition with the curves of the recalibrated model alone.
+fn before<'a>(subject: &Subject<'a>, condition: usize, curves: &'a Curves) -> Option<Shown<'a>> {
+    let record = subject.record(condition)?;
     let mean = record.mean();
     let n = record.samples();
     Some(Shown {
@@ -104,9 +98,9 @@ fn one<'a>(
         spread: spread(record, &mean),
         mean,
         record,
-        before,
-        after,
-        rival,
+        before: curves,
+        after: None,
+        rival: None,
         free_offset: subject.case.objective.offset == Offset::Free,
     })
 }

@@ -1,32 +1,48 @@
-//! The curves of one simulation.
-use super::{Rendered, Section, Subject, figure};
+//! The curves of one simulation: stress, ropes, contact, motion, card and torque.
 use crate::report::chart;
+use crate::report::data::{Calibration, SingleRun};
+use crate::report::document::{Block, Figure, Section, figures};
 use maud::html;
+use protocol::case::Case;
+use protocol::job::Simulation;
 
-pub(super) const SECTION: Section = Section {
-    id: "curves",
-    title: "Curves over the revolution",
-    render,
-};
+/// With the optimised parameters; their gauges are in the overlays.
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let mut blocks = Vec::new();
+    if let Some(result) = calibration.calibrated() {
+        let whose = html! { p { "With the optimised parameters, calibrated condition." } };
+        blocks.push(Block::Markup(whose));
+        let simulation = &result.optimised.simulation;
+        blocks.extend(figures(machine(
+            &calibration.case,
+            result.condition,
+            simulation,
+        )));
+    }
+    section(blocks)
+}
 
-fn render(subject: Subject<'_>) -> Rendered {
-    let figures = match subject {
-        Subject::Single(run) => chart::simulation(&run.case, run.condition, &run.simulation)?,
-        Subject::Calibration(calibration) => match calibration.calibrated() {
-            // the overlays show the gauges already
-            Some(result) => chart::machine_curves(
-                &calibration.case,
-                result.condition,
-                &result.optimised.simulation,
-            )?,
-            None => Vec::new(),
-        },
-    };
-    let whose = matches!(subject, Subject::Calibration(_));
-    Ok((!figures.is_empty()).then(|| {
-        html! {
-            @if whose { p { "With the optimised parameters, calibrated condition." } }
-            @for one in &figures { (figure(one)) }
-        }
-    }))
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    let (case, condition, simulation) = (&run.case, run.condition, &run.simulation);
+    let gauges = chart::gauges(case, condition, simulation);
+    let machine = machine(case, condition, simulation);
+    section(figures(std::iter::once(gauges).chain(machine)))
+}
+
+const fn section(blocks: Vec<Block>) -> Section {
+    Section {
+        id: "curves",
+        title: "Curves over the revolution",
+        blocks,
+    }
+}
+
+/// Everything but the gauges.
+fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Vec<Figure> {
+    let mut figures = vec![chart::tension(simulation)];
+    figures.extend(chart::contact(case, simulation));
+    figures.push(chart::motion(simulation));
+    figures.extend(chart::card(case, condition, simulation));
+    figures.push(chart::torque(simulation));
+    figures
 }

@@ -1,19 +1,13 @@
 //! Where the search looked, between the bounds of every gene.
-use super::{Rendered, Section, Subject, figure};
 use crate::report::chart;
+use crate::report::data::Calibration;
+use crate::report::document::{Section, figures};
 
-pub(super) const SECTION: Section = Section {
-    id: "genes",
-    title: "Genes between their bounds",
-    render,
-};
-
-fn render(subject: Subject<'_>) -> Rendered {
-    let Subject::Calibration(calibration) = subject else {
-        return Ok(None);
-    };
-    if calibration.history.is_empty() {
-        return Ok(None);
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let searched = !calibration.history.is_empty();
+    Section {
+        id: "genes",
+        title: "Genes between their bounds",
+        blocks: figures(searched.then(|| chart::genes(calibration))),
     }
-    Ok(Some(figure(&chart::genes(calibration)?)))
 }

@@ -1,40 +1,35 @@
 //! The machine in motion, with the parameters the report is about.
-use super::{Rendered, Section, Subject};
 use crate::report::animation;
-use maud::html;
+use crate::report::data::{Calibration, SingleRun};
+use crate::report::document::{Block, Section};
+use maud::{Markup, html};
 
-pub(super) const SECTION: Section = Section {
-    id: "moving-machine",
-    title: "The machine in motion",
-    render,
-};
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let moving = calibration.calibrated().and_then(|result| {
+        let simulation = &result.optimised.simulation;
+        animation::machine(&calibration.case, result.condition, simulation)
+    });
+    section("the optimised", moving)
+}
 
-fn render(subject: Subject<'_>) -> Rendered {
-    let (case, condition, simulation, whose) = match subject {
-        Subject::Calibration(calibration) => match calibration.calibrated() {
-            Some(result) => (
-                &calibration.case,
-                result.condition,
-                &result.optimised.simulation,
-                "the optimised",
-            ),
-            None => return Ok(None),
-        },
-        Subject::Single(run) => (
-            &run.case,
-            run.condition,
-            &run.simulation,
-            run.genes_name.as_str(),
-        ),
-    };
-    let machine = animation::machine(case, condition, simulation)?;
-    Ok(machine.map(|machine| {
-        html! {
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    let moving = animation::machine(&run.case, run.condition, &run.simulation);
+    section(&run.genes_name, moving)
+}
+
+fn section(whose: &str, machine: Option<Markup>) -> Section {
+    let shown = machine.map(|machine| {
+        Block::Markup(html! {
             p {
                 "Side view with " (whose) " parameters. The well is on the right; the drawing \
                  moves where JavaScript is allowed."
             }
             (machine)
-        }
-    }))
+        })
+    });
+    Section {
+        id: "moving-machine",
+        title: "The machine in motion",
+        blocks: shown.into_iter().collect(),
+    }
 }

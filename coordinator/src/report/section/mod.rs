@@ -1,7 +1,7 @@
-//! Sections of the report: one file each, one line in the [`SECTIONS`] catalogue.
+//! Sections of the reports of a calibration and of a simulation: one file each, one line in the list.
 //!
-//! A section turns data into markup, or into nothing where the data have nothing for it. It does
-//! not know its place or its neighbours.
+//! A section turns data into blocks, or into none where the data have nothing for it. It does not know
+//! its place or its neighbours, nor in which form its blocks are read.
 mod agreement;
 mod convergence;
 mod curves;
@@ -9,59 +9,39 @@ mod gap;
 mod gene;
 mod machine;
 mod notes;
-pub(super) mod provenance;
+pub(super) mod origin;
+mod parameters;
+mod slowest;
 mod summary;
-mod table;
 mod worker;
 
-use super::ReportError;
-use super::chart::Figure;
 use super::data::{Calibration, SingleRun};
-use maud::{Markup, PreEscaped, html};
+use super::document::Section;
 
-/// What a report is about.
-#[derive(Clone, Copy)]
-pub(super) enum Subject<'a> {
-    /// A calibration.
-    Calibration(&'a Calibration),
-    /// One simulation.
-    Single(&'a SingleRun),
-}
+pub(super) use parameters::calibration as parameters;
 
-/// What a section returns: markup, nothing, or an error.
-type Rendered = Result<Option<Markup>, ReportError>;
-
-/// One section.
-pub(super) struct Section {
-    /// Anchor in the page.
-    pub id: &'static str,
-    /// Heading.
-    pub title: &'static str,
-    /// Makes the body; nothing leaves the section out.
-    pub render: fn(Subject<'_>) -> Rendered,
-}
-
-/// Every section, in the order of the page.
-pub(super) const SECTIONS: &[Section] = &[
-    summary::SECTION,
-    table::SECTION,
-    agreement::SECTION,
-    gap::SECTION,
-    curves::SECTION,
-    convergence::SECTION,
-    gene::SECTION,
-    worker::SECTION,
-    machine::SECTION,
-    notes::SECTION,
-    provenance::SECTION,
+/// Every section about a calibration, in the order of the page.
+pub(super) const CALIBRATION: &[fn(&Calibration) -> Section] = &[
+    summary::calibration,
+    parameters::calibration,
+    agreement::calibration,
+    gap::calibration,
+    curves::calibration,
+    convergence::calibration,
+    gene::calibration,
+    worker::calibration,
+    slowest::calibration,
+    machine::calibration,
+    notes::calibration,
+    origin::calibration,
 ];
 
-/// A figure with its caption.
-pub(super) fn figure(figure: &Figure) -> Markup {
-    html! {
-        figure id=(format!("figure-{}", figure.name)) {
-            (PreEscaped(&figure.svg))
-            figcaption { (figure.caption) }
-        }
-    }
-}
+/// Every section about one simulation, in the order of the page.
+pub(super) const SIMULATION: &[fn(&SingleRun) -> Section] = &[
+    summary::simulation,
+    parameters::simulation,
+    curves::simulation,
+    machine::simulation,
+    notes::simulation,
+    origin::simulation,
+];

@@ -1,18 +1,20 @@
 //! Notes and warnings that the run left.
-use super::{Rendered, Section, Subject};
-use maud::html;
+use crate::report::data::{Calibration, SingleRun};
+use crate::report::document::{Block, Section};
 
-pub(super) const SECTION: Section = Section {
-    id: "notes",
-    title: "Notes",
-    render,
-};
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    section(&calibration.notes)
+}
 
-#[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
-fn render(subject: Subject<'_>) -> Rendered {
-    let notes = match subject {
-        Subject::Calibration(calibration) => &calibration.notes,
-        Subject::Single(run) => &run.notes,
-    };
-    Ok((!notes.is_empty()).then(|| html! { ul { @for note in notes { li { (note) } } } }))
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    section(&run.notes)
+}
+
+fn section(notes: &[String]) -> Section {
+    let list = (!notes.is_empty()).then(|| Block::List(notes.to_vec()));
+    Section {
+        id: "notes",
+        title: "Notes",
+        blocks: list.into_iter().collect(),
+    }
 }

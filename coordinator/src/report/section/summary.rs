@@ -1,72 +1,79 @@
-//! The verdict in words: by how much the error fell, where, and where it did not.
-use super::{Rendered, Section, Subject};
+//! The outcome in words: by how much the error fell, where, and where it did not.
 use crate::report::data::{Calibration, SingleRun};
+use crate::report::document::{Block, Section};
 use crate::report::number::{count, duration, figure};
 use crate::report::words;
-use maud::{Markup, html};
 
-pub(super) const SECTION: Section = Section {
-    id: "summary",
-    title: "Summary",
-    render,
-};
-
-#[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
-fn render(subject: Subject<'_>) -> Rendered {
-    Ok(Some(match subject {
-        Subject::Calibration(calibration) => of_calibration(calibration),
-        Subject::Single(run) => of_single(run),
-    }))
-}
-
-fn of_calibration(calibration: &Calibration) -> Markup {
-    let case = &calibration.case;
-    let failed = calibration.history.iter().filter(|p| !p.complete).count();
-    let warnings = words::warnings(calibration);
-    html! {
-        p.verdict { (words::headline(calibration)) }
-        @if calibration.provenance.synthetic { p { (words::SYNTHETIC) } }
-        @for result in &calibration.conditions {
-            @let sentences = words::gauges(case, result);
-            @let calibrated = result.condition == case.objective.condition;
-            h3 {
-                "Condition " (words::condition_name(case, result.condition))
-                span.role {
-                    @if calibrated { "calibrated" } @else { "took no part in the fit" }
-                }
-            }
-            @if sentences.is_empty() {
-                p { "There are no scores under this condition: no record, or no complete run." }
-            } @else {
-                ul { @for sentence in sentences { li { (sentence) } } }
-            }
-            @if let Some(sentence) = words::absolute_worse(case, result) { p { (sentence) } }
-        }
-        p {
-            (count(calibration.history.len() as u64)) " evaluations, " (count(failed as u64))
-            " of which did not complete a revolution, in " (duration(calibration.wall_s))
-            ". The search ended because " (calibration.finish) "."
-        }
-        @if !warnings.is_empty() {
-            div.warning { @for warning in warnings { p { (warning) } } }
-        }
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let mut blocks = vec![Block::Lead(words::headline(calibration))];
+    if calibration.origin.synthetic {
+        blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
     }
+    blocks.extend(conditions(calibration));
+    let history = &calibration.history;
+    let failed = history.iter().filter(|point| !point.complete).count();
+    blocks.push(Block::Text(format!(
+        "{} evaluations, {} of which did not complete a revolution, in {}. The search ended because {}.",
+        count(history.len() as u64),
+        count(failed as u64),
+        duration(calibration.wall_s),
+        calibration.finish
+    )));
+    let warnings = words::warnings(calibration);
+    if !warnings.is_empty() {
+        blocks.push(Block::Warning(warnings));
+    }
+    section(blocks)
 }
 
-fn of_single(run: &SingleRun) -> Markup {
-    let verdict = words::verdict(&run.simulation.verdict);
-    html! {
-        p.verdict {
-            "Condition " (words::condition_name(&run.case, run.condition)) " with the "
-            (run.genes_name) " parameters: " (verdict) "."
+/// What became of each gauge, condition by condition.
+fn conditions(calibration: &Calibration) -> Vec<Block> {
+    let case = &calibration.case;
+    let mut blocks = Vec::new();
+    for result in &calibration.conditions {
+        let name = words::condition_name(case, result.condition);
+        let role = if result.condition == case.objective.condition {
+            "calibrated"
+        } else {
+            "took no part in the fit"
+        };
+        blocks.push(Block::Heading(format!("Condition {name}"), role));
+        let sentences = words::gauges(case, result);
+        blocks.push(if sentences.is_empty() {
+            let none = "There are no scores under this condition: no record, or no complete run.";
+            Block::Text(none.to_owned())
+        } else {
+            Block::List(sentences)
+        });
+        blocks.extend(words::absolute_worse(case, result).map(Block::Text));
+    }
+    blocks
+}
+
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    let mut blocks = vec![Block::Lead(format!(
+        "Condition {} with the {} parameters: {}.",
+        words::condition_name(&run.case, run.condition),
+        run.genes_name,
+        words::verdict(&run.simulation.verdict)
+    ))];
+    if let Some(evaluation) = &run.evaluation {
+        if run.origin.synthetic {
+            blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
         }
-        @if run.provenance.synthetic && run.evaluation.is_some() { p { (words::SYNTHETIC) } }
-        @if let Some(evaluation) = &run.evaluation {
-            @if evaluation.channels.is_empty() {
-                p { "There is no score: no record, or no complete run." }
-            } @else {
-                p { "The objective is " (figure(evaluation.fitness)) " MPa²." }
-            }
-        }
+        blocks.push(Block::Text(if evaluation.channels.is_empty() {
+            "There is no score: no record, or no complete run.".to_owned()
+        } else {
+            format!("The objective is {} MPa².", figure(evaluation.fitness))
+        }));
+    }
+    section(blocks)
+}
+
+const fn section(blocks: Vec<Block>) -> Section {
+    Section {
+        id: "summary",
+        title: "Summary",
+        blocks,
     }
 }

@@ -1,17 +1,18 @@
 //! Recommended against optimised parameters (paper, Tables 3 and 4).
-use super::{Label, Row, Table};
-use crate::report::data::{Calibration, ConditionResult, Run};
+use crate::report::data::{Calibration, ConditionResult};
+use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, fixed, percent, ratio, unit};
 use crate::report::words::{self, condition_name};
 use protocol::case::{Case, Coefficient, Quantity};
 use protocol::job::{ChannelScore, Verdict};
 
-/// Definition that stands under every table with relative errors.
-const RELATIVE_ERROR: &str = "Relative error: mean absolute error over the mean absolute deviation \
-                              of the measured curve from its own mean.";
-const HALF_RANGE: &str = "RMSE / half-range: root of the mean squared error over half the measured \
-                          range.";
-const OFFSET: &str = "Offset: measured minus simulated mean; a strain bridge has no absolute zero.";
+/// Definitions that stand under every table with errors.
+const DEFINITIONS: [&str; 3] = [
+    "Relative error: mean absolute error over the mean absolute deviation of the measured curve from \
+     its own mean.",
+    "RMSE / half-range: root of the mean squared error over half the measured range.",
+    "Offset: measured minus simulated mean; a strain bridge has no absolute zero.",
+];
 
 /// Gauges of a result: those of the objective first, then the others of the record.
 fn gauges(case: &Case, result: &ConditionResult) -> Vec<u8> {
@@ -26,33 +27,86 @@ fn gauges(case: &Case, result: &ConditionResult) -> Vec<u8> {
     gauges
 }
 
-/// A row of one quantity of one gauge for both parameter sets.
-fn channel_row(
-    label: String,
-    unit: &str,
-    result: &ConditionResult,
-    gauge: u8,
-    value: impl Fn(&ChannelScore) -> f64,
-    write: impl Fn(f64) -> String,
-) -> Row {
-    let of = |run: &Run| {
-        let mut channels = run.evaluation.channels.iter();
-        channels.find(|c| c.gauge == gauge).map(&value)
-    };
-    let (before, after) = (of(&result.recommended), of(&result.optimised));
-    let share = match (before, after) {
-        (Some(before), Some(after)) if before > 0.0 && after >= 0.0 => ratio(after, before),
-        _ => NONE.to_owned(),
-    };
-    let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), &write);
-    Row::new(label, [unit.to_owned(), write(before), write(after), share])
+/// A measure of agreement, gauge by gauge.
+struct Measure {
+    title: &'static str,
+    unit: &'static str,
+    of: fn(&ChannelScore) -> f64,
+    write: fn(f64) -> String,
+    /// Whether the ratio of two of them says something: one of signed errors or of offsets does not.
+    has_ratio: bool,
+}
+
+const MEASURES: [Measure; 6] = [
+    Measure {
+        title: "Mean squared error",
+        unit: "MPa²",
+        of: |score| score.mse_mpa2,
+        write: figure,
+        has_ratio: true,
+    },
+    Measure {
+        title: "MSE, absolute (offset not removed)",
+        unit: "MPa²",
+        of: |score| score.mse_fixed_offset_mpa2,
+        write: figure,
+        has_ratio: true,
+    },
+    Measure {
+        title: "Relative error",
+        unit: "",
+        of: |score| score.relative_error,
+        write: percent,
+        has_ratio: true,
+    },
+    Measure {
+        title: "RMSE / half-range",
+        unit: "",
+        of: |score| score.rmse_over_half_range,
+        write: percent,
+        has_ratio: true,
+    },
+    Measure {
+        title: "Error of the peak-to-peak stress",
+        unit: "",
+        of: |score| score.peak_to_peak_error,
+        write: percent,
+        has_ratio: false,
+    },
+    Measure {
+        title: "Offset",
+        unit: "MPa",
+        of: |score| score.offset_mpa,
+        write: |value| fixed(value, 2),
+        has_ratio: false,
+    },
+];
+
+impl Measure {
+    /// Both parameter sets at one gauge.
+    fn row(&self, label: String, result: &ConditionResult, gauge: u8) -> Row {
+        let [before, after] = [&result.recommended, &result.optimised].map(|run| {
+            let mut channels = run.evaluation.channels.iter();
+            channels.find(|score| score.gauge == gauge).map(self.of)
+        });
+        let share = match (before, after) {
+            _ if !self.has_ratio => String::new(),
+            (Some(before), Some(after)) if before > 0.0 && after >= 0.0 => ratio(after, before),
+            _ => NONE.to_owned(),
+        };
+        let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), self.write);
+        Row::new(
+            label,
+            [self.unit.to_owned(), write(before), write(after), share],
+        )
+    }
 }
 
 /// Objective and agreement at every gauge of a condition.
 fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
     let gauges = gauges(case, result);
     let calibrated = result.condition == case.objective.condition;
-    let point = |gauge: u8| {
+    let label = |gauge: u8| {
         let weighted = case.objective.gauges.iter().any(|&(g, _)| g == gauge);
         if weighted || !calibrated {
             format!("point {gauge}")
@@ -60,95 +114,38 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
             format!("point {gauge} (not fitted)")
         }
     };
-    let mut rows = Vec::new();
-    let objective = |run: &Run| match run.evaluation.verdict {
-        Verdict::Complete => Some(run.evaluation.fitness),
-        Verdict::Failed { .. } => None,
-    };
-    let (before, after) = (objective(&result.recommended), objective(&result.optimised));
+    let [before, after] = [&result.recommended, &result.optimised].map(|run| {
+        let complete = run.evaluation.verdict == Verdict::Complete;
+        complete.then_some(run.evaluation.fitness)
+    });
     let write = |value: Option<f64>| value.map_or_else(|| "failed".to_owned(), figure);
-    rows.push(Row::Group("Objective".to_owned()));
-    rows.push(Row::new(
-        "weighted sum of mean squared errors",
-        [
-            "MPa²".to_owned(),
-            write(before),
-            write(after),
-            match (before, after) {
-                (Some(before), Some(after)) => ratio(after, before),
-                _ => NONE.to_owned(),
-            },
-        ],
-    ));
-    rows.push(Row::Group("Mean squared error".to_owned()));
-    for &g in &gauges {
-        rows.push(channel_row(
-            point(g),
-            "MPa²",
-            result,
-            g,
-            |c| c.mse_mpa2,
-            figure,
-        ));
-    }
-    rows.push(Row::Group("MSE, absolute (offset not removed)".to_owned()));
-    for &g in &gauges {
-        let value = |c: &ChannelScore| c.mse_fixed_offset_mpa2;
-        rows.push(channel_row(point(g), "MPa²", result, g, value, figure));
-    }
-    rows.push(Row::Group("Relative error".to_owned()));
-    for &g in &gauges {
-        rows.push(channel_row(
-            point(g),
-            "",
-            result,
-            g,
-            |c| c.relative_error,
-            percent,
-        ));
-    }
-    rows.push(Row::Group("RMSE / half-range".to_owned()));
-    for &g in &gauges {
-        let value = |c: &ChannelScore| c.rmse_over_half_range;
-        rows.push(channel_row(point(g), "", result, g, value, percent));
-    }
-    // a ratio of signed errors or of offsets would say nothing
-    rows.push(Row::Group("Error of the peak-to-peak stress".to_owned()));
-    for &g in &gauges {
-        let value = |c: &ChannelScore| c.peak_to_peak_error;
-        let mut row = channel_row(point(g), "", result, g, value, percent);
-        blank_ratio(&mut row);
-        rows.push(row);
-    }
-    rows.push(Row::Group("Offset".to_owned()));
-    for &g in &gauges {
-        let write = |value| fixed(value, 2);
-        let mut row = channel_row(point(g), "MPa", result, g, |c| c.offset_mpa, write);
-        blank_ratio(&mut row);
-        rows.push(row);
+    let share = before
+        .zip(after)
+        .map(|(before, after)| ratio(after, before));
+    let cells = [
+        "MPa²".to_owned(),
+        write(before),
+        write(after),
+        share.unwrap_or_else(|| NONE.to_owned()),
+    ];
+    let mut rows = vec![
+        Row::group("Objective"),
+        Row::new("weighted sum of mean squared errors", cells),
+    ];
+    for measure in MEASURES {
+        rows.push(Row::group(measure.title));
+        rows.extend(gauges.iter().map(|&g| measure.row(label(g), result, g)));
     }
     rows
 }
 
-fn blank_ratio(row: &mut Row) {
-    if let Row::Values(_, cells) = row
-        && let Some(last) = cells.last_mut()
-    {
-        last.clear();
-    }
-}
-
-fn head() -> Vec<String> {
-    [
-        "",
-        "unit",
-        "recommended",
-        "optimised",
-        "optimised / recommended",
-    ]
-    .map(str::to_owned)
-    .to_vec()
-}
+const HEAD: [&str; 5] = [
+    "",
+    "unit",
+    "recommended",
+    "optimised",
+    "optimised / recommended",
+];
 
 /// Rows of both gene vectors.
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
@@ -165,7 +162,7 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
             Quantity::Effect { .. } => "Effects",
         };
         if name != group {
-            rows.push(Row::Group(name.to_owned()));
+            rows.push(Row::group(name));
             group = name;
         }
         let value = |genes: &[f64]| genes.get(index).copied().unwrap_or(f64::NAN);
@@ -175,9 +172,9 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         if words::at_bound(gene, after).is_some() {
             optimised.push_str(" *");
         }
-        rows.push(Row::Values(
-            Label::of(gene),
-            vec![
+        rows.push(Row::of(
+            gene,
+            [
                 unit(gene.unit()),
                 figure(before),
                 optimised,
@@ -191,75 +188,54 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
 /// The paper's Table 3: genes, and agreement under the calibrated condition.
 pub fn table_3(calibration: &Calibration) -> Table {
     let case = &calibration.case;
-    let mut rows = gene_rows(calibration);
-    let mut notes = vec![
-        RELATIVE_ERROR.to_owned(),
-        HALF_RANGE.to_owned(),
-        OFFSET.to_owned(),
-    ];
+    let title = format!(
+        "Recommended and optimised parameters, calibrated condition {}",
+        condition_name(case, case.objective.condition)
+    );
     let genes = case.genes.iter().zip(&calibration.optimised.genes);
     let bounds: Vec<String> = genes
         .filter_map(|(gene, &value)| {
-            let side = words::at_bound(gene, value)?;
-            let bound = words::bound(gene, side);
+            let bound = words::bound(gene, words::at_bound(gene, value)?);
             Some(format!("{} at {bound}", gene.label()))
         })
         .collect();
-    if !bounds.is_empty() {
-        let bounds = bounds.join(", ");
-        notes.insert(0, format!("* at a bound of the search: {bounds}."));
-    }
+    let marked =
+        (!bounds.is_empty()).then(|| format!("* at a bound of the search: {}.", bounds.join(", ")));
+    let mut table = Table::new(title, HEAD, gene_rows(calibration))
+        .noted(marked)
+        .noted(DEFINITIONS);
     if let Some(result) = calibration.calibrated() {
-        rows.extend(agreement(case, result));
-        notes.extend(words::absolute_worse(case, result));
-        notes.extend(failures(result));
+        table.rows.extend(agreement(case, result));
+        table = table.noted(remarks(case, result));
     }
-    Table {
-        title: format!(
-            "Recommended and optimised parameters, calibrated condition {}",
-            condition_name(case, case.objective.condition)
-        ),
-        head: head(),
-        rows,
-        notes,
-    }
+    table
 }
 
 /// The paper's Table 4: agreement under one condition, with the same parameters.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
-    let mut notes = [RELATIVE_ERROR, HALF_RANGE, OFFSET]
-        .map(str::to_owned)
-        .to_vec();
-    notes.extend(words::absolute_worse(case, result));
-    notes.extend(failures(result));
     let role = if result.condition == case.objective.condition {
         "the calibrated condition"
     } else {
         "which took no part in the fit"
     };
-    Table {
-        title: format!(
-            "The same parameters under condition {}, {role}",
-            condition_name(case, result.condition)
-        ),
-        head: head(),
-        rows: agreement(case, result),
-        notes,
-    }
+    let name = condition_name(case, result.condition);
+    let title = format!("The same parameters under condition {name}, {role}");
+    Table::new(title, HEAD, agreement(case, result))
+        .noted(DEFINITIONS)
+        .noted(remarks(case, result))
 }
 
-/// Says which of the two runs failed, and how.
-fn failures(result: &ConditionResult) -> Vec<String> {
-    [
+/// What got worse unseen, and which of the two runs failed, and how.
+fn remarks(case: &Case, result: &ConditionResult) -> Vec<String> {
+    let runs = [
         ("Recommended", &result.recommended),
         ("Optimised", &result.optimised),
-    ]
-    .into_iter()
-    .filter_map(|(who, run)| match run.evaluation.verdict {
-        Verdict::Complete => None,
-        failed @ Verdict::Failed { .. } => {
-            Some(format!("{who} parameters {}.", words::verdict(&failed)))
-        }
-    })
-    .collect()
+    ];
+    let failed = runs.into_iter().filter_map(|(who, run)| {
+        let verdict = &run.evaluation.verdict;
+        let failed = *verdict != Verdict::Complete;
+        failed.then(|| format!("{who} parameters {}.", words::verdict(verdict)))
+    });
+    let worse = words::absolute_worse(case, result);
+    worse.into_iter().chain(failed).collect()
 }

@@ -1,14 +1,14 @@
 //! What the parameters leave unexplained, gauge by gauge.
-use super::super::data::{ConditionResult, Run};
-use super::super::number::{fixed, percent};
-use super::super::words::condition_name;
-use super::{Row, Table};
-use discrepancy::gap::{Gap, SECTOR_DEG};
+use crate::report::data::{ConditionResult, Run};
+use crate::report::document::{Row, Table};
+use crate::report::number::{fixed, percent};
+use crate::report::words::condition_name;
+use discrepancy::proof::gap::{Gap, SECTOR_DEG};
 use protocol::case::{Case, GaugeRecord};
 
 /// The gap of both parameter sets under one condition, and where the optimised ones leave it;
 /// nothing without a record or without a complete run.
-pub fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
+pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
     let record = case.conditions.get(result.condition)?.record.as_ref()?;
     let before = gaps(record, &result.recommended);
     let after = gaps(record, &result.optimised);
@@ -40,29 +40,21 @@ pub fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
             )
         })
         .collect();
-    Some(Table {
-        title: format!(
+    Some(Table::new(format!(
             "What remains unexplained under condition {}",
             condition_name(case, result.condition)
-        ),
-        head: [
+        ), [
             "",
             "gap, recommended",
             "gap, optimised",
             "residual over noise",
             "worst sector",
             "worst band of crank orders",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-        notes: vec![
+        ], rows).noted([
             "Gap: mean squared residual above the noise of the averaged record, over the variance of \
              the measured curve; means removed. A gap that stays far above the noise after a fit is a \
-             sign of something the model lacks; this table says where to look, not what it is."
-                .to_owned(),
-        ],
-    })
+             sign of something the model lacks; this table says where to look, not what it is.",
+        ]))
 }
 
 fn gaps(record: &GaugeRecord, run: &Run) -> Vec<Gap> {

@@ -1,5 +1,5 @@
 //! A reduced back head in numbers: its modes beside the case's, and what they alone would show.
-use super::{Row, Table};
+use crate::report::document::{Row, Table};
 use crate::report::words::mode_family;
 use crate::{
     report::number::{NONE, fixed, percent},
@@ -48,9 +48,9 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
         let label = "left out".to_owned();
         row(label, mode.family, mode.frequency_hz, None, mode.coupling)
     });
-    Table {
-        title: "Modes of the back head, pin holes held".to_owned(),
-        head: [
+    Table::new(
+        "Modes of the back head, pin holes held",
+        [
             "",
             "family",
             "Hz",
@@ -58,12 +58,10 @@ pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
             "difference %",
             "MAC",
             "coupling %",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: kept.chain(beside).collect(),
-        notes: mode_notes(head, comparison, above),
-    }
+        ],
+        kept.chain(beside).collect(),
+    )
+    .noted(mode_notes(head, comparison, above))
 }
 
 fn mode_notes(
@@ -134,16 +132,15 @@ pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
         "gauge 3",
         "gauge 4",
     ];
-    Table {
-        title: format!("Modes out of the plane, ropes at z = ±{offset_m} m"),
-        head: head.map(str::to_owned).to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Largest displacement of the rope at +z (mm) and gauge stress (GPa) per unit modal \
-             coordinate (kg^1/2 m)."
-                .to_owned(),
-        ],
-    }
+    Table::new(
+        format!("Modes out of the plane, ropes at z = ±{offset_m} m"),
+        head,
+        rows.collect(),
+    )
+    .noted([
+        "Largest displacement of the rope at +z (mm) and gauge stress (GPa) per unit modal \
+             coordinate (kg^1/2 m).",
+    ])
 }
 
 /// What truncation costs over a quasi-static turn.
@@ -159,24 +156,22 @@ pub fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) 
         ];
         Row::new(format!("gauge {}", gauge + 1), cells)
     });
-    Table {
-        title: format!("Half-range of stress over a quasi-static turn, {condition} (MPa)"),
-        head: [
+    Table::new(
+        format!("Half-range of stress over a quasi-static turn, {condition} (MPa)"),
+        [
             "",
             "exact",
             "case's table",
             "lines differ",
             "modes alone",
             "mean off by",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Exact: influence lines (mode acceleration). Lines differ: largest difference of the \
-             influence lines over their largest value."
-                .to_owned(),
-            format!("Modes alone: mode displacement with the first {modes} modes."),
         ],
-    }
+        rows.collect(),
+    )
+    .noted([
+        "Exact: influence lines (mode acceleration). Lines differ: largest difference of the \
+             influence lines over their largest value."
+            .to_owned(),
+        format!("Modes alone: mode displacement with the first {modes} modes."),
+    ])
 }

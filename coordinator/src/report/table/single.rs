@@ -1,6 +1,6 @@
 //! One simulation in numbers.
-use super::{Label, Row, Table};
 use crate::report::data::SingleRun;
+use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, unit};
 use crate::report::words::{self, condition_name};
 use protocol::job::{Energy, Simulation};
@@ -31,12 +31,12 @@ fn one(label: &str, unit: &str, value: String) -> Row {
 /// Verdict, and the range of every curve.
 pub fn simulation(run: &SingleRun) -> Table {
     let simulation = &run.simulation;
-    let mut rows = vec![Row::Group("Stress".to_owned())];
+    let mut rows = vec![Row::group("Stress")];
     for (gauge, values) in (1..).zip(&simulation.gauge_mpa) {
         let label = format!("gauge {gauge}");
         rows.push(Row::new(label, range_cells(values, 1.0, "MPa")));
     }
-    rows.push(Row::Group("Machine".to_owned()));
+    rows.push(Row::group("Machine"));
     let curves: [(&str, &[f64], f64, &str); 6] = [
         (
             "back rope tension",
@@ -68,19 +68,16 @@ pub fn simulation(run: &SingleRun) -> Table {
     for (label, values, factor, unit) in curves {
         rows.push(Row::new(label, range_cells(values, factor, unit)));
     }
-    Table {
-        title: format!(
+    Table::new(
+        format!(
             "Condition {}, {} parameters: {}",
             condition_name(&run.case, run.condition),
             run.genes_name,
             words::verdict(&simulation.verdict)
         ),
-        head: ["", "unit", "smallest", "largest", "half range"]
-            .map(str::to_owned)
-            .to_vec(),
+        ["", "unit", "smallest", "largest", "half range"],
         rows,
-        notes: Vec::new(),
-    }
+    )
 }
 
 /// Stroke, agreement with the record, energy balance and work of a run.
@@ -93,7 +90,7 @@ pub fn balance(run: &SingleRun) -> Table {
     if let Some(evaluation) = &run.evaluation
         && !evaluation.channels.is_empty()
     {
-        rows.push(Row::Group("Against the record".to_owned()));
+        rows.push(Row::group("Against the record"));
         rows.push(one("objective", "MPa²", figure(evaluation.fitness)));
         for channel in &evaluation.channels {
             rows.push(one(
@@ -110,22 +107,21 @@ pub fn balance(run: &SingleRun) -> Table {
     }
     rows.extend(energy(&simulation.energy));
     rows.extend(work(simulation));
-    Table {
-        title: "Stroke, agreement, energy and work".to_owned(),
-        head: ["", "unit", "value"].map(str::to_owned).to_vec(),
+    Table::new(
+        "Stroke, agreement, energy and work",
+        ["", "unit", "value"],
         rows,
-        notes: vec![
-            "Error of the balance: what it leaves over, relative to the larger of input and \
-             output work."
-                .to_owned(),
-        ],
-    }
+    )
+    .noted([
+        "Error of the balance: what it leaves over, relative to the larger of input and \
+             output work.",
+    ])
 }
 
 fn energy(energy: &Energy) -> Vec<Row> {
     let joules = |value: f64| fixed(1e-3 * value, 2);
     vec![
-        Row::Group("Energy of the revolution".to_owned()),
+        Row::group("Energy of the revolution"),
         one("work of the crank pin", "kJ", joules(energy.input_j)),
         one("work on the load", "kJ", joules(energy.output_j)),
         one("dissipated", "kJ", joules(energy.dissipated_j)),
@@ -135,34 +131,26 @@ fn energy(energy: &Energy) -> Vec<Row> {
 }
 
 fn work(simulation: &Simulation) -> Vec<Row> {
-    let counters = &simulation.counters;
-    vec![
-        Row::Group("Work of the integrator".to_owned()),
-        one("accepted steps", "", count(counters.steps)),
-        one("rejected steps", "", count(counters.rejected_steps)),
-        one("Newton iterations", "", count(counters.newton_iterations)),
-        one("Jacobians", "", count(counters.jacobians)),
-        one("factorisations", "", count(counters.factorizations)),
-        one("wall time", "", duration(simulation.wall_s)),
-    ]
+    let counters = simulation.counters.named().into_iter();
+    let mut rows = vec![Row::group("Work of the integrator")];
+    rows.extend(counters.map(|(_, what, number)| one(what, "", count(number))));
+    rows.push(one("wall time", "", duration(simulation.wall_s)));
+    rows
 }
 
 /// The genes of one simulation beside the recommended ones.
-pub fn genes(run: &SingleRun) -> Table {
+pub(in crate::report) fn genes(run: &SingleRun) -> Table {
     let genes = run.case.genes.iter().zip(&run.genes);
-    Table {
-        title: format!("Parameters: {}", run.genes_name),
-        head: ["", "unit", "value", "recommended"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: genes
+    Table::new(
+        format!("Parameters: {}", run.genes_name),
+        ["", "unit", "value", "recommended"],
+        genes
             .map(|(gene, &value)| {
-                Row::Values(
-                    Label::of(gene),
-                    vec![unit(gene.unit()), figure(value), figure(gene.recommended)],
+                Row::of(
+                    gene,
+                    [unit(gene.unit()), figure(value), figure(gene.recommended)],
                 )
             })
             .collect(),
-        notes: Vec::new(),
-    }
+    )
 }

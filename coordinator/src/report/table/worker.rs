@@ -1,5 +1,5 @@
 //! Who computed, and how the slots spent their time.
-use super::{Row, Table};
+use crate::report::document::{Row, Table};
 use crate::{
     account::RunAccount,
     report::{
@@ -10,7 +10,7 @@ use crate::{
 use protocol::event::Spent;
 
 /// What each worker did.
-pub fn workers(workers: &[WorkerUse]) -> Table {
+pub(in crate::report) fn workers(workers: &[WorkerUse]) -> Table {
     let rows = workers.iter().map(|worker| {
         Row::new(
             worker.name.clone(),
@@ -24,9 +24,9 @@ pub fn workers(workers: &[WorkerUse]) -> Table {
             ],
         )
     });
-    Table {
-        title: "Workers".to_owned(),
-        head: [
+    Table::new(
+        "Workers",
+        [
             "worker",
             "host",
             "slots",
@@ -34,14 +34,10 @@ pub fn workers(workers: &[WorkerUse]) -> Table {
             "failed",
             "computing",
             "busy",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: vec![
-            "Busy: time spent on accepted results over slots times the time attached.".to_owned(),
         ],
-    }
+        rows.collect(),
+    )
+    .noted(["Busy: time spent on accepted results over slots times the time attached."])
 }
 
 /// How slots spent their time, kind by kind.
@@ -65,17 +61,15 @@ pub fn slot_time(spent: &Spent) -> Table {
             ],
         )
     });
-    Table {
-        title: "Slot time".to_owned(),
-        head: ["use", "time", "share", "what it was"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: rows.into(),
-        notes: vec![format!(
-            "Slots were connected for {} in all.",
-            duration(spent.connected_us as f64 / 1e6)
-        )],
-    }
+    Table::new(
+        "Slot time",
+        ["use", "time", "share", "what it was"],
+        rows.into(),
+    )
+    .noted([format!(
+        "Slots were connected for {} in all.",
+        duration(spent.connected_us as f64 / 1e6)
+    )])
 }
 
 /// What the machines did.
@@ -94,16 +88,13 @@ pub fn hosts(account: &RunAccount) -> Table {
             ],
         )
     });
-    Table {
-        title: "Machines".to_owned(),
-        head: [
+    Table::new(
+        "Machines",
+        [
             "machine", "workers", "slots", "results", "failed", "useful", "share",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: Vec::new(),
-    }
+        ],
+        rows.collect(),
+    )
 }
 
 /// How long jobs took, kind by kind.
@@ -117,22 +108,23 @@ pub fn jobs(account: &RunAccount) -> Table {
                 duration(used.median_s),
                 duration(used.usual_s),
                 duration(used.longest_s),
+                duration(used.wall_s),
+                duration(used.processor_s),
             ],
         )
     });
-    Table {
-        title: "Jobs".to_owned(),
-        head: [
+    Table::new(
+        "Jobs",
+        [
             "kind",
             "results",
             "machine failed",
             "median",
             "95 %",
             "longest",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows.collect(),
-        notes: Vec::new(),
-    }
+            "in the slot",
+            "processor",
+        ],
+        rows.collect(),
+    )
 }

@@ -4,7 +4,7 @@
 //! They speak the protocol as real ones do (announcement, proof, heartbeat, results) and answer a
 //! job that does nothing at once. They repeat nothing: the memory link loses nothing, and over the bus
 //! what is not answered in time is offered again.
-use crate::core::work_hash;
+use super::meter::SESSIONS;
 use link::{
     Blob, LinkError, WorkerEnd,
     keys::{Keys, Role},
@@ -15,9 +15,9 @@ use link::{
 use protocol::{
     announce::Announcement,
     id::{ContentHash, RunId, WorkerId},
-    job::{Failure, Job, Outcome, kind},
+    job::{Answer, Failure, Job, Outcome, kind},
     key::Lane,
-    message::{Beat, Done, FromWorker, Order, ToWorker},
+    message::{Beat, Cost, Done, FromWorker, Order, ToWorker},
     wire::{self, Kind},
 };
 use std::{
@@ -33,9 +33,6 @@ use tokio::{
     task::JoinSet,
     time::{MissedTickBehavior, sleep},
 };
-
-/// Name of their thread.
-pub(super) const THREAD: &str = "bench-sessions";
 
 /// How often a worker speaks.
 const BEAT: Duration = Duration::from_secs(1);
@@ -69,7 +66,7 @@ impl Sessions {
                 while sessions.join_next().await.is_some() {}
             });
         };
-        let thread = thread::Builder::new().name(THREAD.to_owned()).spawn(work);
+        let thread = thread::Builder::new().name(SESSIONS.to_owned()).spawn(work);
         if let Err(error) = &thread {
             tracing::error!("the sessions cannot be started: {error}");
         }
@@ -217,10 +214,12 @@ fn beat(number: &mut u64, case: Option<ContentHash>) -> FromWorker {
 }
 
 fn answer(Order { attempt, job, .. }: Order) -> Done {
-    let work = work_hash(&job);
+    let work = job.work_hash();
     let outcome = match job {
-        Job::Nothing { reply_bytes, .. } => Outcome::Nothing(vec![0; reply_bytes as usize]),
-        Job::Score(_) | Job::Simulate(_) | Job::Observe(_) | Job::ReduceHead(_) | Job::Describe => {
+        Job::Nothing { reply_bytes, .. } => {
+            Outcome::Done(Answer::Nothing(vec![0; reply_bytes as usize]))
+        }
+        Job::Simulate(_) | Job::ReduceHead(_) | Job::Describe => {
             Outcome::Failed(Failure::Refused {
                 reason: "a session without slots computes nothing".to_owned(),
             })
@@ -229,7 +228,7 @@ fn answer(Order { attempt, job, .. }: Order) -> Done {
     Done {
         attempt,
         work,
-        wall_us: 0,
+        cost: Cost::default(),
         outcome,
     }
 }

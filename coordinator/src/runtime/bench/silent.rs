@@ -3,8 +3,15 @@
 //! without and with them.
 //!
 //! They are connections of one other process, which opens again whatever the coordinator closes.
-use super::{DispatchError, Load, cost};
-use crate::runtime::{Dispatch, allow_connections};
+use super::{
+    load::Load,
+    meter::cost,
+    plan::{Silence, SilentPlan, SilentResult},
+};
+use crate::{
+    quantile,
+    runtime::{dispatch::Dispatch, error::DispatchError, listen::allow_connections},
+};
 use link::{WorkerEnd as _, locator::Locator, zenoh::ZenohWorker};
 use std::{
     env, fs,
@@ -31,50 +38,6 @@ const SETTLING: Duration = Duration::from_secs(30);
 const OPENING: usize = 64;
 /// Pause before a connection that failed is tried again.
 const AGAIN: Duration = Duration::from_millis(50);
-
-/// How far peers go that say nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Silence {
-    /// They connect; the coordinator closes them when they have not opened a session in time.
-    Connection,
-    /// They open a session of the bus, which exchanges keep-alives for ever, and never announce
-    /// themselves.
-    Session,
-}
-
-/// Connections that say nothing, to be measured beside.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SilentPlan {
-    /// How far they go.
-    pub silence: Silence,
-    /// How many.
-    pub connections: usize,
-    /// How often it is measured without and with them; once at least.
-    pub turns: usize,
-}
-
-/// What silent connections cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SilentResult {
-    /// How many were asked for.
-    pub connections: usize,
-    /// The fewest that the coordinator held when a block began or ended.
-    pub held: usize,
-    /// How often one that had been closed was opened again, in all blocks.
-    pub reopened: u64,
-    /// Blocks without, and as many with them.
-    pub turns: usize,
-    /// Jobs per second without them, the median block.
-    pub jobs_per_s_without: f64,
-    /// Jobs per second beside them, the median block.
-    pub jobs_per_s_beside: f64,
-    /// Rate beside them over that of the block before, without: the median \[1\].
-    pub rate_ratio: f64,
-    /// The smallest and the largest of those \[1\].
-    pub rate_ratio_range: (f64, f64),
-    /// The same of the coordinator's processor time per job: the median \[1\].
-    pub cpu_ratio: f64,
-}
 
 /// Rate and cost of one block.
 #[derive(Clone, Copy, Debug)]
@@ -115,7 +78,7 @@ pub(super) async fn measure(
         all.sort_by(f64::total_cmp);
         all
     };
-    let median = |of| each(of)[turns / 2];
+    let median = |of| middle(&each(of));
     let ratios = each(|(without, beside)| beside.jobs_per_s / without.jobs_per_s);
     Ok(SilentResult {
         connections,
@@ -124,10 +87,15 @@ pub(super) async fn measure(
         turns,
         jobs_per_s_without: median(|(without, _)| without.jobs_per_s),
         jobs_per_s_beside: median(|(_, beside)| beside.jobs_per_s),
-        rate_ratio: ratios[turns / 2],
+        rate_ratio: middle(&ratios),
         rate_ratio_range: (ratios[0], ratios[turns - 1]),
         cpu_ratio: median(|(without, beside)| beside.cpu_s_per_job / without.cpu_s_per_job),
     })
+}
+
+/// The median.
+fn middle(sorted: &[f64]) -> f64 {
+    quantile::of(sorted, 50).unwrap_or(f64::NAN)
 }
 
 async fn block(dispatch: &mut Dispatch, load: &mut Load) -> Result<Block, DispatchError> {
@@ -216,8 +184,8 @@ impl Drop for Silent {
 }
 
 /// Holds so many connections or sessions to an address, over TCP, and says nothing, until standard
-/// input ends. One that is closed is opened again. Standard output has a line when all are open, and at the end how many
-/// were opened again.
+/// input ends. One that is closed is opened again. Standard output has a line when all are open, and
+/// at the end how many were opened again.
 ///
 /// # Errors
 /// If standard output cannot be written.

@@ -1,6 +1,6 @@
 //! The way from the gate to the router: loopback, with certificates that live as long as this
 //! process and never touch a disk.
-use super::{BUS, HANDSHAKE};
+use super::terms::{BUS, HANDSHAKE};
 use crate::{
     LinkError,
     keys::{

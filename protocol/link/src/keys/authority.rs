@@ -3,7 +3,9 @@
 //! Keys are ECDSA P-256, made and kept on the machine that runs this; files that hold one are
 //! readable by their owner alone. A coordinator's certificate is good for serving only and a
 //! worker's for dialling only, so that a stolen worker's key cannot pose as the coordinator.
-use super::{CA, CA_KEY, COORDINATOR, KeyError, WORKER, WORKERS, certificate::Certificate};
+use super::certificate::Certificate;
+use super::error::KeyError;
+use super::material::{CA, CA_KEY, COORDINATOR, Role, WORKER, WORKERS, readable};
 use protocol::{id::ContentHash, name::check_owner};
 use rcgen::{
     BasicConstraints, CertificateParams, DistinguishedName, DnType, ExtendedKeyUsagePurpose, IsCa,
@@ -100,7 +102,7 @@ impl Authority {
     pub fn open(folder: &Path) -> Result<Self, KeyError> {
         let read = |file: &str| {
             let path = folder.join(file);
-            let pem = super::readable(&path, super::Role::Coordinator)?;
+            let pem = readable(&path, Role::Coordinator)?;
             String::from_utf8(pem).map_err(|_| KeyError::NotPem { path, what: "text" })
         };
         let (pem, key) = (read(CA)?, read(CA_KEY)?);

@@ -1,5 +1,6 @@
 //! One certificate: whom it names, until when, and whether the other end will take it.
-use super::{Chain, KeyError, Role};
+use super::error::KeyError;
+use super::material::{Chain, Role};
 use rustls::{
     CertificateError, Error,
     client::{WebPkiServerVerifier, danger::ServerCertVerifier},

@@ -3,6 +3,7 @@ use super::{
     *,
 };
 use std::{
+    fs,
     os::unix::fs::PermissionsExt,
     time::{Duration, SystemTime},
 };

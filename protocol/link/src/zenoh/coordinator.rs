@@ -1,5 +1,6 @@
 //! The coordinator's end: an embedded router with its listeners.
-use super::{INBOX, access, close, common, names::Names, needed, open, sender::Sender, transport};
+use super::session::{INBOX, close, common, needed, open, transport};
+use super::{access, names::Names, sender::Sender};
 use crate::{
     Blob, CoordinatorEnd, Heard, LinkError,
     gate::{Gate, Inner},

@@ -1,5 +1,5 @@
 //! Which name on the bus stands behind each worker id, for as many as one certificate may have.
-use crate::gate::CONNECTIONS;
+use crate::gate::terms::CONNECTIONS;
 use protocol::{
     id::WorkerId,
     name::{ANYONE, WorkerName},

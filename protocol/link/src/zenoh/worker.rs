@@ -1,5 +1,6 @@
 //! A worker's end: a client with one address.
-use super::{INBOX, close, common, connecting, needed, open, sender::Sender, transport};
+use super::sender::Sender;
+use super::session::{INBOX, close, common, connecting, needed, open, transport};
 use crate::{LinkError, WorkerEnd, handshake, keys::Keys, locator::Locator};
 use protocol::{
     id::{ContentHash, RunId},

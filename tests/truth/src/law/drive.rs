@@ -1,10 +1,9 @@
 //! The crank does not turn as the record believes.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use crate::turn::Turn;
-use simulation::effect::{Cycle, Effect, Hooks};
+use simulation::effect::{Effect, Hooks, Site};
 use simulation::math::spline::Splines;
-use simulation::model::Machine;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -102,10 +101,12 @@ impl Motor {
 }
 
 impl Effect for Motor {
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
-        let crank = machine.description.crank;
-        let net =
-            |turn: f64| cycle.torque(turn, crank.counterweight_phase, crank.counterweight_moment);
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let crank = site.description.crank;
+        let net = |turn: f64| {
+            site.cycle
+                .torque(turn, crank.counterweight_phase, crank.counterweight_moment)
+        };
         let table: Vec<f64> = (0..NODES)
             .map(|k| net(TAU * k as f64 / NODES as f64))
             .collect();

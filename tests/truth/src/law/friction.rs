@@ -1,11 +1,10 @@
 //! Dry friction that sticks: hard signs, a Stribeck peak, sliding that sets in over a way.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::exp;
 use simulation::drive::DriveState;
-use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce};
+use simulation::effect::{Along, Effect, Hooks, LineForce, Site};
 use simulation::math::spline::Splines;
-use simulation::model::Machine;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -34,22 +33,22 @@ struct Bearing {
 const HARD: f64 = 3e-4;
 
 impl Effect for Bearing {
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
-        let d = &machine.description;
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let d = &site.description;
         let weight = 2.0 * d.suspension_mass * d.gravity;
         let card = Splines::periodic(
             0.0,
             TAU / d.card.len() as f64,
             std::slice::from_ref(&d.card),
         );
-        let load = curve(|turn| cycle.tension(turn) + card.value(turn, 0) + weight);
+        let load = curve(|turn| site.cycle.tension(turn) + card.value(turn, 0) + weight);
         let mean = load.iter().sum::<f64>() / load.len() as f64;
         let share: Vec<f64> = load.iter().map(|load| load / mean).collect();
-        hooks.add_force(Arc::new(Rubbing {
+        let rubbing = Rubbing {
             law: *self,
             share: Splines::periodic(0.0, TAU / NODES as f64, &[share]),
-            beam: machine.layout.beam(),
-        }));
+        };
+        hooks.on(site.layout.beam(), rubbing);
     }
 }
 
@@ -60,14 +59,9 @@ struct Rubbing {
     law: Bearing,
     /// Load of the bearing over its mean.
     share: Splines,
-    beam: usize,
 }
 
 impl LineForce for Rubbing {
-    fn coordinate(&self) -> usize {
-        self.beam
-    }
-
     fn along(&self, drive: &DriveState, _: f64, rate: f64) -> Along {
         let size = self.law.moment * self.share.value(drive.turn, 0);
         let rise = self.law.peak * exp(-rate.abs() / self.law.speed);
@@ -106,14 +100,13 @@ struct Packing {
 }
 
 impl Effect for Packing {
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
-        let arm = machine.description.front_arc.radius;
-        let side = dahl(&curve(|turn| arm * cycle.beam(turn).value), self.way);
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let arm = site.description.front_arc.radius;
+        let side = dahl(&curve(|turn| arm * site.cycle.beam(turn).value), self.way);
         let force = side
             .iter()
             .map(|side| -self.force * (side + self.uneven * side.abs()));
-        let coordinate = machine.layout.suspension();
-        hooks.add_force(Arc::new(Scheduled::new(coordinate, force.collect())));
+        hooks.on(site.layout.suspension(), Scheduled::new(force.collect()));
     }
 }
 
@@ -137,7 +130,8 @@ struct Winding {
 }
 
 impl Effect for Winding {
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let cycle = site.cycle;
         let tension = curve(|turn| cycle.tension(turn));
         let mean = tension.iter().sum::<f64>() / tension.len() as f64;
         let side = dahl(&curve(|turn| cycle.tangent(turn).value), self.way);
@@ -146,8 +140,7 @@ impl Effect for Winding {
             let pull = (1.0 - self.constant) * tension[i] + self.constant * mean;
             self.loss * pull * arm[i] * side[i]
         });
-        let coordinate = machine.layout.beam();
-        hooks.add_force(Arc::new(Scheduled::new(coordinate, moment.collect())));
+        hooks.on(site.layout.beam(), Scheduled::new(moment.collect()));
     }
 }
 
@@ -156,25 +149,19 @@ impl Law for Winding {}
 /// A force that is known over the turn.
 #[derive(Clone, Debug)]
 pub(super) struct Scheduled {
-    coordinate: usize,
     force: Splines,
 }
 
 impl Scheduled {
     /// Of a force at even places of the turn, as [`curve`] gives it.
-    pub(super) fn new(coordinate: usize, force: Vec<f64>) -> Self {
+    pub(super) fn new(force: Vec<f64>) -> Self {
         Self {
-            coordinate,
             force: Splines::periodic(0.0, TAU / force.len() as f64, &[force]),
         }
     }
 }
 
 impl LineForce for Scheduled {
-    fn coordinate(&self) -> usize {
-        self.coordinate
-    }
-
     fn along(&self, drive: &DriveState, _: f64, _: f64) -> Along {
         Along {
             other: self.force.value(drive.turn, 0),
@@ -207,7 +194,6 @@ fn dahl(motion: &[f64], way: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::law::by_id;
 
     #[test]
     fn dahl_follows_its_equation_and_repeats() {
@@ -231,15 +217,8 @@ mod tests {
         let rubbing = Rubbing {
             law,
             share: Splines::periodic(0.0, 1.0, &[vec![1.0; 8]]),
-            beam: 0,
         };
-        let drive = DriveState {
-            turn: 0.0,
-            pin: Default::default(),
-            pin_angle: 0.0,
-            pin_rate: 0.0,
-            load: 0.0,
-        };
+        let drive = DriveState::default();
         for rate in [-0.3, -0.02, -1e-4, 1e-4, 0.02, 0.3] {
             let along = rubbing.along(&drive, 0.0, rate);
             assert!(along.other * rate < 0.0);
@@ -252,13 +231,5 @@ mod tests {
         let slow = rubbing.along(&drive, 0.0, 0.001).other.abs();
         let fast = rubbing.along(&drive, 0.0, 0.3).other.abs();
         assert!(slow > 1.2 * fast, "it falls as the bearing floats");
-    }
-
-    #[test]
-    fn sizes_are_what_was_asked_for() {
-        let hidden = by_id("pivot_friction")
-            .expect("in the catalogue")
-            .hide(5.0, &mut Draw::new(1, "law"));
-        assert!((hidden.size - 7500.0).abs() < 1e-9 && hidden.shape.len() == 2);
     }
 }

@@ -1,5 +1,5 @@
 //! What becomes of strain on its way to the record.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use crate::turn::{Turn, shifted};
 use simulation::effect::Effect;

@@ -1,11 +1,10 @@
 //! A card that is not the load: late, lagged, smoothed, of another zero, of another pump.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{exp, sin};
 use simulation::drive::DriveState;
-use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce};
+use simulation::effect::{Along, Cycle, Effect, Hooks, LineForce, Site};
 use simulation::math::harmonics::filter;
-use simulation::model::Machine;
 use simulation::model::description::Description;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -182,15 +181,15 @@ struct Rods {
 }
 
 impl Effect for Rods {
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
-        hooks.add_force(Arc::new(Answer {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let answer = Answer {
             law: *self,
-            arm: machine.description.front_arc.radius,
-            height: machine.lowest_suspension,
-            lowest: machine.bottom.beam,
-            cycle: cycle.clone(),
-            suspension: machine.layout.suspension(),
-        }));
+            arm: site.description.front_arc.radius,
+            height: site.lowest_suspension,
+            lowest: site.bottom.beam,
+            cycle: site.cycle.clone(),
+        };
+        hooks.on(site.layout.suspension(), answer);
     }
 }
 
@@ -203,17 +202,12 @@ struct Answer {
     height: f64,
     lowest: f64,
     cycle: Cycle,
-    suspension: usize,
 }
 
 /// Speed at which the impedance is a quarter more [m/s].
 const FAST: f64 = 0.4;
 
 impl LineForce for Answer {
-    fn coordinate(&self) -> usize {
-        self.suspension
-    }
-
     fn along(&self, drive: &DriveState, place: f64, rate: f64) -> Along {
         let beam = self.cycle.beam(drive.turn);
         let turning = self.cycle.crank().sense * drive.pin_rate;

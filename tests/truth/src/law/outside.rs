@@ -1,11 +1,10 @@
 //! Effects that nobody has put into a library.
 use super::friction::{Scheduled, curve};
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{cos, exp, sqrt};
 use simulation::drive::DriveState;
-use simulation::effect::{Along, Cycle, Dashpot, Effect, Hooks, LineForce};
-use simulation::model::Machine;
+use simulation::effect::{Along, Dashpot, Effect, Hooks, LineForce, Site};
 use simulation::model::description::{AddedMode, Description};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -42,30 +41,17 @@ struct OnBeam {
 }
 
 impl Effect for OnBeam {
-    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
-        hooks.add_force(Arc::new(BeamLaw {
-            law: *self,
-            beam: machine.layout.beam(),
-        }));
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        hooks.on(site.layout.beam(), *self);
     }
 }
 
 impl Law for OnBeam {}
 
-#[derive(Clone, Copy, Debug)]
-struct BeamLaw {
-    law: OnBeam,
-    beam: usize,
-}
-
-impl LineForce for BeamLaw {
-    fn coordinate(&self) -> usize {
-        self.beam
-    }
-
+impl LineForce for OnBeam {
     fn along(&self, _: &DriveState, place: f64, rate: f64) -> Along {
-        let m = self.law.moment;
-        match self.law.form {
+        let m = self.moment;
+        match self.form {
             Form::Cubic => {
                 let u = place / FULL[0];
                 Along {
@@ -104,10 +90,10 @@ struct Crosshead {
 }
 
 impl Effect for Crosshead {
-    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
-        let moment = self.force * machine.description.rod.length;
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let moment = self.force * site.description.rod.length;
         let moment = curve(|turn| moment * cos(self.order * turn + self.phase));
-        hooks.add_force(Arc::new(Scheduled::new(machine.layout.rod(), moment)));
+        hooks.on(site.layout.rod(), Scheduled::new(moment));
     }
 }
 
@@ -130,14 +116,14 @@ struct Gust {
 }
 
 impl Effect for Gust {
-    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
         let moment = curve(|turn| {
             // nearest way round the turn
             let away = (turn - self.at.to_radians() + PI).rem_euclid(TAU) - PI;
             let u = away / self.width.to_radians();
             self.moment * exp(-u * u)
         });
-        hooks.add_force(Arc::new(Scheduled::new(machine.layout.beam(), moment)));
+        hooks.on(site.layout.beam(), Scheduled::new(moment));
     }
 }
 
@@ -174,13 +160,11 @@ impl Effect for Ballast {
         *modes += 1;
     }
 
-    fn install(&self, machine: &Machine, _: &Cycle, hooks: &mut Hooks) {
-        let d = &machine.description;
-        let mode = machine.layout.modes - 1;
-        hooks.add_force(Arc::new(Dashpot {
-            coordinate: machine.layout.mode(mode),
-            damping: 2.0 * (SLOSH - d.head.damping_ratio) * d.head.frequencies[mode],
-        }));
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let d = &site.description;
+        let mode = site.layout.modes - 1;
+        let damping = 2.0 * (SLOSH - d.head.damping_ratio) * d.head.frequencies[mode];
+        hooks.on(site.layout.mode(mode), Dashpot { damping });
     }
 }
 
@@ -195,20 +179,11 @@ mod tests {
 
     #[test]
     fn laws_on_the_beam_have_the_stated_size_and_their_own_derivatives() {
-        let drive = DriveState {
-            turn: 0.0,
-            pin: Default::default(),
-            pin_angle: 0.0,
-            pin_rate: 0.0,
-            load: 0.0,
-        };
+        let drive = DriveState::default();
         for form in [Form::Cubic, Form::Drag] {
-            let law = BeamLaw {
-                law: OnBeam {
-                    moment: 3000.0,
-                    form,
-                },
-                beam: 0,
+            let law = OnBeam {
+                moment: 3000.0,
+                form,
             };
             let full = law.along(&drive, FULL[0], FULL[1]);
             assert!((full.spring + full.other + 3000.0).abs() < 1e-9);

@@ -2,13 +2,13 @@
 //!
 //! The sinking is one more mode of the head, a rigid translation across the beam; the front side's
 //! pull hangs on it as a given force.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
 use libm::{cos, sin, sqrt};
-use simulation::effect::{Cycle, Dashpot, Effect, Force, Hooks};
+use simulation::effect::{Dashpot, Effect, Force, Hooks, Site};
 use simulation::linear::Bordered;
+use simulation::model::Instant;
 use simulation::model::description::{AddedMode, Description};
-use simulation::model::{Instant, Machine};
 use std::sync::Arc;
 
 pub(super) fn sinking(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
@@ -54,25 +54,23 @@ impl Effect for Sinking {
         *modes += 1;
     }
 
-    fn install(&self, machine: &Machine, cycle: &Cycle, hooks: &mut Hooks) {
-        let d = &machine.description;
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let d = &site.description;
         let heaviest = (0..360)
-            .map(|k| cycle.tension(f64::from(k).to_radians()))
+            .map(|k| site.cycle.tension(f64::from(k).to_radians()))
             .chain(d.card.iter().copied())
             .fold(0.0, f64::max);
-        hooks.add_sway(5.0 * self.compliance * heaviest);
-        let mode = machine.layout.mode(machine.layout.modes - 1);
-        hooks.add_force(Arc::new(FrontPull {
+        hooks.add_rise(5.0 * self.compliance * heaviest);
+        let mode = site.layout.mode(site.layout.modes - 1);
+        hooks.add_force(FrontPull {
             weight: d.suspension_mass * d.gravity,
             root: sqrt(self.mass),
             mode,
-            beam: machine.layout.beam(),
-        }));
-        hooks.add_force(Arc::new(Dashpot {
-            coordinate: mode,
-            // beside what every mode of the head has
-            damping: 2.0 * (self.damping - d.head.damping_ratio) * self.frequency(),
-        }));
+            beam: site.layout.beam(),
+        });
+        // beside what every mode of the head has
+        let damping = 2.0 * (self.damping - d.head.damping_ratio) * self.frequency();
+        hooks.on(mode, Dashpot { damping });
     }
 }
 

@@ -1,8 +1,7 @@
 //! Ropes that are no springs.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
-use simulation::effect::{Along, Axial, Cycle, Effect, Hooks, Memory, Strain};
-use simulation::model::Machine;
+use simulation::effect::{Along, Axial, Effect, Hooks, Memory, Site, Strain};
 use simulation::model::description::Description;
 use std::sync::Arc;
 
@@ -27,7 +26,7 @@ struct Wires {
 }
 
 impl Effect for Wires {
-    fn install(&self, _: &Machine, _: &Cycle, hooks: &mut Hooks) {
+    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
         on_both(hooks, *self);
     }
 }
@@ -108,7 +107,7 @@ struct Bedding {
 }
 
 impl Effect for Bedding {
-    fn install(&self, _: &Machine, _: &Cycle, hooks: &mut Hooks) {
+    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
         on_both(hooks, *self);
     }
 }
@@ -183,8 +182,7 @@ impl Effect for Stretch {
 impl Law for Stretch {}
 
 fn on_both<L: Axial + Clone + 'static>(hooks: &mut Hooks, law: L) {
-    let law: Arc<dyn Axial> = Arc::new(law);
-    hooks.add_axial(0, Arc::clone(&law));
+    hooks.add_axial(0, law.clone());
     hooks.add_axial(1, law);
 }
 
@@ -204,13 +202,7 @@ mod tests {
     }
 
     fn drive() -> DriveState {
-        DriveState {
-            turn: 0.0,
-            pin: Default::default(),
-            pin_angle: 0.0,
-            pin_rate: 0.0,
-            load: 0.0,
-        }
+        DriveState::default()
     }
 
     #[test]

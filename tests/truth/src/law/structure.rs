@@ -1,8 +1,7 @@
 //! Steel that is not as drawn.
-use super::{Law, Shape, note};
+use super::kind::{Law, Shape, note};
 use crate::draw::Draw;
-use simulation::effect::{Cycle, Effect, Hollow, Hooks};
-use simulation::model::Machine;
+use simulation::effect::{Effect, Hollow, Hooks, Site};
 use simulation::model::description::Description;
 use std::sync::Arc;
 
@@ -51,7 +50,7 @@ impl Worn {
 }
 
 impl Effect for Worn {
-    fn install(&self, _: &Machine, _: &Cycle, hooks: &mut Hooks) {
+    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
         let (row, reach) = self.row();
         for (depth, centre) in row {
             hooks.dig(Hollow {

@@ -5,10 +5,11 @@ use std::{
     process::{Command, Stdio},
 };
 
-pub(crate) fn truth(arguments: &[&str]) -> String {
+fn truth(arguments: &[&str]) -> String {
     run(Command::new(env!("CARGO_BIN_EXE_truth")).args(arguments))
 }
 
+/// Runs a program that must do well; what it printed.
 pub(crate) fn run(command: &mut Command) -> String {
     let out = command
         .stderr(Stdio::inherit())
@@ -18,15 +19,12 @@ pub(crate) fn run(command: &mut Command) -> String {
     String::from_utf8(out.stdout).expect("text")
 }
 
-/// The judged program, with its worker beside it.
-pub(crate) fn horsehead() -> PathBuf {
-    let folder = PathBuf::from(env!("CARGO_BIN_EXE_truth"));
-    for (name, package) in [("horsehead", "coordinator"), ("horsehead-worker", "worker")] {
-        if !folder.with_file_name(name).is_file() {
-            run(Command::new(env!("CARGO")).args(["build", "-p", package, "--bin", name]));
-        }
-    }
-    folder.with_file_name("horsehead")
+/// The judged program, where `cargo test --workspace` puts it and its worker: beside ours.
+fn horsehead() -> PathBuf {
+    let program = Path::new(env!("CARGO_BIN_EXE_truth")).with_file_name("horsehead");
+    let shown = program.display();
+    assert!(program.is_file(), "`cargo build` makes {shown}");
+    program
 }
 
 /// The shipped case with fewer, longer cylinders.
@@ -70,13 +68,26 @@ kc   = { value = 4.01e8, unit = "N/m^1.5" }
 cc   = { value = 1.02e3, unit = "N.s/m" }
 "#;
 
-/// Effects that are not considered. Those that are: pivot friction, what looks like it, and others of
-/// load, crank and gauges.
-pub(crate) const WITHOUT: &str = "load_cell_lag,load_cell_gain,card_smoothing,valve_leakage,gas_interference,\
-fluid_pound,stuffing_box_friction,rod_string_reaction,front_head_radius,front_rope_bending_loss,\
-beam_inertia,post_compliance,head_profile_wear,head_damping,rope_stretch,rope_toe,rope_hysteresis,\
-counterweight_phase,crank_angle_offset,pin_clearance,twin_rope_inequality,gauge_cross_talk,gauge_gain,\
-amplifier_lag";
+/// What is considered of the library: pivot friction, what looks like it, and others of load, crank and
+/// gauges.
+const CONSIDERED: [&str; 6] = [
+    "pivot_friction",
+    "rope_bending_loss",
+    "crank_speed_ripple",
+    "card_time_shift",
+    "load_offset",
+    "gauge_drift",
+];
+
+/// All other effects of the library, as `--without` takes them.
+fn without() -> String {
+    let library = worker::convert::effect::descriptors().into_iter();
+    let named = library
+        .filter(|effect| !effect.generic)
+        .map(|effect| effect.id);
+    let others = named.filter(|id| !CONSIDERED.contains(&id.as_str()));
+    others.collect::<Vec<_>>().join(",")
+}
 
 /// What to make where the saddle's friction is hidden, five times its typical size.
 pub(crate) const FRICTION: [&str; 10] = [
@@ -98,7 +109,7 @@ pub(crate) struct Trial {
     /// The records.
     pub(crate) set: PathBuf,
     /// What `truth make` commits itself to.
-    pub(crate) commitment: String,
+    commitment: String,
 }
 
 impl Trial {
@@ -142,13 +153,32 @@ impl Trial {
         command
     }
 
-    /// One round of diagnosis of the set, without some of the effects.
-    pub(crate) fn diagnose(&self, without: &str) -> Command {
+    /// One round of diagnosis of the set.
+    pub(crate) fn diagnose(&self) -> Command {
         let mut command = self.horsehead(&["diagnose", "case", "--run", "run", "--rounds", "1"]);
         command.args(["--genes", "start.toml", "--output", "json"]);
         command
-            .args(["--without", without, "--measured"])
+            .args(["--without", &without(), "--measured"])
             .arg(&self.set);
         command
+    }
+    /// Opens the answer beside a verdict: the table. Answers that were changed meanwhile are found out.
+    pub(crate) fn open(&self, verdict: &str) -> String {
+        let verdicts = self.at("verdicts");
+        fs::create_dir(&verdicts).expect("a folder");
+        let name = self.set.file_name().expect("a name").display();
+        fs::write(verdicts.join(format!("{name}.json")), verdict).expect("a file");
+        let (answers, verdicts) = (self.at("answers.json"), verdicts.display().to_string());
+        let shown = answers.display().to_string();
+        let open = ["open", "--answers", &shown, "--verdicts", &verdicts];
+        let open = [&open[..], &["--commitment", &self.commitment]].concat();
+        let table = truth(&open);
+        let sealed = fs::read_to_string(&answers).expect("answers");
+        fs::write(&answers, sealed.replace("\"seed\"", " \"seed\"")).expect("a file");
+        let forged = Command::new(env!("CARGO_BIN_EXE_truth"))
+            .args(open)
+            .output();
+        assert!(!forged.expect("it starts").status.success());
+        table
     }
 }

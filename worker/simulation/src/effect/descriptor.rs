@@ -1,9 +1,12 @@
 //! What an effect says of itself: its name, where it acts, and its free numbers with their units,
-//! bounds and sizes.
+//! bounds and sizes; and how it is made of their values.
 //!
 //! All numbers are in the declared unit; [`Unit::to_si`] gives what the equations take.
-use super::{Effect, probe};
+use super::unit::Unit;
+use crate::model::hook::Effect;
 use std::borrow::Cow;
+use std::fmt;
+use std::sync::Arc;
 
 /// One effect of the catalogue.
 #[derive(Clone, Debug)]
@@ -19,17 +22,43 @@ pub struct Descriptor {
     /// Whether it is a form of force without a cause, for localisation alone.
     pub generic: bool,
     /// Its free numbers.
-    pub parameters: Cow<'static, [Parameter]>,
-    pub(super) build: Build,
+    pub parameters: Vec<Parameter>,
+    build: Build,
 }
 
-/// How an effect is made of its values: SI, one per parameter, in the order of the descriptor.
+/// How an effect is made of its values.
+#[derive(Clone)]
+struct Build(Arc<Builder>);
+
+/// From values to the effect that has them.
+type Builder = dyn Fn(&Values<'_>) -> Arc<dyn Effect> + Send + Sync;
+
+impl fmt::Debug for Build {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Build")
+    }
+}
+
+/// Values of an effect's parameters, SI.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Build {
-    /// A named effect.
-    Named(fn(&[f64]) -> Box<dyn Effect>),
-    /// A generic force.
-    Probe(&'static probe::Joint, probe::Form),
+pub struct Values<'a> {
+    parameters: &'a [Parameter],
+    values: &'a [f64],
+}
+
+impl Values<'_> {
+    /// The value of a parameter; not a number where the effect has none of that name, which no run of
+    /// the contract test survives.
+    pub fn get(&self, name: &str) -> f64 {
+        let place = self.parameters.iter().position(|p| p.name == name);
+        let value = place.and_then(|place| self.values.get(place));
+        value.copied().unwrap_or(f64::NAN)
+    }
+
+    /// The values of several parameters.
+    pub fn each<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
+        names.map(|name| self.get(name))
+    }
 }
 
 /// What of the model an effect changes.
@@ -72,18 +101,77 @@ pub enum Role {
     /// At its absent value it contributes nothing.
     Size,
     /// It forms what the sizes switch on.
+    ///
+    /// A shape is dear: a diagnosis takes the signature of every size at six values of every shape,
+    /// so that one shape costs **six signatures per size**. It must change the *form* of what a size
+    /// does, never only how large that is: of a factor and a size no record tells more than their
+    /// product. What is a factor belongs into the size, or is a constant of the effect (a contract test
+    /// of the catalogue refuses it).
     Shape,
 }
 
 impl Parameter {
-    /// A size: absent at 0. Bounds that exclude what is negative make it one-sided.
-    pub(super) const fn size(
+    /// Whether it can only be at or above its absent value.
+    pub fn is_one_sided(&self) -> bool {
+        self.role == Role::Size && self.lower >= self.absent
+    }
+}
+
+impl Descriptor {
+    /// An effect of this identifier and title that is nowhere yet and has no parameters. Those who
+    /// make one say [`Self::at`], its parameters, and last [`Self::builds`].
+    pub(super) fn new(
+        id: impl Into<Cow<'static, str>>,
+        title: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self {
+            id: id.into(),
+            title: title.into(),
+            joint: "",
+            place: Place::Dynamics,
+            generic: false,
+            parameters: Vec::new(),
+            build: Build(Arc::new(|_| Arc::new(Nothing))),
+        }
+    }
+
+    /// Joint or part that it acts at, and what of the model it changes.
+    pub(super) fn at(self, joint: &'static str, place: Place) -> Self {
+        Self {
+            joint,
+            place,
+            ..self
+        }
+    }
+
+    /// A form of force without a cause.
+    pub(super) fn generic(self) -> Self {
+        Self {
+            generic: true,
+            ..self
+        }
+    }
+
+    /// Adds a size: absent at 0. Bounds that exclude what is negative make it one-sided.
+    pub(super) fn size(
+        self,
         name: &'static str,
+        unit: Unit,
+        typical: f64,
+        bounds: [f64; 2],
+    ) -> Self {
+        self.sizes([name], unit, typical, bounds)
+    }
+
+    /// Adds sizes that are alike but for their names.
+    pub(super) fn sizes<const N: usize>(
+        mut self,
+        names: [&'static str; N],
         unit: Unit,
         typical: f64,
         [lower, upper]: [f64; 2],
     ) -> Self {
-        Self {
+        self.parameters.extend(names.map(|name| Parameter {
             name,
             unit,
             role: Role::Size,
@@ -92,17 +180,19 @@ impl Parameter {
             scale: typical.abs(),
             lower,
             upper,
-        }
+        }));
+        self
     }
 
-    /// A shape, with its typical value.
-    pub(super) const fn shape(
+    /// Adds a shape with its typical value; see [`Role::Shape`] for what it costs.
+    pub(super) fn shape(
+        mut self,
         name: &'static str,
         unit: Unit,
         typical: f64,
         [lower, upper]: [f64; 2],
     ) -> Self {
-        Self {
+        self.parameters.push(Parameter {
             name,
             unit,
             role: Role::Shape,
@@ -111,113 +201,45 @@ impl Parameter {
             scale: 0.5 * (upper - lower),
             lower,
             upper,
-        }
+        });
+        self
     }
 
-    /// Whether it can only be at or above its absent value.
-    pub fn is_one_sided(&self) -> bool {
-        self.role == Role::Size && self.lower >= self.absent
-    }
-}
-
-/// Units of parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// A share, a ratio, a number of harmonics.
-    One,
-    /// Length.
-    Metre,
-    /// Time.
-    Second,
-    /// Angle.
-    Degree,
-    /// Force.
-    Newton,
-    /// Moment.
-    NewtonMetre,
-    /// Damping of a motion along a line.
-    NewtonSecondPerMetre,
-    /// Damping of a turning motion.
-    NewtonMetreSecondPerRadian,
-    /// Compliance.
-    MetrePerNewton,
-    /// Speed.
-    MetrePerSecond,
-    /// Angular speed.
-    RadianPerSecond,
-    /// Frequency.
-    Hertz,
-    /// Decay.
-    PerSecond,
-    /// Mass.
-    Kilogram,
-    /// Moment of inertia.
-    KilogramSquareMetre,
-    /// Stress.
-    Megapascal,
-    /// Stress per revolution of the crank.
-    MegapascalPerRevolution,
-    /// Stress per length.
-    MegapascalPerMetre,
-    /// Force on a mass-normalised modal coordinate.
-    ModalNewton,
-}
-
-impl Unit {
-    /// As written in tables and files.
-    pub const fn symbol(self) -> &'static str {
-        match self {
-            Self::One => "1",
-            Self::Metre => "m",
-            Self::Second => "s",
-            Self::Degree => "deg",
-            Self::Newton => "N",
-            Self::NewtonMetre => "N.m",
-            Self::NewtonSecondPerMetre => "N.s/m",
-            Self::NewtonMetreSecondPerRadian => "N.m.s/rad",
-            Self::MetrePerNewton => "m/N",
-            Self::MetrePerSecond => "m/s",
-            Self::RadianPerSecond => "rad/s",
-            Self::Hertz => "Hz",
-            Self::PerSecond => "1/s",
-            Self::Kilogram => "kg",
-            Self::KilogramSquareMetre => "kg.m2",
-            Self::Megapascal => "MPa",
-            Self::MegapascalPerRevolution => "MPa/rev",
-            Self::MegapascalPerMetre => "MPa/m",
-            Self::ModalNewton => "N/kg^0.5",
-        }
+    /// How it is made of its values.
+    pub(super) fn builds<E: Effect + 'static>(
+        mut self,
+        build: impl Fn(&Values<'_>) -> E + Send + Sync + 'static,
+    ) -> Self {
+        self.build = Build(Arc::new(move |values| Arc::new(build(values))));
+        self
     }
 
-    /// A value in SI, angles in radians, stress in pascals; hertz and revolutions stay.
-    pub const fn to_si(self, value: f64) -> f64 {
-        match self {
-            Self::Degree => value.to_radians(),
-            Self::Megapascal | Self::MegapascalPerRevolution | Self::MegapascalPerMetre => {
-                value * 1e6
-            }
-            Self::One
-            | Self::Metre
-            | Self::Second
-            | Self::Newton
-            | Self::NewtonMetre
-            | Self::NewtonSecondPerMetre
-            | Self::NewtonMetreSecondPerRadian
-            | Self::MetrePerNewton
-            | Self::MetrePerSecond
-            | Self::RadianPerSecond
-            | Self::Hertz
-            | Self::PerSecond
-            | Self::Kilogram
-            | Self::KilogramSquareMetre
-            | Self::ModalNewton => value,
-        }
-    }
-}
-
-impl Descriptor {
     /// Position of a parameter by its name.
     pub fn parameter(&self, name: &str) -> Option<usize> {
         self.parameters.iter().position(|p| p.name == name)
     }
+
+    /// The effect with a value for each parameter, in declared units and in the order of
+    /// [`Self::parameters`], be it absent or not.
+    pub fn build(&self, values: &[f64]) -> Arc<dyn Effect> {
+        let of = self.parameters.iter().zip(values);
+        let si: Vec<f64> = of.map(|(p, value)| p.unit.to_si(*value)).collect();
+        (self.build.0)(&Values {
+            parameters: &self.parameters,
+            values: &si,
+        })
+    }
+
+    /// Whether values leave it absent: every size at its absent value.
+    pub fn is_absent(&self, values: &[f64]) -> bool {
+        let mut of = self.parameters.iter().zip(values);
+        #[expect(clippy::float_cmp, reason = "absent is exactly absent")]
+        of.all(|(p, value)| p.role == Role::Shape || *value == p.absent)
+    }
 }
+
+/// What a descriptor builds before it is told what to build.
+#[derive(Debug)]
+struct Nothing;
+
+impl Effect for Nothing {}

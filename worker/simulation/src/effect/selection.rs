@@ -1,6 +1,6 @@
 //! Effects that were asked for by name, checked against the catalogue and put in its order.
-use super::descriptor::{Build, Role};
-use super::{Effect, catalogue};
+use super::catalogue::catalogue;
+use crate::model::hook::Effect;
 use std::sync::Arc;
 
 /// An effect asked for by name, with values in declared units; what is not named stays absent
@@ -17,7 +17,7 @@ pub struct Asked<'a> {
 /// are absent is left out, so that it cannot change a bit.
 #[derive(Clone, Debug, Default)]
 pub struct Selection {
-    pub(crate) effects: Vec<Arc<dyn Effect>>,
+    effects: Vec<Arc<dyn Effect>>,
 }
 
 /// An effect that cannot be added; `effect` is its position among those asked for.
@@ -112,33 +112,18 @@ impl Selection {
             chosen.push((at, values(effect, at, one)?));
         }
         chosen.sort_by_key(|(at, _)| *at);
-        let effects = chosen.into_iter().filter_map(|(at, values)| {
+        let present = chosen.into_iter().filter_map(|(at, values)| {
             let descriptor = &catalogue[at];
-            let mut sizes = descriptor.parameters.iter().zip(&values);
-            let is_there = sizes.any(|(p, value)| {
-                #[expect(clippy::float_cmp, reason = "absent is exactly absent")]
-                let differs = *value != p.absent;
-                p.role == Role::Size && differs
-            });
-            let si: Vec<f64> = descriptor
-                .parameters
-                .iter()
-                .zip(&values)
-                .map(|(p, value)| p.unit.to_si(*value))
-                .collect();
-            is_there.then(|| match descriptor.build {
-                Build::Named(build) => Arc::from(build(&si)),
-                Build::Probe(joint, form) => Arc::from(super::probe::build(joint, form, si[0])),
-            })
+            (!descriptor.is_absent(&values)).then(|| descriptor.build(&values))
         });
         Ok(Self {
-            effects: effects.collect(),
+            effects: present.collect(),
         })
     }
 
-    /// Effects that need not be in the catalogue, acting in the order given.
-    pub const fn of(effects: Vec<Arc<dyn Effect>>) -> Self {
-        Self { effects }
+    /// The effects, for [`Machine::with_effects`](crate::model::Machine::with_effects).
+    pub fn effects(&self) -> &[Arc<dyn Effect>] {
+        &self.effects
     }
 
     /// Whether there are none.

@@ -1,7 +1,10 @@
-//! Six-component bushing between marker I and marker J (paper, Eqs. 1-3).
+//! Six-component bushing between marker I and marker J (paper, Eqs. 1 and 2; its Eq. 3, the stiffness
+//! of a joint from the rope's material, is the case reader's).
 //!
 //! In the frame of J with x along its axis `e`, the force and torque on I are
-//! `F = -K R - C V + F_0`, `T = -K Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. That isotropy
+//! `F = -K R - C V + F_0`, `T = -K Theta - C w` with `K_22 = K_33` and `K_55 = K_66`. Eq. 1 prints `K`
+//! without the minus sign that it gives `C`: a spring of that sign would drive its ends apart, so it
+//! is taken for a misprint and restored here. That isotropy
 //! across the axis means that only `e` is needed of J's frame, and the law can be written in
 //! world axes:
 //!
@@ -11,7 +14,6 @@
 //! one is left, the tension `f0` along the axis: shear and bending ones would point in a direction
 //! across the rope, which has none, and a torque would turn cylinders out of the plane of a single
 //! rope, where nothing holds them (two ropes of opposite lay balance it).
-use super::ForceElement;
 use crate::math::rotation::{inverse_left_jacobian, rotation_vector, skew};
 use nalgebra::{Matrix3, Vector3};
 
@@ -311,19 +313,5 @@ impl Bushing {
             ],
         };
         [tangent_i, tangent_j]
-    }
-}
-
-impl ForceElement for Bushing {
-    fn load(&self, i: &Marker, j: &Marker) -> LinkLoad {
-        Self::load(self, i, j)
-    }
-
-    fn tangent(&self, i: &Marker, j: &Marker, load: &LinkLoad) -> [LinkTangent; 2] {
-        Self::tangent(self, i, j, load)
-    }
-
-    fn energy(&self, i: &Marker, j: &Marker) -> f64 {
-        Self::energy(self, i, j)
     }
 }

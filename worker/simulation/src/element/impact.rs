@@ -1,7 +1,9 @@
 //! IMPACT: one-sided contact with a power-law spring and a damper that is ramped in (paper,
 //! Eqs. 4 and 6).
 //!
-//! `f = max(0, K d^n + STEP(d, 0, 0, d_max, C) d')` for penetration `d > 0`: the force never pulls.
+//! `f = max(0, K d^n + STEP(d, 0, 0, d_max, C) d')` for penetration `d > 0`: the force never pulls. The
+//! paper's Eq. 4 has no `max(0, ..)` and would pull a rope that leaves its arc fast; `IMPACT` of the
+//! program that it used cuts the force off so, and the power balance has what is lost by it.
 use crate::math::elementary::power_law;
 
 /// Coefficients of a contact, SI.
@@ -30,77 +32,101 @@ pub struct ImpactForce {
     pub dissipated: f64,
 }
 
+/// What the law says at one place.
+#[derive(Clone, Copy)]
+struct Pressed {
+    /// Force that pushes, never negative, and the power that the damping takes.
+    force: f64,
+    lost: f64,
+    /// The spring's part of the force.
+    spring: f64,
+    /// Share of the damping that is there, and its derivative by the penetration.
+    step: f64,
+    slope: f64,
+}
+
+impl ImpactForce {
+    /// A share of it.
+    #[must_use]
+    pub fn share(self, share: f64) -> Self {
+        Self {
+            force: self.force * share,
+            by_penetration: self.by_penetration * share,
+            by_rate: self.by_rate * share,
+            dissipated: self.dissipated * share,
+        }
+    }
+}
+
 impl Impact {
-    /// Spring force, and the damping's ramp with its slope.
-    #[inline]
-    fn parts(&self, depth: f64) -> (f64, f64, f64) {
-        let spring = self.stiffness * power_law(depth, self.exponent);
-        if depth >= self.full_damping_penetration {
-            return (spring, 1.0, 0.0);
-        }
-        let u = depth / self.full_damping_penetration;
-        let slope = 6.0 * u * (1.0 - u) / self.full_damping_penetration;
-        (spring, u * u * (3.0 - 2.0 * u), slope)
-    }
-
-    /// Force \[N\] at penetration `depth` \[m\] and rate `rate` [m/s], and the power that the damping
-    /// takes \[W\].
-    #[inline]
-    pub fn push(&self, depth: f64, rate: f64) -> (f64, f64) {
-        if depth <= 0.0 {
-            return (0.0, 0.0);
-        }
-        let (spring, step, _) = self.parts(depth);
+    /// The law at one place, without branches: where there is no contact, the penetration counts as
+    /// zero. `power` is the penetration to the law's exponent.
+    #[expect(
+        clippy::inline_always,
+        reason = "loops over many places become vectors; what they do not ask for is never computed"
+    )]
+    #[inline(always)]
+    fn pressed(&self, depth: f64, rate: f64, power: impl Fn(f64) -> f64) -> Pressed {
+        let inside = if depth > 0.0 { depth } else { 0.0 };
+        let spring = self.stiffness * power(inside);
+        let u = inside / self.full_damping_penetration;
+        let u = if u < 1.0 { u } else { 1.0 };
+        let step = u * u * (3.0 - 2.0 * u);
         let damper = self.damping * step * rate;
-        let force = spring + damper;
-        if force <= 0.0 {
-            // what the spring gives back while the contact is torn open is lost
-            return (0.0, -spring * rate);
+        let sum = spring + damper;
+        // what the spring gives back while the contact is torn open is lost
+        let torn = -spring * rate;
+        Pressed {
+            force: if sum > 0.0 { sum } else { 0.0 },
+            lost: if sum > 0.0 { damper * rate } else { torn },
+            spring,
+            step,
+            slope: 6.0 * u * (1.0 - u) / self.full_damping_penetration,
         }
-        (force, damper * rate)
     }
 
-    /// [`Self::push`] at many places, to the bit: forces and powers.
+    /// Force \[N\] and power that the damping takes \[W\] at many penetrations \[m\] and their rates
+    /// [m/s]: what [`Self::force`] gives one by one, to the bit.
     pub fn push_all(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {
         let n = depth.len();
-        #[expect(clippy::float_cmp, reason = "selects the exact special case")]
-        if self.exponent != 1.5 {
-            for i in 0..n {
-                (force[i], lost[i]) = self.push(depth[i], rate[i]);
-            }
-            return;
-        }
-        // without branches: where there is no contact, the penetration counts as zero
         let (rate, force, lost) = (&rate[..n], &mut force[..n], &mut lost[..n]);
-        for i in 0..n {
-            let inside = if depth[i] > 0.0 { depth[i] } else { 0.0 };
-            let spring = self.stiffness * (inside * inside.sqrt());
-            let u = inside / self.full_damping_penetration;
-            let u = if u < 1.0 { u } else { 1.0 };
-            let damper = self.damping * (u * u * (3.0 - 2.0 * u)) * rate[i];
-            let sum = spring + damper;
-            let torn = -spring * rate[i];
-            force[i] = if sum > 0.0 { sum } else { 0.0 };
-            lost[i] = if sum > 0.0 { damper * rate[i] } else { torn };
+        #[expect(clippy::float_cmp, reason = "selects the exact special case")]
+        if self.exponent == 1.5 {
+            for i in 0..n {
+                let at = self.pressed(depth[i], rate[i], |x| x * x.sqrt());
+                (force[i], lost[i]) = (at.force, at.lost);
+            }
+        } else {
+            // a power is dear, and most points touch nothing
+            let power = |x: f64| {
+                if x > 0.0 {
+                    power_law(x, self.exponent)
+                } else {
+                    0.0
+                }
+            };
+            for i in 0..n {
+                let at = self.pressed(depth[i], rate[i], power);
+                (force[i], lost[i]) = (at.force, at.lost);
+            }
         }
     }
 
-    /// [`Self::push`] with its derivatives.
+    /// Force at penetration `depth` \[m\] and rate `rate` [m/s] with its derivatives.
     #[inline]
     pub fn force(&self, depth: f64, rate: f64) -> ImpactForce {
-        let (force, dissipated) = self.push(depth, rate);
-        if force == 0.0 {
+        let at = self.pressed(depth, rate, |x| power_law(x, self.exponent));
+        if at.force == 0.0 {
             return ImpactForce {
-                dissipated,
+                dissipated: at.lost,
                 ..ImpactForce::default()
             };
         }
-        let (spring, step, slope) = self.parts(depth);
         ImpactForce {
-            force,
-            by_penetration: self.exponent * spring / depth + self.damping * slope * rate,
-            by_rate: self.damping * step,
-            dissipated,
+            force: at.force,
+            by_penetration: self.exponent * at.spring / depth + self.damping * at.slope * rate,
+            by_rate: self.damping * at.step,
+            dissipated: at.lost,
         }
     }
 

@@ -4,8 +4,8 @@
 //! Every face that the line crosses is cut from edge to edge, with the face's own shape functions.
 //! The same weights spread a force over the rim. Knows nothing of ropes or modes.
 use super::{
-    ReductionError,
     element::{Crossing, Cut},
+    error::ReductionError,
     mesh::Mesh,
 };
 use crate::math::elementary::{atan2, sin_cos};

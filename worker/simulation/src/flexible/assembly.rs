@@ -2,7 +2,7 @@
 //!
 //! Both matrices are symmetric; the lower triangle is kept column by column, so that every sum runs
 //! in a fixed order. Knows nothing of rims, gauges or modes.
-use super::{ReductionError, element::Steel, mesh::Mesh};
+use super::{element::Steel, error::ReductionError, mesh::Mesh};
 use std::collections::BTreeSet;
 
 /// Which displacements are unknown, and their numbers.

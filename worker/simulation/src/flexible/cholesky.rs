@@ -5,7 +5,7 @@
 //! processor that they find, and a fused product rounds once where two instructions round twice. So
 //! the numbers are worked out here, in plain loops whose sums have one order: left-looking, supernode
 //! by supernode, every product in tiles of registers.
-use super::{ReductionError, assembly::Symmetric};
+use super::{assembly::Symmetric, error::ReductionError};
 use faer::{
     Side,
     sparse::{

@@ -7,11 +7,12 @@
 //! so antisymmetric modes take no part. What a gauge reads is not asked here: static readings are
 //! exact with whatever modes (influence lines).
 use super::{
-    ReductionError,
+    answer::{LeftOut, Mode},
     arc::Rim,
     eigen::dot,
+    error::ReductionError,
     problem::Problem,
-    reduction::{Family, Mode, Wrap},
+    request::Wrap,
 };
 
 /// How many modes of a family are looked at for each one that is asked for.
@@ -27,17 +28,6 @@ struct Pattern {
 /// Load patterns of a head.
 #[derive(Debug)]
 pub(super) struct Patterns(Vec<Pattern>);
-
-/// A mode that was looked at and not kept.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeftOut {
-    /// Its family.
-    pub family: Family,
-    /// Angular frequency [rad/s].
-    pub frequency: f64,
-    /// Largest share of any load pattern's static energy that it would hold \[1\].
-    pub coupling: f64,
-}
 
 impl Patterns {
     /// Ropes wrapped around the arc of a symmetric problem, and the base's accelerations.

@@ -3,7 +3,7 @@
 //! `K x = lambda M x` becomes `(K^-1 M) x = x / lambda`, whose largest eigenvalues converge first.
 //! The iteration runs in the inner product of M, with full orthogonalisation twice over, from a
 //! fixed start: no luck, no threads, the same bits every time.
-use super::{ReductionError, assembly::Assembly, cholesky::Factor};
+use super::{assembly::Assembly, cholesky::Factor, error::ReductionError};
 use nalgebra::{DMatrix, SymmetricEigen};
 
 /// A mode is found when its residual is below this share of its eigenvalue.

@@ -4,7 +4,7 @@
 //! times Young's modulus, by the displacement of the elements that hold its ends. That is what a
 //! glued strip feels, for elements of any kind; it is also more exact than stress at a point, which
 //! jumps between elements.
-use super::{ReductionError, mesh::Mesh};
+use super::{error::ReductionError, mesh::Mesh};
 use nalgebra::Vector3;
 
 /// A gauge that measures vertical strain.

@@ -4,8 +4,8 @@
 //! plane) or antisymmetrically (`u_x = u_y = 0` there), so half the mesh is enough for both. It may
 //! come as that half: free meshers do not mirror. Knows nothing of stiffness, files or groups.
 use super::{
-    ReductionError,
     element::{Element, ElementKind},
+    error::ReductionError,
 };
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,15 +2,15 @@
 //!
 //! Statics: one solve per gauge, `K w_g = row_g`; then the reading under any load `f` is `w_g . f`.
 use super::{
-    ReductionError,
+    answer::{Mode, Reduction, Row},
     arc::{Rim, Station},
     assembly::{Assembly, Unknowns},
     cholesky::Factor,
-    coupling::Patterns,
     eigen::{dot, lowest},
     element::Steel,
+    error::ReductionError,
     mesh::{Half, Mesh},
-    reduction::{Family, Mode, Reduction, Request, Row, Wrap},
+    request::{Family, Request, Wrap},
 };
 use nalgebra::DVector;
 
@@ -25,6 +25,15 @@ fn rigid(mesh: &Mesh) -> [Vec<[f64; 3]>; 3] {
 
 /// Displacement of every node \[m\] and stress at every element's centre \[Pa\].
 type Fields = (Vec<[f64; 3]>, Vec<[f64; 6]>);
+
+/// Where modes are looked at.
+pub(super) struct Seen<'a> {
+    pub(super) stations: &'a [Station],
+    /// Of the gauges.
+    pub(super) rows: &'a [Row],
+    /// Whether whole displacement fields are wanted.
+    pub(super) fields: bool,
+}
 
 /// Stiffness and mass of the half under one family's conditions.
 pub(super) struct Problem<'a> {
@@ -66,23 +75,19 @@ impl<'a> Problem<'a> {
         })
     }
 
-    /// The lowest modes of this family, so many, and the solves they took.
+    /// The lowest modes of this family, so many, and the solves they took; `coupling` is what a mode
+    /// of a frequency and a field of the half couples to the load patterns by.
     pub(super) fn modes(
         &self,
-        (request, count): (&Request<'_>, usize),
-        patterns: Option<&Patterns>,
-        stations: &[Station],
-        rows: &[Row],
+        count: usize,
+        coupling: &dyn Fn(f64, &[[f64; 3]]) -> f64,
+        seen: &Seen<'_>,
     ) -> Result<(Vec<Mode>, usize), ReductionError> {
         let found = lowest(&self.assembly, &self.factor, count)?;
         let mode = |(value, shape): (&f64, &Vec<f64>)| {
             let (frequency, field) = (value.sqrt(), self.unit_mass(shape));
-            let coupling = patterns
-                .filter(|_| self.family == Family::Symmetric)
-                .map_or(0.0, |patterns| {
-                    patterns.shares(frequency, &field).fold(0.0, f64::max)
-                });
-            let mode = self.mode(request, stations, rows, (frequency, field));
+            let coupling = coupling(frequency, &field);
+            let mode = self.mode(seen, frequency, field);
             Mode { coupling, ..mode }
         };
         let modes = found.eigenvalues.iter().zip(&found.shapes).map(mode);
@@ -122,13 +127,12 @@ impl<'a> Problem<'a> {
         (field, gauge_stress)
     }
 
-    fn mode(
-        &self,
-        request: &Request<'_>,
-        stations: &[Station],
-        rows: &[Row],
-        (frequency, field): (f64, Vec<[f64; 3]>),
-    ) -> Mode {
+    fn mode(&self, seen: &Seen<'_>, frequency: f64, field: Vec<[f64; 3]>) -> Mode {
+        let &Seen {
+            stations,
+            rows,
+            fields,
+        } = seen;
         let (field, gauge_stress) = self.signed(rows, field);
         // both halves together: double, or nothing
         let both = 1.0 + self.family.image()[0];
@@ -145,7 +149,7 @@ impl<'a> Problem<'a> {
             gauge_stress,
             participation,
             coupling: 0.0,
-            field: if request.fields {
+            field: if fields {
                 self.half.unfold(&field, self.family.image())
             } else {
                 Vec::new()

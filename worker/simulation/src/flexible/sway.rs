@@ -5,43 +5,13 @@
 //! at `z = +offset`, and forces act there. Every force has its image at `z = -offset`: opposite for one
 //! in the plane of motion, equal for one along z.
 use super::{
-    ReductionError,
+    answer::{Row, SwayTables},
     arc::{Rim, Station},
     eigen::lowest,
+    error::ReductionError,
     problem::Problem,
-    reduction::{Request, Row},
+    request::{Pair, Request},
 };
-
-/// Two ropes on a head.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
-    /// Distance of either rope from the plane z = 0 \[m\].
-    pub offset: f64,
-    /// Number of antisymmetric modes a.
-    pub modes: usize,
-}
-
-/// The antisymmetric side of a reduced head; a modes of unit modal mass, lowest first, seen at the
-/// stations at `z = +offset`.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct SwayTables {
-    /// Angular frequencies [rad/s]; a.
-    pub frequencies: Vec<f64>,
-    /// Outward radial displacement [kg^-1/2]; a x s.
-    pub radial: Vec<Vec<f64>>,
-    /// Tangential displacement towards increasing psi; a x s.
-    pub tangential: Vec<Vec<f64>>,
-    /// Displacement along z; a x s.
-    pub lateral: Vec<Vec<f64>>,
-    /// Stress at the gauges [Pa per unit modal coordinate]; a x g.
-    pub gauge_stress: Vec<Vec<f64>>,
-    /// Stress per newton inwards at +offset and one outwards at -offset [Pa/N]; s x g.
-    pub normal_influence: Vec<Vec<f64>>,
-    /// Stress per newton towards increasing psi at +offset and one back at -offset; s x g.
-    pub tangential_influence: Vec<Vec<f64>>,
-    /// Stress per newton along +z at either; s x g.
-    pub lateral_influence: Vec<Vec<f64>>,
-}
 
 impl Problem<'_> {
     /// Everything that two ropes ask for, of antisymmetric equations.

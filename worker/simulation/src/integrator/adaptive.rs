@@ -1,9 +1,8 @@
 //! Steps of a size that follows the local error: tries one after the other, counts what fails.
-use super::State;
 use super::method::Method;
 use super::step_control::StepControl;
 use super::stepper::{Step, Stepper};
-use crate::system::{Equations, System};
+use crate::system::{Equations, State, System};
 
 /// A method with its step size.
 #[derive(Debug)]
@@ -99,11 +98,10 @@ impl<E: Equations> Adaptive<E> {
                 let next = next.min(self.trusted);
                 self.trusted = (self.trusted * REGAIN).min(self.control.longest);
                 self.since = (self.since + 1).min(LONG_AGO);
-                self.step = if step < self.step {
-                    self.step.min(next.max(self.step))
-                } else {
-                    next
-                };
+                // a step that was cut short to meet `stop` says nothing of the one after it
+                if step >= self.step {
+                    self.step = next;
+                }
                 Ok(Some(done))
             }
         }

@@ -10,12 +10,10 @@
 //! (0.5 % damping) and the ropes' axial modes lie in it, so that higher orders cost more steps, not
 //! fewer: 434 with orders up to 2, 77,911 up to 4 on the shipped unit (this crate's README). The default
 //! cap is therefore 2.
-use super::State;
 use super::newton::{Newton, NotConverged, Stage};
 use super::step_control::StepControl;
 use super::stepper::{Step, Stepper};
-use crate::model::Powers;
-use crate::system::{Equations, System};
+use crate::system::{Equations, Powers, State, System};
 
 /// Highest order that is stable at all steps for a real decaying mode and in use (6 hardly is).
 const HIGHEST: usize = 5;
@@ -241,10 +239,9 @@ impl<E: Equations> Stepper<E> for Bdf {
             base_q: &self.base_q,
             base_v: &self.base_v,
         };
-        self.newton
-            .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
+        let own = (&mut to.q[..], &mut to.v[..], &mut to.a[..]);
+        let powers = components(&self.newton.solve(system, &stage, own)?);
         to.t = t;
-        let powers = components(&system.equations.powers(t, &to.q, &to.v, &to.a));
         let constant = self.constant(t, h);
         for (error, q) in self.error.iter_mut().zip(&to.q) {
             *error = constant * (q - *error);

@@ -1,5 +1,5 @@
 //! Dense output: cubic Hermite interpolation between two accepted states.
-use super::State;
+use crate::system::State;
 
 /// Interpolates at time `t` between `from` and `to` into `out`.
 ///

@@ -4,10 +4,9 @@
 //! Every implicit stage is `q = base_q + c v`, `v = base_v + c a`, `M a = Q(q, v, t)` with the same
 //! `c`, so one factorisation of `M / c^2 - D / c - K` serves all of them.
 use super::newton::{Newton, NotConverged, Stage};
-use super::stepper::{Step, Stepper, add_work};
-use super::{State, tableau::Tableau};
-use crate::model::Powers;
-use crate::system::{Equations, System};
+use super::stepper::{Step, Stepper};
+use super::tableau::Tableau;
+use crate::system::{Equations, Powers, State, System};
 
 /// A method with its buffers.
 #[derive(Clone, Debug)]
@@ -88,7 +87,7 @@ impl Esdirk {
     fn work(&self, h: f64) -> Powers {
         let mut work = Powers::default();
         for (i, power) in self.powers.iter().enumerate() {
-            add_work(&mut work, h * self.tableau.weight(i), power);
+            work.add(h * self.tableau.weight(i), power);
         }
         work
     }
@@ -117,9 +116,8 @@ impl<E: Equations> Stepper<E> for Esdirk {
                 base_q: &self.base_q,
                 base_v: &self.base_v,
             };
-            self.newton
-                .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
-            self.powers[i] = system.equations.powers(stage.t, &to.q, &to.v, &to.a);
+            let own = (&mut to.q[..], &mut to.v[..], &mut to.a[..]);
+            self.powers[i] = self.newton.solve(system, &stage, own)?;
             if i < last {
                 self.stages[i].0.copy_from_slice(&to.v);
                 self.stages[i].1.copy_from_slice(&to.a);

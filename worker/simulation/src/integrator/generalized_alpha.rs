@@ -7,11 +7,9 @@
 //! motion at `t_n + (alpha_m - alpha_f) h`. It stays inside: a [`State`] carries the acceleration at
 //! its own time. When the step size changes, `a_0` is moved to where the new step wants it, without
 //! which the order would fall to one.
-use super::State;
 use super::newton::{Newton, NotConverged, Stage};
-use super::stepper::{Step, Stepper, add_work};
-use crate::model::Powers;
-use crate::system::{Equations, System};
+use super::stepper::{Step, Stepper};
+use crate::system::{Equations, Powers, State, System};
 
 /// The method with its buffers.
 #[derive(Clone, Debug)]
@@ -107,17 +105,16 @@ impl<E: Equations> Stepper<E> for GeneralizedAlpha {
         for k in 0..self.base_v.len() {
             to.v[k] = self.base_v[k] + d * self.ends[0][k];
         }
-        self.newton
-            .solve(system, &stage, (&mut to.q, &mut to.v, &mut to.a))?;
+        let own = (&mut to.q[..], &mut to.v[..], &mut to.a[..]);
+        let powers = self.newton.solve(system, &stage, own)?;
         // what is not resolved rings from end to end but not where the equations hold, so that the
         // powers there are extrapolated to the middle
-        let powers = system.equations.powers(stage.t, &to.q, &to.v, &to.a);
         let before = self.powers[0].unwrap_or(powers);
         self.powers[1] = Some(powers);
         let ahead = self.alpha_f - 0.5;
         let mut work = Powers::default();
-        add_work(&mut work, h * (1.0 + ahead), &powers);
-        add_work(&mut work, -h * ahead, &before);
+        work.add(h * (1.0 + ahead), &powers);
+        work.add(-h * ahead, &before);
         let shift = self.alpha_f - self.alpha_m;
         // q_1 is q(t_1) up to h^3 q''' times this; a_1 - a_0 is h q'''
         let missing = h * h * (self.beta - 0.5 * shift - 1.0 / 6.0);
@@ -135,8 +132,8 @@ impl<E: Equations> Stepper<E> for GeneralizedAlpha {
         let local = system.equations.error_norm(&self.error);
         // the equations held before the end: what they still ask for there shows a contact that began
         // in between, and is of higher order than the local error otherwise
-        system.residual(to.t, &to.q, &to.v, &to.a, &mut self.error);
-        system.solve(&mut self.error);
+        let loads = system.residual(to.motion(), &to.a, &mut self.error);
+        loads.solve(&mut self.error);
         let left = system.equations.error_norm(&self.error);
         Ok(Step {
             error: if local >= left { local } else { left },

@@ -1,5 +1,5 @@
 //! Newton's method for one implicit stage, with a factorisation that is kept while it serves.
-use crate::system::{Equations, System};
+use crate::system::{Equations, Loads, Powers, Shift, StateRef, System};
 
 /// When a factorisation is made anew: a small state machine without numerics of its own.
 #[derive(Clone, Copy, Debug, Default)]
@@ -41,9 +41,8 @@ impl RefactorPolicy {
 
     /// Scaling of a correction solved with a factorisation for another coefficient.
     pub fn relaxation(&self, gamma: f64) -> f64 {
-        self.made_for.map_or(1.0, |made| {
-            2.0 / (1.0 + (gamma / made) * (gamma / made)).max(1e-3)
-        })
+        self.made_for
+            .map_or(1.0, |made| 2.0 / (1.0 + (gamma / made) * (gamma / made)))
     }
 }
 
@@ -91,6 +90,9 @@ impl Newton {
 
     /// Solves a stage from the rates predicted in `v`; coordinates and accelerations follow.
     ///
+    /// Gives the powers of the solution under the loads of the last evaluation: what is corrected last
+    /// is smaller than Newton's accuracy, and is not evaluated again.
+    ///
     /// # Errors
     /// [`NotConverged`] after a fresh factorisation did not help either.
     pub fn solve<E: Equations>(
@@ -98,30 +100,25 @@ impl Newton {
         system: &mut System<E>,
         stage: &Stage<'_>,
         (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
-    ) -> Result<(), NotConverged> {
-        let gamma = 1.0 / stage.c;
-        let mu = gamma * (1.0 / stage.d);
+    ) -> Result<Powers, NotConverged> {
+        let Shift { mass, damping } = stage.shift();
         let mut fresh = false;
         predict(stage, q, v, a);
-        system.residual(stage.t, q, v, a, &mut self.change);
-        if self.policy.wants(gamma) {
-            self.factorize(system, stage, q, v)?;
+        let mut loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
+        if self.policy.wants(damping) {
+            self.factorize(&mut loads, stage)?;
             fresh = true;
         }
         let mut last: Option<f64> = None;
         let mut rate: f64 = 0.0;
         for iteration in 0..ITERATIONS {
-            system.statistics.newton_iterations += 1;
-            system.solve(&mut self.change);
-            let relax = self.policy.relaxation(gamma);
-            for i in 0..q.len() {
-                let change = relax * self.change[i];
-                q[i] += change;
-                v[i] += gamma * change;
-                a[i] += mu * change;
-                self.change[i] = change;
+            loads.statistics().newton_iterations += 1;
+            loads.solve(&mut self.change);
+            let relax = self.policy.relaxation(damping);
+            for change in &mut self.change {
+                *change *= relax;
             }
-            let norm = system.equations.newton_norm(&self.change);
+            let norm = loads.equations().newton_norm(&self.change);
             if let Some(last) = last {
                 rate = (0.3 * rate).max(norm / last);
             }
@@ -130,9 +127,15 @@ impl Newton {
             } else {
                 rate < 1.0 && norm * rate / (1.0 - rate) < self.accuracy
             };
+            let kept = loads.keep();
+            for (i, change) in self.change.iter().enumerate() {
+                q[i] += change;
+                v[i] += damping * change;
+                a[i] += mass * change;
+            }
             if converged {
                 self.policy.observed(rate);
-                return Ok(());
+                return Ok(kept.powers(StateRef { t: stage.t, q, v }, a));
             }
             let hopeless = !norm.is_finite()
                 || rate > 2.0
@@ -147,12 +150,12 @@ impl Newton {
                 rate = 0.0;
                 v.copy_from_slice(stage.base_v);
                 predict(stage, q, v, a);
-                system.residual(stage.t, q, v, a, &mut self.change);
-                self.factorize(system, stage, q, v)?;
+                loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
+                self.factorize(&mut loads, stage)?;
                 continue;
             }
             last = Some(norm);
-            system.residual(stage.t, q, v, a, &mut self.change);
+            loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
         }
         self.policy.spoiled();
         Err(NotConverged)
@@ -160,20 +163,28 @@ impl Newton {
 
     fn factorize<E: Equations>(
         &mut self,
-        system: &mut System<E>,
+        loads: &mut Loads<'_, '_, E>,
         stage: &Stage<'_>,
-        q: &[f64],
-        v: &[f64],
     ) -> Result<(), NotConverged> {
-        let gamma = 1.0 / stage.c;
-        let mu = gamma * (1.0 / stage.d);
-        let made = system.factorize(stage.t, (q, v), (mu, gamma));
-        if made.is_err() {
+        let shift = stage.shift();
+        if loads.factorize(shift).is_err() {
             self.policy.spoiled();
             return Err(NotConverged);
         }
-        self.policy.made(gamma);
+        self.policy.made(shift.damping);
         Ok(())
+    }
+}
+
+impl Stage<'_> {
+    /// Of its iteration matrix: rates change `damping`, accelerations `mass` times as much as
+    /// coordinates.
+    fn shift(&self) -> Shift {
+        let damping = 1.0 / self.c;
+        Shift {
+            mass: damping * (1.0 / self.d),
+            damping,
+        }
     }
 }
 

@@ -6,13 +6,11 @@
 //! stage leaves one solution with `S = g^2 M - g D - K`, `g = 1 / (gamma h)`, the matrix of all other
 //! methods, and one product with `K`. The order needs the exact tangent: this is the one method that
 //! adds what Newton's method can do without ([`Equations::add_spin_tangent`]).
-use super::State;
 use super::dense::interpolate;
 use super::newton::NotConverged;
-use super::stepper::{Step, Stepper, add_work};
+use super::stepper::{Step, Stepper};
 use crate::linear::Bordered;
-use crate::model::Powers;
-use crate::system::{Equations, System};
+use crate::system::{Equations, Powers, Shift, State, StateRef, System};
 
 const STAGES: usize = 6;
 const GAMMA: f64 = 0.25;
@@ -130,17 +128,21 @@ impl Rosenbrock {
         from: &State,
         h: f64,
     ) -> Result<(), NotConverged> {
-        let State { t, q, v, .. } = from;
+        let StateRef { t, q, v } = from.motion();
         let later = TIME_SHARE * h;
-        system.forces(t + later, q, v, &mut self.by_time);
-        system.forces(*t, q, v, &mut self.right);
+        system.forces(StateRef { t: t + later, q, v }, &mut self.by_time);
+        let mut loads = system.forces(from.motion(), &mut self.right);
         for (by_time, now) in self.by_time.iter_mut().zip(&self.right) {
             *by_time = (*by_time - now) / later;
         }
         let g = 1.0 / (GAMMA * h);
-        system.exact_tangent(from, (0.0, 0.0), &mut self.stiffness);
-        system
-            .factorize_exact(from, (g * g, g))
+        loads.exact_tangent(&from.a, Shift::NONE, &mut self.stiffness);
+        let shift = Shift {
+            mass: g * g,
+            damping: g,
+        };
+        loads
+            .factorize_exact(&from.a, shift)
             .map_err(|_| NotConverged)
     }
 
@@ -173,7 +175,8 @@ impl Rosenbrock {
         }
         // S w = g (R + h_i R_t + M z) + K p with p, z the sums above; the unknowns are q and v
         let t = from.t + NODES[i] * h;
-        system.residual(t, &to.q, &to.v, &to.a, &mut self.right);
+        let at = StateRef { t, ..to.motion() };
+        system.residual(at, &to.a, &mut self.right);
         add(&mut self.right, BY_TIME[i] * h, &self.by_time);
         for inertial in &mut self.inertial {
             *inertial = -*inertial;
@@ -224,15 +227,14 @@ impl<E: Equations> Stepper<E> for Rosenbrock {
         to.t = from.t + h;
         // work by Simpson's rule on the dense output
         interpolate(from, to, from.t + 0.5 * h, &mut self.middle);
-        let State { t, q, v, a } = &self.middle;
-        system.forces(*t, q, v, &mut self.right);
-        let middle = system.equations.powers(*t, q, v, a);
-        system.forces(to.t, &to.q, &to.v, &mut self.right);
-        self.powers[1] = system.equations.powers(to.t, &to.q, &to.v, &to.a);
+        let loads = system.forces(self.middle.motion(), &mut self.right);
+        let middle = loads.powers(&self.middle.a);
+        let loads = system.forces(to.motion(), &mut self.right);
+        self.powers[1] = loads.powers(&to.a);
         let mut work = Powers::default();
-        add_work(&mut work, h / 6.0, &self.powers[0]);
-        add_work(&mut work, 4.0 * h / 6.0, &middle);
-        add_work(&mut work, h / 6.0, &self.powers[1]);
+        work.add(h / 6.0, &self.powers[0]);
+        work.add(4.0 * h / 6.0, &middle);
+        work.add(h / 6.0, &self.powers[1]);
         Ok(Step {
             error: system.equations.error_norm(&self.increments[STAGES - 1].q),
             work,

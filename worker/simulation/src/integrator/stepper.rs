@@ -1,7 +1,6 @@
 //! What all methods of integration have in common: a step of a given size, and what it may be told.
-use super::{State, newton::NotConverged, step_control::StepControl};
-use crate::model::Powers;
-use crate::system::{Equations, System};
+use super::{newton::NotConverged, step_control::StepControl};
+use crate::system::{Equations, Powers, State, System};
 use std::fmt::Debug;
 
 /// Result of one step.
@@ -20,7 +19,8 @@ pub struct Step {
 pub trait Stepper<E: Equations>: Debug {
     /// One step of size `h` from `from`, where the last accepted step ended, into `to`.
     ///
-    /// The loads that the equations keep belong to `to` afterwards.
+    /// The loads that the equations keep afterwards are those of the method's last evaluation: of `to`,
+    /// up to Newton's accuracy. Who needs those of `to` itself asks [`System::forces`].
     ///
     /// # Errors
     /// [`NotConverged`] when the step could not be made; `to` is then meaningless.
@@ -45,11 +45,4 @@ pub trait Stepper<E: Equations>: Debug {
     fn next(&mut self, control: &StepControl, step: f64, error: f64) -> f64 {
         control.next(step, error)
     }
-}
-
-/// Adds `weight` times `powers` to `work`.
-pub(super) const fn add_work(work: &mut Powers, weight: f64, powers: &Powers) {
-    work.input += weight * powers.input;
-    work.output += weight * powers.output;
-    work.dissipated += weight * powers.dissipated;
 }

@@ -8,6 +8,11 @@ pub fn skew(a: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::new(0.0, -a.z, a.y, a.z, 0.0, -a.x, -a.y, a.x, 0.0)
 }
 
+/// Rotation about z whose x axis is `(cosine, sine)`.
+pub fn about_z(sine: f64, cosine: f64) -> Matrix3<f64> {
+    Matrix3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
+}
+
 /// Rotation vector (axis times angle, |.| <= pi) of the rotation `R_WI R_WJ^T`, in W \[rad\].
 ///
 /// Taken through the quaternion of the rotation, so that small angles keep full precision.

@@ -3,15 +3,17 @@
 //!
 //! The end moves by `P = B (a + sum u_k q_k)` and turns by the beam's rotation `B` and by
 //! `R_t(sum t_k q_k) R_r(sum r_k q_k)`. With `S_k = B u_k` and `W_k = t_k d_t + r_k d_r`, the axes `d`
-//! of [`Turn::axes`], its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and
+//! of `EndRotation::axes`, its force and torque do the work `Q_k = F . S_k + tau . W_k` on a mode and
 //! `Q = (P x F + tau) . z` on the beam.
 use crate::element::bushing::{LinkLoad, LinkTangent};
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
-use crate::model::chain::{Column, EndTangent};
-use crate::model::links::Instant;
+use crate::model::chain::tangent::{Column, EndTangent};
+use crate::model::instant::Instant;
+use crate::model::layout::MAX_MODES;
+use crate::model::machine::Machine;
+use crate::model::pose::Pose;
 use crate::model::strand::{AnchorShape, Face};
-use crate::model::{MAX_MODES, Machine, pose::Pose};
 use nalgebra::Vector3;
 
 type V3 = Vector3<f64>;
@@ -28,10 +30,6 @@ pub(super) struct Anchor<'a> {
     pub(super) pose: &'a Pose,
 }
 
-#[expect(
-    clippy::multiple_inherent_impl,
-    reason = "one file per term of the equations"
-)]
 impl Machine {
     pub(super) fn anchor_tangent(
         &self,
@@ -139,7 +137,7 @@ impl Machine {
     }
 
     fn turning<'a>(&self, face: &'a Face, chain: usize, at: &Instant<'_>) -> Option<Turning<'a>> {
-        let turn = self.turn(face, self.arc(chain).anchor, at)?;
+        let turn = self.end_rotation(face, self.arc(chain).anchor, at)?;
         let [t, r] = turn.axes();
         let mut axes = [V3::zeros(); MAX_MODES];
         for (axis, shape) in axes.iter_mut().zip(&face.anchor) {

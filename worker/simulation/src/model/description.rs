@@ -13,6 +13,9 @@ pub struct Description {
     pub beam_inertia: f64,
     /// Static moment of the assembly's weight at beam angle 0, positive lowers the front [N m].
     pub beam_gravity_moment: f64,
+    /// The assembly's weight times the height of its centre of mass above the pivot at beam angle 0,
+    /// positive where it tips over by itself [N m].
+    pub beam_gravity_height: f64,
     /// Crank.
     pub crank: Crank,
     /// Rods and crossbeam.
@@ -32,6 +35,19 @@ pub struct Description {
     /// Load at the suspension point, positive downwards, equally spaced over one turn from bottom
     /// dead centre \[N\].
     pub card: Vec<f64>,
+}
+
+impl Description {
+    /// Moment of the beam's weight about the pivot at a beam angle, given by its sine and cosine;
+    /// positive lowers the front [N m]. The negative slope of [`Self::beam_potential`] is its force.
+    pub(crate) fn beam_moment(&self, (sin, cos): (f64, f64)) -> f64 {
+        self.beam_gravity_moment * cos - self.beam_gravity_height * sin
+    }
+
+    /// Potential of the beam's weight, 0 with its centre of mass level with the pivot \[J\].
+    pub(crate) fn beam_potential(&self, (sin, cos): (f64, f64)) -> f64 {
+        self.beam_gravity_moment * sin + self.beam_gravity_height * cos
+    }
 }
 
 /// A crank whose motion is prescribed.

@@ -3,29 +3,23 @@
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
 use crate::math::elementary::sin_cos;
 use crate::math::spline::sum::Sum;
+use crate::model::chain::parts::Joints;
+use crate::model::chain::state::ChainState;
 use crate::model::contact::{Bend, Surface};
-use crate::model::links::Instant;
+use crate::model::instant::Instant;
+use crate::model::machine::Machine;
+use crate::model::scratch::Scratch;
 use crate::model::strand::BACK;
-use crate::model::{
-    Machine, Scratch,
-    chain::{ChainState, Joints},
-};
+use crate::system::Powers;
 use nalgebra::{Vector2, Vector3};
 
 type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
 
-/// Powers and energies at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Powers {
-    /// Of the crank pin on the rod \[W\].
-    pub input: f64,
-    /// Of the suspension point on the load \[W\].
-    pub output: f64,
-    /// Lost in joints, contact and head \[W\].
-    pub dissipated: f64,
-}
-
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
 impl Machine {
     /// Fills the poses of all cylinders and the deflection of the back head's arc.
     pub(crate) fn pose(&self, q: &[f64], v: &[f64], scratch: &mut Scratch) {
@@ -45,7 +39,7 @@ impl Machine {
     }
 
     /// Generalised forces `Q(q, v, t)` into `force`; joint and contact loads stay in `scratch`.
-    pub fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
+    pub(super) fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
         force.fill(0.0);
         self.pose(at.q, at.v, scratch);
         self.weights(at, force);
@@ -107,7 +101,7 @@ impl Machine {
 
         let beam = self.layout.beam();
         let (s, c) = sin_cos(q[beam]);
-        force[beam] = -d.beam_gravity_moment * c;
+        force[beam] = -d.beam_moment((s, c));
         for k in 0..self.layout.modes {
             let i = self.layout.mode(k);
             let [px, py, _] = d.head.participation[k];
@@ -148,7 +142,7 @@ impl Machine {
             force[self.layout.mode(k)] +=
                 load.force.x * (c * x - s * y) + load.force.y * (s * x + c * y);
         }
-        if let Some(turn) = self.turn(face, self.arc(chain).anchor, at) {
+        if let Some(turn) = self.end_rotation(face, self.arc(chain).anchor, at) {
             let moments = turn.axes().map(|axis| load.torque_i.dot(&axis));
             for (k, shape) in face.anchor.iter().enumerate() {
                 let turned = shape.turns[0] * moments[0] + shape.turns[1] * moments[1];
@@ -182,7 +176,7 @@ impl Machine {
     }
 
     /// `out -= M(q) a`.
-    pub fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+    pub(super) fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
         let d = &self.description;
         let rod = self.layout.rod();
         out[rod] -= self.rod_inertia() * a[rod];
@@ -208,7 +202,7 @@ impl Machine {
     }
 
     /// Force that the crank pin exerts on the rod, given joint loads and accelerations \[N\].
-    pub fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
+    pub(crate) fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
         let (s, c) = sin_cos(at.q[i]);
@@ -225,7 +219,7 @@ impl Machine {
     }
 
     /// Powers at an instant whose loads are in `scratch`.
-    pub fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
+    pub(super) fn powers(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> Powers {
         let v = at.v;
         let pin = self.pin_force(at, a, scratch);
         let mut dissipated: f64 = scratch.chains.iter().map(ChainState::losses).sum();
@@ -242,13 +236,22 @@ impl Machine {
         }
     }
 
-    /// Kinetic plus potential energy without the load's \[J\]; `scratch` holds the poses.
-    pub fn energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+    /// Evaluates the points of contact at the poses that [`Self::pose`] left behind.
+    pub(crate) fn touch(&self, at: &Instant<'_>, scratch: &mut Scratch) {
+        for (k, chain) in self.chains.iter().enumerate() {
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+            chain.touch(&surface, &at.ropes.contact, &mut scratch.chains[k]);
+        }
+    }
+
+    /// Kinetic plus potential energy without the load's \[J\]; `scratch` holds poses and points of
+    /// contact.
+    pub(super) fn energy(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
         self.potential(at, scratch) + self.kinetic(at)
     }
 
     /// Elastic and gravitational energy \[J\].
-    pub fn potential(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
+    pub(super) fn potential(&self, at: &Instant<'_>, scratch: &Scratch) -> f64 {
         let &Instant { q, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
@@ -256,7 +259,7 @@ impl Machine {
         let mut sum = d.rod.mass * g * (drive.pin[0].y + d.rod.center_of_mass * sin_cos(q[rod]).0)
             + d.suspension_mass * g * q[self.layout.suspension()];
         let (s, c) = sin_cos(q[beam]);
-        sum += d.beam_gravity_moment * s;
+        sum += d.beam_potential((s, c));
         for k in 0..self.layout.modes {
             let x = q[self.layout.mode(k)];
             let [px, py, _] = d.head.participation[k];
@@ -264,12 +267,11 @@ impl Machine {
             sum += 0.5 * w * w * x * x + g * x * (px * s + py * c);
         }
         for (k, chain) in self.chains.iter().enumerate() {
-            let surface = self.surface(k, q, at.v, &scratch.deflection);
             chain.add_potential(
                 &mut sum,
                 &self.gravity(),
                 &self.joints(k, at),
-                Some((&surface, &at.ropes.contact)),
+                Some(&at.ropes.contact),
                 &scratch.chains[k],
             );
         }

@@ -1,10 +1,12 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
-use crate::integrator::State;
 use crate::linear::Bordered;
-use crate::model::{Instant, Machine, Powers, Ropes, Scratch};
+use crate::model::instant::Instant;
+use crate::model::machine::Machine;
+use crate::model::ropes::Ropes;
+use crate::model::scratch::Scratch;
 use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, square, worst};
-use crate::system::{Equations, Static};
+use crate::system::{Equations, Loaded, Loads, Powers, Shift, State, StateRef, Static};
 
 /// Machine, ropes, drive and the loads of the last evaluation.
 #[derive(Debug)]
@@ -30,24 +32,33 @@ impl<'a> Individual<'a> {
             drive,
             scratch: Scratch::new(machine),
             load_share: 1.0,
-            at: (0.0, drive.state(machine, 0.0)),
+            at: (0.0, machine.drive_state(&drive, 0.0)),
         }
     }
 
     /// Crank and load at time `t`.
     pub fn drive_state(&mut self, t: f64) -> DriveState {
+        self.move_to(t);
+        self.at.1
+    }
+
+    fn move_to(&mut self, t: f64) {
         if t.to_bits() != self.at.0.to_bits() {
-            let mut state = self.drive.state(self.machine, t);
+            let mut state = self.machine.drive_state(&self.drive, t);
             state.load *= self.load_share;
             self.at = (t, state);
         }
-        self.at.1
+    }
+
+    /// The machine at the time of the last evaluation.
+    fn instant<'s>(&'s self, at: StateRef<'s>) -> Instant<'s> {
+        instant(&self.ropes, &self.at.1, at)
     }
 
     /// From now on only a share of the load hangs at the suspension point.
     pub fn share_load(&mut self, share: f64) {
         self.load_share = share;
-        let mut state = self.drive.state(self.machine, self.at.0);
+        let mut state = self.machine.drive_state(&self.drive, self.at.0);
         state.load *= share;
         self.at.1 = state;
     }
@@ -78,11 +89,19 @@ impl<'a> Individual<'a> {
 
     /// Fills the loads that the back head's stress asks for; the others remain as they were. `force`
     /// is room for generalised forces.
-    pub fn load_back_head(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
-        let drive = &self.drive_state(t);
-        let ropes = &self.ropes;
-        let at = Instant { ropes, drive, q, v };
-        self.machine.back_head_loads(&at, &mut self.scratch, force);
+    pub fn back_head_loads<'s>(
+        &'s mut self,
+        at: StateRef<'s>,
+        force: &mut [f64],
+    ) -> BackHeadLoads<'s, 'a> {
+        self.move_to(at.t);
+        let scratch = &mut self.scratch;
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine.back_head_loads(&instant, scratch, force);
+        BackHeadLoads {
+            individual: self,
+            at,
+        }
     }
 
     /// Lets laws with a past remember an accepted state.
@@ -90,14 +109,9 @@ impl<'a> Individual<'a> {
         if !self.machine.hooks.has_axial() {
             return;
         }
-        let drive = &self.drive_state(state.t);
+        self.move_to(state.t);
         self.machine.pose(&state.q, &state.v, &mut self.scratch);
-        let at = Instant {
-            ropes: &self.ropes,
-            drive,
-            q: &state.q,
-            v: &state.v,
-        };
+        let at = instant(&self.ropes, &self.at.1, state.motion());
         for (k, chain) in self.machine.chains.iter().enumerate() {
             let joints = self.machine.joints(k, &at);
             chain.remember(&joints, &mut self.scratch.chains[k]);
@@ -106,15 +120,47 @@ impl<'a> Individual<'a> {
 
     /// Kinetic plus potential energy without the load's \[J\].
     pub fn energy(&mut self, state: &State) -> f64 {
-        let drive = &self.drive_state(state.t);
+        self.move_to(state.t);
         self.machine.pose(&state.q, &state.v, &mut self.scratch);
-        let at = Instant {
-            ropes: &self.ropes,
-            drive,
-            q: &state.q,
-            v: &state.v,
-        };
+        let at = instant(&self.ropes, &self.at.1, state.motion());
+        self.machine.touch(&at, &mut self.scratch);
         self.machine.energy(&at, &self.scratch)
+    }
+}
+
+/// An individual with the loads that the stress of its back head asks for.
+#[derive(Debug)]
+pub struct BackHeadLoads<'s, 'a> {
+    individual: &'s Individual<'a>,
+    at: StateRef<'s>,
+}
+
+impl<'s, 'a> BackHeadLoads<'s, 'a> {
+    /// Those among all loads.
+    pub fn of(loads: &'s Loads<'_, 's, Individual<'a>>) -> Self {
+        Self {
+            individual: loads.equations(),
+            at: loads.state(),
+        }
+    }
+
+    /// The individual.
+    pub const fn individual(&self) -> &'s Individual<'a> {
+        self.individual
+    }
+
+    /// The state that they belong to.
+    pub const fn state(&self) -> StateRef<'s> {
+        self.at
+    }
+}
+
+const fn instant<'s>(ropes: &'s Ropes, drive: &'s DriveState, at: StateRef<'s>) -> Instant<'s> {
+    Instant {
+        ropes,
+        drive,
+        q: at.q,
+        v: at.v,
     }
 }
 
@@ -123,34 +169,24 @@ impl Equations for Individual<'_> {
         self.machine.layout.matrix()
     }
 
-    fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
-        let drive = &self.drive_state(t);
-        let ropes = &self.ropes;
-        let at = Instant { ropes, drive, q, v };
-        self.machine.forces(&at, &mut self.scratch, force);
+    fn forces(&mut self, at: StateRef<'_>, force: &mut [f64]) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine.forces(&instant, &mut self.scratch, force);
     }
 
     fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
         self.machine.subtract_inertia(q, a, out);
     }
 
-    fn tangent(
-        &mut self,
-        t: f64,
-        (q, v): (&[f64], &[f64]),
-        coefficients: (f64, f64),
-        matrix: &mut Bordered,
-    ) {
-        let drive = &self.drive_state(t);
-        let ropes = &self.ropes;
-        let at = Instant { ropes, drive, q, v };
-        self.machine
-            .tangent(&at, coefficients, &self.scratch, matrix);
+    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered) {
+        let instant = self.instant(at.state());
+        self.machine.tangent(&instant, shift, &self.scratch, matrix);
     }
 
-    fn add_spin_tangent(&self, state: (&[f64], &[f64], &[f64]), gamma: f64, matrix: &mut Bordered) {
+    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered) {
         for chain in &self.machine.chains {
-            chain.add_spin_tangent(state, gamma, matrix);
+            chain.add_spin_tangent(at, a, damping, matrix);
         }
     }
 
@@ -185,27 +221,18 @@ impl Equations for Individual<'_> {
         })
     }
 
-    fn powers(&mut self, t: f64, q: &[f64], v: &[f64], a: &[f64]) -> Powers {
-        let drive = &self.drive_state(t);
-        let ropes = &self.ropes;
-        let at = Instant { ropes, drive, q, v };
-        self.machine.powers(&at, a, &self.scratch)
+    fn powers(&self, at: Loaded<'_>, a: &[f64]) -> Powers {
+        let instant = self.instant(at.state());
+        self.machine.powers(&instant, a, &self.scratch)
     }
 }
 
 impl Static for Individual<'_> {
-    fn potential(&mut self, t: f64, q: &[f64], still: &[f64]) -> f64 {
-        let drive = &self.drive_state(t);
-        let ropes = &self.ropes;
-        let at = Instant {
-            ropes,
-            drive,
-            q,
-            v: still,
-        };
+    fn potential(&self, at: Loaded<'_>) -> f64 {
+        let at = self.instant(at.state());
         self.machine.potential(&at, &self.scratch)
             + self.machine.potential_beyond_energy(&at, &self.scratch)
-            + drive.load * q[self.machine.layout.suspension()]
+            + at.drive.load * at.q[self.machine.layout.suspension()]
     }
 
     /// A metre of a cylinder, of the beam's tip or of the suspension count alike.

@@ -10,6 +10,9 @@
 //! because the longest chains touch nothing else before they reach the front head.
 use crate::linear::{BLOCK, Bordered};
 
+/// Most modes a head may have in a simulation.
+pub(crate) const MAX_MODES: usize = 24;
+
 /// Which coordinates a cylinder has.
 ///
 /// A machine that is symmetric about its plane, and loaded in it, stays in it exactly: every force

@@ -1,13 +1,14 @@
 //! Who holds the machine's rope chains: rod or suspension point at the base (revolute), the heads at
 //! the other end.
-use crate::drive::DriveState;
 use crate::element::bushing::Marker;
 use crate::math::elementary::sin_cos;
-use crate::math::rotation::skew;
-use crate::model::chain::{Held, Joints};
+use crate::math::rotation::{about_z, skew};
+use crate::model::chain::parts::{Held, Joints};
 use crate::model::description::Arc;
+use crate::model::hook::axial::Carrier;
+use crate::model::instant::Instant;
+use crate::model::machine::Machine;
 use crate::model::strand::{BACK, Face, Strand};
-use crate::model::{Machine, Ropes};
 use nalgebra::{Matrix3, Vector3};
 
 type V3 = Vector3<f64>;
@@ -47,7 +48,12 @@ impl Machine {
                 // laws along a rope are of the pair, as its coefficients are
                 let stiffness = at.ropes.joint.stiffness[0] * pitch / share;
                 let rope = self.strands[chain].rope;
-                self.hooks.axial(rope, at.drive, (stiffness, share), pitch)
+                let carrier = Carrier {
+                    stiffness,
+                    share,
+                    length: pitch,
+                };
+                self.hooks.axial(rope, at.drive, carrier)
             },
         }
     }
@@ -65,7 +71,7 @@ impl Machine {
                 rho: along + V3::new(0.0, 0.0, strand.z),
                 v: V3::new(pin_velocity.x, pin_velocity.y, 0.0),
                 w: V3::new(0.0, 0.0, v[rod]),
-                R: turned(s, c),
+                R: about_z(s, c),
             };
         }
         let height = self.layout.suspension();
@@ -74,12 +80,12 @@ impl Machine {
             rho: V3::new(0.0, strand.longer, strand.z),
             v: V3::new(0.0, v[height], 0.0),
             w: V3::zeros(),
-            R: turned(1.0, 0.0),
+            R: about_z(1.0, 0.0),
         }
     }
 
     /// The fixed end of a rope on its head. The reference point carries the head's deflection, so
-    /// that the arm stays rigid; where the end also turns with the head ([`Turn`]), the reference
+    /// that the arm stays rigid; where the end also turns with the head ([`EndRotation`]), the reference
     /// point is the end itself, so that it turns in its place.
     pub(crate) fn anchor_marker(&self, chain: usize, at: &Instant<'_>) -> Marker {
         let beam = self.layout.beam();
@@ -92,7 +98,7 @@ impl Machine {
             self.strands[chain].z,
         );
         let (sb, cb) = sin_cos(theta);
-        let R = turned(sb, cb);
+        let R = about_z(sb, cb);
         let w = V3::new(0.0, 0.0, rate);
         let (mut p, mut v) = (V3::zeros(), V3::zeros());
         let face = self.faces.get(chain);
@@ -109,9 +115,9 @@ impl Machine {
             rho: R * place,
             v,
             w,
-            R: turned(st, ct),
+            R: about_z(st, ct),
         };
-        if let Some(turn) = face.and_then(|face| self.turn(face, arc.anchor, at)) {
+        if let Some(turn) = face.and_then(|face| self.end_rotation(face, arc.anchor, at)) {
             marker.p += marker.rho;
             marker.rho = V3::zeros();
             marker.R = turn.rotation() * marker.R;
@@ -124,7 +130,12 @@ impl Machine {
     }
 
     /// How the modes turn a rope's fixed end, if they do.
-    pub(crate) fn turn(&self, face: &Face, anchor: f64, at: &Instant<'_>) -> Option<Turn> {
+    pub(crate) fn end_rotation(
+        &self,
+        face: &Face,
+        anchor: f64,
+        at: &Instant<'_>,
+    ) -> Option<EndRotation> {
         face.beside?;
         let (mut angles, mut rates) = ([0.0; 2], [0.0; 2]);
         for (k, shape) in face.anchor.iter().enumerate() {
@@ -134,7 +145,7 @@ impl Machine {
             }
         }
         let (s, c) = sin_cos(anchor + at.q[self.layout.beam()]);
-        Some(Turn {
+        Some(EndRotation {
             tangent: V3::new(-s, c, 0.0),
             radial: V3::new(c, s, 0.0),
             angles,
@@ -145,7 +156,7 @@ impl Machine {
 
 /// Turn of a rope's fixed end by the head's modes: first about the radius, then about the tangent of
 /// the arc, both carried along by the beam; in W.
-pub(crate) struct Turn {
+pub(crate) struct EndRotation {
     tangent: V3,
     radial: V3,
     /// About tangent and radius \[rad\], and their rates.
@@ -153,7 +164,7 @@ pub(crate) struct Turn {
     rates: [f64; 2],
 }
 
-impl Turn {
+impl EndRotation {
     /// The rotation `R_t R_r`.
     fn rotation(&self) -> M3 {
         let about = |axis: &V3, angle: f64| {
@@ -185,22 +196,4 @@ impl Turn {
     pub(crate) const fn second_rate(&self) -> f64 {
         self.rates[1]
     }
-}
-
-/// An individual's machine at one instant.
-#[derive(Clone, Copy, Debug)]
-pub struct Instant<'a> {
-    /// The individual's ropes.
-    pub ropes: &'a Ropes,
-    /// Crank and load.
-    pub drive: &'a DriveState,
-    /// Coordinates.
-    pub q: &'a [f64],
-    /// Their rates.
-    pub v: &'a [f64],
-}
-
-/// Rotation about z whose x axis is `(cosine, sine)`.
-pub(crate) fn turned(sine: f64, cosine: f64) -> M3 {
-    M3::new(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0)
 }

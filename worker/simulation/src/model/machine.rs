@@ -1,11 +1,12 @@
 //! A machine ready to be simulated: constants derived once from a description.
-use crate::effect::{Cycle, Hooks, Selection};
-use crate::element::{bushing::Bushing, impact::Impact};
-use crate::math::spline::{Splines, sum::Sum};
-use crate::model::chain::{Chain, ChainState};
-use crate::model::description::{AddedMode, Arc, Description, RopeLaw};
+use crate::math::spline::Splines;
+use crate::model::chain::parts::Chain;
+use crate::model::cycle::Cycle;
+use crate::model::description::{AddedMode, Description, RopeLaw};
+use crate::model::hook::{Effect, Hooks, Site};
 use crate::model::kinematics::{Mechanism, Position};
 use crate::model::layout::{Layout, Motion};
+use crate::model::ropes::Ropes;
 use crate::model::strand::{BACK, Face, Strand, faces, strands};
 use crate::model::valid::{InvalidDescription, check};
 
@@ -32,21 +33,7 @@ pub struct Machine {
     /// What effects add.
     pub(crate) hooks: Hooks,
     /// The effects, and the ideal turn that they refer to.
-    effects: Option<(Selection, Cycle)>,
-}
-
-/// Every rope of one individual: coefficients scaled to the pitch of the chain, and to the rope's share
-/// of them where it is one of two.
-#[derive(Clone, Copy, Debug)]
-pub struct Ropes {
-    /// Between two cylinders.
-    pub joint: Bushing,
-    /// Between crossbeam or suspension and the first cylinder.
-    pub base: Bushing,
-    /// Between the last cylinder and the head.
-    pub anchor: Bushing,
-    /// Between a cylinder and a head.
-    pub contact: Impact,
+    effects: Option<(Vec<std::sync::Arc<dyn Effect>>, Cycle)>,
 }
 
 #[expect(
@@ -75,16 +62,16 @@ impl Machine {
     pub fn with_effects(
         description: Description,
         modes: usize,
-        selection: &Selection,
+        effects: &[std::sync::Arc<dyn Effect>],
     ) -> Result<Self, InvalidDescription> {
-        if selection.is_empty() {
+        if effects.is_empty() {
             return Self::new(description, modes);
         }
         check(&description, modes)?;
         let marked = Mechanism::of(&description).bottom_dead_centre()?;
         let lowest = lowest_suspension(&description, &marked);
         let (mut edited, mut kept) = (description, modes);
-        for effect in &selection.effects {
+        for effect in effects {
             effect.describe(&mut edited, &mut kept);
         }
         check(&edited, kept)?;
@@ -92,7 +79,7 @@ impl Machine {
         let bottom = mechanism.position(marked.pin, marked.beam, marked.tangent)?;
         let cycle = Cycle::new(&edited, &mechanism, &bottom)?;
         let mut machine = Self::assemble(edited, kept, bottom, lowest);
-        machine.effects = Some((selection.clone(), cycle));
+        machine.effects = Some((effects.to_vec(), cycle));
         machine.install_effects();
         Ok(machine)
     }
@@ -100,9 +87,18 @@ impl Machine {
     /// Hangs the effects' pieces, which know where in the layout they act.
     fn install_effects(&mut self) {
         let mut hooks = Hooks::default();
-        if let Some((selection, cycle)) = &self.effects {
-            for effect in &selection.effects {
-                effect.install(self, cycle, &mut hooks);
+        if let Some((effects, cycle)) = &self.effects {
+            let site = Site {
+                description: &self.description,
+                layout: self.layout,
+                cycle,
+                bottom: self.bottom,
+                lowest_suspension: self.lowest_suspension,
+                card: &self.card,
+                faces: &self.faces,
+            };
+            for effect in effects {
+                effect.install(&site, &mut hooks);
             }
         }
         self.hooks = hooks;
@@ -172,39 +168,6 @@ impl Machine {
         self
     }
 
-    /// Range of the beam on the inextensible mechanism \[rad\].
-    pub fn swing(&self) -> [f64; 2] {
-        let mechanism = self.mechanism(self.description.back_arc.radius, self.back_length());
-        let mut at = self.bottom;
-        let mut highest = at.beam;
-        for k in 1..=90 {
-            let pin = self.bottom.pin + std::f64::consts::TAU * f64::from(k) / 90.0;
-            if let Ok(next) = mechanism.position(pin, at.beam, at.tangent) {
-                at = next;
-                highest = highest.max(at.beam);
-            }
-        }
-        [self.bottom.beam, highest]
-    }
-
-    /// The inextensible mechanism with another effective radius and length.
-    pub fn mechanism(&self, radius: f64, length: f64) -> Mechanism {
-        Mechanism {
-            crank: self.description.crank,
-            arc: Arc {
-                radius,
-                ..self.description.back_arc
-            },
-            length,
-        }
-    }
-
-    /// Length from crank pin to back anchor along rod and unstretched rope \[m\].
-    pub fn back_length(&self) -> f64 {
-        self.description.rope.back as f64 * self.description.rope.pitch
-            + self.description.rod.length
-    }
-
     /// Share of one rope in what a description states of the rope on a head.
     pub(crate) fn share(&self) -> f64 {
         1.0 / self.layout.ropes as f64
@@ -215,61 +178,9 @@ impl Machine {
         &self.chains[if rope == BACK { 0 } else { self.layout.ropes }]
     }
 
-    /// Scales an individual's coefficients to this chain's pitch, so that the rope stays the same, and
-    /// to one rope of two.
+    /// An individual's coefficients for this chain's pitch, and for one rope of two.
     pub fn ropes(&self, law: &RopeLaw) -> Ropes {
-        let rope = &self.description.rope;
-        let per_length = rope.reference_pitch / rope.pitch;
-        let share = self.share();
-        let mut joint = law.bushing.scaled(per_length).scaled(share);
-        joint.preload *= share;
-        let [base, anchor] = self.ends(&joint);
-        Ropes {
-            joint,
-            base,
-            anchor,
-            contact: Impact {
-                stiffness: law.contact.stiffness / per_length * share,
-                damping: law.contact.damping / per_length * share,
-                ..law.contact
-            },
-        }
-    }
-
-    /// The joints that hold a rope's first and last cylinder, from that between two cylinders.
-    pub(crate) fn ends(&self, joint: &Bushing) -> [Bushing; 2] {
-        let end = joint.scaled(1.0 / self.description.rope.end_pitches);
-        if self.layout.twins() {
-            [end.pinned(), end]
-        } else {
-            [end.revolute(), end]
-        }
-    }
-}
-
-/// Buffers of a simulation.
-#[derive(Clone, Debug)]
-pub struct Scratch {
-    /// Poses and loads of the back ropes, then of the front ropes.
-    pub chains: Vec<ChainState>,
-    /// Deflection of the back head's arc under each back rope.
-    pub deflection: Vec<Sum>,
-}
-
-impl Scratch {
-    /// Buffers for a machine.
-    pub fn new(machine: &Machine) -> Self {
-        Self {
-            chains: machine.chains.iter().map(ChainState::new).collect(),
-            deflection: vec![Sum::default(); machine.faces.len()],
-        }
-    }
-
-    /// Deepest penetration of a rope into a head \[m\].
-    pub(crate) fn deepest(&self) -> f64 {
-        self.chains
-            .iter()
-            .fold(0.0, |deepest, chain| deepest.max(chain.deepest))
+        Ropes::new(law, &self.description.rope, self.layout.ropes)
     }
 }
 

@@ -1,29 +1,31 @@
 //! The machine as a model: what it is made of, where its coordinates live, its forces, its
-//! inertia and their tangent.
+//! inertia and their tangent, and where effects take hold of it.
 mod anchor;
 pub mod chain;
 pub mod contact;
+pub(crate) mod cycle;
 pub mod description;
 mod forces;
-mod individual;
+pub(crate) mod hook;
+mod ideal;
+pub(crate) mod individual;
+pub(crate) mod instant;
 pub mod kinematics;
 pub mod layout;
 mod links;
-mod machine;
+pub(crate) mod machine;
 pub mod pose;
+pub(crate) mod ropes;
+pub(crate) mod scratch;
 pub(crate) mod strand;
 mod tangent;
-mod valid;
-
-/// Most modes a head may have in a simulation.
-pub(crate) const MAX_MODES: usize = 24;
-
-pub use forces::Powers;
-pub use individual::Individual;
-pub use links::Instant;
-pub(crate) use links::turned;
-pub use machine::{Machine, Ropes, Scratch};
-pub use valid::InvalidDescription;
-
 #[cfg(test)]
 pub(crate) mod tests;
+mod valid;
+
+pub use individual::{BackHeadLoads, Individual};
+pub use instant::Instant;
+pub use machine::Machine;
+pub use ropes::Ropes;
+pub use scratch::Scratch;
+pub use valid::InvalidDescription;

@@ -1,6 +1,6 @@
-//! The iteration matrix `S = mu M - gamma D - K` with `K = dQ/dq`, `D = dQ/dv`, analytic.
+//! The iteration matrix `S = mass M - damping D - K` with `K = dQ/dq`, `D = dQ/dv`, analytic.
 //!
-//! The integrator chooses `mu` and `gamma`; elements do not know them. Left out are the derivatives
+//! The integrator chooses the [`Shift`]; elements do not know them. Left out are the derivatives
 //! of the cylinders' velocity terms and of their inertia by the angles: a cylinder's moment of
 //! inertia is 1e-6 kg m2, so they change the speed of Newton's method by nothing measurable and
 //! its answer not at all.
@@ -8,32 +8,36 @@ use crate::element::bushing::LinkTangent;
 use crate::linear::Bordered;
 use crate::math::elementary::sin_cos;
 use crate::model::anchor::Anchor;
-use crate::model::chain::{Column, EndTangent};
-use crate::model::links::Instant;
+use crate::model::chain::tangent::{Column, EndTangent};
+use crate::model::instant::Instant;
+use crate::model::machine::Machine;
+use crate::model::pose::Pose;
+use crate::model::scratch::Scratch;
 use crate::model::strand::BACK;
-use crate::model::{Machine, Scratch, pose::Pose};
+use crate::state::Shift;
 
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
 impl Machine {
-    /// Fills `matrix` with `mu M - gamma D - K` at a state whose loads and poses are in `scratch`.
-    pub fn tangent(
+    /// Fills `matrix` with `mass M - damping D - K` at a state whose loads and poses are in `scratch`.
+    pub(super) fn tangent(
         &self,
         at: &Instant<'_>,
-        (mu, gamma): (f64, f64),
+        shift: Shift,
         scratch: &Scratch,
         matrix: &mut Bordered,
     ) {
+        let damping = shift.damping;
         matrix.clear();
-        self.inertia_blocks(at.q, mu, matrix);
-        self.rigid_tangent(at, gamma, matrix);
+        self.inertia_blocks(at.q, shift.mass, matrix);
+        self.rigid_tangent(at, damping, matrix);
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
-            let [base, head] = chain.add_joint_tangent(&self.joints(k, at), state, gamma, matrix);
+            let [base, head] = chain.add_joint_tangent(&self.joints(k, at), state, damping, matrix);
             if let Some(base) = base {
-                self.base_tangent(k, &base, &state.pose(0), gamma, matrix);
+                self.base_tangent(k, &base, &state.pose(0), damping, matrix);
             }
             if let (Some(end), Some(load)) = (head, state.joints.last()) {
                 let anchor = Anchor {
@@ -43,39 +47,39 @@ impl Machine {
                     load,
                     pose: &state.pose(chain.count - 1),
                 };
-                self.anchor_tangent(&anchor, at, gamma, matrix);
+                self.anchor_tangent(&anchor, at, damping, matrix);
             }
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            chain.add_contact_tangent(&surface, &at.ropes.contact, state, gamma, matrix);
+            chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
         }
-        self.hooks.add_tangent(at, gamma, matrix);
+        self.hooks.add_tangent(at, damping, matrix);
     }
 
-    fn inertia_blocks(&self, q: &[f64], mu: f64, matrix: &mut Bordered) {
+    fn inertia_blocks(&self, q: &[f64], mass: f64, matrix: &mut Bordered) {
         let d = &self.description;
         for (at, inertia) in [
             (self.layout.rod(), self.rod_inertia()),
             (self.layout.suspension(), d.suspension_mass),
         ] {
-            matrix.add(at, at, mu * inertia);
+            matrix.add(at, at, mass * inertia);
         }
         for block in self.layout.base_blocks().into_iter().flatten() {
             matrix.lock_rest(block);
         }
         for chain in &self.chains {
-            chain.add_inertia_blocks(q, mu, matrix);
+            chain.add_inertia_blocks(q, mass, matrix);
         }
-        matrix.add_corner(0, 0, mu * d.beam_inertia);
+        matrix.add_corner(0, 0, mass * d.beam_inertia);
         for k in 0..self.layout.modes {
-            let coupling = mu * d.head.participation[k][2];
-            matrix.add_corner(1 + k, 1 + k, mu);
+            let coupling = mass * d.head.participation[k][2];
+            matrix.add_corner(1 + k, 1 + k, mass);
             matrix.add_corner(0, 1 + k, coupling);
             matrix.add_corner(1 + k, 0, coupling);
         }
     }
 
     /// Weights, the head's own stiffness and damping.
-    fn rigid_tangent(&self, at: &Instant<'_>, gamma: f64, matrix: &mut Bordered) {
+    fn rigid_tangent(&self, at: &Instant<'_>, damping: f64, matrix: &mut Bordered) {
         let &Instant { q, drive, .. } = at;
         let d = &self.description;
         let g = d.gravity;
@@ -85,12 +89,16 @@ impl Machine {
         let hanging = d.rod.mass * d.rod.center_of_mass * ((pin.y + g) * s + pin.x * c);
         matrix.add(rod, rod, -hanging);
         let (s, c) = sin_cos(q[self.layout.beam()]);
-        matrix.add_corner(0, 0, -d.beam_gravity_moment * s);
+        matrix.add_corner(0, 0, -d.beam_potential((s, c)));
         for k in 0..self.layout.modes {
             let [px, py, _] = d.head.participation[k];
             let w = d.head.frequencies[k];
             let x = q[self.layout.mode(k)];
-            matrix.add_corner(1 + k, 1 + k, w * w + gamma * 2.0 * d.head.damping_ratio * w);
+            matrix.add_corner(
+                1 + k,
+                1 + k,
+                w * w + damping * 2.0 * d.head.damping_ratio * w,
+            );
             let turning = g * (px * c - py * s);
             matrix.add_corner(1 + k, 0, turning);
             matrix.add_corner(0, 1 + k, turning);
@@ -104,7 +112,7 @@ impl Machine {
         chain: usize,
         end: &EndTangent,
         pose: &Pose,
-        gamma: f64,
+        damping: f64,
         matrix: &mut Bordered,
     ) {
         let back = self.strands[chain].rope == BACK;
@@ -114,7 +122,7 @@ impl Machine {
             self.layout.suspension()
         };
         let first = self.chains[chain].range().start;
-        let column = base_column(back, &end.by_body, gamma);
+        let column = base_column(back, &end.by_body, damping);
         let row_j = |c: &Column| if back { c[2].z } else { -c[0].y };
         matrix.add(base, base, -row_j(&column));
         let torque = pose.angular().tr_mul(&column[1]);
@@ -131,12 +139,12 @@ impl Machine {
 }
 
 /// Derivatives by the one coordinate of the rod (its angle) or the suspension (its height).
-fn base_column(rod: bool, by: &LinkTangent, gamma: f64) -> Column {
+fn base_column(rod: bool, by: &LinkTangent, damping: f64) -> Column {
     std::array::from_fn(|r| {
         if rod {
-            (by.a[r] + by.w[r] * gamma).column(2).into_owned()
+            (by.a[r] + by.w[r] * damping).column(2).into_owned()
         } else {
-            (by.p[r] + by.v[r] * gamma).column(1).into_owned()
+            (by.p[r] + by.v[r] * damping).column(1).into_owned()
         }
     })
 }

@@ -1,9 +1,8 @@
 use super::{Individual, Instant, Machine, Scratch};
 use crate::drive::{Drive, DriveState};
-use crate::integrator::State;
 use crate::math::elementary::sin_cos;
 use crate::reference;
-use crate::system::Equations;
+use crate::system::{Shift, State, StateRef, System};
 use nalgebra::Vector2;
 
 fn machine() -> Machine {
@@ -56,7 +55,11 @@ fn assert_tangent(machine: &Machine) {
     assert!(scratch.chains.iter().all(|chain| touching(&chain.contact)));
     for (mu, gamma) in [(0.0, 0.0), (0.0, 40.0), (1600.0, 40.0)] {
         let mut matrix = layout.matrix();
-        machine.tangent(&at, (mu, gamma), &scratch, &mut matrix);
+        let shift = Shift {
+            mass: mu,
+            damping: gamma,
+        };
+        machine.tangent(&at, shift, &scratch, &mut matrix);
         for i in free(machine) {
             let column = matrix.product(&unit(layout.len(), i));
             let numeric = difference(machine, &at, i, gamma);
@@ -83,7 +86,7 @@ fn drive(t: f64) -> DriveState {
         ramp: 1.0,
         speed: 0.5,
     };
-    drive.state(&machine(), t)
+    machine().drive_state(&drive, t)
 }
 
 /// Coordinates that are not locked.
@@ -265,11 +268,16 @@ pub(crate) fn assert_plane_is_space(plane: &Machine, name: &str) {
         let before = q.iter().map(|q| q * (1.0 + 1e-6)).collect();
         at.remember(&State::at_rest(0.6, before));
         let mut force = vec![0.0; q.len()];
-        at.forces(0.7, q, v, &mut force);
         let mut matrix = machine.layout.matrix();
-        at.tangent(0.7, (q, v), (1600.0, 40.0), &mut matrix);
-        let lost = at.powers(0.7, q, v, v).dissipated;
-        let energy = at.energy(&State {
+        let shift = Shift {
+            mass: 1600.0,
+            damping: 40.0,
+        };
+        let mut at = System::new(at);
+        let mut loads = at.forces(StateRef::new(0.7, q, v), &mut force);
+        loads.tangent(shift, &mut matrix);
+        let lost = loads.powers(v).dissipated;
+        let energy = at.equations.energy(&State {
             v: v.to_vec(),
             ..State::at_rest(0.7, q.to_vec())
         });

@@ -1,7 +1,7 @@
 //! What a description must have to be a machine.
-use crate::model::MAX_MODES;
 use crate::model::description::{Description, Twins};
 use crate::model::kinematics::DoesNotClose;
+use crate::model::layout::MAX_MODES;
 
 /// A description that cannot be a machine.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

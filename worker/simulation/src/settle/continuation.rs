@@ -10,7 +10,7 @@ use super::minimize::{CONVERGED, Damping, minimize, minimize_within};
 use super::overload::Hanging;
 use crate::math::elementary::powf;
 use crate::model::{Individual, Machine, Ropes};
-use crate::system::{Static, System};
+use crate::system::{StateRef, Static, System};
 
 /// Iterations (factorisations) that a continuation may take.
 pub(super) const BUDGET: u64 = 1200;
@@ -53,13 +53,18 @@ impl<'a> Path<'a> {
         let mix = |a: f64, b: f64| powf(a, 1.0 - place) * powf(b, place);
         let pair = |a: [f64; 2], b: [f64; 2]| [mix(a[0], b[0]), mix(a[1], b[1])];
         let (a, b) = (&self.from, &self.to);
-        let mut ropes = *b;
-        ropes.joint.stiffness = pair(a.joint.stiffness, b.joint.stiffness);
-        ropes.joint.rotational_stiffness =
+        let (mut joint, mut contact) = (b.joint, b.contact);
+        joint.stiffness = pair(a.joint.stiffness, b.joint.stiffness);
+        joint.rotational_stiffness =
             pair(a.joint.rotational_stiffness, b.joint.rotational_stiffness);
-        [ropes.base, ropes.anchor] = self.machine.ends(&ropes.joint);
-        ropes.contact.stiffness = mix(a.contact.stiffness, b.contact.stiffness);
-        ropes
+        contact.stiffness = mix(a.contact.stiffness, b.contact.stiffness);
+        let machine = self.machine;
+        Ropes::of(
+            joint,
+            contact,
+            &machine.description.rope,
+            machine.layout.ropes,
+        )
     }
 
     fn walk(&self, system: &mut System<Individual<'_>>, q: &mut [f64]) -> bool {
@@ -127,12 +132,13 @@ fn newton<E: Static>(system: &mut System<E>, q: &mut [f64]) -> bool {
     let (mut shortest, mut setbacks) = (f64::INFINITY, 0);
     while setbacks <= SETBACKS {
         system.statistics.newton_iterations += 1;
-        system.forces(0.0, q, &still, &mut step);
-        if system.factorize_static(0.0, (q, &still), 0.0).is_err() {
+        let at = StateRef::new(0.0, q, &still);
+        let mut loads = system.forces(at, &mut step);
+        if loads.factorize_static(0.0).is_err() {
             return false;
         }
-        system.solve(&mut step);
-        let norm = system.equations.newton_norm(&step);
+        loads.solve(&mut step);
+        let norm = loads.equations().newton_norm(&step);
         if !norm.is_finite() || norm > LOST {
             return false;
         }

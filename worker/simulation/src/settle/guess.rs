@@ -24,7 +24,7 @@ pub fn guess(
     let rigid = rigid_position(machine, drive.pin_angle)?;
     let share = machine.share();
     let front = Taut::new(machine, ropes, FRONT, pull * share);
-    let lever = pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1;
+    let lever = pull * d.front_arc.radius + d.beam_moment(sin_cos(rigid.beam));
     let back = Taut::new(machine, ropes, BACK, lever / rigid.arm * share);
     let pitches = |count: usize| count as f64 - 1.0 + 2.0 * d.rope.end_pitches;
     let mechanism = machine.mechanism(

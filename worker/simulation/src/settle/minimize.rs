@@ -1,5 +1,5 @@
 //! Minimisation of the potential from a start nearby.
-use crate::system::{Static, System};
+use crate::system::{Loads, StateRef, Static, System};
 
 /// Iterations (factorisations) that one minimisation may take.
 const BUDGET: u32 = 150;
@@ -23,7 +23,7 @@ impl Default for Damping {
     }
 }
 
-/// Minimises the potential at time `t` from `q` on; the loads of the last trial are at hand.
+/// Minimises the potential at time `t` from `q` on.
 ///
 /// A damped Newton method that only ever accepts a lower potential. Whether a minimum was reached
 /// within the budget.
@@ -42,58 +42,67 @@ pub fn minimize_within<E: Static>(
     let n = q.len();
     let still = vec![0.0; n];
     let (mut force, mut step, mut trial) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    system.forces(t, q, &still, &mut force);
-    let mut height = system.equations.potential(t, q, &still);
     let mut lambda = 0.0;
-    for _ in 0..budget {
-        system.statistics.newton_iterations += 1;
-        let solvable = system.factorize_static(t, (q, &still), lambda).is_ok();
+    let mut left = budget;
+    let loads = system.forces(StateRef { t, q, v: &still }, &mut force);
+    let mut height = loads.potential();
+    // whether a further iteration's factor was made, and none where the budget is used up
+    let mut factor_made = factorize(loads, lambda, &mut left);
+    while let Some(solvable) = factor_made {
         step.copy_from_slice(&force);
         if solvable {
             system.solve(&mut step);
         }
         let norm = system.equations.newton_norm(&step);
         let slope: f64 = force.iter().zip(&step).map(|(f, s)| f * s).sum();
-        if !(solvable && norm.is_finite() && slope > 0.0) {
-            if solvable && norm < CONVERGED {
-                return true;
+        let descends = solvable && norm.is_finite() && slope > 0.0;
+        if descends {
+            let factor = (LARGEST_STEP / norm).min(1.0);
+            for i in 0..n {
+                trial[i] = q[i] + factor * step[i];
             }
-            lambda = (lambda * 10.0).max(damping.first);
-            if lambda > damping.last {
-                break;
-            }
-            system.forces(t, q, &still, &mut force);
-            continue;
-        }
-        let factor = (LARGEST_STEP / norm).min(1.0);
-        for i in 0..n {
-            trial[i] = q[i] + factor * step[i];
-        }
-        system.forces(t, &trial, &still, &mut force);
-        let next = system.equations.potential(t, &trial, &still);
-        // near the minimum the decrease drowns in rounding: then the step itself must be small
-        if next < height - 1e-4 * factor * slope
-            || (norm < ROUNDING && next < height + 1e-9 * height.abs())
-        {
-            q.copy_from_slice(&trial);
-            height = next;
-            if lambda == 0.0 && norm < CONVERGED {
-                return true;
-            }
-            lambda = if lambda <= damping.first {
-                0.0
-            } else {
-                lambda * 0.1
+            let at = StateRef {
+                t,
+                q: &trial,
+                v: &still,
             };
-        } else {
-            lambda = (lambda * 10.0).max(damping.first);
-            if lambda > damping.last {
-                break;
+            let loads = system.forces(at, &mut force);
+            let next = loads.potential();
+            // near the minimum the decrease drowns in rounding: then the step itself must be small
+            if next < height - 1e-4 * factor * slope
+                || (norm < ROUNDING && next < height + 1e-9 * height.abs())
+            {
+                q.copy_from_slice(&trial);
+                height = next;
+                if lambda == 0.0 && norm < CONVERGED {
+                    return true;
+                }
+                lambda = if lambda <= damping.first {
+                    0.0
+                } else {
+                    lambda * 0.1
+                };
+                factor_made = factorize(loads, lambda, &mut left);
+                continue;
             }
-            system.forces(t, q, &still, &mut force);
+        } else if solvable && norm < CONVERGED {
+            return true;
         }
+        lambda = (lambda * 10.0).max(damping.first);
+        if lambda > damping.last {
+            break;
+        }
+        let loads = system.forces(StateRef { t, q, v: &still }, &mut force);
+        factor_made = factorize(loads, lambda, &mut left);
     }
     false
+}
+
+/// Begins an iteration: whether its damped stiffness has a factor, or nothing if none is left.
+fn factorize<E: Static>(mut loads: Loads<'_, '_, E>, lambda: f64, left: &mut u32) -> Option<bool> {
+    *left = left.checked_sub(1)?;
+    loads.statistics().newton_iterations += 1;
+    Some(loads.factorize_static(lambda).is_ok())
 }
 
 /// Longest step, and the step at which equilibrium is reached, in units of Newton's accuracy:

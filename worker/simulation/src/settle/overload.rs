@@ -22,7 +22,7 @@ impl Hanging {
         let d = &machine.description;
         let pull = drive.load + d.suspension_mass * d.gravity;
         let rigid = rigid_position(machine, drive.pin_angle)?;
-        let moment = pull * d.front_arc.radius + d.beam_gravity_moment * sin_cos(rigid.beam).1;
+        let moment = pull * d.front_arc.radius + d.beam_moment(sin_cos(rigid.beam));
         let leave = [rigid.tangent, -rigid.beam];
         let ropes = [(&d.back_arc, d.rope.back), (&d.front_arc, d.rope.front)];
         let span = [0, 1].map(|rope| {

@@ -1,6 +1,6 @@
 //! How fast the beam swings on its ropes: what steps in time must resolve.
 use crate::model::Individual;
-use crate::system::{Equations, System};
+use crate::system::{Equations, StateRef, System};
 
 /// Rate of the beam's swing on ropes, contact and head about an equilibrium at time 0 [rad/s].
 ///
@@ -12,8 +12,9 @@ use crate::system::{Equations, System};
 pub fn swing_rate(system: &mut System<Individual<'_>>, q: &[f64]) -> Option<f64> {
     let still = vec![0.0; q.len()];
     let mut deflection = vec![0.0; q.len()];
-    system.forces(0.0, q, &still, &mut deflection);
-    system.factorize_static(0.0, (q, &still), 0.0).ok()?;
+    let at = StateRef::new(0.0, q, &still);
+    let mut loads = system.forces(at, &mut deflection);
+    loads.factorize_static(0.0).ok()?;
     let mut unit = still.clone();
     unit[system.equations.machine.layout.beam()] = -1.0;
     deflection.fill(0.0);

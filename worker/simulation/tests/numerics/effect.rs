@@ -18,7 +18,7 @@ fn asked(d: &Descriptor, share: f64) -> Asked<'_> {
 
 fn run(asked: &[Asked<'_>], tolerance: f64) -> (RunResult, [Vec<f64>; 4]) {
     let selection = Selection::new(asked).unwrap();
-    let machine = Machine::with_effects(reference::description(), 2, &selection).unwrap();
+    let machine = Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
     let settings = RunSettings {
         method: Method::RungeKutta(&ESDIRK4),
         tolerance,

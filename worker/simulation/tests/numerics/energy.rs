@@ -12,7 +12,7 @@ use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::rig::{Drum, Rig, Setup};
 use simulation::run::{RunSettings, simulate};
-use simulation::system::System;
+use simulation::system::{StateRef, System};
 use simulation::verdict::Verdict;
 
 /// A named rig, where it starts and for how long it runs.
@@ -238,7 +238,7 @@ fn tumbling_chain_keeps_its_moment_of_momentum() {
     let mut state = started(&mut system, q, v);
     let momenta = |system: &mut System<Rig>, q: &[f64], v: &[f64]| {
         let mut force = vec![0.0; q.len()];
-        system.forces(0.0, q, v, &mut force);
+        system.forces(StateRef::new(0.0, q, v), &mut force);
         let mut sums = [V3::zeros(); 2];
         for pose in &system.equations.state.poses {
             let e = pose.axis();

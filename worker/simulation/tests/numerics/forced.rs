@@ -1,8 +1,6 @@
 //! Forced nonlinear equations of motion with a known solution, for orders of convergence.
-use simulation::integrator::State;
 use simulation::linear::{BLOCK, Bordered};
-use simulation::model::Powers;
-use simulation::system::Equations;
+use simulation::system::{Equations, Loaded, Powers, Shift, State, StateRef};
 
 /// `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with
 /// `m(q) = 1 + cos(q_0) / 8`, solved by `q = x(t)`, `x_i = sin(w_i t + i)`.
@@ -35,7 +33,7 @@ impl Equations for Forced {
         Bordered::space(&[1], [0; 2])
     }
 
-    fn forces(&mut self, t: f64, q: &[f64], v: &[f64], force: &mut [f64]) {
+    fn forces(&mut self, StateRef { t, q, v }: StateRef<'_>, force: &mut [f64]) {
         let x = Self::exact(t);
         let m = inertia(&x.q);
         for i in 0..BLOCK {
@@ -53,24 +51,19 @@ impl Equations for Forced {
         }
     }
 
-    fn tangent(
-        &mut self,
-        _: f64,
-        (q, _): (&[f64], &[f64]),
-        (mu, gamma): (f64, f64),
-        matrix: &mut Bordered,
-    ) {
+    fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered) {
+        let q = at.state().q;
         matrix.clear();
         let m = inertia(q);
         for i in 0..BLOCK {
             let stiffness = STIFFNESS + 3.0 * CUBIC * q[i] * q[i];
-            matrix.add(i, i, mu * m + gamma * DAMPING + stiffness);
+            matrix.add(i, i, shift.mass * m + shift.damping * DAMPING + stiffness);
         }
     }
 
-    fn add_spin_tangent(&self, (q, _, a): (&[f64], &[f64], &[f64]), _: f64, matrix: &mut Bordered) {
+    fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], _: f64, matrix: &mut Bordered) {
         for i in 0..BLOCK {
-            matrix.add(i, 0, -0.125 * q[0].sin() * a[i]);
+            matrix.add(i, 0, -0.125 * at.q[0].sin() * a[i]);
         }
     }
 
@@ -82,7 +75,7 @@ impl Equations for Forced {
         error.iter().map(|x| x.abs()).fold(0.0, f64::max)
     }
 
-    fn powers(&mut self, _: f64, _: &[f64], _: &[f64], _: &[f64]) -> Powers {
+    fn powers(&self, _: Loaded<'_>, _: &[f64]) -> Powers {
         Powers::default()
     }
 }

@@ -25,4 +25,5 @@ mod swing;
 mod tangent;
 mod twins;
 mod vibration;
+mod weight;
 mod work;

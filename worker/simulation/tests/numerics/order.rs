@@ -4,12 +4,13 @@ use crate::forced::Forced;
 use crate::rope::*;
 use simulation::element::bushing::Bushing;
 use simulation::integrator::bdf::Bdf;
+use simulation::integrator::dense::interpolate;
 use simulation::integrator::method::{CATALOGUE, Method};
 use simulation::integrator::step_control::StepControl;
 use simulation::integrator::stepper::Stepper;
 use simulation::integrator::tableau::ESDIRK4;
-use simulation::integrator::{State, dense::interpolate};
 use simulation::rig::{End, Rig};
+use simulation::system::State;
 use simulation::system::{Equations, System};
 
 /// Accuracy of Newton's method that drowns in no step's error.

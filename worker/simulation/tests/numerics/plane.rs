@@ -41,7 +41,8 @@ fn a_run_with_effects_in_the_plane_is_the_run_in_space() {
             })
             .collect();
         let selection = Selection::new(&asked).unwrap();
-        let plane = Machine::with_effects(reference::description(), 2, &selection).unwrap();
+        let plane =
+            Machine::with_effects(reference::description(), 2, selection.effects()).unwrap();
         assert_agreement(&plane, &recommended(), &names.join(", "));
     }
 }

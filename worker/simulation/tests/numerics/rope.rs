@@ -3,13 +3,13 @@ use nalgebra::Vector3;
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::integrator::adaptive::Adaptive;
 use simulation::integrator::method::Method;
+use simulation::integrator::stepper::Step;
 use simulation::integrator::tableau::ESDIRK4;
-use simulation::integrator::{State, stepper::Step};
 use simulation::model::chain::Chain;
 use simulation::model::description::RopeLaw;
 use simulation::rig::{End, Rig, Setup};
 use simulation::settle::minimize;
-use simulation::system::System;
+use simulation::system::{State, StateRef, System};
 
 pub(crate) type V3 = Vector3<f64>;
 
@@ -113,7 +113,7 @@ pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>)
     assert!(minimize(&mut system, 0.0, &mut q), "no equilibrium");
     let mut force = vec![0.0; q.len()];
     let still = vec![0.0; q.len()];
-    system.forces(0.0, &q, &still, &mut force);
+    system.forces(StateRef::new(0.0, &q, &still), &mut force);
     (system, q)
 }
 
@@ -145,9 +145,8 @@ impl Course {
 pub(crate) fn started(system: &mut System<Rig>, q: Vec<f64>, v: Vec<f64>) -> State {
     let mut state = State::at_rest(0.0, q);
     state.v = v;
-    system
-        .accelerations(0.0, &state.q, &state.v, &mut state.a)
-        .unwrap();
+    let at = StateRef::new(0.0, &state.q, &state.v);
+    system.accelerations(at, &mut state.a).unwrap();
     state
 }
 

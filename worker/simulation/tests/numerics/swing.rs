@@ -7,7 +7,7 @@ use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::run::{RunSettings, settle, simulate};
 use simulation::settle::swing_rate;
-use simulation::system::{Equations, System};
+use simulation::system::{Equations, Shift, StateRef, System};
 
 fn machine() -> Machine {
     Machine::new(reference::description(), 2).unwrap()
@@ -47,12 +47,9 @@ fn momentum(system: &System<Individual<'_>>, q: &[f64], x: &[f64]) -> Vec<f64> {
 fn stiffness(system: &mut System<Individual<'_>>, q: &[f64]) -> Bordered {
     let still = vec![0.0; q.len()];
     let mut force = still.clone();
-    system.forces(0.0, q, &still, &mut force);
     let mut matrix = system.equations.matrix();
-    let state = (q, still.as_slice());
-    system
-        .equations
-        .tangent(0.0, state, (0.0, 0.0), &mut matrix);
+    let mut loads = system.forces(StateRef::new(0.0, q, &still), &mut force);
+    loads.tangent(Shift::NONE, &mut matrix);
     matrix
 }
 

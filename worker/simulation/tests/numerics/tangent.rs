@@ -1,7 +1,7 @@
 //! The tangent of a rig against differences of its forces.
 use crate::rope::*;
 use simulation::rig::{Drum, End, Rig, Setup};
-use simulation::system::{Equations, System};
+use simulation::system::{Equations, Shift, StateRef, System};
 
 /// A disturbed, moving chain on a drum with a revolute base and a loaded free end:
 /// `mu M - gamma D - K` against central differences, coordinate by coordinate.
@@ -38,7 +38,13 @@ fn tangent_is_the_derivative_of_the_forces() {
     }
     let mut force = vec![0.0; n];
     for (mu, gamma) in [(0.0, 0.0), (1600.0, 40.0)] {
-        system.forces(0.0, &q, &v, &mut force);
+        let mut matrix = system.equations.matrix();
+        let shift = Shift {
+            mass: mu,
+            damping: gamma,
+        };
+        let mut loads = system.forces(StateRef::new(0.0, &q, &v), &mut force);
+        loads.tangent(shift, &mut matrix);
         assert!(
             system
                 .equations
@@ -49,23 +55,19 @@ fn tangent_is_the_derivative_of_the_forces() {
                 .count()
                 > 2
         );
-        let mut matrix = system.equations.matrix();
-        system
-            .equations
-            .tangent(0.0, (&q, &v), (mu, gamma), &mut matrix);
         for i in 0..n {
             let mut unit = vec![0.0; n];
             unit[i] = 1.0;
             let column = matrix.product(&unit);
-            let mut at = |h: f64| {
+            let mut moved = |h: f64| {
                 let (mut q, mut v, mut force) = (q.clone(), v.clone(), vec![0.0; n]);
                 q[i] += h;
                 v[i] += gamma * h;
-                system.forces(0.0, &q, &v, &mut force);
+                system.forces(StateRef::new(0.0, &q, &v), &mut force);
                 force
             };
             let h = 1e-7;
-            let (plus, minus) = (at(h), at(-h));
+            let (plus, minus) = (moved(h), moved(-h));
             let mut inertia = vec![0.0; n];
             system.equations.subtract_inertia(&q, &unit, &mut inertia);
             let scale = column.iter().map(|x| x.abs()).fold(0.0, f64::max);

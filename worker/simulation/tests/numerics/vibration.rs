@@ -1,7 +1,7 @@
 //! Small vibrations about equilibrium, from the tangent and in time.
 use crate::rope::*;
 use simulation::rig::{End, Rig, Setup};
-use simulation::system::{Equations, System};
+use simulation::system::{Equations, StateRef, System};
 use std::f64::consts::PI;
 
 /// The lowest in-plane modes, as (angular frequency, shape): inverse iteration on `-K x = w^2 M x`.
@@ -9,8 +9,8 @@ fn modes(system: &mut System<Rig>, q: &[f64], count: usize, along: usize) -> Vec
     let n = q.len();
     let still = vec![0.0; n];
     let mut force = vec![0.0; n];
-    system.forces(0.0, q, &still, &mut force);
-    system.factorize_static(0.0, (q, &still), 0.0).unwrap();
+    let mut loads = system.forces(StateRef::new(0.0, q, &still), &mut force);
+    loads.factorize_static(0.0).unwrap();
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
     let mass = |x: &[f64]| {
         let mut out = vec![0.0; n];

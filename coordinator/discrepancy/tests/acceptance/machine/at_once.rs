@@ -1,8 +1,8 @@
 //! The machine as a laboratory.
-use super::Machine;
+use super::stand_in::Machine;
 use crate::case::grid;
 use discrepancy::laboratory::{Laboratory, Stage};
-use protocol::job::{Observation, ObserveSpec, Refinement};
+use protocol::job::{Discretisation, Observation, SimulateSpec};
 use std::convert::Infallible;
 
 /// What discretisation does to the machine.
@@ -64,25 +64,27 @@ impl<'a> AtOnce<'a> {
         }
     }
 
-    fn one(&mut self, mut spec: ObserveSpec) -> Option<Observation> {
+    fn one(&mut self, mut spec: SimulateSpec) -> Option<Observation> {
         self.runs += 1;
         let hash = self.runs.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 40;
         if self.lost_every > 0 && hash.is_multiple_of(self.lost_every) {
             self.lost += 1;
             return None;
         }
-        for effect in &mut spec.effects {
+        for effect in &mut spec.individual.effects {
             if let Some((_, own)) = self.labels.iter().find(|(label, _)| *label == effect.id) {
                 effect.id.clone_from(own);
             }
         }
-        let shorter = spec.refinement.cylinder_length_m.is_some();
+        let shorter = spec.discretisation.cylinder_length_m.is_some();
         let ripples = match self.numerics {
-            Numerics::NothingFiner if spec.refinement != Refinement::default() => return None,
+            Numerics::NothingFiner if spec.discretisation != Discretisation::default() => {
+                return None;
+            }
             Numerics::NoShorterCylinders if shorter => return None,
             Numerics::Ripple(size) if !shorter => size,
             Numerics::RippleOf(id, size) if !shorter => {
-                let own = spec.effects.iter().find(|e| e.id == id);
+                let own = spec.individual.effects.iter().find(|e| e.id == id);
                 size * own.map_or(0.0, |e| e.parameters[0].1)
             }
             Numerics::Exact
@@ -103,7 +105,7 @@ impl Laboratory for AtOnce<'_> {
     async fn observe(
         &mut self,
         _: Stage,
-        batch: Vec<ObserveSpec>,
+        batch: Vec<SimulateSpec>,
     ) -> Result<Vec<Option<Observation>>, Infallible> {
         Ok(batch.into_iter().map(|spec| self.one(spec)).collect())
     }

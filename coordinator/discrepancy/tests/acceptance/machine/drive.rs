@@ -1,7 +1,7 @@
 //! The drive, and the clock of a crank whose speed ripples.
+use super::amounts::{Amounts, C};
 use super::lags::Lags;
 use super::turn::Turn;
-use super::{Amounts, C};
 use crate::case::{SAMPLES, grid};
 
 /// The drive on the grid: height (m), speed (m/t), acceleration (m/t^2), slope (m/rad).

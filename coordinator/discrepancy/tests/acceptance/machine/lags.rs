@@ -1,8 +1,8 @@
 //! The masses' lags behind the drive, order by order, and the forces between them.
-use super::{C, HIGHEST, MASSES};
+use super::amounts::{C, HIGHEST, MASSES};
 use crate::case::RECOMMENDED;
 use nalgebra::{Matrix3, Vector3};
-use protocol::job::ObserveSpec;
+use protocol::job::SimulateSpec;
 
 /// The lags of one solution, order by order.
 pub(super) struct Lags(pub(super) Vec<Vector3<C>>);
@@ -21,10 +21,10 @@ pub(super) struct Genes {
 }
 
 impl Genes {
-    pub(super) fn new(spec: &ObserveSpec) -> Self {
-        let g = &spec.genes;
+    pub(super) fn new(spec: &SimulateSpec) -> Self {
+        let g = &spec.individual.genes;
         // longer elements are a little too stiff
-        let length = spec.refinement.cylinder_length_m.unwrap_or(0.05);
+        let length = spec.discretisation.cylinder_length_m.unwrap_or(0.05);
         let rough = 1.0 + 0.4 * length * length;
         Self {
             back: g[0] * rough,

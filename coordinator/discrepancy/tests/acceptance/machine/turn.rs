@@ -1,5 +1,5 @@
 //! Curves over a turn and their spectra.
-use super::{C, HIGHEST};
+use super::amounts::{C, HIGHEST};
 use crate::case::SAMPLES;
 use std::f64::consts::TAU;
 

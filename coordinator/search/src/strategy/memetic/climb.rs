@@ -5,23 +5,16 @@
 //! those up to the first success are what the sequential climb would have done, the rest is
 //! discarded and drawn again from the new elite. The elite takes the same path, bit for bit.
 use super::{
-    Individual,
-    chromosome::{Chromosome, Codec, distance},
-    selection::{Wheel, best},
-    settings::{Acceptance, Climbers, FlippedBits, MemeticSettings, SpecialCrossover},
-    variation,
+    chromosome::Chromosome,
+    craft::{At, Craft},
+    population::{Individual, best, diversity},
+    settings::{Acceptance, Climbers},
+    wheel::Wheel,
 };
 use crate::{
-    random::{Phase, Streams},
-    strategy::{Purpose, Told},
+    random::Phase,
+    strategy::{proposal::Purpose, told::Told},
 };
-
-/// What trials are made with; the same all through a run.
-pub(super) struct Craft {
-    pub(super) settings: MemeticSettings,
-    pub(super) codec: Codec,
-    pub(super) streams: Streams,
-}
 
 /// One planned trial; the index is part of its random address.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +78,7 @@ impl Climb {
     pub(super) fn plan(&mut self, craft: &Craft, population: &[Individual]) -> &[Attempt] {
         let width = self.width(craft);
         let elite = best(population);
-        let wheel = Wheel::new(population, craft.settings.roulette);
+        let wheel = craft.wheel(population);
         self.attempts.clear();
         for &trial in self.trials.iter().take(width) {
             let target = match craft.settings.climbers {
@@ -158,48 +151,28 @@ impl Climb {
         wheel: &Wheel,
         (trial, target): (Trial, usize),
     ) -> Chromosome {
-        let settings = &craft.settings;
+        let at = At {
+            generation: self.generation,
+            index: trial.index,
+        };
         let start = &population[target].chromosome;
-        let literal = settings.climbers == Climbers::Literal;
+        let literal = craft.settings.climbers == Climbers::Literal;
         if trial.purpose == Purpose::CrossoverTrial {
-            let mut stream = craft
-                .streams
-                .at(self.generation, Phase::CrossoverTrial, trial.index);
-            let partner = if literal {
-                trial.index
-            } else {
-                wheel.draw(&mut stream)
-            };
-            let share = match settings.special_crossover {
-                SpecialCrossover::EliteBiased => (0.1 + 0.5 * self.diversity).clamp(0.1, 0.6),
-                SpecialCrossover::Even => 0.5,
-            };
-            let partner = &population[partner].chromosome;
-            return variation::elite_crossover(&craft.codec, start, partner, share, &mut stream);
+            return craft.crossover_trial(at, start, self.diversity, |stream| {
+                let partner = if literal {
+                    trial.index
+                } else {
+                    wheel.draw(stream)
+                };
+                &population[partner].chromosome
+            });
         }
-        let mut stream = craft
-            .streams
-            .at(self.generation, Phase::MutationTrial, trial.index);
         if literal {
-            let rule = (
-                settings.mutation_unit,
-                settings.mutation_probability,
-                settings.real_step,
-            );
             let mut child = start.clone();
-            variation::mutate(&craft.codec, &mut child, rule, &mut stream);
+            craft.mutate(at, Phase::MutationTrial, &mut child);
             return child;
         }
-        let count = match settings.flipped_bits {
-            FlippedBits::Fixed(count) => count,
-            FlippedBits::Adaptive => adaptive_bits(self.diversity),
-        };
-        variation::flip_some(
-            &craft.codec,
-            start,
-            (count, settings.real_step),
-            &mut stream,
-        )
+        craft.mutation_trial(at, start, self.diversity)
     }
 }
 
@@ -212,7 +185,7 @@ fn plan(purpose: Purpose, count: usize) -> impl Iterator<Item = Trial> {
 fn literal_trials(craft: &Craft, generation: u32, population: usize) -> Vec<Trial> {
     let mut trials = Vec::with_capacity(2 * population);
     for index in 0..population {
-        let mut stream = craft.streams.at(generation, Phase::Crossover, index);
+        let mut stream = craft.stream(At { generation, index }, Phase::Crossover);
         if stream.chance(craft.settings.crossover_probability) {
             trials.push(Trial {
                 purpose: Purpose::CrossoverTrial,
@@ -225,26 +198,4 @@ fn literal_trials(craft: &Craft, generation: u32, population: usize) -> Vec<Tria
         });
     }
     trials
-}
-
-/// Twice the mean share of bits in which the population differs from its elite: 1 for a random
-/// population, 0 for clones.
-pub(super) fn diversity(codec: &Codec, population: &[Individual]) -> f64 {
-    let elite = &population[best(population)].chromosome;
-    let bits: u32 = population
-        .iter()
-        .map(|one| distance(&one.chromosome, elite))
-        .sum();
-    let mean = f64::from(bits) / population.len() as f64;
-    (2.0 * mean / codec.length() as f64).min(1.0)
-}
-
-/// 1 to 4 bits, more in a diverse population.
-pub(super) fn adaptive_bits(diversity: f64) -> usize {
-    match 3.0 * diversity {
-        x if x < 0.5 => 1,
-        x if x < 1.5 => 2,
-        x if x < 2.5 => 3,
-        _ => 4,
-    }
 }

@@ -1,5 +1,5 @@
 //! Settings of the memetic algorithm: the paper's numbers, and every point its text leaves open.
-use crate::strategy::{SettingsError, require};
+use crate::strategy::setting::{Setting, SettingsError, Values, check};
 use serde::{Deserialize, Serialize};
 
 /// How genes become a chromosome.
@@ -70,16 +70,6 @@ pub enum SpecialCrossover {
     EliteBiased,
     /// A bit comes from either with probability 1/2.
     Even,
-}
-
-/// How many random bits the second hill climb flips.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FlippedBits {
-    /// 1 to 4, the more the population differs from its elite. Default.
-    Adaptive,
-    /// Always this many.
-    Fixed(usize),
 }
 
 /// Which reading of the paper's steps 6 to 8.
@@ -154,8 +144,9 @@ pub struct MemeticSettings {
     pub mutation_unit: MutationUnit,
     /// Crossover of the first hill climb.
     pub special_crossover: SpecialCrossover,
-    /// Bits flipped by the second hill climb.
-    pub flipped_bits: FlippedBits,
+    /// How many random bits the second hill climb flips. None: 1 to 4, the more the population
+    /// differs from its elite. Default none.
+    pub flipped_bits: Option<usize>,
     /// Which reading of the paper's steps.
     pub climbers: Climbers,
     /// How trials of a climb follow each other.
@@ -192,7 +183,7 @@ impl MemeticSettings {
             crossover: Crossover::Uniform,
             mutation_unit: MutationUnit::Bit,
             special_crossover: SpecialCrossover::EliteBiased,
-            flipped_bits: FlippedBits::Adaptive,
+            flipped_bits: None,
             climbers: Climbers::Elite,
             acceptance: Acceptance::First,
             survival: Survival::Generational,
@@ -223,42 +214,123 @@ impl MemeticSettings {
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self) -> Result<(), SettingsError> {
-        let share = |x: f64| (0.0..=1.0).contains(&x);
-        require(
-            self.population >= 2,
-            "population",
-            self.population as f64,
-            "at least 2",
-        )?;
-        require(
-            (2..=30).contains(&self.bits_per_gene),
-            "bits_per_gene",
-            f64::from(self.bits_per_gene),
-            "2 to 30",
-        )?;
-        require(
-            share(self.crossover_probability),
-            "crossover_probability",
-            self.crossover_probability,
-            "0 to 1",
-        )?;
-        require(
-            share(self.mutation_probability),
-            "mutation_probability",
-            self.mutation_probability,
-            "0 to 1",
-        )?;
-        require(
-            self.real_step > 0.0 && self.real_step <= 1.0,
-            "real_step",
-            self.real_step,
-            "above 0, at most 1",
-        )?;
-        require(
-            self.speculation != Some(0),
-            "speculation",
-            0.0,
-            "at least 1",
-        )
+        check(self, SETTINGS)
     }
 }
+
+/// What can be set by name: the paper's numbers, and every point that its text leaves open.
+pub(in crate::strategy) const SETTINGS: &[Setting] = &[
+    Setting::new(
+        "population",
+        Values::Whole(2, u64::MAX),
+        "individuals per generation",
+    ),
+    Setting::new(
+        "generations",
+        Values::Whole(0, 1_000_000),
+        "most generations",
+    ),
+    Setting::new(
+        "initial_counts",
+        Values::Switch,
+        "whether the initial population is the first of the generations",
+    ),
+    Setting::new(
+        "threshold",
+        Values::Real(0.0, f64::MAX),
+        "fitness at or below which the search ends [MPa^2]",
+    )
+    .or("none"),
+    Setting::new(
+        "crossover_probability",
+        Values::Real(0.0, 1.0),
+        "probability that a pair is crossed",
+    ),
+    Setting::new(
+        "mutation_probability",
+        Values::Real(0.0, 1.0),
+        "probability of a mutation per mutation_unit",
+    ),
+    Setting::new(
+        "crossover_trials",
+        Values::Whole(0, 1_000_000),
+        "trials of the crossover-based hill climb per generation",
+    ),
+    Setting::new(
+        "mutation_trials",
+        Values::Whole(0, 1_000_000),
+        "trials of the mutation-based hill climb per generation",
+    ),
+    Setting::new(
+        "encoding",
+        Values::Words(&["binary", "gray", "real"]),
+        "how genes become a chromosome",
+    ),
+    Setting::new(
+        "bits_per_gene",
+        Values::Whole(2, 30),
+        "bits per gene of the binary and Gray encodings",
+    ),
+    Setting::new(
+        "real_step",
+        Values::Real(1e-6, 1.0),
+        "deviation of a mutation of the real encoding, as a share of the interval",
+    ),
+    Setting::new(
+        "scale",
+        Values::Words(&["logarithmic", "linear"]),
+        "how a chromosome is spread over a gene's interval",
+    ),
+    Setting::new(
+        "roulette",
+        Values::Words(&["inverse", "inverse_plus_one", "difference", "rank"]),
+        "weight on the roulette wheel: 1/f, 1/(1+f), largest f - f, by rank",
+    ),
+    Setting::new(
+        "crossover",
+        Values::Words(&["uniform", "one_point"]),
+        "crossover of two parents",
+    ),
+    Setting::new(
+        "mutation_unit",
+        Values::Words(&["bit", "gene", "individual"]),
+        "what mutation_probability counts",
+    ),
+    Setting::new(
+        "special_crossover",
+        Values::Words(&["elite_biased", "even"]),
+        "share of the partner in the first hill climb: 0.1 to 0.6 by diversity, or half",
+    ),
+    Setting::new(
+        "flipped_bits",
+        Values::Whole(1, 1000),
+        "random bits that the second hill climb flips: 1 to 4 by diversity, or so many",
+    )
+    .or("adaptive"),
+    Setting::new(
+        "climbers",
+        Values::Words(&["elite", "all", "literal"]),
+        "who climbs: the elite, everybody, or the paper's steps to the letter",
+    ),
+    Setting::new(
+        "acceptance",
+        Values::Words(&["first", "best_of_batch"]),
+        "each trial starts from the last winner, or all from one elite",
+    ),
+    Setting::new(
+        "survival",
+        Values::Words(&["generational", "plus"]),
+        "who lives on: children and one elite, or the best of parents and children",
+    ),
+    Setting::new(
+        "speculation",
+        Values::Whole(1, 1_000_000),
+        "trials evaluated ahead; the same search for every width, with fewer steps or evaluations",
+    )
+    .or("all"),
+    Setting::new(
+        "reuse_clones",
+        Values::Switch,
+        "whether an individual met before keeps its result; the same search either way",
+    ),
+];

@@ -31,23 +31,61 @@
 //! No window from 48 on costs anything that these functions could show; on the narrow valley of the
 //! resonance the smallest ones are two to four times worse than generations.
 use super::{
-    Codec, Individual, MemeticSettings,
     chromosome::Chromosome,
-    climb::{adaptive_bits, diversity},
-    selection::{Wheel, best, worst},
-    settings::{FlippedBits, SpecialCrossover},
-    variation,
+    craft::{At, Craft},
+    generations::PROMISE,
+    population::{Individual, best, diversity, worst},
+    settings::{MemeticSettings, SETTINGS},
 };
 use crate::{
     random::{Phase, Streams},
     space::{Axis, Space},
     strategy::{
-        Archive, Best, Evaluated, Finish, Progress, Proposal, Purpose, SettingsError, Strategy,
-        Told, require,
+        archive::{Archive, Evaluated},
+        ask_tell::Strategy,
+        offer::{Group, Preset},
+        outcome::{Best, Finish, Progress},
+        proposal::{Proposal, Purpose},
+        setting::{Setting, SettingsError, Values, check},
+        settings::{Recipe, Settings, build_as},
+        told::Told,
     },
 };
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, VecDeque};
+
+/// The paper's numbers without generations.
+pub const WINDOW: Preset = Preset {
+    name: "window",
+    summary: "the same without generations: no worker waits, and the bits are still the same",
+    strategy: WindowSettings::STRATEGY,
+    settings: |plan| Settings::of(&WindowSettings::for_workers(plan.workers)),
+    groups: &[
+        Group::whole(WINDOWED),
+        Group {
+            named: "",
+            place: "/memetic",
+            table: SETTINGS,
+            without: &[
+                "climbers",
+                "acceptance",
+                "survival",
+                "speculation",
+                "reuse_clones",
+            ],
+        },
+    ],
+    promise: PROMISE,
+    build: build_as::<WindowSettings>,
+};
+
+/// What can be set by name beside the settings of the memetic algorithm.
+const WINDOWED: &[Setting] = &[Setting::new(
+    "window",
+    Values::Whole(1, 1_000_000),
+    "an individual is bred from results that are this many behind; 3 per worker planned",
+)
+.following_workers()];
 
 /// Settings of the search without generations.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -77,11 +115,19 @@ impl WindowSettings {
     }
 }
 
+impl Recipe for WindowSettings {
+    const STRATEGY: &'static str = "window";
+
+    fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
+        Ok(Box::new(Window::new(self, space, seed)?))
+    }
+}
+
 /// The search, as a strategy.
 pub struct Window {
-    settings: WindowSettings,
-    codec: Codec,
-    streams: Streams,
+    /// L.
+    lag: usize,
+    craft: Craft,
     population: Vec<Individual>,
     /// Proposals without a consumed result, by id from the front.
     open: VecDeque<Chromosome>,
@@ -92,54 +138,48 @@ pub struct Window {
     finish: Option<Finish>,
 }
 
-/// The search over the whole space.
-///
-/// # Errors
-/// If a setting lies outside its range.
-pub fn build(settings: &WindowSettings, space: &Space, seed: u64) -> Result<Window, SettingsError> {
-    settings.memetic.check()?;
-    require(
-        settings.window >= 1,
-        "window",
-        settings.window as f64,
-        "at least 1",
-    )?;
-    let intervals = space.axes().iter().map(Axis::interval).collect();
-    let mut window = Window {
-        codec: Codec::new(space, intervals, &settings.memetic),
-        settings: settings.clone(),
-        streams: Streams::new(seed, 0),
-        population: Vec::new(),
-        open: VecDeque::new(),
-        outbox: Vec::new(),
-        early: BTreeMap::new(),
-        archive: Archive::default(),
-        next: 0,
-        finish: None,
-    };
-    window.propose();
-    Ok(window)
-}
-
 impl Window {
+    /// The search over the whole space.
+    ///
+    /// # Errors
+    /// If a setting lies outside its range.
+    pub fn new(settings: &WindowSettings, space: &Space, seed: u64) -> Result<Self, SettingsError> {
+        check(settings, WINDOWED)?;
+        let intervals = space.axes().iter().map(Axis::interval).collect();
+        let streams = Streams::new(seed, 0);
+        let mut window = Self {
+            lag: settings.window,
+            craft: Craft::new(settings.memetic.clone(), space, intervals, streams)?,
+            population: Vec::new(),
+            open: VecDeque::new(),
+            outbox: Vec::new(),
+            early: BTreeMap::new(),
+            archive: Archive::default(),
+            next: 0,
+            finish: None,
+        };
+        window.propose();
+        Ok(window)
+    }
+
     /// How many individuals are random.
     fn first(&self) -> u64 {
-        let population = self.settings.memetic.population;
-        population.max(self.settings.window + population / 2) as u64
+        let population = self.craft.settings.population;
+        population.max(self.lag + population / 2) as u64
     }
 
     /// Individuals between two of the same place in the plan.
     const fn cycle(&self) -> u64 {
-        (self.settings.memetic.population + self.trials()) as u64
+        (self.craft.settings.population + self.trials()) as u64
     }
 
     const fn trials(&self) -> usize {
-        self.settings.memetic.crossover_trials + self.settings.memetic.mutation_trials
+        self.craft.settings.crossover_trials + self.craft.settings.mutation_trials
     }
 
     /// How many evaluations are planned.
     fn planned(&self) -> u64 {
-        let generations = u64::from(self.settings.memetic.bred_generations());
+        let generations = u64::from(self.craft.settings.bred_generations());
         self.first() + generations * self.cycle()
     }
 
@@ -157,12 +197,12 @@ impl Window {
             return Purpose::Initial;
         };
         let place = usize::try_from(bred % self.cycle()).unwrap_or(0);
-        let cycle = self.settings.memetic.population + self.trials();
+        let cycle = self.craft.settings.population + self.trials();
         let before = place * self.trials() / cycle;
         if (place + 1) * self.trials() / cycle == before {
             return Purpose::Offspring;
         }
-        let (crossovers, all) = (self.settings.memetic.crossover_trials, self.trials());
+        let (crossovers, all) = (self.craft.settings.crossover_trials, self.trials());
         if (before + 1) * crossovers / all > before * crossovers / all {
             Purpose::CrossoverTrial
         } else {
@@ -174,7 +214,7 @@ impl Window {
     fn propose(&mut self) {
         let consumed = self.archive.entries().len() as u64;
         // individual k needs results 0 ..= k - L; random ones need none
-        let bound = (consumed + self.settings.window as u64)
+        let bound = (consumed + self.lag as u64)
             .max(self.first())
             .min(self.planned());
         while self.next < bound && self.finish.is_none() {
@@ -182,7 +222,7 @@ impl Window {
             let chromosome = self.breed(self.next, purpose);
             self.outbox.push(Proposal {
                 id: self.next,
-                genes: self.codec.decode(&chromosome),
+                genes: self.craft.codec.decode(&chromosome),
                 generation: self.generation(self.next),
                 purpose,
             });
@@ -196,77 +236,47 @@ impl Window {
 
     fn breed(&self, id: u64, purpose: Purpose) -> Chromosome {
         let index = usize::try_from(id).unwrap_or(usize::MAX);
-        let memetic = &self.settings.memetic;
         if purpose == Purpose::Initial {
-            return self
-                .codec
-                .random(&mut self.streams.at(0, Phase::Initial, index));
+            return self.craft.random(index);
         }
-        let wheel = Wheel::new(&self.population, memetic.roulette);
-        let elite = &self.population[best(&self.population)].chromosome;
-        match purpose {
-            Purpose::CrossoverTrial => {
-                let mut stream = self.streams.at(1, Phase::CrossoverTrial, index);
-                let partner = &self.population[wheel.draw(&mut stream)].chromosome;
-                let share = match memetic.special_crossover {
-                    SpecialCrossover::EliteBiased => {
-                        let diversity = diversity(&self.codec, &self.population);
-                        (0.1 + 0.5 * diversity).clamp(0.1, 0.6)
-                    }
-                    SpecialCrossover::Even => 0.5,
-                };
-                variation::elite_crossover(&self.codec, elite, partner, share, &mut stream)
-            }
-            Purpose::MutationTrial => {
-                let mut stream = self.streams.at(1, Phase::MutationTrial, index);
-                let count = match memetic.flipped_bits {
-                    FlippedBits::Fixed(count) => count,
-                    FlippedBits::Adaptive => {
-                        adaptive_bits(diversity(&self.codec, &self.population))
-                    }
-                };
-                let how = (count, memetic.real_step);
-                variation::flip_some(&self.codec, elite, how, &mut stream)
-            }
-            Purpose::Initial
-            | Purpose::Offspring
-            | Purpose::Scan
-            | Purpose::Refinement
-            | Purpose::LeastSquares => {
-                let mut stream = self.streams.at(1, Phase::Selection, index);
-                let mut child = self.population[wheel.draw(&mut stream)].chromosome.clone();
-                let mut other = self.population[wheel.draw(&mut stream)].chromosome.clone();
-                let mut stream = self.streams.at(1, Phase::Crossover, index);
-                if stream.chance(memetic.crossover_probability) {
-                    let both = (&mut child, &mut other);
-                    variation::cross(&self.codec, memetic.crossover, both, &mut stream);
-                }
-                let rule = (
-                    memetic.mutation_unit,
-                    memetic.mutation_probability,
-                    memetic.real_step,
-                );
-                let mut stream = self.streams.at(1, Phase::Mutation, index);
-                variation::mutate(&self.codec, &mut child, rule, &mut stream);
-                child
-            }
+        let (craft, population) = (&self.craft, &self.population);
+        let at = At {
+            generation: 1,
+            index,
+        };
+        let wheel = craft.wheel(population);
+        let elite = &population[best(population)].chromosome;
+        let diversity = || diversity(&craft.codec, population);
+        if purpose == Purpose::CrossoverTrial {
+            return craft.crossover_trial(at, elite, diversity(), |stream| {
+                &population[wheel.draw(stream)].chromosome
+            });
         }
+        if purpose == Purpose::MutationTrial {
+            return craft.mutation_trial(at, elite, diversity());
+        }
+        let mut stream = craft.stream(at, Phase::Selection);
+        let mut child = population[wheel.draw(&mut stream)].chromosome.clone();
+        let mut other = population[wheel.draw(&mut stream)].chromosome.clone();
+        craft.cross(at, &mut child, &mut other);
+        craft.mutate(at, Phase::Mutation, &mut child);
+        child
     }
 
     /// Takes the next result in index order.
     fn consume(&mut self, id: u64, chromosome: Chromosome, told: Told) {
         self.archive.push(Evaluated {
             id,
-            genes: self.codec.decode(&chromosome),
+            genes: self.craft.codec.decode(&chromosome),
             told,
             residual: None,
         });
-        let threshold = self.settings.memetic.threshold;
+        let threshold = self.craft.settings.threshold;
         if told.survived() && threshold.is_some_and(|threshold| told.fitness <= threshold) {
             self.finish = Some(Finish::Threshold);
         }
         let known = |one: &Individual| one.chromosome == chromosome;
-        if self.population.len() < self.settings.memetic.population {
+        if self.population.len() < self.craft.settings.population {
             self.population.push(Individual { chromosome, told });
         } else if !self.population.iter().any(known) {
             // two of a kind would crowd out the others
@@ -319,7 +329,7 @@ impl Strategy for Window {
         let best = self.archive.best().filter(|best| best.told.survived());
         Progress {
             generation: self.generation(evaluations.saturating_sub(1)),
-            generations: self.settings.memetic.bred_generations(),
+            generations: self.craft.settings.bred_generations(),
             evaluations,
             expected_evaluations: planned,
             best_fitness: best.map(|best| best.told.fitness),
@@ -336,4 +346,5 @@ impl Strategy for Window {
 }
 
 #[cfg(test)]
+#[path = "window_tests.rs"]
 mod tests;

@@ -1,5 +1,5 @@
 //! The elements of a mesh file: which of Gmsh's are taken, and why others are not.
-use super::{super::super::error::CaseError, Sections, lines::Lines};
+use super::{super::super::error::CaseError, lines::Lines, sections::Sections};
 use protocol::job::ElementKind;
 use std::collections::BTreeMap;
 

@@ -1,9 +1,10 @@
 //! The lines of a mesh file, counted: numbers come out, errors name the line.
-use super::{
-    super::super::error::{CaseError, damaged},
-    SAVE_AGAIN,
-};
+use super::super::super::error::{CaseError, damaged};
 use std::path::Path;
+
+/// What to do about a mesh that cannot be read.
+pub(super) const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh41), \
+                          8-node hexahedra of order 1 or 10-node tetrahedra";
 
 /// Lines of the file, counted.
 pub(super) struct Lines<'a> {

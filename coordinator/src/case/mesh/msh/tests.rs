@@ -1,5 +1,8 @@
 //! A file of one tetrahedron, and what is said about files that are not like it.
-use super::*;
+use super::{
+    super::body::{Mesh, SYMMETRY, VOLUME},
+    reader::read,
+};
 use protocol::job::ElementKind;
 use std::{fmt::Write as _, fs};
 

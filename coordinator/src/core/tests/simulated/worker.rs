@@ -1,5 +1,5 @@
 //! One simulated worker: what it holds, and what it makes of what it hears.
-use super::*;
+use super::{happening::What, *};
 use std::collections::VecDeque;
 
 /// An attempt in a slot.
@@ -56,7 +56,7 @@ impl Worker {
         let order = self.waiting.pop_front()?;
         self.running.push(Running {
             attempt: order.attempt,
-            work: work_hash(&order.job),
+            work: order.job.work_hash(),
             begun: now,
         });
         Some(order.attempt)
@@ -78,8 +78,8 @@ impl Worker {
         let done = Done {
             attempt,
             work: running.work,
-            wall_us: u64::try_from(wall.as_micros()).expect("short"),
-            outcome: Outcome::Nothing(vec![1]),
+            cost: cost(u64::try_from(wall.as_micros()).expect("short")),
+            outcome: Outcome::Done(Answer::Nothing(vec![1])),
         };
         self.outbox.insert(attempt, done.clone());
         Some(done)

@@ -1,30 +1,28 @@
 //! What is added to the model: the entry of the case file, and its sizes.
-use super::{Figures, Section};
-use crate::report::diagnosis::{Subject, effects_toml, table as tables};
-use crate::report::table::markup;
-use maud::{Markup, html};
+use crate::report::diagnosis::effects::effects_toml;
+use crate::report::diagnosis::subject::Subject;
+use crate::report::diagnosis::table as tables;
+use crate::report::document::{Block, Section};
 
-pub(super) const SECTION: Section = Section {
-    id: "add",
-    title: "What is added",
-    render,
-};
-
-fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
-    let sizes = tables::sizes(subject);
-    let entry = effects_toml(subject);
-    if sizes.is_none() && entry.is_none() {
-        return None;
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks: Vec<Block> = tables::sizes(subject)
+        .map(Block::Table)
+        .into_iter()
+        .collect();
+    if let Some(entry) = effects_toml(subject) {
+        blocks.extend([
+            Block::Text(
+                "The same as an entry of the case's model file. Without it the model is what it was, \
+                 to the bit; with it the effect is ordinary physics, simulated by every worker and \
+                 fitted like any gene:"
+                    .to_owned(),
+            ),
+            Block::Code(entry),
+        ]);
     }
-    Some(html! {
-        @if let Some(sizes) = &sizes { (markup(sizes)) }
-        @if let Some(entry) = &entry {
-            p {
-                "The same as an entry of the case's model file. Without it the model is what it was, to \
-                 the bit; with it the effect is ordinary physics, simulated by every worker and fitted \
-                 like any gene:"
-            }
-            pre { code { (entry) } }
-        }
-    })
+    Section {
+        id: "add",
+        title: "What is added",
+        blocks,
+    }
 }

@@ -1,55 +1,69 @@
 //! What the verdict rests on: numerical error, noise, convergence, parameters, cost.
-use super::{Figures, Section};
-use crate::report::diagnosis::{Subject, table as tables};
+use crate::report::diagnosis::subject::Subject;
+use crate::report::diagnosis::table as tables;
+use crate::report::document::{Block, Fact, Section};
 use crate::report::number::{figure, percent};
-use crate::report::table::markup;
-use maud::{Markup, html};
 
-pub(super) const SECTION: Section = Section {
-    id: "certainty",
-    title: "What it rests on",
-    render,
-};
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks = Vec::new();
+    let facts = facts(subject);
+    if !facts.is_empty() {
+        blocks.push(Block::Facts(facts));
+        blocks.push(tables::numerics(subject).map_or_else(
+            || {
+                Block::Text(
+                    "The finer model of the numerical check did not complete: how far the \
+                     discretisation moves the curves is not known."
+                        .to_owned(),
+                )
+            },
+            Block::Table,
+        ));
+        let rest = [tables::genes(subject), tables::stages(subject)];
+        blocks.extend(rest.into_iter().flatten().map(Block::Table));
+    }
+    Section {
+        id: "certainty",
+        title: "What it rests on",
+        blocks,
+    }
+}
 
-fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
-    let diagnosis = &subject.diagnosed.diagnosis;
-    let fit = diagnosis.before.as_ref()?;
-    Some(html! {
-        dl.facts {
-            dt { "noise" }
-            dd {
-                @if diagnosis.assumed_noise {
-                    "assumed from the data sheet and the highest orders: there was one cycle"
-                } @else {
-                    "seen: the scatter between the cycles, order by order"
-                }
-            }
-            dt { "recalibration" }
-            dd {
-                "one more step promises to lower the misfit by "
-                (percent(fit.search.promised_decrease()))
-                "; the tests look at the residual after that step"
-            }
-            @if let Some(after) = &diagnosis.after {
-                @if !after.model.added.is_empty() {
-                    dt { "fit with the answer" }
-                    dd { "the same: " (percent(after.search.promised_decrease())) }
-                }
-            }
-            @if let Some(round) = diagnosis.rounds.first() {
-                dt { "misfit" }
-                dd {
-                    "χ² per entry of the record, best model: " (figure(round.phi))
-                    "; variances are inflated by its square"
-                }
-            }
-        }
-        @match tables::numerics(subject) {
-            Some(numerics) => (markup(&numerics)),
-            None => p { "The finer model of the numerical check did not complete: how far the \
-                         discretisation moves the curves is not known." },
-        }
-        @if let Some(genes) = tables::genes(subject) { (markup(&genes)) }
-        @if let Some(stages) = tables::stages(subject) { (markup(&stages)) }
-    })
+/// The grounds; none where the recalibration did not come to an end.
+fn facts(subject: &Subject<'_>) -> Vec<Fact> {
+    let diagnosis = subject.diagnosis();
+    let Some(fit) = &diagnosis.before else {
+        return Vec::new();
+    };
+    let noise = if diagnosis.assumed_noise {
+        "assumed from the data sheet and the highest orders: there was one cycle"
+    } else {
+        "seen: the scatter between the cycles, order by order"
+    };
+    let recalibration = format!(
+        "one more step promises to lower the misfit by {}; the tests look at the residual after that \
+         step",
+        percent(fit.search.promised_decrease())
+    );
+    let mut facts = vec![
+        Fact::new("noise", noise),
+        Fact::new("recalibration", recalibration),
+    ];
+    let after = diagnosis.after.iter();
+    facts.extend(
+        after
+            .filter(|after| !after.model.added.is_empty())
+            .map(|after| {
+                let promised = percent(after.search.promised_decrease());
+                Fact::new("fit with the answer", format!("the same: {promised}"))
+            }),
+    );
+    facts.extend(diagnosis.rounds.first().map(|round| {
+        let misfit = format!(
+            "χ² per entry of the record, best model: {}; variances are inflated by its square",
+            figure(round.phi)
+        );
+        Fact::new("misfit", misfit)
+    }));
+    facts
 }

@@ -1,58 +1,76 @@
 //! Where the recalibrated simulation and the record part: crank angle, order, joint.
-use super::{Figures, Section};
-use crate::report::diagnosis::{Subject, words};
+use crate::report::chart;
+use crate::report::diagnosis::subject::{Subject, channels};
+use crate::report::document::{Block, Figure, Section, figures};
 use crate::report::number::{figure, fixed};
-use crate::report::section::figure as framed;
-use discrepancy::locate::angle::Window;
-use discrepancy::stage::whereabouts::Where;
-use maud::{Markup, html};
-
-pub(super) const SECTION: Section = Section {
-    id: "where",
-    title: "Where the curves part",
-    render,
-};
+use crate::report::words::listed;
+use discrepancy::place::angle::Window;
+use discrepancy::place::whereabouts::Where;
+use discrepancy::record::Record;
 
 /// Windows and entries that are named in words.
 const NAMED: usize = 6;
 
-fn render(subject: &Subject<'_>, figures: &Figures) -> Option<Markup> {
-    let seen = subject.diagnosed.diagnosis.whereabouts.as_ref()?;
-    let channels: Vec<String> = words::calibrated(subject)
-        .map(|record| record.channels.iter().map(|c| c.name()).collect())
-        .unwrap_or_default();
-    Some(html! {
-        p {
-            "Everything here is what the recalibrated model, without any further effect, leaves of the \
-             record; what another set of parameters could take up does not show."
-        }
-        (windows(seen, &channels))
-        (peaks(seen, &channels))
-        @for one in &figures.place { (framed(one)) }
-    })
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks = Vec::new();
+    if let Some(seen) = &subject.diagnosis().whereabouts {
+        let record = subject.calibrated();
+        let names = record.map(channels).unwrap_or_default();
+        blocks.push(Block::Text(
+            "Everything here is what the recalibrated model, without any further effect, leaves of \
+             the record; what another set of parameters could take up does not show."
+                .to_owned(),
+        ));
+        blocks.extend(windows(seen, &names));
+        blocks.push(Block::Text(peaks(seen, &names)));
+        let maps = record.map(|record| maps(subject, seen, record));
+        blocks.extend(figures(maps.into_iter().flatten()));
+    }
+    Section {
+        id: "where",
+        title: "Where the curves part",
+        blocks,
+    }
 }
 
-fn windows(seen: &Where, channels: &[String]) -> Markup {
-    let name = |c: usize| channels.get(c).map_or("", String::as_str);
+fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
+    let names = channels(record);
+    let condition = subject.case.conditions.get(record.condition);
+    let speed_rpm = condition.map_or(f64::NAN, |condition| condition.speed_rpm);
+    let all = [
+        chart::angle_map(&seen.angle, &names),
+        chart::order_map(&seen.order, &names, speed_rpm),
+        chart::joints(&seen.joints, seen.equivalent),
+        chart::latent_forces(&seen.joints, seen.equivalent),
+    ];
+    all.into_iter().flatten().collect()
+}
+
+fn windows(seen: &Where, channels: &[String]) -> Vec<Block> {
     let all = &seen.angle.windows;
-    html! {
-        @if all.is_empty() {
-            p { "By crank angle: no window of the revolution stands out of the noise." }
-        } @else {
-            p { "By crank angle, the strongest first:" }
-            ul {
-                @for window in all.iter().take(NAMED) {
-                    li {
-                        (name(window.channel)) ", " (fixed(window.from_deg, 0)) " to "
-                        (fixed(end_deg(window), 0)) " deg: the simulation is too "
-                        @if window.strength > 0.0 { "low" } @else { "high" }
-                        " by " (fixed(window.strength.abs(), 1)) " standard deviations"
-                    }
-                }
-            }
-            @if all.len() > NAMED { p { "and " (all.len() - NAMED) " more windows." } }
-        }
+    let item = |window: &Window| {
+        format!(
+            "{}, {} to {} deg: the simulation is too {} by {} standard deviations",
+            channels.get(window.channel).map_or("", String::as_str),
+            fixed(window.from_deg, 0),
+            fixed(end_deg(window), 0),
+            if window.strength > 0.0 { "low" } else { "high" },
+            fixed(window.strength.abs(), 1)
+        )
+    };
+    if all.is_empty() {
+        let none = "By crank angle: no window of the revolution stands out of the noise.";
+        return vec![Block::Text(none.to_owned())];
     }
+    let mut blocks = vec![
+        Block::Text("By crank angle, the strongest first:".to_owned()),
+        Block::List(all.iter().take(NAMED).map(item).collect()),
+    ];
+    if all.len() > NAMED {
+        let more = format!("and {} more windows.", all.len() - NAMED);
+        blocks.push(Block::Text(more));
+    }
+    blocks
 }
 
 /// Where a window ends, within the revolution.
@@ -64,29 +82,19 @@ fn end_deg(window: &Window) -> f64 {
     }
 }
 
-fn peaks(seen: &Where, channels: &[String]) -> Markup {
-    let name = |c: usize| channels.get(c).map_or("", String::as_str);
+fn peaks(seen: &Where, channels: &[String]) -> String {
     let all = &seen.order.peaks;
-    let named: Vec<String> = all
-        .iter()
-        .take(NAMED)
-        .map(|peak| {
-            format!(
-                "order {} at {} ({}\u{a0}× noise)",
-                peak.order,
-                name(peak.channel),
-                figure(peak.ratio)
-            )
-        })
-        .collect();
-    html! {
-        @if named.is_empty() {
-            p { "By order of the crank: no entry stands out of the noise." }
-        } @else {
-            p {
-                "By order of the crank, " (all.len()) " entries stand out, most of all "
-                (words::listed(&named, "and")) "."
-            }
-        }
+    if all.is_empty() {
+        return "By order of the crank: no entry stands out of the noise.".to_owned();
     }
+    let named = all.iter().take(NAMED).map(|peak| {
+        let (order, ratio) = (peak.order, figure(peak.ratio));
+        let channel = channels.get(peak.channel).map_or("", String::as_str);
+        format!("order {order} at {channel} ({ratio}\u{a0}× noise)")
+    });
+    format!(
+        "By order of the crank, {} entries stand out, most of all {}.",
+        all.len(),
+        listed(&named.collect::<Vec<_>>(), "and")
+    )
 }

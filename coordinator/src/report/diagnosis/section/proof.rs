@@ -1,43 +1,51 @@
 //! The proof: how far the gap closes, on records that took part and on records that did not, with
 //! the best rejected rival beside it.
-use super::{Figures, Section};
-use crate::report::diagnosis::{Subject, table as tables};
-use crate::report::section::figure;
-use crate::report::table::markup;
-use maud::{Markup, html};
+use crate::report::chart;
+use crate::report::diagnosis::shown::{Shown, shown};
+use crate::report::diagnosis::subject::Subject;
+use crate::report::diagnosis::table as tables;
+use crate::report::document::{Block, Section, figures};
+use discrepancy::record::Source;
+use maud::html;
 
-pub(super) const SECTION: Section = Section {
-    id: "show",
-    title: "What it shows",
-    render,
-};
-
-fn render(subject: &Subject<'_>, figures: &Figures) -> Option<Markup> {
-    let gaps = tables::gaps(subject);
-    if gaps.is_none() && figures.proof.is_empty() {
-        return None;
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let mut blocks = Vec::new();
+    let numbers = [tables::gaps(subject), tables::paper(subject)];
+    blocks.extend(numbers.into_iter().flatten().map(Block::Table));
+    blocks.extend(shown(subject).iter().flat_map(curves));
+    let rounds = &subject.diagnosis().rounds;
+    let added = rounds.iter().any(|round| round.added.is_some());
+    if !added && !blocks.is_empty() {
+        let same =
+            "Nothing was added: before and after are the same model, shown for what it leaves.";
+        blocks.insert(0, Block::Text(same.to_owned()));
     }
-    let added = subject
-        .diagnosed
-        .diagnosis
-        .rounds
-        .iter()
-        .any(|round| round.added.is_some());
-    Some(html! {
-        @if !added {
-            p { "Nothing was added: before and after are the same model, shown for what it leaves." }
-        }
-        @if let Some(gaps) = &gaps { (markup(gaps)) }
-        @if let Some(paper) = tables::paper(subject) { (markup(&paper)) }
-        @for proof in &figures.proof {
-            h3 { "Condition " (proof.condition) }
-            @for one in &proof.gauges { (figure(one)) }
-            @if !proof.others.is_empty() {
-                details {
-                    summary { "Other channels" }
-                    @for one in &proof.others { (figure(one)) }
-                }
-            }
-        }
-    })
+    Section {
+        id: "show",
+        title: "What it shows",
+        blocks,
+    }
+}
+
+/// The curves of one condition: its gauges, and behind a fold its other channels.
+fn curves(shown: &Shown<'_>) -> Vec<Block> {
+    let heading = html! { h3 { "Condition " (shown.condition) } };
+    let mut blocks = vec![Block::Markup(heading)];
+    let (gauges, others): (Vec<usize>, Vec<usize>) = shown
+        .order()
+        .into_iter()
+        .partition(|&c| matches!(shown.record.channels[c], Source::Gauge(_)));
+    let draw = |channels: Vec<usize>| {
+        let drawn = channels.into_iter().filter_map(|c| {
+            let name = shown.record.channels[c].name();
+            chart::closing(&shown.channel(c, &name)?)
+        });
+        figures(drawn)
+    };
+    blocks.extend(draw(gauges));
+    let others = draw(others);
+    if !others.is_empty() {
+        blocks.push(Block::Folded("Other channels", others));
+    }
+    blocks
 }

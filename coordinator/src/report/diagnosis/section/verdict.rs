@@ -1,46 +1,47 @@
 //! The verdict: one sentence, its size, how sure it is, and what to do next.
-use super::{Figures, Section};
-use crate::report::diagnosis::{Subject, words};
+use crate::report::diagnosis::subject::Subject;
+use crate::report::diagnosis::words;
+use crate::report::document::{Block, Section};
 use crate::report::words::SYNTHETIC;
 use discrepancy::verdict::Verdict;
-use maud::{Markup, html};
 
-pub(super) const SECTION: Section = Section {
-    id: "verdict",
-    title: "Verdict",
-    render,
-};
-
-#[expect(clippy::unnecessary_wraps, reason = "all sections share one signature")]
-fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
-    let diagnosis = &subject.diagnosed.diagnosis;
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    let diagnosis = subject.diagnosis();
+    let mut blocks = vec![Block::Lead(words::verdict(subject))];
+    let reason = diagnosis.reason.iter();
+    blocks.extend(reason.map(|reason| Block::Text(format!("The reason: {reason}."))));
+    let effects = words::effects(subject);
+    if !effects.is_empty() {
+        blocks.push(Block::List(effects));
+    }
     let grounds = words::confidence(subject);
-    let reach = match diagnosis.verdict {
-        Verdict::NothingDetected | Verdict::Unresolved => words::reach(subject),
-        Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => None,
-    };
-    Some(html! {
-        p.verdict { (words::verdict(subject)) }
-        @if let Some(reason) = &diagnosis.reason { p { "The reason: " (reason) "." } }
-        @if !diagnosis.effects.is_empty() {
-            ul {
-                @for (label, sizes) in words::effects(subject) {
-                    li { b { (label) } ": " (sizes) }
-                }
-            }
-        }
-        @if !grounds.is_empty() {
-            h3 { "How sure" }
-            ul.ground { @for ground in &grounds { li { (ground) } } }
-        }
-        @if let Some(reach) = reach { p { (reach) } }
-        h3 { "What to do next" }
-        ul.ground { @for step in words::next(subject) { li { (step) } } }
-        @if subject.provenance.synthetic { p { (SYNTHETIC) } }
-        @if !diagnosis.notes.is_empty() || !subject.notes.is_empty() {
-            div.warning {
-                @for note in diagnosis.notes.iter().chain(subject.notes) { p { (note) } }
-            }
-        }
-    })
+    if !grounds.is_empty() {
+        blocks.extend([
+            Block::Heading("How sure".to_owned(), ""),
+            Block::List(grounds),
+        ]);
+    }
+    if matches!(
+        diagnosis.verdict,
+        Verdict::NothingDetected | Verdict::Unresolved
+    ) {
+        blocks.extend(words::reach(subject).map(Block::Text));
+    }
+    blocks.extend([
+        Block::Heading("What to do next".to_owned(), ""),
+        Block::List(words::next(subject)),
+    ]);
+    if subject.origin.synthetic {
+        blocks.push(Block::Text(SYNTHETIC.to_owned()));
+    }
+    let notes = diagnosis.notes.iter().chain(subject.notes);
+    let notes: Vec<String> = notes.cloned().collect();
+    if !notes.is_empty() {
+        blocks.push(Block::Warning(notes));
+    }
+    Section {
+        id: "verdict",
+        title: "Verdict",
+        blocks,
+    }
 }

@@ -1,39 +1,47 @@
 //! Parameters that would have to wander, before and after.
-use super::{Figures, Section};
-use crate::report::diagnosis::{Subject, table as tables};
-use crate::report::table::markup;
-use maud::{Markup, html};
+use crate::report::diagnosis::subject::Subject;
+use crate::report::diagnosis::table::{self as tables, Wandering};
+use crate::report::document::{Block, Section};
 
-pub(super) const SECTION: Section = Section {
-    id: "wander",
-    title: "Parameters that would have to wander",
-    render,
-};
-
-fn render(subject: &Subject<'_>, _: &Figures) -> Option<Markup> {
-    let diagnosis = &subject.diagnosed.diagnosis;
-    let before = diagnosis.before.as_ref()?;
-    if diagnosis.wander.is_empty() {
-        return None;
+pub(super) fn section(subject: &Subject<'_>) -> Section {
+    Section {
+        id: "wander",
+        title: "Parameters that would have to wander",
+        blocks: blocks(subject),
     }
-    let of = |fit, wander, title| tables::wander(subject, (fit, wander, title));
-    let first = of(before, &diagnosis.wander, "The recalibrated model");
-    let after = diagnosis.after.as_ref();
-    let after = after.filter(|_| !diagnosis.wander_after.is_empty());
-    Some(html! {
-        p {
-            "A parameter of the machine is the same at every crank angle and at every speed. One that would \
-             have to change from part to part makes up for something that the model lacks."
-        }
-        @match &first {
-            Some(table) => (markup(table)),
-            None => p { "With the recalibrated model none would have to, within the scatter between cycles." },
-        }
-        @if let Some(after) = after {
-            @match of(after, &diagnosis.wander_after, "With the answer") {
-                Some(table) => (markup(&table)),
-                None => p { "With the answer none would have to, within the scatter between cycles." },
-            }
-        }
-    })
+}
+
+fn blocks(subject: &Subject<'_>) -> Vec<Block> {
+    let diagnosis = subject.diagnosis();
+    let models = [
+        (
+            "The recalibrated model",
+            &diagnosis.before,
+            &diagnosis.wander,
+        ),
+        ("With the answer", &diagnosis.after, &diagnosis.wander_after),
+    ];
+    let models = models.map(|(title, fit, wander)| {
+        let fit = fit.as_ref().filter(|_| !wander.is_empty())?;
+        Some(Wandering { title, fit, wander })
+    });
+    let [Some(before), after] = models else {
+        return Vec::new();
+    };
+    let mut blocks = vec![Block::Text(
+        "A parameter of the machine is the same at every crank angle and at every speed. One that \
+         would have to change from part to part makes up for something that the model lacks."
+            .to_owned(),
+    )];
+    let none = [
+        "With the recalibrated model none would have to, within the scatter between cycles.",
+        "With the answer none would have to, within the scatter between cycles.",
+    ];
+    for (model, none) in std::iter::once(before).chain(after).zip(none) {
+        blocks.push(
+            tables::wander(subject, &model)
+                .map_or_else(|| Block::Text(none.to_owned()), Block::Table),
+        );
+    }
+    blocks
 }

@@ -1,53 +1,57 @@
 //! Numbers of the answer: parameters of its effects, and genes.
-use super::{row, table};
-use crate::report::diagnosis::Subject;
-use crate::report::diagnosis::words::{self, interval};
+use crate::report::diagnosis::subject::Subject;
+use crate::report::diagnosis::words::interval;
+use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, quantity};
-use crate::report::table::{Label, Row, Table};
 use crate::report::words::at_bound;
 use protocol::announce::{ParameterDescriptor, Role};
 
 /// Parameters of the effects of the answer.
 pub(in crate::report::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table> {
-    let diagnosis = &subject.diagnosed.diagnosis;
+    let diagnosis = subject.diagnosis();
     // a suspect without a verdict is no answer
-    words::added(diagnosis).next()?;
+    subject.added().first()?;
     let mut rows = Vec::new();
     for effect in &diagnosis.effects {
-        rows.push(Row::Group(format!("{} ({})", effect.title, effect.id)));
-        for (name, unit, value, ci95) in &effect.parameters {
-            let known = words::parameter(subject, &effect.id, name);
+        rows.push(Row::group(format!("{} ({})", effect.title, effect.id)));
+        for own in &effect.parameters {
+            let (name, unit) = (&own.name, &own.unit);
+            let known = subject.parameter(&effect.id, name);
             let of = |value: Option<f64>| {
                 value.map_or_else(|| NONE.to_owned(), |value| quantity(value, unit))
             };
-            rows.push(row(
+            rows.push(Row::new(
                 name.replace('_', " "),
                 [
-                    quantity(*value, unit),
-                    interval(*ci95, unit),
+                    quantity(own.value, unit),
+                    interval(own.interval, unit),
                     of(known.map(usual)),
                     known.map_or_else(|| NONE.to_owned(), |p| interval([p.lower, p.upper], unit)),
                     known
-                        .and_then(|p| edge(*value, p.lower, p.upper))
+                        .and_then(|p| edge(own.value, p.lower, p.upper))
                         .unwrap_or("")
                         .to_owned(),
                 ],
             ));
         }
     }
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
-            "Sizes of the answer",
-            ["", "value", "95\u{a0}% interval", "usual size", "bounds", ""],
-            rows,
-        );
-        made.notes = vec![
-            "Intervals are those of the linearised fit with all genes free, inflated by its misfit; \
-             they hold if the name is right."
-                .to_owned(),
-        ];
-        made
-    })
+    Table::new(
+        "Sizes of the answer",
+        [
+            "",
+            "value",
+            "95\u{a0}% interval",
+            "usual size",
+            "bounds",
+            "",
+        ],
+        rows,
+    )
+    .noted([
+        "Intervals are those of the linearised fit with all genes free, inflated by its misfit; \
+             they hold if the name is right.",
+    ])
+    .unless_empty()
 }
 
 /// How large a parameter usually is: of a shape, its typical value.
@@ -70,7 +74,7 @@ fn edge(value: f64, lower: f64, upper: f64) -> Option<&'static str> {
 
 /// Genes before and after, with their bounds.
 pub(in crate::report::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table> {
-    let diagnosis = &subject.diagnosed.diagnosis;
+    let diagnosis = subject.diagnosis();
     let before = diagnosis
         .before
         .as_ref()
@@ -80,9 +84,9 @@ pub(in crate::report::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table
         let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));
         let last = after.as_ref().unwrap_or(&before).get(k);
         let edge = last.and_then(|v| at_bound(gene, *v));
-        Row::Values(
-            Label::of(gene),
-            vec![
+        Row::of(
+            gene,
+            [
                 figure(gene.recommended),
                 of(before.get(k)),
                 of(after.as_ref().and_then(|after| after.get(k))),
@@ -91,7 +95,7 @@ pub(in crate::report::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table
             ],
         )
     });
-    Some(table(
+    Some(Table::new(
         "Parameters of the calibration",
         [
             "",

@@ -1,16 +1,14 @@
 //! What the diagnosis stands on and what it cost: numerical error, simulations.
-use super::{row, table};
-use crate::report::diagnosis::Subject;
-use crate::report::diagnosis::words;
+use crate::report::diagnosis::subject::Subject;
+use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, count, duration, fixed, quantity};
-use crate::report::table::{Row, Table};
+use discrepancy::ground::preflight::Preflight;
 use discrepancy::record::Source;
-use discrepancy::stage::preflight::Preflight;
 
 /// How far the discretisation moves each channel, at the recalibrated model and at the answer.
 pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
-    let diagnosis = &subject.diagnosed.diagnosis;
-    let record = words::calibrated(subject)?;
+    let diagnosis = subject.diagnosis();
+    let record = subject.calibrated()?;
     let checks = [
         ("the recalibrated model", diagnosis.preflight.as_ref()),
         ("the answer", diagnosis.preflight_after.as_ref()),
@@ -19,7 +17,7 @@ pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Ta
     let mut notes = Vec::new();
     for (name, check) in checks {
         let Some(check) = check else { continue };
-        rows.push(Row::Group(name.to_owned()));
+        rows.push(Row::group(name));
         let each = record.channels.iter().enumerate();
         rows.extend(each.map(|(c, source)| channel(check, c, *source)));
         notes.push(format!(
@@ -41,20 +39,18 @@ pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Ta
          named for what a coarser rope does; a name must be believed with that of the answer as well."
             .to_owned(),
     );
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
-            "Numerical check: the finer model less the one that is fitted, root mean square",
-            [
-                "",
-                "difference",
-                "after recalibration",
-                "standard error of the mean",
-            ],
-            rows,
-        );
-        made.notes = notes;
-        made
-    })
+    Table::new(
+        "Numerical check: the finer model less the one that is fitted, root mean square",
+        [
+            "",
+            "difference",
+            "after recalibration",
+            "standard error of the mean",
+        ],
+        rows,
+    )
+    .noted(notes)
+    .unless_empty()
 }
 
 /// One channel of a check.
@@ -64,7 +60,7 @@ fn channel(check: &Preflight, c: usize, source: Source) -> Row {
             .get(c)
             .map_or_else(|| NONE.to_owned(), |value| quantity(*value, source.unit()))
     };
-    row(
+    Row::new(
         source.name(),
         [
             of(&check.rms),
@@ -80,7 +76,7 @@ pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Tabl
     let mut rows: Vec<Row> = accounts
         .iter()
         .map(|(stage, account)| {
-            row(
+            Row::new(
                 stage.name(),
                 [
                     count(account.experiments),
@@ -91,8 +87,8 @@ pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Tabl
             )
         })
         .collect();
-    let total = |of: fn(&crate::study::Account) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
-    rows.push(row(
+    let total = |of: fn(&crate::study::StageCost) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
+    rows.push(Row::new(
         "all",
         [
             count(total(|account| account.experiments)),
@@ -101,18 +97,15 @@ pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Tabl
             duration(subject.wall_s),
         ],
     ));
-    (!accounts.is_empty()).then(|| {
-        let mut made = table(
+    if accounts.is_empty() {
+        return None;
+    }
+    Some(Table::new(
             "What each stage cost",
             ["", "simulations", "did not complete", "batches", "time in this session"],
             rows,
-        );
-        made.notes = vec![
-            "Simulations of one batch are independent of each other; a batch waits for the one before.".to_owned(),
+        ).noted([
+            "Simulations of one batch are independent of each other; a batch waits for the one before.",
             "Results that the journal held already take no time; the last line's time is that of all \
-             sessions."
-                .to_owned(),
-        ];
-        made
-    })
+             sessions.",]))
 }

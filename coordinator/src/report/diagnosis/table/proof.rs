@@ -1,18 +1,17 @@
 //! The gap before and after: above the noise, and in the reference paper's measures.
-use super::{row, table};
-use crate::report::diagnosis::Subject;
 use crate::report::diagnosis::shown::{Shown, shown};
+use crate::report::diagnosis::subject::Subject;
 use crate::report::diagnosis::words;
+use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, percent};
-use crate::report::table::{Row, Table};
 use crate::report::words::condition_name;
+use discrepancy::proof::compare;
 use discrepancy::record::Source;
-use discrepancy::stage::show;
 
 /// The gap before and after, of the answer and of the best rejected rival.
 pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table> {
-    let diagnosis = &subject.diagnosed.diagnosis;
-    let added = words::added(diagnosis).next().is_some();
+    let diagnosis = subject.diagnosis();
+    let added = !subject.added().is_empty();
     let mut rows: Vec<Row> = Vec::new();
     if !diagnosis.rows.is_empty() {
         let whose = if added {
@@ -20,38 +19,31 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
         } else {
             "the recalibrated model, to which nothing was added"
         };
-        rows.push(Row::Group(whose.to_owned()));
+        rows.push(Row::group(whose));
         rows.extend(diagnosis.rows.iter().map(|row| gap(subject, row, added)));
     }
     if let Some((id, rival)) = &diagnosis.rival {
-        rows.push(Row::Group(format!("the best rejected rival, {id}")));
+        rows.push(Row::group(format!("the best rejected rival, {id}")));
         rows.extend(rival.iter().map(|row| gap(subject, row, true)));
     }
     if let Some(force) = &diagnosis.force {
-        rows.push(Row::Group(format!(
+        rows.push(Row::group(format!(
             "the force without a cause, {}",
             force.id
         )));
         rows.extend(force.rows.iter().map(|row| gap(subject, row, true)));
     }
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
+    Table::new(
             "The gap before and after",
             ["", "before", "after", "closed", "95\u{a0}% interval"],
             rows,
-        );
-        made.notes = vec![
+        ).noted([
             "Gap: mean over the gauges of the squared residual above the noise of the averaged record, \
              over the variance of the measured curve; means removed. Interval: the cycles drawn again \
-             1000 times, before and after on the same draw, less the scatter of the draws themselves."
-                .to_owned(),
+             1000 times, before and after on the same draw, less the scatter of the draws themselves.",
             "A gap that closes does not prove a name: a wrong effect often closes most of it, which is \
-             why the rival stands beside it."
-                .to_owned(),
-        ];
-        made.notes.extend(diagnosis.whiteness.map(whiteness));
-        made
-    })
+             why the rival stands beside it.",
+        ]).noted(diagnosis.whiteness.map(whiteness)).unless_empty()
 }
 
 /// Whether what is left lies where noise lies.
@@ -65,7 +57,7 @@ fn whiteness([before, after]: [f64; 2]) -> String {
 }
 
 /// One row of it; without a change there is nothing after and nothing closed.
-fn gap(subject: &Subject<'_>, of: &show::Row, changed: bool) -> Row {
+fn gap(subject: &Subject<'_>, of: &compare::Row, changed: bool) -> Row {
     let small = |share: f64| {
         if share.is_finite() {
             format!("{}\u{a0}%", figure(100.0 * share))
@@ -73,7 +65,7 @@ fn gap(subject: &Subject<'_>, of: &show::Row, changed: bool) -> Row {
             NONE.to_owned()
         }
     };
-    row(
+    Row::new(
         format!(
             "{}, {}",
             condition_name(subject.case, of.condition),
@@ -108,11 +100,10 @@ pub(in crate::report::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table
         if order.is_empty() {
             continue;
         }
-        rows.push(Row::Group(format!("condition {}", shown.condition)));
+        rows.push(Row::group(format!("condition {}", shown.condition)));
         rows.extend(order.into_iter().filter_map(|c| errors(&shown, c)));
     }
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
+    Table::new(
             "The same in the reference paper's measures",
             [
                 "",
@@ -124,15 +115,10 @@ pub(in crate::report::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table
                 "rival",
             ],
             rows,
-        );
-        made.notes = vec![
+).noted([
             "MSE: mean squared difference of the measured mean and the simulated curve, with the offset \
              as the case's objective treats it; noise included. Relative error: mean absolute difference \
-             over the mean absolute deviation of the measured curve from its own mean."
-                .to_owned(),
-        ];
-        made
-    })
+             over the mean absolute deviation of the measured curve from its own mean.",]).unless_empty()
 }
 
 fn errors(shown: &Shown<'_>, c: usize) -> Option<Row> {
@@ -154,5 +140,5 @@ fn errors(shown: &Shown<'_>, c: usize) -> Option<Row> {
         .map(|s| s.map_or_else(|| NONE.to_owned(), square))
         .into_iter()
         .chain(all.map(|s| s.map_or_else(|| NONE.to_owned(), relative)));
-    Some(row(&name, cells.collect::<Vec<_>>()))
+    Some(Row::new(&name, cells.collect::<Vec<_>>()))
 }

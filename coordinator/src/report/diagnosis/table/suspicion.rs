@@ -1,17 +1,16 @@
 //! What was suspected, and what would have been seen.
-use super::{row, table};
-use crate::report::diagnosis::Subject;
 use crate::report::diagnosis::judgement::{ranked, tempered};
+use crate::report::diagnosis::subject::Subject;
 use crate::report::diagnosis::words::{self, nats, p_value};
+use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, percent, quantity};
-use crate::report::table::{Row, Table};
 use discrepancy::diagnose::Round;
 
 /// Every suspect of a round, with what became of it.
 pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Table {
     let rows = ranked(round).into_iter().map(|(suspect, judgement)| {
         let score = suspect.score.as_ref();
-        row(
+        Row::new(
             &suspect.effect.id,
             [
                 judgement.p_value.map_or_else(|| NONE.to_owned(), p_value),
@@ -21,7 +20,7 @@ pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Ta
             ],
         )
     });
-    let mut made = table(
+    Table::new(
         format!("Round {number}: every suspect, and what became of it"),
         [
             "",
@@ -31,8 +30,7 @@ pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Ta
             "kept or dropped, and why",
         ],
         rows.collect(),
-    );
-    made.notes = vec![
+    ).noted([
         format!(
             "p: probability of a test as clear as this one if the effect is not there, with the \
              variances inflated by the misfit of the best model ({}²). Absorbed: share of the effect's \
@@ -44,8 +42,7 @@ pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Ta
             "Over the whole family of named effects, p {}.",
             words::equals(&p_value(round.p_value))
         ),
-    ];
-    made
+    ])
 }
 
 /// The forces without a cause that explain most; none where none was tried.
@@ -64,7 +61,7 @@ pub(in crate::report::diagnosis) fn generics(round: &Round) -> Option<Table> {
                 let first = force.effect.parameters.first()?;
                 Some(quantity(score.size.first()? * first.scale, &first.unit))
             });
-            row(
+            Row::new(
                 force.effect.title.clone(),
                 [
                     figure(force.statistic() / scale),
@@ -74,19 +71,16 @@ pub(in crate::report::diagnosis) fn generics(round: &Round) -> Option<Table> {
             )
         })
         .collect();
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
-            "Forces without a cause that explain most",
-            ["", "statistic over squared misfit", "p", "amplitude"],
-            rows,
-        );
-        made.notes = vec![
-            "A name must explain more than the best of these: if one of them beats every name by a \
-             wide margin, the cause is not in the library."
-                .to_owned(),
-        ];
-        made
-    })
+    Table::new(
+        "Forces without a cause that explain most",
+        ["", "statistic over squared misfit", "p", "amplitude"],
+        rows,
+    )
+    .noted([
+        "A name must explain more than the best of these: if one of them beats every name by a \
+             wide margin, the cause is not in the library.",
+    ])
+    .unless_empty()
 }
 
 /// Effects that this record cannot tell apart, and what would.
@@ -102,12 +96,12 @@ pub(in crate::report::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option
             "not by cycles".to_owned()
         }
     };
-    let pairs = &subject.diagnosed.diagnosis.look_alikes;
+    let pairs = &subject.diagnosis().look_alikes;
     let rows: Vec<Row> = pairs
         .iter()
         .map(|pair| {
             let others = pair.cycles_with_others;
-            row(
+            Row::new(
                 pair.effects.join(", "),
                 [
                     times(pair.cycles),
@@ -116,34 +110,33 @@ pub(in crate::report::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option
             )
         })
         .collect();
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
-            "What this record cannot tell apart, and what would",
-            ["", "more of the same", "with the other conditions' records"],
-            rows,
-        );
-        made.notes = vec![
-            "Whatever the verdict, at three times the sizes from which the effects are seen at all; \
-             the likest first. All pairs that are not listed are told apart."
-                .to_owned(),
-        ];
-        made
-    })
+    Table::new(
+        "What this record cannot tell apart, and what would",
+        ["", "more of the same", "with the other conditions' records"],
+        rows,
+    )
+    .noted([
+        "Whatever the verdict, at three times the sizes from which the effects are seen at all; \
+             the likest first. All pairs that are not listed are told apart.",
+    ])
+    .unless_empty()
 }
 
 /// From which size on each effect would have been seen.
 pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
-    let limits = &subject.diagnosed.diagnosis.limits;
+    let limits = &subject.diagnosis().limits;
     let rows: Vec<Row> = limits
         .iter()
         .map(|limit| {
-            let scale = words::parameter(subject, &limit.id, &limit.parameter).map(|p| p.scale);
+            let scale = subject
+                .parameter(&limit.id, &limit.parameter)
+                .map(|p| p.scale);
             let seen = if limit.size.is_finite() {
                 quantity(limit.size, &limit.unit)
             } else {
                 "never: absorbed".to_owned()
             };
-            row(
+            Row::new(
                 format!("{}, {}", limit.id, limit.parameter.replace('_', " ")),
                 [
                     seen,
@@ -156,19 +149,13 @@ pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Tabl
             )
         })
         .collect();
-    (!rows.is_empty()).then(|| {
-        let mut made = table(
+    Table::new(
             "Detection limits: the size from which this record shows an effect",
             ["", "seen from", "usual size", "limit over usual size"],
             rows,
-        );
-        made.notes = vec![
+        ).noted([
             "Before any verdict, at the recalibrated point, each effect alone, with the misfit of the \
              model without any: the size that the tests and the evidence asked for would not have \
              missed. A limit well below the usual size means: had it been there, it would have been \
-             seen."
-                .to_owned(),
-        ];
-        made
-    })
+             seen.",]).unless_empty()
 }

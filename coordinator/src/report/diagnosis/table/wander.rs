@@ -1,20 +1,30 @@
 //! Parameters that would have to wander along the turn or with the speed.
-use crate::report::diagnosis::Subject;
+use crate::report::diagnosis::subject::Subject;
+use crate::report::document::{Row, Table};
 use crate::report::number::{figure, fixed, percent};
-use crate::report::table::{Label, Row, Table};
 use crate::report::words::condition_name;
-use discrepancy::bench::Fit;
-use discrepancy::locate::wander::{Part, Shift, Wander};
+use discrepancy::model::Fit;
+use discrepancy::place::wander::{Part, Shift, Wander};
 
 /// Probability below which a shift is no noise.
 const CLEAR: f64 = 0.05;
 /// Parameters that are shown.
 const SHOWN: usize = 6;
 
+/// Wandering parameters under a fitted model.
+pub(in crate::report::diagnosis) struct Wandering<'a> {
+    /// What the table is headed with.
+    pub title: &'static str,
+    /// The model.
+    pub fit: &'a Fit,
+    /// How far each unknown would have to change from part to part.
+    pub wander: &'a [Wander],
+}
+
 /// The genes that would have to wander under a model, with the values that they would take.
 pub(in crate::report::diagnosis) fn wander(
     subject: &Subject<'_>,
-    (fit, wander, title): (&Fit, &[Wander], &str),
+    Wandering { title, fit, wander }: &Wandering<'_>,
 ) -> Option<Table> {
     let clear: Vec<&Wander> = clear(fit, wander).collect();
     let first = clear.first()?;
@@ -24,9 +34,9 @@ pub(in crate::report::diagnosis) fn wander(
         }
         Part::Condition(index) => condition_name(subject.case, index),
     };
-    let mut head = vec![String::new(), "whole turn".to_owned()];
-    head.extend(first.shifts.iter().map(part));
-    head.push("takes up".to_owned());
+    let parts = first.shifts.iter().map(part);
+    let head = [String::new(), "whole turn".to_owned()].into_iter();
+    let head = head.chain(parts).chain(["takes up".to_owned()]);
     let rows = clear.iter().take(SHOWN).filter_map(|wander| {
         let k = wander.unknown;
         let (gene, axis) = (subject.case.genes.get(k)?, fit.model.space.axes().get(k)?);
@@ -41,19 +51,17 @@ pub(in crate::report::diagnosis) fn wander(
         let mut cells = vec![at(0.0)];
         cells.extend(wander.shifts.iter().map(moved));
         cells.push(percent(wander.explained));
-        Some(Row::Values(Label::of(gene), cells))
+        Some(Row::of(gene, cells))
     });
-    Some(Table {
-        title: title.to_owned(),
-        head,
-        rows: rows.collect(),
-        notes: vec![
-            "Each refitted alone, linearly, all others held; values in brackets lie within the scatter \
-             between cycles. The last column is the share of what is left along the turn that it would \
-             take up."
-                .to_owned(),
-        ],
-    })
+    let table = Table {
+        head: head.collect(),
+        ..Table::new(*title, [], rows.collect())
+    };
+    Some(table.noted([
+        "Each refitted alone, linearly, all others held; values in brackets lie within the scatter \
+         between cycles. The last column is the share of what is left along the turn that it would take \
+         up.",
+    ]))
 }
 
 /// Genes of which some part stands out of the noise.

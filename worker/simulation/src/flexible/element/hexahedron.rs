@@ -10,10 +10,10 @@
 //!
 //! `CalculiX`'s C3D8I is the same element without the factor `det J0 / det J`, for which it fails the
 //! patch test; so changed, this one gives its frequencies to 1e-4, and as it stands to 0.6 %.
-use super::{
-    Element, Face, InsideOut, Matrices, Steel, add_stiffness, add_weight, face::Quadrilateral,
-    jacobian,
-};
+use super::face::{Face, Quadrilateral};
+use super::integral::{add_stiffness, add_weight, jacobian};
+use super::law::{Element, InsideOut, Matrices};
+use super::steel::Steel;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
 /// Displacements of one element, node by node.

@@ -1,10 +1,9 @@
 //! One tetrahedron: its rules of integration, its motions without strain, its mass; and a cut face.
-use super::{
-    face::{Face, Triangle},
-    tetrahedron::{EDGES, degree_2, degree_5},
-    *,
-};
-use nalgebra::DVector;
+use super::face::{Face, Triangle};
+use super::law::InsideOut;
+use super::tetrahedron::{EDGES, degree_2, degree_5};
+use super::{ElementKind, Steel};
+use nalgebra::{DVector, Vector3};
 
 const STEEL: Steel = Steel {
     young: 206.0e9,

@@ -9,9 +9,10 @@
 //! Stiffness by 4 points of degree 2, exact for straight edges and without modes of zero energy;
 //! mass by 15 points of degree 5 ([Stroud1971], T3:5-1), exact for straight edges, and
 //! for curved ones as far as the total mass goes. Knows one element, no mesh.
-use super::{
-    Element, Face, InsideOut, Matrices, Steel, add_stiffness, add_weight, face::Triangle, jacobian,
-};
+use super::face::{Face, Triangle};
+use super::integral::{add_stiffness, add_weight, jacobian};
+use super::law::{Element, InsideOut, Matrices};
+use super::steel::Steel;
 use nalgebra::{DMatrix, SMatrix, Vector3};
 
 /// Nodes of one element.

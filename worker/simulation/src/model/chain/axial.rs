@@ -1,9 +1,10 @@
 //! Laws of effects along a rope: pulls between its cylinders beside the joints' own.
 //!
 //! A law knows extension and rate alone, not whether the cylinders move in the plane or in space.
-use super::{Chain, ChainState, Joints};
-use crate::effect::Along;
+use super::parts::{Chain, Joints};
+use super::state::ChainState;
 use crate::element::bushing::Pull;
+use crate::model::hook::Along;
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -22,8 +23,8 @@ impl Chain {
         let laws = joints.axial.filter(|_| joint > 0 && joint < self.count)?;
         let at = self.extension(joint, joints, state)?;
         let [extension, rate] = at;
-        let memory = state.memory.get(joint).copied();
-        Some((laws.pull(extension, rate, memory), at))
+        let memories = state.memory.chunks_exact(laws.len()).nth(joint);
+        Some((laws.pull(extension, rate, memories.unwrap_or(&[])), at))
     }
 
     /// What they pull there.
@@ -47,18 +48,22 @@ impl Chain {
     pub(crate) fn remember(&self, joints: &Joints<'_>, state: &mut ChainState) {
         let Some(laws) = joints.axial else { return };
         let first = state.memory.is_empty();
-        state.memory.resize(self.count + 1, [0.0; 2]);
-        for joint in 1..self.count {
-            let Some([extension, rate]) = self.extension(joint, joints, state) else {
-                continue;
-            };
-            let before = (!first).then(|| state.memory[joint]);
-            let Some(memory) = laws.remember(extension, rate, before) else {
-                state.memory.clear();
-                return;
-            };
-            state.memory[joint] = memory;
+        let mut memory = std::mem::take(&mut state.memory);
+        memory.resize((self.count + 1) * laws.len(), [0.0; 2]);
+        let mut any = false;
+        for (joint, memories) in memory.chunks_exact_mut(laws.len()).enumerate() {
+            let inner = joint > 0 && joint < self.count;
+            let at = inner
+                .then(|| self.extension(joint, joints, state))
+                .flatten();
+            if let Some([extension, rate]) = at {
+                any |= laws.remember(extension, rate, memories, first);
+            }
         }
+        if !any {
+            memory.clear();
+        }
+        state.memory = memory;
     }
 
     /// Extension \[m\] of a joint between two cylinders and its rate [m/s].

@@ -1,9 +1,10 @@
 //! Forces of a chain's contact with an arc, on the cylinders and on whoever carries the arc.
+use super::parts::Chain;
 use super::points::{Points, Pressed};
-use super::{Chain, ChainState};
+use super::state::ChainState;
 use crate::element::impact::Impact;
-use crate::model::MAX_MODES;
-use crate::model::contact::{Surface, Touch};
+use crate::model::contact::Surface;
+use crate::model::layout::MAX_MODES;
 use crate::model::layout::Motion;
 use crate::model::pose::InPlane;
 
@@ -12,6 +13,15 @@ use crate::model::pose::InPlane;
     reason = "one file per term of the equations"
 )]
 impl Chain {
+    /// Evaluates the points of contact at the poses that `state` holds.
+    pub(crate) fn touch(&self, surface: &Surface<'_>, law: &Impact, state: &mut ChainState) {
+        let points = &mut state.points;
+        match self.motion {
+            Motion::Plane => points.evaluate(self, surface, law, state.plane.iter()),
+            Motion::Space => points.evaluate(self, surface, law, state.poses.iter()),
+        }
+    }
+
     /// Adds the contact forces on the cylinders and on the `border`: the beam angle, then the
     /// modes. An arc that is fixed in W has no border.
     pub(crate) fn add_contact(
@@ -26,18 +36,12 @@ impl Chain {
             state.pressure.clear(bend.shapes);
         }
         state.contact.fill(0.0);
-        let of = self.range();
+        self.touch(surface, law, state);
+        let (points, contact, force) =
+            (&state.points, &mut state.contact, &mut force[self.range()]);
         let loads = match self.motion {
-            Motion::Plane => {
-                let poses = &state.plane;
-                state.points.evaluate(self, surface, law, poses.iter());
-                self.press(&state.points, poses, &mut state.contact, &mut force[of])
-            }
-            Motion::Space => {
-                let poses = &state.poses;
-                state.points.evaluate(self, surface, law, poses.iter());
-                self.press(&state.points, poses, &mut state.contact, &mut force[of])
-            }
+            Motion::Plane => self.press(points, &state.plane, contact, force),
+            Motion::Space => self.press(points, &state.poses, contact, force),
         };
         let Pressed { beam, lost, .. } = loads;
         state.deepest = state.points.deepest();
@@ -82,42 +86,5 @@ impl Chain {
             }
         }
         all
-    }
-
-    /// Calls `visit(share, touch)` for every Gauss point inside the arc.
-    pub(crate) fn each_touch(
-        &self,
-        surface: &Surface<'_>,
-        state: &ChainState,
-        mut visit: impl FnMut(f64, &Touch),
-    ) {
-        for pose in &state.poses {
-            self.touches(surface, pose, &mut visit);
-        }
-        for pose in &state.plane {
-            self.touches(surface, pose, &mut visit);
-        }
-    }
-
-    fn touches<const A: usize>(
-        &self,
-        surface: &Surface<'_>,
-        pose: &impl InPlane<A>,
-        visit: &mut impl FnMut(f64, &Touch),
-    ) {
-        let half = 0.5 * self.pitch;
-        let Some(bearing) = surface.bearing(&pose.center(), half) else {
-            return;
-        };
-        for &(place, share) in self.contact_points {
-            let along = place * half;
-            let g = pose.center() + pose.axis() * along;
-            let velocity = pose.velocity() + pose.sweep() * along;
-            if let Some(touch) = surface.touch(&bearing, &g, &velocity)
-                && touch.depth > 0.0
-            {
-                visit(share, &touch);
-            }
-        }
     }
 }

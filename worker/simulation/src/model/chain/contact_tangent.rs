@@ -7,11 +7,13 @@
 //! Seen from a point, the coordinates are those of its cylinder that move it (`x`, `y` and the
 //! angles that turn the axis), then those of the border. With the derivatives `G` of the penetration
 //! and `F` of the force by all of them, a point adds `G F^T` and the force times what bends.
-use super::{Chain, ChainState};
-use crate::element::impact::{Impact, ImpactForce};
+use super::parts::Chain;
+use super::points::{Points, Touch};
+use super::state::ChainState;
+use crate::element::impact::Impact;
 use crate::linear::Bordered;
-use crate::model::MAX_MODES;
-use crate::model::contact::{Bearing, Curvature, Surface, Touch};
+use crate::model::contact::Surface;
+use crate::model::layout::{MAX_MODES, Motion};
 use crate::model::pose::InPlane;
 use nalgebra::Vector2;
 
@@ -96,11 +98,10 @@ impl Chain {
             border,
             corner: [[0.0; B]; B],
         };
-        for (j, pose) in state.poses.iter().enumerate() {
-            tangent.add_cylinder(self.first + j, pose, matrix);
-        }
-        for (j, pose) in state.plane.iter().enumerate() {
-            tangent.add_cylinder(self.first + j, pose, matrix);
+        let points = &state.points;
+        match self.motion {
+            Motion::Plane => tangent.add_cylinders(points, &state.plane, matrix),
+            Motion::Space => tangent.add_cylinders(points, &state.poses, matrix),
         }
         for row in 0..border {
             for column in 0..border {
@@ -111,28 +112,31 @@ impl Chain {
 }
 
 impl<const B: usize> Tangent<'_, B> {
-    fn add_cylinder<const A: usize>(
+    fn add_cylinders<const A: usize>(
         &mut self,
-        block: usize,
-        pose: &impl InPlane<A>,
+        points: &Points,
+        poses: &[impl InPlane<A>],
         matrix: &mut Bordered,
     ) {
-        let half = 0.5 * self.chain.pitch;
-        let Some(bearing) = self.surface.bearing(&pose.center(), half) else {
-            return;
-        };
-        let mut sums = Sums {
-            own: [[0.0; OWN]; OWN],
-            right: [[0.0; B]; OWN],
-            bottom: [[0.0; B]; OWN],
-        };
-        let mut pressed = false;
-        for &(place, share) in self.chain.contact_points {
-            pressed |= self.add_point(&bearing, pose, (place * half, share), &mut sums);
+        for (k, &j) in points.cylinders().iter().enumerate() {
+            let mut touches = points.touches(k, self.surface, self.law).peekable();
+            if touches.peek().is_none() {
+                continue;
+            }
+            let mut sums = Sums {
+                own: [[0.0; OWN]; OWN],
+                right: [[0.0; B]; OWN],
+                bottom: [[0.0; B]; OWN],
+            };
+            for touch in touches {
+                self.add_point(&touch, &poses[j], &mut sums);
+            }
+            self.add_sums::<A>(self.chain.first + j, &sums, matrix);
         }
-        if !pressed {
-            return;
-        }
+    }
+
+    /// Adds what the points of one cylinder add to its block and to the border.
+    fn add_sums<const A: usize>(&self, block: usize, sums: &Sums<B>, matrix: &mut Bordered) {
         let rows: [usize; OWN] = std::array::from_fn(|k| {
             if k < 2 {
                 k
@@ -149,49 +153,34 @@ impl<const B: usize> Tangent<'_, B> {
         }
     }
 
-    /// Adds what one point adds, if it is pressed.
+    /// Adds what one point adds.
     fn add_point<const A: usize>(
         &mut self,
-        bearing: &Bearing,
+        touch: &Touch,
         pose: &impl InPlane<A>,
-        (along, share): (f64, f64),
         sums: &mut Sums<B>,
-    ) -> bool {
-        let surface = self.surface;
-        let g = pose.center() + pose.axis() * along;
-        let velocity = pose.velocity() + pose.sweep() * along;
-        let Some(touch) = surface.touch(bearing, &g, &velocity) else {
-            return false;
-        };
-        let mut at = self.law.force(touch.depth, touch.rate);
-        if share * at.force == 0.0 {
-            return false;
-        }
-        at.force *= share;
-        at.by_rate *= share;
-        at.by_penetration *= share;
-        let curvature = surface.curvature(&touch);
-        let point = self.derivatives(pose, along, (&velocity, &touch, &curvature), &at);
-        add_own::<A, B>(&point, &curvature, &at, sums);
+    ) {
+        let point = self.derivatives(pose, touch);
+        add_own::<A, B>(&point, touch, sums);
         for a in 0..A {
             for b in 0..A {
-                let bend = pose.axis_by_twice(a, b) * along;
-                sums.own[2 + a][2 + b] += at.force * touch.by_point.dot(&bend);
+                let bend = pose.axis_by_twice(a, b) * touch.along;
+                sums.own[2 + a][2 + b] += touch.law.force * touch.by_point.dot(&bend);
             }
         }
-        self.add_border::<A>(&point, &curvature, at.force, sums);
-        true
+        self.add_border::<A>(&point, touch, sums);
     }
 
     /// Derivatives of penetration and force by all coordinates.
-    fn derivatives<const A: usize>(
-        &self,
-        pose: &impl InPlane<A>,
-        along: f64,
-        (velocity, touch, curvature): (&V2, &Touch, &Curvature),
-        at: &ImpactForce,
-    ) -> Derivatives<B> {
+    fn derivatives<const A: usize>(&self, pose: &impl InPlane<A>, touch: &Touch) -> Derivatives<B> {
         let surface = self.surface;
+        let Touch {
+            along,
+            velocity,
+            curvature,
+            law: at,
+            ..
+        } = touch;
         let stiff = at.by_penetration + self.gamma * at.by_rate;
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let beam_rate = surface.beam[1];
@@ -200,10 +189,10 @@ impl<const B: usize> Tangent<'_, B> {
         let mut force_by = [0.0; B];
         let mut slope = [0.0; B];
         let mut drift = 0.0;
-        if let (Some(bend), Some(place)) = (&surface.bend, &touch.place) {
+        if let Some(bend) = &surface.bend {
             let modes = 1..self.border;
             let (values, slopes) = (&mut gradient[modes.clone()], &mut slope[modes.clone()]);
-            bend.shapes.slopes(place, values, slopes);
+            bend.shapes.slopes(&touch.on_grid, values, slopes);
             for (k, rate) in modes.clone().zip(bend.modal_rate) {
                 drift += rate * slope[k];
             }
@@ -223,7 +212,7 @@ impl<const B: usize> Tangent<'_, B> {
         let moved: [V2; OWN] = std::array::from_fn(|k| match k {
             0 => V2::x(),
             1 => V2::y(),
-            k => arms.get(k - 2).map_or_else(V2::zeros, |arm| arm * along),
+            k => arms.get(k - 2).map_or_else(V2::zeros, |arm| arm * *along),
         });
         let by_place = touch.by_point * stiff + point_rate * at.by_rate;
         Derivatives {
@@ -243,10 +232,10 @@ impl<const B: usize> Tangent<'_, B> {
     fn add_border<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
-        curvature: &Curvature,
-        force: f64,
+        touch: &Touch,
         sums: &mut Sums<B>,
     ) {
+        let (curvature, force) = (&touch.curvature, touch.law.force);
         let (angle_by_point, angle_by_beam) = curvature.angle_by;
         let Derivatives {
             own,
@@ -284,11 +273,10 @@ impl<const B: usize> Tangent<'_, B> {
 /// Adds to a cylinder's own block, but for the bending of its axis.
 fn add_own<const A: usize, const B: usize>(
     point: &Derivatives<B>,
-    curvature: &Curvature,
-    at: &ImpactForce,
+    touch: &Touch,
     sums: &mut Sums<B>,
 ) {
-    let bends = curvature.point * at.force;
+    let bends = touch.curvature.point * touch.law.force;
     for r in 0..2 + A {
         let bent = bends * point.moved[r];
         for c in 0..2 + A {

@@ -1,7 +1,7 @@
 //! Energy of a chain and what it loses.
-use super::{Chain, ChainState, Joints};
+use super::parts::{Chain, Joints};
+use super::state::ChainState;
 use crate::element::impact::Impact;
-use crate::model::contact::Surface;
 use nalgebra::Vector3;
 
 #[expect(
@@ -24,13 +24,13 @@ impl Chain {
     }
 
     /// Adds the elastic energy of joints and contact and the gravitational energy of the cylinders
-    /// to `sum` \[J\].
+    /// to `sum` \[J\]. Points of contact are those of [`Self::touch`].
     pub(crate) fn add_potential(
         &self,
         sum: &mut f64,
         gravity: &Vector3<f64>,
         joints: &Joints<'_>,
-        contact: Option<(&Surface<'_>, &Impact)>,
+        contact: Option<&Impact>,
         state: &ChainState,
     ) {
         for joint in 0..=self.count {
@@ -44,10 +44,8 @@ impl Chain {
                 *sum += along.energy;
             }
         }
-        if let Some((surface, law)) = contact {
-            self.each_touch(surface, state, |share, touch| {
-                *sum += share * law.energy(touch.depth);
-            });
+        if let Some(law) = contact {
+            state.points.add_energy(sum, law);
         }
         let weight = gravity * self.mass;
         for pose in &state.poses {

@@ -1,5 +1,6 @@
 //! Forces of weight and joints on the cylinders of a chain.
-use super::{Chain, ChainState, Joints};
+use super::parts::{Chain, Joints};
+use super::state::ChainState;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos_all;
 use crate::model::layout::Motion;

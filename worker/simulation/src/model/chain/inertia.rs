@@ -1,8 +1,9 @@
 //! Inertia of the cylinders of a chain.
-use super::Chain;
+use super::parts::Chain;
 use crate::linear::{BLOCK, Bordered};
 use crate::math::elementary::sin_cos;
 use crate::model::layout::Motion;
+use crate::state::StateRef;
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -35,16 +36,16 @@ impl Chain {
         }
     }
 
-    /// Adds `mu M(q)` of the cylinders.
-    pub(crate) fn add_inertia_blocks(&self, q: &[f64], mu: f64, matrix: &mut Bordered) {
+    /// Adds `mass M(q)` of the cylinders.
+    pub(crate) fn add_inertia_blocks(&self, q: &[f64], mass: f64, matrix: &mut Bordered) {
         let [along, across] = self.inertia;
         match matrix {
             Bordered::Plane(matrix) => {
                 for j in 0..self.count {
                     let block = matrix.diagonal_mut(self.first + j);
-                    block[(0, 0)] += mu * self.mass;
-                    block[(1, 1)] += mu * self.mass;
-                    block[(2, 2)] += mu * across;
+                    block[(0, 0)] += mass * self.mass;
+                    block[(1, 1)] += mass * self.mass;
+                    block[(2, 2)] += mass * across;
                 }
             }
             Bordered::Space(matrix) => {
@@ -52,23 +53,24 @@ impl Chain {
                     let (s, _) = sin_cos(q[4]);
                     let block = matrix.diagonal_mut(self.first + j);
                     for k in 0..3 {
-                        block[(k, k)] += mu * self.mass;
+                        block[(k, k)] += mass * self.mass;
                     }
-                    block[(3, 3)] += mu * along;
-                    block[(3, 5)] -= mu * along * s;
-                    block[(5, 3)] -= mu * along * s;
-                    block[(4, 4)] += mu * across;
-                    block[(5, 5)] += mu * (across + (along - across) * s * s);
+                    block[(3, 3)] += mass * along;
+                    block[(3, 5)] -= mass * along * s;
+                    block[(5, 3)] -= mass * along * s;
+                    block[(4, 4)] += mass * across;
+                    block[(5, 5)] += mass * (across + (along - across) * s * s);
                 }
             }
         }
     }
 
-    /// Adds to `-gamma D - K` the derivatives of the velocity terms and of `M(q) a`.
+    /// Adds to `-damping D - K` the derivatives of the velocity terms and of `M(q) a`.
     pub(crate) fn add_spin_tangent(
         &self,
-        (q, v, a): (&[f64], &[f64], &[f64]),
-        gamma: f64,
+        StateRef { q, v, .. }: StateRef<'_>,
+        a: &[f64],
+        damping: f64,
         matrix: &mut Bordered,
     ) {
         // in the plane nothing tilts, and a cylinder's inertia is a constant
@@ -83,7 +85,7 @@ impl Chain {
             for (row, (by_tilt, by_rate)) in by.iter().enumerate() {
                 block[(3 + row, 4)] -= by_tilt;
                 for (column, by_rate) in by_rate.iter().enumerate() {
-                    block[(3 + row, 3 + column)] -= gamma * by_rate;
+                    block[(3 + row, 3 + column)] -= damping * by_rate;
                 }
             }
         }

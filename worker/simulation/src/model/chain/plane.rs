@@ -1,30 +1,17 @@
 //! Joints between cylinders that move in the plane, and their tangent.
 //!
 //! The joints that hold a chain's ends have their spatial form here too: there are two of them.
-use super::tangent::Side;
-use super::{Chain, ChainState, Joints};
-use crate::element::plane::{PlaneColumn, PlaneMarker};
+use super::link::Side;
+use super::parts::{Chain, Joints};
+use super::state::ChainState;
+use crate::element::plane::PlaneColumn;
 use crate::linear::{Block, Blocks};
-use crate::model::layout::Motion;
-use crate::model::pose::PlanePose;
 
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Whether a joint lies between two cylinders that move in the plane.
-    pub(super) const fn in_plane(&self, joint: usize) -> bool {
-        matches!(self.motion, Motion::Plane) && joint > 0 && joint < self.count
-    }
-
-    /// Markers I and J of a joint between two cylinders.
-    #[inline]
-    pub(super) fn plane_markers(&self, joint: usize, poses: &[PlanePose]) -> [PlaneMarker; 2] {
-        let half = 0.5 * self.pitch;
-        [on(&poses[joint], -half), on(&poses[joint - 1], half)]
-    }
-
     /// Adds the joints' forces on cylinders that move in the plane; the loads stay in `state`.
     pub(super) fn add_plane_joints(
         &self,
@@ -97,17 +84,6 @@ impl Chain {
             subtract(lower, &by_j, Side::I);
             subtract(matrix.diagonal_mut(block), &by_i, Side::I);
         }
-    }
-}
-
-fn on(pose: &PlanePose, along: f64) -> PlaneMarker {
-    PlaneMarker {
-        p: pose.p,
-        rho: pose.axis * along,
-        v: pose.v,
-        w: pose.rate,
-        axis: pose.axis,
-        angle: pose.angle,
     }
 }
 

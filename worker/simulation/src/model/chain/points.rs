@@ -1,11 +1,11 @@
 //! The points of a chain where contact with its arc is evaluated, side by side: one array per
 //! quantity, so that the arithmetic of many points is one plain loop that compilers turn into
-//! vectors. It gives what [`Surface::touch`] and [`Impact::push`] give point by point, without what
-//! only a tangent asks for.
-use super::Chain;
-use crate::element::impact::Impact;
+//! vectors. Here alone are the geometry of contact and its law evaluated: forces, tangent and energy
+//! read what stands here.
+use super::parts::Chain;
+use crate::element::impact::{Impact, ImpactForce};
 use crate::math::spline::{Place, sum::Spread};
-use crate::model::contact::{POINTS, Surface, small_angle};
+use crate::model::contact::{Curvature, POINTS, Surface, small_angle};
 use crate::model::pose::InPlane;
 use nalgebra::Vector2;
 
@@ -60,6 +60,22 @@ pub(super) struct Pressed {
     pub(super) beam: f64,
     /// Power that the damping takes \[W\].
     pub(super) lost: f64,
+}
+
+/// A point that is pressed, as a tangent asks for it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// Where along its cylinder it lies \[m\], and its velocity [m/s].
+    pub(super) along: f64,
+    pub(super) velocity: V2,
+    /// Derivatives of the penetration by the point and by the beam angle, and second ones.
+    pub(super) by_point: V2,
+    pub(super) by_beam: f64,
+    pub(super) curvature: Curvature,
+    /// Where on the grid of the arc's shapes it lies, if it has any.
+    pub(super) on_grid: Place,
+    /// Its share of the law.
+    pub(super) law: ImpactForce,
 }
 
 impl Points {
@@ -128,7 +144,7 @@ impl Points {
         let mut before = None;
         for (j, pose) in poses.enumerate() {
             let center = pose.center();
-            let Some(bearing) = surface.bearing_after(before.as_ref(), &center, half) else {
+            let Some(bearing) = surface.bearing(before.as_ref(), &center, half) else {
                 continue;
             };
             let c = self.cylinders.len();
@@ -243,6 +259,45 @@ impl Points {
         sum
     }
 
+    /// The pressed points of the `k`-th of [`Self::cylinders`], on the surface and under the law that
+    /// they were evaluated with.
+    pub(super) fn touches(
+        &self,
+        k: usize,
+        surface: &Surface<'_>,
+        law: &Impact,
+    ) -> impl Iterator<Item = Touch> {
+        let pressed = move |&i: &usize| self.share[i] * self.force[k][i] != 0.0;
+        let of = move |[x, y]: &[Vec<Each>; 2], i: usize| V2::new(x[k][i], y[k][i]);
+        (0..POINTS).filter(pressed).map(move |i| Touch {
+            along: self.along[i],
+            velocity: of(&self.velocity, i),
+            by_point: of(&self.by_point, i),
+            by_beam: self.by_beam[k][i],
+            curvature: self.curvature(k, i, surface),
+            on_grid: self.on_grid[k][i],
+            law: law
+                .force(self.depth[k][i], self.rate[k][i])
+                .share(self.share[i]),
+        })
+    }
+
+    /// Second derivatives of a penetration.
+    fn curvature(&self, k: usize, i: usize, surface: &Surface<'_>) -> Curvature {
+        let toward = V2::new(self.place[0][k][i], self.place[1][k][i]);
+        let (angle, slope) = (self.angle[k][i], self.slope[k][i]);
+        surface.curvature(&toward, angle, &self.on_grid[k][i], slope)
+    }
+
+    /// Adds the energy that a law stores at the points to `sum` \[J\].
+    pub(super) fn add_energy(&self, sum: &mut f64, law: &Impact) {
+        for depths in &self.depth[..self.cylinders.len()] {
+            for (share, &depth) in self.share.iter().zip(depths) {
+                *sum += share * law.energy(depth);
+            }
+        }
+    }
+
     /// Deepest penetration, not negative \[m\].
     pub(super) fn deepest(&self) -> f64 {
         let depths = self.depth[..self.cylinders.len()].as_flattened();
@@ -269,5 +324,145 @@ impl Points {
         each.flat_map(|(angle, force)| {
             std::array::from_fn::<_, POINTS, _>(|i| (angle[i], self.share[i] * force[i]))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::elementary::sin_cos;
+    use crate::math::spline::{Splines, sum::Sum};
+    use crate::model::contact::Bend;
+    use crate::model::description::Arc;
+    use crate::model::hook::profile::{Hollow, Profile};
+    use crate::model::pose::PlanePose;
+
+    /// A point of contact and all its derivatives.
+    struct Seen {
+        depth: f64,
+        rate: f64,
+        angle: f64,
+        by_point: V2,
+        by_beam: f64,
+        curvature: Curvature,
+    }
+
+    /// Where everything is, and how it moves: centre of the cylinder and its angle, beam, modes.
+    const PLACE: [f64; 6] = [-1.9, -0.4, 1.3, 0.2, 0.3, -0.2];
+    const MOTION: [f64; 6] = [0.4, -0.9, 0.8, 0.6, 0.5, 0.7];
+
+    #[test]
+    fn derivatives_match_differences() {
+        let arc = Arc {
+            center: [-0.15, -0.58],
+            radius: 1.9,
+            anchor: 2.2,
+            sense: -1.0,
+        };
+        let shapes = Splines::natural(
+            2.0,
+            0.1,
+            &[
+                (0..20).map(|i| 0.02 * f64::from(i * i % 7)).collect(),
+                (0..20)
+                    .map(|i| 0.03 * f64::from(i * 3 % 5) - 0.05)
+                    .collect(),
+            ],
+        );
+        let mut profile = Profile::default();
+        profile.dig(Hollow {
+            depth: 0.01,
+            centre: 2.8,
+            reach: 0.2,
+        });
+        let law = Impact {
+            stiffness: 4e8,
+            exponent: 1.5,
+            damping: 1e3,
+            full_damping_penetration: 1e-4,
+        };
+        let chain = Chain::solid(0, 1, 0.01, 0.1, 7850.0);
+        for (bent, worn) in [(false, false), (true, false), (false, true), (true, true)] {
+            let at = |i: usize, x: [f64; 6]| {
+                let mut sum = Sum::default();
+                sum.weigh(&shapes, &x[4..], &MOTION[4..]);
+                let bend = Bend {
+                    shapes: &shapes,
+                    sum: &sum,
+                    modal_rate: &MOTION[4..],
+                };
+                let mut surface = Surface::new(&arc, [x[3], MOTION[3]], bent.then_some(bend));
+                surface.profile = worn.then_some(&profile);
+                let (s, c) = sin_cos(x[2]);
+                let pose = PlanePose::new(&x, &MOTION, V2::new(c, s));
+                let mut points = Points::new(&chain);
+                points.evaluate(&chain, &surface, &law, std::iter::once(&pose));
+                assert_eq!(points.cylinders(), [0]);
+                assert!(points.depth[0][i] > -0.5, "beyond the surface's reach");
+                Seen {
+                    depth: points.depth[0][i],
+                    rate: points.rate[0][i],
+                    angle: points.angle[0][i],
+                    by_point: V2::new(points.by_point[0][0][i], points.by_point[1][0][i]),
+                    by_beam: points.by_beam[0][i],
+                    curvature: points.curvature(0, i, &surface),
+                }
+            };
+            for i in 0..POINTS {
+                assert_derivatives(&|x| at(i, x), bent || worn);
+            }
+        }
+    }
+
+    fn assert_derivatives(at: &dyn Fn([f64; 6]) -> Seen, turns: bool) {
+        let h = 1e-6;
+        let touch = at(PLACE);
+        let curvature = touch.curvature;
+        let along = |direction: [f64; 6]| {
+            let step = |h: f64| at(std::array::from_fn(|k| PLACE[k] + h * direction[k]));
+            let (plus, minus) = (step(h), step(-h));
+            Seen {
+                depth: (plus.depth - minus.depth) / (2.0 * h),
+                rate: (plus.rate - minus.rate) / (2.0 * h),
+                angle: (plus.angle - minus.angle) / (2.0 * h),
+                by_point: (plus.by_point - minus.by_point) / (2.0 * h),
+                by_beam: (plus.by_beam - minus.by_beam) / (2.0 * h),
+                curvature,
+            }
+        };
+        for (k, coordinate) in [0, 1, 3].into_iter().enumerate() {
+            let mut direction = [0.0; 6];
+            direction[coordinate] = 1.0;
+            let by = along(direction);
+            let (angle_by_point, angle_by_beam) = curvature.angle_by;
+            if k < 2 {
+                assert!((by.depth - touch.by_point[k]).abs() < 1e-8);
+                assert!(
+                    (by.by_point - curvature.point.column(k)).norm() < 1e-7,
+                    "{k} {} {}",
+                    by.by_point,
+                    curvature.point
+                );
+                assert!((by.by_beam - curvature.mixed[k]).abs() < 1e-7);
+                assert!(!turns || (by.angle - angle_by_point[k]).abs() < 1e-8);
+            } else {
+                assert!((by.depth - touch.by_beam).abs() < 1e-8);
+                assert!(
+                    (by.by_point - curvature.mixed).norm() < 1e-7,
+                    "{} {}",
+                    by.by_point,
+                    curvature.mixed
+                );
+                assert!(
+                    (by.by_beam - curvature.beam).abs() < 1e-7,
+                    "{} {}",
+                    by.by_beam,
+                    curvature.beam
+                );
+                assert!(!turns || (by.angle - angle_by_beam).abs() < 1e-8);
+            }
+        }
+        let moving = along(MOTION);
+        assert!((moving.depth - touch.rate).abs() < 1e-8, "{}", touch.rate);
     }
 }

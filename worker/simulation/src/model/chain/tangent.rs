@@ -2,7 +2,9 @@
 //!
 //! Interior joints couple two neighbouring blocks. An end joint couples the cylinder with whatever
 //! holds it: the cylinder's own block is filled here, the rest is handed to the holder.
-use super::{Chain, ChainState, Joints};
+use super::link::Side;
+use super::parts::{Chain, Joints};
+use super::state::ChainState;
 use crate::element::bushing::LinkTangent;
 use crate::linear::{BLOCK, Block, Blocks, Bordered};
 use crate::model::pose::Pose;
@@ -28,13 +30,6 @@ pub(crate) struct EndTangent {
     pub(crate) by_body: LinkTangent,
     /// By the coordinates of the cylinder.
     pub(crate) by_cylinder: CylinderColumns,
-}
-
-/// Which body of a joint a block's rows belong to.
-#[derive(Clone, Copy)]
-pub(super) enum Side {
-    I,
-    J,
 }
 
 #[expect(

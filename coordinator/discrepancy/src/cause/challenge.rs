@@ -1,0 +1,151 @@
+//! Forces without a cause against the best name.
+//!
+//! The library cannot hold everything. A force of simple form across a joint (a constant, a sign, a
+//! power, a harmonic) knows no cause; where such a force, refitted with every gene free, explains much
+//! more than the best name does, or leaves nothing but noise where the name does not, the name is not
+//! believed. A form that a library effect *is* (its projected signature is nearly the same) is no
+//! challenger: then the name is the better word for it.
+use crate::cause::round::Round;
+use crate::cause::suspect::{Suspect, joined};
+use crate::ground::session::Session;
+use crate::laboratory::{Laboratory, Stage};
+use crate::linear::evidence::misfit;
+use crate::linear::isolability::likeness;
+use crate::linear::score::{chi_squared_tail, family_wise, score};
+use crate::linear::tangent::Tangent;
+use crate::model::fit::Fit;
+use crate::model::probe::harmonic;
+use crate::model::unknowns::Point;
+use nalgebra::{DMatrix, DVector};
+use search::least_squares::Settings;
+
+/// A force without a cause: one form, or both phases of a harmonic.
+#[derive(Clone, Debug)]
+struct Form<'a> {
+    /// Its parts, the stronger first.
+    parts: Vec<&'a Suspect>,
+    signature: DMatrix<f64>,
+    statistic: f64,
+    p_value: f64,
+}
+
+/// A force that beats every name.
+#[derive(Clone, Debug)]
+pub(crate) struct Challenger {
+    /// Identifier of the form; of a harmonic, its stronger phase.
+    pub(crate) id: String,
+    /// By how much it lowers `chi^2`, refitted.
+    pub(crate) removed: f64,
+    /// Log evidence of the refit (nats).
+    pub(crate) log_evidence: f64,
+    /// The refit.
+    pub(crate) fit: Fit,
+}
+
+/// Forms that are refitted at most.
+const TRIED: usize = 3;
+
+/// The force that beats the best name of a round, if there is one.
+pub(crate) async fn challenge<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    current: &Fit,
+    round: &Round,
+) -> Result<Option<Challenger>, L::Error> {
+    let (base, thresholds) = (session.base, &session.inputs.thresholds);
+    let best = round.refits.first();
+    // what the best name leaves, by how much it lowers the misfit, and its evidence; without a name,
+    // those of the model without
+    let left = best.map_or(f64::INFINITY, |best| best.fit.chi_squared());
+    let named = (current.chi_squared() - left).max(0.0);
+    let left = left.min(current.chi_squared());
+    let evidence = best.map_or(f64::NEG_INFINITY, |best| best.log_evidence);
+    let evidence = evidence.max(round.null_evidence);
+
+    let tangent = current.tangent();
+    let residual = &current.search.settled_residual();
+    let mut forms = forms(&round.generics, residual, &tangent);
+    let tests = forms.len();
+    forms.retain(|form| {
+        family_wise(form.p_value, tests) < thresholds.alpha
+            && form.statistic > named + thresholds.generic_gain
+            && !is_listed(form, &round.suspects, thresholds.alike, &tangent)
+    });
+    // a harmonic has two amplitudes to choose: two nats' worth of chi^2 each
+    let merit = |form: &Form<'_>| form.statistic - 2.0 * form.parts.len() as f64;
+    forms.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+    forms.truncate(TRIED);
+    let starts = forms.iter().map(|form| started(current, form)).collect();
+    let mut experiments = session.experiments(Stage::Refit);
+    let refits = experiments.fits(starts, Settings::short(5)).await?;
+    let refits = forms
+        .iter()
+        .zip(refits)
+        .filter_map(|(form, refit)| Some((form, refit?)));
+    let best = refits.min_by(|(_, a), (_, b)| a.chi_squared().total_cmp(&b.chi_squared()));
+    Ok(best.and_then(|(form, fit)| {
+        let phi = misfit(fit.chi_squared().min(left), fit.entries());
+        let scale = phi * phi;
+        let removed = current.chi_squared() - fit.chi_squared();
+        let log_evidence = fit.log_evidence();
+        let margin = thresholds.generic_gain * scale;
+        let noise = |left: f64| base.is_noise(left, fit.x().len(), thresholds.adequacy);
+        let clears = noise(fit.chi_squared()) && !noise(left);
+        let beats = removed > thresholds.generic_factor * named + margin
+            || (clears && removed > named + margin);
+        let beats = beats && log_evidence - evidence > thresholds.gain * scale;
+        beats.then(|| Challenger {
+            id: form.parts[0].effect.id.clone(),
+            removed,
+            log_evidence,
+            fit,
+        })
+    }))
+}
+
+/// Every form, and every harmonic with both its phases.
+fn forms<'a>(generics: &'a [Suspect], residual: &DVector<f64>, tangent: &Tangent) -> Vec<Form<'a>> {
+    let form = |mut parts: Vec<&'a Suspect>| {
+        parts.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
+        if parts.iter().all(|part| part.signature.ncols() == 0) {
+            return None;
+        }
+        let signature = joined(&parts);
+        let statistic = score(residual, &signature, &[], tangent).statistic;
+        Some(Form {
+            p_value: chi_squared_tail(statistic, signature.ncols()),
+            parts,
+            signature,
+            statistic,
+        })
+    };
+    let mut all = Vec::new();
+    for (at, generic) in generics.iter().enumerate() {
+        let order = harmonic(&generic.effect.id);
+        let phase = |other: &&Suspect| {
+            other.effect.joint == generic.effect.joint && harmonic(&other.effect.id) == order
+        };
+        match order {
+            None => all.extend(form(vec![generic])),
+            // the first of the two phases stands for both
+            Some(_) if generics[..at].iter().any(|other| phase(&other)) => {}
+            Some(_) => all.extend(form(generics[at..].iter().filter(phase).collect())),
+        }
+    }
+    all
+}
+
+/// Whether a library effect that the record speaks for is this form.
+fn is_listed(form: &Form<'_>, named: &[Suspect], alike: f64, tangent: &Tangent) -> bool {
+    let mut spoken = named
+        .iter()
+        .filter(|one| one.statistic() > 0.0 && one.signature.ncols() > 0);
+    spoken.any(|one| likeness(&form.signature, &one.signature, tangent) > alike)
+}
+
+/// A fit with a form at its linear estimate.
+fn started(fit: &Fit, form: &Form<'_>) -> Point {
+    let parts = form.parts.iter();
+    parts.fold(fit.point(), |point, part| {
+        point.with(&part.effect, &part.start)
+    })
+}

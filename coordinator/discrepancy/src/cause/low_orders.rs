@@ -1,0 +1,53 @@
+//! The likeliest effects by the low orders of the crank alone.
+//!
+//! Where the rope's modes ring, sixty and eighty times a turn, a wrong phase leaves more than any effect,
+//! and the fit that leaves least may be one that has thrown the modes out: tests there say nothing. Far
+//! below them the machine follows its load without ringing. So where no refit has found a valley, a fit of
+//! the low orders is tested instead, and the likeliest effects go from there with the size that they have.
+use crate::cause::{refit, signature, suspect};
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::experiments::Experiments;
+use crate::model::fit::{Fit, closest};
+use crate::model::unknowns::Point;
+use crate::record::spectrum::Orders;
+use crate::record::whitened::WhitenedRecord;
+use protocol::announce::EffectDescriptor;
+use search::least_squares::Settings;
+
+/// Highest order: half of the lower mode's.
+const HIGHEST: usize = 30;
+/// Suspects that are refitted.
+const REFITS: usize = 6;
+/// Refits that are handed on.
+const LIKELIEST: usize = 2;
+
+/// Models with one more effect, the likeliest first, fitted to the low orders of the record; none where
+/// they cannot be fitted. `current` is the model so far; its genes start from the recommended ones, too.
+///
+/// # Errors
+/// Those of the laboratory.
+pub async fn likeliest<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    current: &Fit,
+    effects: &[EffectDescriptor],
+) -> Result<Vec<Point>, L::Error> {
+    let whole = experiments.on;
+    let highest = HIGHEST.min(whole.metric.orders().highest());
+    let orders = Orders::new(whole.record.samples(), highest);
+    let low = WhitenedRecord::under_own_noise(whole.record.clone(), orders, whole.discretisation);
+    let mut experiments = experiments.with(&low);
+    let mut recommended = current.point();
+    recommended.x[..current.model.space.dimension()].fill(0.0);
+    let starts = vec![recommended, current.point()];
+    let Some(fit) = closest(experiments.fits(starts, Settings::short(8)).await?) else {
+        return Ok(Vec::new());
+    };
+    let mut tests = experiments.during(Stage::What);
+    let suspects = signature::examine(&mut tests, &fit, effects).await?;
+    let mut order = suspect::ranked(&suspects);
+    order.truncate(REFITS);
+    let mut refits = refit::refit(&mut experiments, &fit, &order).await?;
+    refits.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    let likeliest = refits.iter().take(LIKELIEST);
+    Ok(likeliest.map(|refit| refit.fit.point()).collect())
+}

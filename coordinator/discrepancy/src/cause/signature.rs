@@ -1,0 +1,218 @@
+//! The library under suspicion: a signature of every effect at the fitted point, and its score test.
+//!
+//! Signatures are differences at the effect's typical size, taken again where that changes the
+//! curves too much to be linear or too little to be seen; effects whose law has a shape (an angle, a
+//! width, a ratio) are tried at several values of it, and the best of k tries is judged as such.
+use crate::cause::suspect::Suspect;
+use crate::laboratory::Laboratory;
+use crate::linear::score::{Score, score};
+use crate::linear::tangent::Tangent;
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::parameter::{absent, bounds, positive, shapes, sized, sizes, typical};
+use crate::model::unknowns::Point;
+use nalgebra::{DMatrix, DVector};
+use protocol::announce::EffectDescriptor;
+use std::collections::BTreeMap;
+
+/// A signature to be taken: an effect at some shape, one of its sizes at some value.
+#[derive(Clone, Debug)]
+struct Probe {
+    /// Which effect.
+    effect: usize,
+    /// Its scaled parameters without any size.
+    shape: Vec<f64>,
+    /// Whether that is the typical shape.
+    typical: bool,
+    /// Which of its parameters is the size.
+    size: usize,
+    /// How much of the size.
+    amount: f64,
+    /// Whitened change per unit of the size, once it was taken.
+    column: Option<DVector<f64>>,
+}
+
+impl Probe {
+    /// The effect's scaled parameters.
+    fn parameters(&self) -> Vec<f64> {
+        let mut own = self.shape.clone();
+        own[self.size] = self.amount;
+        own
+    }
+}
+
+/// Projected change of the curves, in standard deviations, that a signature should make.
+const WANTED: f64 = 4.0;
+/// Changes outside this range are taken again.
+const USABLE: [f64; 2] = [1.0, 20.0];
+/// Values of each shape that are tried.
+const SHAPES: usize = 6;
+
+/// Tests effects on a fit's residual.
+///
+/// # Errors
+/// Those of the laboratory.
+pub async fn examine<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    effects: &[EffectDescriptor],
+) -> Result<Vec<Suspect>, L::Error> {
+    let tangent = fit.tangent();
+    let mut probes = plan(effects);
+    // what a size does in the effect's typical shape tells how much of it to take in the others
+    take(experiments, fit, effects, &mut probes, |probe| {
+        probe.typical
+    })
+    .await?;
+    adjust(effects, &mut probes, &tangent);
+    spread(&mut probes);
+    take(experiments, fit, effects, &mut probes, |_| true).await?;
+    adjust(effects, &mut probes, &tangent);
+    take(experiments, fit, effects, &mut probes, |_| true).await?;
+    let residual = &fit.search.settled_residual();
+    let judged = effects.iter().enumerate();
+    Ok(judged
+        .map(|(k, effect)| judge(k, effect, &probes, residual, &tangent))
+        .collect())
+}
+
+/// One probe per size and shape; shapes are varied one at a time.
+fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
+    let mut probes = Vec::new();
+    for (k, effect) in effects.iter().enumerate() {
+        for (choice, shape) in shape_choices(effect).into_iter().enumerate() {
+            for size in sizes(effect) {
+                probes.push(Probe {
+                    effect: k,
+                    shape: shape.clone(),
+                    typical: choice == 0,
+                    size,
+                    amount: typical(&effect.parameters[size]),
+                    column: None,
+                });
+            }
+        }
+    }
+    probes
+}
+
+/// Parameter vectors without size: typical shapes, then each shape over its range.
+fn shape_choices(effect: &EffectDescriptor) -> Vec<Vec<f64>> {
+    let usual = absent(effect);
+    let mut choices = vec![usual.clone()];
+    for k in shapes(effect) {
+        let [lower, upper] = bounds(&effect.parameters[k]);
+        for i in 0..SHAPES {
+            let mut one = usual.clone();
+            one[k] = lower + (upper - lower) * (i as f64 + 0.5) / SHAPES as f64;
+            choices.push(one);
+        }
+    }
+    choices
+}
+
+/// Gives every other shape the amount that suits the typical one.
+fn spread(probes: &mut [Probe]) {
+    let typical = probes.iter().filter(|probe| probe.typical);
+    let amounts: BTreeMap<(usize, usize), f64> = typical
+        .map(|probe| ((probe.effect, probe.size), probe.amount))
+        .collect();
+    for probe in probes.iter_mut().filter(|probe| !probe.typical) {
+        if let Some(amount) = amounts.get(&(probe.effect, probe.size)) {
+            probe.amount = *amount;
+        }
+    }
+}
+
+/// Simulates what is asked for and has no column yet.
+async fn take<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    effects: &[EffectDescriptor],
+    probes: &mut [Probe],
+    asked: impl Fn(&Probe) -> bool,
+) -> Result<(), L::Error> {
+    let open = |probe: &&mut Probe| probe.column.is_none() && asked(probe);
+    let open: Vec<&mut Probe> = probes.iter_mut().filter(open).collect();
+    let point = |probe: &&mut Probe| fit.with(&effects[probe.effect], &probe.parameters());
+    let points: Vec<Point> = open.iter().map(point).collect();
+    let curves = experiments.curves(&points).await?;
+    let metric = &experiments.on.metric;
+    let base = metric.whiten(&fit.curves);
+    for (probe, curves) in open.into_iter().zip(curves) {
+        if let Some(curves) = curves {
+            probe.column = Some((metric.whiten(&curves) - &base) / probe.amount);
+        }
+    }
+    Ok(())
+}
+
+/// Chooses another amount for signatures that were too large, too small or failed.
+fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
+    for probe in probes {
+        let parameter = &effects[probe.effect].parameters[probe.size];
+        let [lower, upper] = bounds(parameter);
+        let amount = match &probe.column {
+            None => 0.25 * probe.amount,
+            Some(column) => {
+                let change = tangent.project(column).norm() * probe.amount.abs();
+                if change.is_nan() || change <= 0.0 || (USABLE[0]..=USABLE[1]).contains(&change) {
+                    continue;
+                }
+                probe.amount * (WANTED / change).clamp(1e-2, 10.0)
+            }
+        };
+        let amount = amount.clamp(lower, upper);
+        if amount != 0.0 && (amount / probe.amount - 1.0).abs() > 0.05 {
+            probe.amount = amount;
+            probe.column = None;
+        }
+    }
+}
+
+/// The test of one effect: the best of its shapes.
+fn judge(
+    k: usize,
+    effect: &EffectDescriptor,
+    probes: &[Probe],
+    residual: &DVector<f64>,
+    tangent: &Tangent,
+) -> Suspect {
+    let positive = positive(effect);
+    let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
+    let mut best: Option<(Score, &[&Probe], DMatrix<f64>)> = None;
+    let mut tries = 0;
+    for group in own.chunks(positive.len().max(1)) {
+        let columns: Option<Vec<DVector<f64>>> = group.iter().map(|p| p.column.clone()).collect();
+        let Some(columns) = columns.filter(|c| !c.is_empty()) else {
+            continue;
+        };
+        tries += 1;
+        let signature = DMatrix::from_columns(&columns);
+        let found = score(residual, &signature, &positive, tangent);
+        let better = best.as_ref().is_none_or(|(other, ..)| {
+            found.p_value < other.p_value
+                || (found.p_value <= other.p_value && found.statistic > other.statistic)
+        });
+        if better {
+            best = Some((found, group, signature));
+        }
+    }
+    let (score, group, signature) = match best {
+        Some((score, group, signature)) => (Some(score), group, signature),
+        None => (None, &own[..0], DMatrix::zeros(residual.len(), 0)),
+    };
+    let shape = group.first().map(|probe| probe.shape.clone());
+    let mut start = shape.unwrap_or_else(|| absent(effect));
+    if let Some(score) = &score {
+        start = sized(effect, start, &mut score.size.iter());
+    }
+    Suspect {
+        effect: effect.clone(),
+        score,
+        start,
+        signature,
+        taken: group.iter().map(|probe| probe.parameters()).collect(),
+        tries: tries.max(1),
+    }
+}

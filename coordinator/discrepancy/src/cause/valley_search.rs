@@ -1,0 +1,196 @@
+//! A second look at the suspects from the valley that the likeliest of them leads to.
+//!
+//! Refits begin where the model without effects was fitted. If that is not the valley of the true
+//! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
+//! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
+//! whole way from the start; all others are refitted from the deepest, and all are judged again. If even
+//! that is no valley, the low orders of the crank say which effects to begin with.
+use crate::cause::low_orders;
+use crate::cause::refit::Refitted;
+use crate::cause::round::Round;
+use crate::ground::session::Session;
+use crate::ground::{basin, valley};
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::fit::Fit;
+use crate::model::unknowns::Point;
+use protocol::announce::EffectDescriptor;
+use search::least_squares::Settings;
+
+/// Suspects whose own valley is looked for.
+const LEADERS: usize = 2;
+/// Share of the best refit's gain of evidence from which a suspect is one of them.
+const SHARE: f64 = 0.3;
+/// Share of the best refit's gain of evidence from which a suspect is refitted from the deepest valley.
+const HOPEFUL: f64 = 0.1;
+/// Share of the misfit of a lost valley from which the genes of rivals are tried, and other stiffness and
+/// contact: a contact that is too soft leaves as much.
+const LOOSE: f64 = 0.5;
+/// Looks for valleys in one round: each begins where the one before ended.
+const DEEPER: usize = 3;
+
+/// A fit that was found for a suspect, by its place among the round's refits.
+struct Found {
+    place: usize,
+    fit: Fit,
+}
+
+/// Looks again while the best refit of a round leaves much and another valley is found; changes the
+/// round's refits, their order and what is derived from them. Says whether the best of them lies in the
+/// valley now.
+pub(crate) async fn search<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    current: &Fit,
+    round: &mut Round,
+) -> Result<bool, L::Error> {
+    let lost = session.inputs.thresholds.valley;
+    let genes = current.model.space.dimension();
+    let mut found = Vec::new();
+    for place in leaders(round, LOOSE * lost) {
+        let fit = &round.refits[place].fit;
+        let starts = from_rivals(round, place, genes);
+        let other = valley::follow(&mut session.experiments(Stage::Refit), fit, starts).await?;
+        found.extend(other.map(|fit| Found { place, fit }));
+    }
+    settle(session, current, round, found).await?;
+    deeper(session, current, round).await?;
+    // from the start, with the likeliest effect where it is now
+    if let Some(&place) = leaders(round, lost).first() {
+        let fit = &round.refits[place].fit;
+        let (seed, rest) = (session.inputs.seed, &fit.x()[genes..]);
+        let mut experiments = session.experiments(Stage::Refit);
+        let starts = basin::enter(&mut experiments, &fit.model, rest, seed).await?;
+        let other = valley::follow(&mut experiments, fit, starts).await?;
+        let found = other.map(|fit| Found { place, fit }).into_iter().collect();
+        settle(session, current, round, found).await?;
+    }
+    if round.phi > lost {
+        let found = from_low_orders(session, current, round).await?;
+        if !found.is_empty() {
+            settle(session, current, round, found).await?;
+            deeper(session, current, round).await?;
+        }
+    }
+    Ok(round.phi <= lost)
+}
+
+/// Valleys of the likeliest, each look from where the one before ended.
+async fn deeper<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    current: &Fit,
+    round: &mut Round,
+) -> Result<(), L::Error> {
+    for _ in 0..DEEPER {
+        let mut found = Vec::new();
+        for place in leaders(round, LOOSE * session.inputs.thresholds.valley) {
+            let fit = &round.refits[place].fit;
+            let other = valley::enter(&mut session.experiments(Stage::Refit), fit).await?;
+            found.extend(other.map(|fit| Found { place, fit }));
+        }
+        if found.is_empty() {
+            break;
+        }
+        settle(session, current, round, found).await?;
+    }
+    Ok(())
+}
+
+/// What the low orders hold for likeliest, in valleys of its own: those that leave clearly less than every
+/// refit so far.
+async fn from_low_orders<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    current: &Fit,
+    round: &mut Round,
+) -> Result<Vec<Found>, L::Error> {
+    let effects: Vec<EffectDescriptor> = round.suspects.iter().map(|s| s.effect.clone()).collect();
+    let mut experiments = session.experiments(Stage::Refit);
+    let likeliest = low_orders::likeliest(&mut experiments, current, &effects).await?;
+    let fits = experiments.fits(likeliest, Settings::short(3)).await?;
+    let left = round.refits.iter().map(|refit| refit.fit.chi_squared());
+    let least = left.fold(current.chi_squared(), f64::min);
+    let mut found = Vec::new();
+    for fit in fits.into_iter().flatten() {
+        let fit = valley::enter(&mut experiments, &fit).await?.unwrap_or(fit);
+        let Some(effect) = fit.model.added.last() else {
+            continue;
+        };
+        if fit.chi_squared() >= valley::BETTER * least {
+            continue;
+        }
+        let id = effect.id.clone();
+        let place = round.refits.iter().position(|refit| refit.id == id);
+        let place = place.unwrap_or_else(|| {
+            round.refits.push(Refitted::new(id, fit.clone()));
+            round.refits.len() - 1
+        });
+        found.push(Found { place, fit });
+    }
+    Ok(found)
+}
+
+/// Places of the likeliest refits whose misfit exceeds a bound.
+fn leaders(round: &Round, bound: f64) -> Vec<usize> {
+    let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
+    let best = round.refits.first().map_or(0.0, gain);
+    let likely = |refit: &Refitted| gain(refit) > 0.0 && gain(refit) > SHARE * best;
+    let leads = |refit: &Refitted| likely(refit) && refit.fit.misfit() > bound;
+    (0..round.refits.len().min(LEADERS))
+        .filter(|k| leads(&round.refits[*k]))
+        .collect()
+}
+
+/// A suspect's own effect with the genes of each other.
+fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
+    let rivals = round.refits.iter().enumerate().filter(|(k, _)| *k != own);
+    rivals
+        .map(|(_, rival)| crossed(&rival.fit, &round.refits[own].fit, genes))
+        .collect()
+}
+
+/// The genes of one fit with everything else of another.
+fn crossed(genes_of: &Fit, rest_of: &Fit, genes: usize) -> Point {
+    let mut point = rest_of.point();
+    point.x[..genes].copy_from_slice(&genes_of.x()[..genes]);
+    point
+}
+
+/// Takes what was found, refits all hopeful others from the deepest of it, and judges again.
+async fn settle<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    current: &Fit,
+    round: &mut Round,
+    found: Vec<Found>,
+) -> Result<(), L::Error> {
+    let left = |a: &&Fit, b: &&Fit| a.chi_squared().total_cmp(&b.chi_squared());
+    let Some(deepest) = found.iter().map(|found| &found.fit).min_by(left).cloned() else {
+        return Ok(());
+    };
+    for Found { place, fit } in found {
+        replace(&mut round.refits[place], fit);
+    }
+    let genes = current.model.space.dimension();
+    let null = round.null_evidence;
+    let gain = |refit: &Refitted| refit.log_evidence - null;
+    let best = round.refits.iter().map(gain).fold(0.0, f64::max);
+    let hopeful = |refit: &&mut Refitted| gain(refit) > HOPEFUL * best;
+    let mut again: Vec<&mut Refitted> = round.refits.iter_mut().filter(hopeful).collect();
+    let starts = again
+        .iter()
+        .map(|refit| crossed(&deepest, &refit.fit, genes))
+        .collect();
+    let mut experiments = session.experiments(Stage::Refit);
+    let fits = experiments.fits(starts, Settings::short(8)).await?;
+    for (refit, fit) in again.iter_mut().zip(fits) {
+        if let Some(fit) = fit {
+            replace(refit, fit);
+        }
+    }
+    round.judge(current);
+    Ok(())
+}
+
+/// Takes a fit if it leaves less.
+fn replace(refit: &mut Refitted, fit: Fit) {
+    if fit.chi_squared() < refit.fit.chi_squared() {
+        *refit = Refitted::new(refit.id.clone(), fit);
+    }
+}

@@ -1,0 +1,159 @@
+//! The end of a diagnosis: estimates, the proof, the verdict and its reason.
+//!
+//! Where the tests do not stand on firm ground (assumed noise, a model that was never held against a
+//! finer one), what was found is taken out of the answer again: it stays visible as a suspect, with its
+//! size and its nats, and the reason says what it would take to name it.
+use crate::cause::decide::widen;
+use crate::diagnose::diagnosis::Diagnosis;
+use crate::diagnose::reason::{Rejection, left, reason, remarks};
+use crate::ground::session::Session;
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::fit::Fit;
+use crate::place::wander::refit::wander;
+use crate::place::whereabouts;
+use crate::place::whiteness::p_value;
+use crate::proof::compare::{Shown, compare};
+use crate::record::measured::Record;
+use crate::size::estimate::estimates;
+use crate::size::force::Force;
+use crate::verdict::{Findings, Ground, verdict};
+
+/// Estimates, the proof and the verdict; `held` are the cycles that took no part in the fit.
+pub(crate) async fn conclude<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    after: Fit,
+    held: &Record,
+    diagnosis: &mut Diagnosis,
+) -> Result<(), L::Error> {
+    let (base, inputs) = (session.base, session.inputs);
+    let claims = !after.model.added.is_empty() || diagnosis.generic.is_some();
+    let ground = ground(session, claims, diagnosis);
+    if widen(&mut diagnosis.rounds, after.chi_squared(), base.noise()) {
+        diagnosis.notes.push(format!(
+            "the answer leaves {:.1} times the noise, so its law is not quite that of the machine, and a \
+             law of its rivals need not be either: names that leave not much more stand in one set with it",
+            after.chi_squared() / base.noise()
+        ));
+    }
+    diagnosis.effects = estimates(&diagnosis.rounds, &after);
+    let (after, suspect) = match ground {
+        Ground::Firm => (after, None),
+        Ground::NoiseAssumed | Ground::NothingConsidered | Ground::Unsound => {
+            (base.fit.clone(), withhold(diagnosis))
+        }
+    };
+    prove(session, &after, held, diagnosis).await?;
+    diagnosis.whiteness = diagnosis.whereabouts.as_ref().map(|seen| {
+        let before = p_value(&seen.order, base.freedom);
+        if after.model.added.is_empty() {
+            return [before; 2];
+        }
+        let left = whereabouts::orders(base, &after);
+        [before, p_value(&left, base.freedom)]
+    });
+    let mut experiments = session.experiments(Stage::Show);
+    diagnosis.wander = wander(&mut experiments, &base.fit, inputs.others()).await?;
+    if !after.model.added.is_empty() {
+        diagnosis.wander_after = wander(&mut experiments, &after, inputs.others()).await?;
+    }
+    let thresholds = &inputs.thresholds;
+    let (chi_squared, parameters) = (after.chi_squared(), after.x().len());
+    let misfit = !base.is_noise(chi_squared, parameters, thresholds.adequacy);
+    let rejection = Rejection {
+        names: diagnosis
+            .rounds
+            .first()
+            .is_some_and(|r| r.p_value < thresholds.alpha),
+        suspect,
+        left: misfit.then(|| left(base, &after)),
+    };
+    let seen = diagnosis.whereabouts.as_ref();
+    let maps = seen.is_some_and(|seen| seen.rejects(thresholds.alpha));
+    let findings = Findings {
+        ground,
+        rejected: rejection.names || misfit || maps || rejection.suspect.is_some(),
+        added: after.model.added.len(),
+        rivals: diagnosis
+            .rounds
+            .iter()
+            .map(|r| r.set.len())
+            .max()
+            .unwrap_or(0),
+        generic: diagnosis.generic.is_some(),
+    };
+    diagnosis.verdict = verdict(&findings);
+    diagnosis.reason = reason(ground, diagnosis, &rejection);
+    if diagnosis.generic.is_none() {
+        diagnosis.notes.extend(rejection.left);
+    }
+    remarks(inputs, diagnosis);
+    diagnosis.after = Some(after);
+    Ok(())
+}
+
+/// What the tests stand on.
+fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> Ground {
+    let (base, inputs) = (session.base, session.inputs);
+    let checked = base.preflight.is_some() || diagnosis.preflight_after.is_some();
+    if claims && !checked {
+        Ground::Unsound
+    } else if base.assumed {
+        Ground::NoiseAssumed
+    } else if inputs.considered().all(|effect| effect.generic) {
+        Ground::NothingConsidered
+    } else {
+        Ground::Firm
+    }
+}
+
+/// Takes what was added, or the force that beats every name, out of the answer; says what it was.
+fn withhold(diagnosis: &mut Diagnosis) -> Option<String> {
+    let nats = |id: &str, nats: f64| format!("{id}, at {nats:.0} nats");
+    let mut suspects = Vec::new();
+    for round in &mut diagnosis.rounds {
+        let Some(id) = round.added.clone() else {
+            continue;
+        };
+        let own = diagnosis.effects.iter().find(|effect| effect.id == id);
+        suspects.push(nats(&id, own.map_or(f64::NAN, |own| own.ln_evidence)));
+        round.withdraw(format!("{id} is the likeliest, but no name is given here"));
+    }
+    if diagnosis.generic.take().is_some() {
+        let force = diagnosis.force.as_ref();
+        let said = |force: &Force| nats(&format!("a force {}", force.id), force.ln_evidence);
+        suspects.extend(force.map(said));
+    }
+    (!suspects.is_empty()).then(|| suspects.join(" and "))
+}
+
+/// The gap before and after, of the answer, of its best rejected rival and of a force without a cause.
+async fn prove<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    after: &Fit,
+    held: &Record,
+    diagnosis: &mut Diagnosis,
+) -> Result<(), L::Error> {
+    let (base, others) = (session.base, session.inputs.others());
+    let kept = |record| Shown {
+        record,
+        fitted: false,
+    };
+    let mut records = vec![Shown {
+        record: &base.on.record,
+        fitted: true,
+    }];
+    records.extend(std::iter::once(held).chain(others).map(kept));
+    records.retain(|shown| !shown.record.cycles.is_empty());
+    let mut experiments = session.experiments(Stage::Show);
+    let before = &base.fit;
+    diagnosis.rows = compare(&mut experiments, &records, before, after).await?;
+    let rival = diagnosis.rejected().map(|(_, rival)| rival.clone());
+    if let Some(rival) = rival {
+        let rows = compare(&mut experiments, &records, before, &rival.fit).await?;
+        diagnosis.rival = Some((rival.id, rows));
+    }
+    if let Some(force) = &mut diagnosis.force {
+        force.rows = compare(&mut experiments, &records, before, &force.fit).await?;
+    }
+    Ok(())
+}

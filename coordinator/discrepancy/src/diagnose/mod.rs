@@ -1,0 +1,70 @@
+//! A diagnosis from the record to the verdict: the order of the four questions and what they hand on.
+mod belief;
+mod conclude;
+pub(crate) mod diagnosis;
+mod prune;
+mod reason;
+mod rounds;
+
+pub use crate::cause::round::Round;
+pub use crate::inputs::Inputs;
+pub use crate::size::data_value::LookAlikes;
+pub use crate::size::estimate::{Estimate, ParameterEstimate};
+pub use crate::size::force::Force;
+pub use crate::size::limit::Limit;
+pub use diagnosis::Diagnosis;
+
+use crate::ground::establish::establish;
+use crate::ground::session::Session;
+use crate::laboratory::Laboratory;
+use crate::place::whereabouts;
+use conclude::conclude;
+use rounds::rounds;
+
+/// A fit that one more step promises to lower by more than this share has not converged. What lies
+/// below is taken off by the tests themselves, which look at the residual after that step.
+const PROMISED: f64 = 0.1;
+
+/// Diagnoses.
+///
+/// # Errors
+/// Those of the laboratory: nobody simulates any more, or the user stopped.
+pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
+    let Some(record) = inputs.records.first().filter(|r| !r.cycles.is_empty()) else {
+        return Ok(Diagnosis::unresolved(
+            "there is no record of the calibrated condition",
+        ));
+    };
+    let (fitted, held) = record.split();
+    let Some(base) = establish(lab, inputs, fitted).await? else {
+        return Ok(Diagnosis::unresolved(
+            "no point near the recommended parameters completes its simulation",
+        ));
+    };
+    let mut session = Session {
+        lab,
+        base: &base,
+        inputs,
+    };
+    let mut diagnosis = Diagnosis {
+        reason: None,
+        whereabouts: Some(whereabouts::look(&mut session).await?),
+        assumed_noise: base.assumed,
+        preflight: base.preflight.clone(),
+        notes: base.notes.clone(),
+        before: Some(base.fit.clone()),
+        ..Diagnosis::unresolved("")
+    };
+    let promised = base.fit.search.promised_decrease();
+    if promised > PROMISED {
+        diagnosis.reason = Some(format!(
+            "the recalibration did not converge: one more step promises to lower the misfit by {:.0} %, \
+             so a test would report calibration error",
+            100.0 * promised
+        ));
+        return Ok(diagnosis);
+    }
+    let after = rounds(&mut session, &mut diagnosis).await?;
+    conclude(&mut session, after, &held, &mut diagnosis).await?;
+    Ok(diagnosis)
+}

@@ -1,0 +1,44 @@
+//! The recalibrated model without further effects, in the metric of all tests.
+use crate::ground::preflight::Preflight;
+use crate::linear::score::misfit_tail;
+use crate::model::fit::Fit;
+use crate::record::whitened::WhitenedRecord;
+
+/// A data sheet's noise may be off by this factor in its variance, either way; what is left beyond it
+/// is no noise, or not the noise that was assumed.
+const ASSUMED: f64 = 2.0;
+
+/// What every test stands on.
+pub(crate) struct Base {
+    /// The cycles that are fitted, in the final metric.
+    pub(crate) on: WhitenedRecord,
+    /// The recalibrated model.
+    pub(crate) fit: Fit,
+    /// Its numerical check; nothing where no finer model completes.
+    pub(crate) preflight: Option<Preflight>,
+    /// Whether the noise was assumed rather than seen.
+    pub(crate) assumed: bool,
+    /// Degrees of freedom behind a variance of the noise.
+    pub(crate) freedom: f64,
+    /// What else should be known.
+    pub(crate) notes: Vec<String>,
+}
+
+impl Base {
+    /// The squared length of a residual that is noise alone.
+    pub(crate) fn noise(&self) -> f64 {
+        self.on.metric.len() as f64
+    }
+
+    /// Whether noise alone may leave so much after a fit of so many parameters, at a level; where the
+    /// noise is only assumed, whether the assumption bears with what is left.
+    pub(crate) fn is_noise(&self, chi_squared: f64, parameters: usize, level: f64) -> bool {
+        let n = self.on.metric.len();
+        if self.assumed {
+            let left = n.saturating_sub(parameters).max(1) as f64;
+            return (1.0 / ASSUMED..=ASSUMED).contains(&(chi_squared / left));
+        }
+        let freedom = n as f64 * (self.on.record.cycles.len() as f64 - 1.0);
+        misfit_tail(chi_squared, n, parameters, freedom) >= level
+    }
+}

@@ -1,0 +1,83 @@
+//! A way into the valley in which the machine's resonances fit.
+//!
+//! The residual of a rope that is a little too soft or too stiff is a wave of the wrong phase, and no
+//! local search leaves the plateau around the valley. So a search strategy goes first, on the same
+//! whitened residual.
+use crate::laboratory::Laboratory;
+use crate::model::experiments::Experiments;
+use crate::model::unknowns::{Model, Point};
+use search::strategy::{Plan, Told, build, preset};
+
+/// Starts for the fit: points of the search's archive, best first, that differ in the scanned gene. The
+/// genes are searched; `rest` are the parameters of the model's effects, which stay.
+///
+/// # Errors
+/// Those of the laboratory.
+pub async fn enter<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    model: &Model,
+    rest: &[f64],
+    seed: u64,
+) -> Result<Vec<Point>, L::Error> {
+    let whole = |genes: Vec<f64>| Point {
+        model: model.clone(),
+        x: [&genes[..], rest].concat(),
+    };
+    let plan = Plan {
+        space: &model.space,
+        workers: 1,
+    };
+    let search = preset("quick").map(|preset| (preset.settings)(&plan));
+    let Some(Ok(mut strategy)) = search.map(|search| build(&search, plan.space, seed)) else {
+        return Ok(vec![whole(vec![0.0; model.space.dimension()])]);
+    };
+    let mut found: Vec<(f64, Vec<f64>)> = Vec::new();
+    while strategy.finished().is_none() {
+        let proposals = strategy.ask();
+        if proposals.is_empty() {
+            break;
+        }
+        let points = proposals
+            .iter()
+            .map(|proposal| whole(model.space.point(&proposal.genes)));
+        let points: Vec<Point> = points.collect();
+        let curves = experiments.curves(&points).await?;
+        for ((proposal, point), curves) in proposals.iter().zip(points).zip(curves) {
+            let fitness = curves.map(|curves| experiments.on.residual(&curves).norm_squared());
+            found.extend(fitness.map(|fitness| (fitness, point.x)));
+            let told = Told {
+                fitness: fitness.unwrap_or(f64::MAX),
+                complete: fitness.is_some(),
+            };
+            strategy.tell(proposal.id, told);
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = apart(found.into_iter().map(|(_, x)| x)).into_iter();
+    let point = |x| Point {
+        model: model.clone(),
+        x,
+    };
+    Ok(best.map(point).collect())
+}
+
+/// The best points, no two of which lie within a few hundredths of a decade in every gene.
+fn apart(ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+    const STARTS: usize = 3;
+    /// Decades; the first gene is the one with the narrow valley.
+    const NEAR: [f64; 2] = [0.03, 0.15];
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    for x in ranked {
+        let near = |other: &Vec<f64>| {
+            let mut pairs = other.iter().zip(&x).enumerate();
+            pairs.all(|(k, (a, b))| (a - b).abs() < NEAR[k.min(1)])
+        };
+        if !kept.iter().any(near) {
+            kept.push(x);
+        }
+        if kept.len() == STARTS {
+            break;
+        }
+    }
+    kept
+}

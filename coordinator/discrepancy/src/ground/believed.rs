@@ -1,0 +1,106 @@
+//! A model that is about to be believed, held against a finer one: a name must still be believed when
+//! what the finer model changes counts as noise too.
+use crate::ground::preflight::{Preflight, check, left};
+use crate::ground::session::Session;
+use crate::laboratory::{Laboratory, Stage};
+use crate::linear::evidence::misfit;
+use crate::linear::tangent::Tangent;
+use crate::model::fit::Fit;
+use crate::record::metric::Metric;
+use crate::record::noise::smoothed;
+use nalgebra::{DMatrix, DVector};
+use search::least_squares::{Linearized, Prior, Variable};
+
+/// A believed model held against a finer one.
+#[derive(Clone, Debug)]
+pub(crate) struct Checked {
+    /// What the finer model changes.
+    pub(crate) preflight: Preflight,
+    /// The nats that the model still gains over the one before it, over the squared misfit, when that
+    /// change counts as noise.
+    pub(crate) gain: f64,
+}
+
+/// Checks a model that is about to be believed, beside the one before it.
+/// Nothing if no finer model completes.
+pub(crate) async fn believed<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    before: &Fit,
+    after: &Fit,
+) -> Result<Option<Checked>, L::Error> {
+    let (base, finer) = (session.base, session.inputs.finer);
+    let mut experiments = session.experiments(Stage::Preflight);
+    let Some(mut preflight) = check(&mut experiments, after, before, finer).await? else {
+        return Ok(None);
+    };
+    if let Some(first) = &base.preflight {
+        // the metric holds the first check's error since; the ratio is to the record's own
+        preflight.standard_error.clone_from(&first.standard_error);
+    }
+    let metric = &base.on.metric;
+    let error = metric.whiten(&preflight.difference);
+    let nothing = DVector::zeros(error.len());
+    let known = base.preflight.as_ref().map_or_else(
+        || nothing.clone(),
+        |first| left(metric, &base.fit, &first.difference),
+    );
+    let weights = floor(metric, &left(metric, before, &preflight.difference), &known);
+    let [null, own] = [before, after].map(|fit| cost(fit, &weights, &error));
+    let ones = DVector::from_element(error.len(), 1.0);
+    let [usual_null, usual_own] = [before, after].map(|fit| cost(fit, &ones, &nothing));
+    let phi = misfit(own, error.len());
+    let nats = after.log_evidence() - before.log_evidence();
+    let gain = nats - 0.5 * (usual_null - usual_own) + 0.5 * (null - own);
+    Ok(Some(Checked {
+        preflight,
+        gain: gain / (phi * phi),
+    }))
+}
+
+/// By how much each entry counts when the power of an error, smoothed over orders, is noise as far as
+/// it exceeds that of an error which the metric knows.
+fn floor(metric: &Metric, error: &DVector<f64>, known: &DVector<f64>) -> DVector<f64> {
+    let power = |x: &DVector<f64>, channel: usize| -> Vec<f64> {
+        let part = |order: usize| 0.5 * metric.coefficient(x, order, channel).norm_sqr();
+        let powers: Vec<f64> = (1..=metric.orders().highest()).map(part).collect();
+        smoothed(&powers)
+    };
+    let both = |channel| (power(error, channel), power(known, channel));
+    let powers: Vec<(Vec<f64>, Vec<f64>)> = (0..metric.channels()).map(both).collect();
+    DVector::from_fn(error.len(), |entry, _| {
+        let (order, channel) = metric.place(entry);
+        let (own, known) = (powers[channel].0[order - 1], powers[channel].1[order - 1]);
+        1.0 / (1.0 + (own - known).max(0.0)).sqrt()
+    })
+}
+
+/// What a fit leaves, to first order, in entries that count by weights and with an error of known
+/// shape beside its parameters, whose amount is about one.
+fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
+    let at = fit.search.best();
+    let columns = at.jacobian.column_iter();
+    let mut columns: Vec<DVector<f64>> = columns.map(|c| c.component_mul(weights)).collect();
+    columns.push(error.component_mul(weights));
+    let residual = at.residual.component_mul(weights);
+    let mut variables = fit.variables().to_vec();
+    variables.push(Variable {
+        start: 0.0,
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        step: 1.0,
+        prior: Some(Prior {
+            mean: 0.0,
+            deviation: 1.0,
+        }),
+    });
+    let mut x = at.x.clone();
+    x.push(0.0);
+    let linear = Linearized {
+        x,
+        residual: residual.clone(),
+        jacobian: DMatrix::from_columns(&columns),
+    };
+    Tangent::new(&linear, &variables)
+        .project(&residual)
+        .dot(&residual)
+}

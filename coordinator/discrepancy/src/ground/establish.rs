@@ -1,0 +1,123 @@
+//! What every test stands on: noise, way into the valley, recalibration, numerical check, and the fit
+//! in the final metric.
+use crate::ground::base::Base;
+use crate::ground::input_error::input_errors;
+use crate::ground::{basin, preflight, recalibrate, valley};
+use crate::inputs::Inputs;
+use crate::laboratory::{Laboratory, Stage};
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::unknowns::{Model, Point};
+use crate::record::measured::Record;
+use crate::record::metric::Metric;
+use crate::record::noise::Noise;
+use crate::record::spectrum::Orders;
+use crate::record::whitened::WhitenedRecord;
+use nalgebra::{Complex, DVector};
+
+/// Noise, way into the valley, recalibration, numerical check, final metric, final fit; nothing where
+/// no fit completes.
+pub(crate) async fn establish<L: Laboratory>(
+    lab: &mut L,
+    inputs: &Inputs,
+    record: Record,
+) -> Result<Option<Base>, L::Error> {
+    let orders = Orders::new(record.samples(), inputs.thresholds.orders);
+    let own = WhitenedRecord::under_own_noise(record.clone(), orders.clone(), inputs.usual);
+    let mut experiments = Experiments {
+        lab: &mut *lab,
+        on: &own,
+        stage: Stage::Basin,
+    };
+    let Some(first) = first_fit(&mut experiments, inputs).await? else {
+        return Ok(None);
+    };
+    let mut recalibration = experiments.during(Stage::Recalibrate);
+    let errors = input_errors(&mut recalibration, &first, &inputs.library).await?;
+    let spectra: Vec<Vec<Vec<Complex<f64>>>> = errors
+        .iter()
+        .map(|error| {
+            error
+                .curves
+                .iter()
+                .map(|curve| orders.transform(curve))
+                .collect()
+        })
+        .collect();
+    let mut noise = Noise::estimate(&record, &orders, &spectra);
+    let weigh = |noise: &Noise| {
+        let mut metric = Metric::new(orders.clone(), record.channels.len(), &noise.covariances);
+        let directions: Vec<DVector<f64>> = errors
+            .iter()
+            .map(|error| metric.whiten(&error.curves) * error.deviation)
+            .collect();
+        metric.marginalize(&directions);
+        WhitenedRecord::new(record.clone(), metric, inputs.usual)
+    };
+    let on = weigh(&noise);
+    let mut experiments = experiments.with(&on);
+    let mut recalibration = experiments.during(Stage::Recalibrate);
+    let Some(second) = recalibrate::converge(&mut recalibration, first.point()).await? else {
+        return Ok(None);
+    };
+    let mut finer = experiments.during(Stage::Preflight);
+    let preflight = preflight::check(&mut finer, &second, &second, inputs.finer).await?;
+    let mut notes = Vec::new();
+    let (on, fit) = if let Some(seen) = &preflight {
+        if !seen.whole {
+            notes.push(
+                "the finer model did not complete as a whole: cylinders and steps were refined one at \
+                 a time"
+                    .to_owned(),
+            );
+        }
+        noise.add_error(&seen.left);
+        let on = weigh(&noise);
+        let mut last = Experiments {
+            lab,
+            on: &on,
+            stage: Stage::Recalibrate,
+        };
+        match recalibrate::converge(&mut last, second.point()).await? {
+            Some(fit) => (on, fit),
+            None => return Ok(None),
+        }
+    } else {
+        notes.push("the finer model did not complete: the numerical error is unknown".to_owned());
+        (on, second)
+    };
+    Ok(Some(Base {
+        on,
+        fit,
+        preflight,
+        assumed: noise.assumed,
+        freedom: noise.freedom,
+        notes,
+    }))
+}
+
+/// A fit under the record's own noise alone, in the valley in which the resonances fit as far as the model
+/// without effects has one.
+async fn first_fit<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    inputs: &Inputs,
+) -> Result<Option<Fit>, L::Error> {
+    let model = Model::plain(inputs.space.clone());
+    let starts = match &inputs.start {
+        Some(x) => vec![Point {
+            model,
+            x: x.clone(),
+        }],
+        None => basin::enter(experiments, &model, &[], inputs.seed).await?,
+    };
+    let mut recalibration = experiments.during(Stage::Recalibrate);
+    let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {
+        return Ok(None);
+    };
+    if first.misfit() > inputs.thresholds.valley
+        && let Some(other) = valley::enter(experiments, &first).await?
+    {
+        return Ok(Some(other));
+    }
+    Ok(Some(first))
+}

@@ -1,0 +1,121 @@
+//! The numerical check: how far the discretisation moves the curves, once recalibration has taken
+//! what it can.
+//!
+//! Shorter cylinders, shorter steps and more head modes at the fitted point; the difference, projected
+//! off the tangent space, becomes a part of the noise (an adequacy floor), so that no effect is named
+//! for what a coarser rope does.
+use crate::laboratory::{Laboratory, curves};
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::record::measured::{Curves, difference};
+use crate::record::metric::Metric;
+use crate::record::whitened::WhitenedRecord;
+use nalgebra::{Complex, DVector};
+use protocol::job::Discretisation;
+
+/// What a finer model says.
+#[derive(Clone, Debug)]
+pub struct Preflight {
+    /// Difference of the curves, finer less coarser, by channel.
+    pub difference: Curves,
+    /// Its root mean square by channel, in the channel's unit.
+    pub rms: Vec<f64>,
+    /// The same after recalibration has taken its share.
+    pub rms_left: Vec<f64>,
+    /// Standard error of the record's mean by channel, root mean square over the compared orders.
+    pub standard_error: Vec<f64>,
+    /// Coefficients of what is left, by channel.
+    pub left: Vec<Vec<Complex<f64>>>,
+    /// Whether the whole finer model completed; else its parts, one at a time, as far as they did.
+    pub whole: bool,
+}
+
+impl Preflight {
+    /// The largest ratio of what is left to the standard error.
+    pub fn ratio(&self) -> f64 {
+        let each = self.rms_left.iter().zip(&self.standard_error);
+        each.map(|(left, error)| left / error).fold(0.0, f64::max)
+    }
+}
+
+/// Simulates a fitted point more finely; what a fit (that one, or the one before an effect was added,
+/// for a size must not hide what it does not explain) can absorb is taken off. If the finer model
+/// fails, its cylinders and the rest of it are refined one at a time, and their differences added: so
+/// it is to first order. Nothing if that fails too.
+///
+/// # Errors
+/// Those of the laboratory.
+pub async fn check<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    absorbing: &Fit,
+    finer: Discretisation,
+) -> Result<Option<Preflight>, L::Error> {
+    let on = experiments.on;
+    let whole = differences(experiments, fit, &[finer]).await?;
+    if let Some(difference) = whole.into_iter().flatten().next() {
+        return Ok(Some(preflight(on, absorbing, difference, true)));
+    }
+    let cylinders = Discretisation {
+        cylinder_length_m: finer.cylinder_length_m,
+        ..on.discretisation
+    };
+    let rest = Discretisation {
+        cylinder_length_m: on.discretisation.cylinder_length_m,
+        ..finer
+    };
+    let parts = differences(experiments, fit, &[cylinders, rest]).await?;
+    let sum = parts.into_iter().flatten().reduce(|mut sum, part| {
+        for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
+            *sum += part;
+        }
+        sum
+    });
+    Ok(sum.map(|difference| preflight(on, absorbing, difference, false)))
+}
+
+/// Curves of a fitted point in several discretisations less those of the fit; nothing where one failed.
+async fn differences<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    discretisations: &[Discretisation],
+) -> Result<Vec<Option<Curves>>, L::Error> {
+    let record = &experiments.on.record;
+    let point = fit.point();
+    let finer =
+        |discretisation: &Discretisation| point.experiment(record.condition, *discretisation);
+    let batch = discretisations.iter().map(finer).collect();
+    let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
+    let less = |fine: &Curves| difference(fine, &fit.curves, 1.0);
+    Ok(seen.iter().map(|fine| fine.as_ref().map(less)).collect())
+}
+
+/// What a difference of the curves means beside a record, and beside a fit that absorbs a part of it.
+fn preflight(on: &WhitenedRecord, absorbing: &Fit, difference: Curves, whole: bool) -> Preflight {
+    let metric = &on.metric;
+    let left = metric.colour(&left(metric, absorbing, &difference));
+    let rms = |spectrum: &Vec<Complex<f64>>| {
+        (2.0 * spectrum.iter().map(Complex::norm_sqr).sum::<f64>()).sqrt()
+    };
+    let orders = metric.orders();
+    Preflight {
+        rms: difference
+            .iter()
+            .map(|curve| rms(&orders.transform(curve)))
+            .collect(),
+        rms_left: left.iter().map(rms).collect(),
+        standard_error: metric
+            .deviations()
+            .iter()
+            .map(|deviations| (2.0 * deviations.iter().map(|d| d * d).sum::<f64>()).sqrt())
+            .collect(),
+        difference,
+        left,
+        whole,
+    }
+}
+
+/// What is left of a change of the curves, in a metric, once what a fit can absorb is taken off.
+pub(crate) fn left(metric: &Metric, fit: &Fit, difference: &Curves) -> DVector<f64> {
+    fit.tangent().project(&metric.whiten(difference))
+}

@@ -1,0 +1,41 @@
+//! What is diagnosed, and by which thresholds.
+use crate::record::measured::Record;
+use crate::thresholds::Thresholds;
+use protocol::announce::EffectDescriptor;
+use protocol::job::Discretisation;
+use search::space::Space;
+
+/// A case with its records, and what may be suspected.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Genes and their bounds.
+    pub space: Space,
+    /// Records, the calibrated condition's first.
+    pub records: Vec<Record>,
+    /// What the workers can simulate.
+    pub library: Vec<EffectDescriptor>,
+    /// A calibrated point (coordinates of the space), if there is one.
+    pub start: Option<Vec<f64>>,
+    /// Discretisation of all experiments but that of the numerical check.
+    pub usual: Discretisation,
+    /// A finer discretisation, for the numerical check.
+    pub finer: Discretisation,
+    /// Seed of the way into the valley.
+    pub seed: u64,
+    /// How it is decided.
+    pub thresholds: Thresholds,
+}
+
+impl Inputs {
+    /// The effects of the library that nobody has put aside.
+    pub(crate) fn considered(&self) -> impl Iterator<Item = &EffectDescriptor> {
+        let without = &self.thresholds.without;
+        let kept = |effect: &&EffectDescriptor| !without.contains(&effect.id);
+        self.library.iter().filter(kept)
+    }
+
+    /// Records of the other conditions.
+    pub(crate) fn others(&self) -> &[Record] {
+        self.records.get(1..).unwrap_or_default()
+    }
+}

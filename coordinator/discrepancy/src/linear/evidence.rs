@@ -1,0 +1,102 @@
+//! How well a refitted model explains the record, penalised by what it had to choose: the Laplace
+//! approximation of its evidence.
+//!
+//! `ln Z = -1/2 (|r|^2 + u^T u) + 1/2 ln |L| - 1/2 ln |J^T J + L|`, with `u` the parameters in units of
+//! their priors. Differences are divided by `phi^2`, `phi = max(1, chi^2 / n)` of the best model: a
+//! law whose shape is a little wrong would otherwise win or lose by tens of nats that mean nothing.
+use nalgebra::{Cholesky, Dyn};
+use search::least_squares::{Linearized, Variable};
+
+/// The log evidence of a fitted model (nats), up to a constant of the record.
+pub fn log_evidence(at: &Linearized, variables: &[Variable]) -> f64 {
+    let mut curvature = at.jacobian.tr_mul(&at.jacobian);
+    let mut penalty = 0.0;
+    let mut prior = 0.0;
+    for (k, v) in variables.iter().enumerate() {
+        // without a prior, a uniform one over the box is meant
+        let deviation = v
+            .prior
+            .map_or((v.upper - v.lower) / 12_f64.sqrt(), |p| p.deviation);
+        let weight = 1.0 / (deviation * deviation);
+        curvature[(k, k)] += weight;
+        prior += 0.5 * libm::log(weight);
+        if let Some(p) = v.prior {
+            let u = (at.x[k] - p.mean) / p.deviation;
+            penalty += u * u;
+            // a prior cut in half by a bound at its mean is twice as dense
+            if v.lower >= p.mean || v.upper <= p.mean {
+                prior += std::f64::consts::LN_2;
+            }
+        }
+    }
+    let Some(factor) = curvature.cholesky() else {
+        return f64::NEG_INFINITY;
+    };
+    let log_determinant = log_determinant(&factor);
+    -0.5 * (at.residual.norm_squared() + penalty) + prior - 0.5 * log_determinant
+}
+
+/// Logarithm of the determinant of a factorised matrix.
+pub(crate) fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
+    let diagonal = factor.l_dirty().diagonal();
+    diagonal.iter().map(|d| 2.0 * libm::log(*d)).sum()
+}
+
+/// How far the best model misfits: `max(1, chi^2 / n)`.
+pub fn misfit(chi_squared: f64, n: usize) -> f64 {
+    (chi_squared / n.max(1) as f64).max(1.0)
+}
+
+/// The positions whose evidence lies within `3 phi^2` nats of the best, best first.
+pub fn ambiguity_set(evidences: &[f64], phi: f64) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..evidences.len())
+        .filter(|&i| evidences[i].is_finite())
+        .collect();
+    order.sort_by(|&a, &b| evidences[b].total_cmp(&evidences[a]).then(a.cmp(&b)));
+    let best = order.first().map_or(0.0, |&i| evidences[i]);
+    order.retain(|&i| best - evidences[i] < 3.0 * phi * phi);
+    order
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use search::least_squares::Prior;
+
+    #[test]
+    fn evidence_of_a_linear_model_is_the_exact_one() {
+        // y = a g + noise, a ~ N(0, s^2): y ~ N(0, I + s^2 g g^T)
+        let g = DVector::from_vec(vec![1.0, 2.0, -0.5]);
+        let y = DVector::from_vec(vec![0.7, 1.1, 0.4]);
+        let s: f64 = 1.5;
+        let covariance = DMatrix::identity(3, 3) + &g * g.transpose() * (s * s);
+        let solved = covariance.clone().lu().solve(&y).unwrap();
+        let exact = -0.5 * y.dot(&solved) - 0.5 * covariance.determinant().ln();
+        let a = g.dot(&y) / (g.norm_squared() + 1.0 / (s * s));
+        let at = Linearized {
+            x: vec![a],
+            residual: &y - &g * a,
+            jacobian: DMatrix::from_columns(&[-g]),
+        };
+        let variable = Variable {
+            start: 0.0,
+            lower: -99.0,
+            upper: 99.0,
+            step: 0.1,
+            prior: Some(Prior {
+                mean: 0.0,
+                deviation: s,
+            }),
+        };
+        assert!((log_evidence(&at, &[variable]) - exact).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_set_widens_with_the_misfit_of_the_best() {
+        let evidences = [-10.0, f64::NEG_INFINITY, -4.0, -6.5, -30.0];
+        assert_eq!(ambiguity_set(&evidences, 1.0), [2, 3]);
+        assert_eq!(ambiguity_set(&evidences, 1.5), [2, 3, 0]);
+        assert!((misfit(30.0, 20) - 1.5).abs() < 1e-15 && (misfit(10.0, 20) - 1.0).abs() < 1e-15);
+    }
+}

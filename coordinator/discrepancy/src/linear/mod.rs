@@ -1,0 +1,7 @@
+//! Statistics of a model that is linear about its fit: what recalibration absorbs, tests of
+//! signatures, evidence, and what could be told apart. Algebra alone: it knows neither effects nor
+//! simulations.
+pub mod evidence;
+pub mod isolability;
+pub mod score;
+pub mod tangent;

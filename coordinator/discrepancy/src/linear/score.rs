@@ -1,0 +1,206 @@
+//! The score (Lagrange multiplier) test of one effect on the residual of a fitted model.
+//!
+//! `T^2 = r^T G (G^T B G)^-1 G^T r`, chi-squared with as many degrees of freedom as the effect has
+//! sizes when the effect is not there. For an effect whose size has a sign, the tail is halved, and
+//! an estimate of the wrong sign speaks against it.
+use crate::linear::tangent::Tangent;
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ChiSquared, ContinuousCDF as _, FisherSnedecor};
+
+/// The result of a score test.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Score {
+    /// `T^2`.
+    pub statistic: f64,
+    /// Sizes that are left after projection: degrees of freedom.
+    pub freedom: usize,
+    /// Tail probability, before any correction for the number of tests.
+    pub p_value: f64,
+    /// Estimated sizes, in the units of the signatures.
+    pub size: Vec<f64>,
+    /// Their standard deviations; infinite for a size that recalibration absorbs wholly.
+    pub deviation: Vec<f64>,
+    /// Share of the signature that recalibration absorbs, 0 to 1.
+    pub absorbed: f64,
+}
+
+/// Below this share of its squared length a projected signature counts as absorbed.
+const ABSORBED: f64 = 1e-9;
+
+/// Tests signatures (columns: change of the whitened prediction per unit of each size) on the
+/// residual `data - prediction`; `positive` marks sizes that cannot be negative.
+pub fn score(
+    residual: &DVector<f64>,
+    signature: &DMatrix<f64>,
+    positive: &[bool],
+    tangent: &Tangent,
+) -> Score {
+    let projected = tangent.project_columns(signature);
+    let information = signature.tr_mul(&projected);
+    let gain = signature.tr_mul(residual);
+    let raw = signature.norm_squared();
+    let absorbed = if raw > 0.0 {
+        (1.0 - information.trace() / raw).clamp(0.0, 1.0)
+    } else {
+        1.0
+    };
+    let eigen = information.symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    let m = signature.ncols();
+    let mut size = DVector::zeros(m);
+    let mut variance = DVector::zeros(m);
+    let mut statistic = 0.0;
+    let mut freedom = 0;
+    for (value, vector) in eigen
+        .eigenvalues
+        .iter()
+        .zip(eigen.eigenvectors.column_iter())
+    {
+        if value.is_nan() || *value <= ABSORBED * raw.max(largest) {
+            for (variance, v) in variance.iter_mut().zip(vector.iter()) {
+                if v.abs() > 1e-3 {
+                    *variance = f64::INFINITY;
+                }
+            }
+            continue;
+        }
+        let part = vector.dot(&gain);
+        statistic += part * part / value;
+        size += vector * (part / value);
+        variance += vector.component_mul(&vector) / *value;
+        freedom += 1;
+    }
+    let wrong_sign = |k: usize| positive.get(k).copied().unwrap_or(false) && size[k] < 0.0;
+    let wrong = (0..m).any(wrong_sign);
+    let p_value = if freedom == 0 || (wrong && m == 1) {
+        1.0
+    } else {
+        let tail = chi_squared_tail(statistic, freedom);
+        let one_sided = m == 1 && positive.first().copied().unwrap_or(false);
+        if one_sided { 0.5 * tail } else { tail }
+    };
+    Score {
+        statistic,
+        freedom,
+        p_value,
+        size: size.iter().copied().collect(),
+        deviation: variance.iter().map(|v| v.sqrt()).collect(),
+        absorbed,
+    }
+}
+
+/// Probability that chi-squared with `freedom` degrees exceeds `x`.
+pub fn chi_squared_tail(x: f64, freedom: usize) -> f64 {
+    ChiSquared::new(freedom.max(1) as f64).map_or(1.0, |law| law.sf(x.max(0.0)))
+}
+
+/// Probability that a whitened residual of `n` entries, fitted with `parameters`, is so long where only
+/// noise is left, its variances known with `freedom` degrees of freedom: the tail of `F`.
+pub fn misfit_tail(chi_squared: f64, n: usize, parameters: usize, freedom: f64) -> f64 {
+    let left = n.saturating_sub(parameters).max(1) as f64;
+    // variances without doubt are like very many degrees of freedom
+    FisherSnedecor::new(left, freedom.clamp(1.0, 1e9))
+        .map_or(1.0, |law| law.sf((chi_squared / left).max(0.0)))
+}
+
+/// Probability of a p-value so small among that many independent tests (Sidak).
+pub fn family_wise(p_value: f64, tests: usize) -> f64 {
+    // 1 - (1 - p)^k without cancellation
+    -libm::expm1(tests as f64 * libm::log1p(-p_value.clamp(0.0, 1.0 - 1e-16)))
+}
+
+/// The p-value of one among that many independent tests whose family has level `alpha`: the inverse
+/// of [`family_wise`].
+pub fn single(alpha: f64, tests: usize) -> f64 {
+    -libm::expm1(libm::log1p(-alpha) / tests.max(1) as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use search::least_squares::{Linearized, Variable};
+
+    fn tangent(columns: &[DVector<f64>]) -> Tangent {
+        let variable = Variable {
+            start: 0.0,
+            lower: -9.0,
+            upper: 9.0,
+            step: 0.1,
+            prior: None,
+        };
+        let at = Linearized {
+            x: vec![0.0; columns.len()],
+            residual: DVector::zeros(columns[0].len()),
+            jacobian: DMatrix::from_columns(columns),
+        };
+        Tangent::new(&at, &vec![variable; columns.len()])
+    }
+
+    fn basis(k: usize) -> DVector<f64> {
+        DVector::from_fn(6, |i, _| if i == k { 1.0 } else { 0.0 })
+    }
+
+    #[test]
+    fn the_size_of_a_planted_effect_comes_back() {
+        let tangent = tangent(&[basis(0)]);
+        let signature = DMatrix::from_columns(&[basis(0) * 4.0 + basis(1) * 3.0]);
+        // the data hold 2 of it, of which the fit has absorbed what it could
+        let residual = tangent.project(&(signature.column(0) * 2.0));
+        let found = score(&residual, &signature, &[true], &tangent);
+        assert!((found.size[0] - 2.0).abs() < 1e-9);
+        assert!((found.statistic - 36.0).abs() < 1e-9);
+        assert!((found.deviation[0] - 1.0 / 3.0).abs() < 1e-9);
+        assert!((found.absorbed - 16.0 / 25.0).abs() < 1e-9);
+        // one-sided: half of P(chi2_1 > 36) = 1.97e-9
+        assert!(
+            (found.p_value / 9.87e-10 - 1.0).abs() < 0.01,
+            "{}",
+            found.p_value
+        );
+        let against = score(&-residual, &signature, &[true], &tangent);
+        assert!((against.p_value - 1.0).abs() < 1e-12);
+    }
+
+    /// Acceptance: a planted look-alike that satisfies `rho^2 (1 - a_j) > 1 - a_k` takes the name in
+    /// a test on raw signatures, and loses it in the projected one.
+    #[test]
+    fn projection_names_the_truth_where_the_raw_test_names_the_impostor() {
+        let fit = basis(0);
+        let tangent = tangent(std::slice::from_ref(&fit));
+        // the truth is mostly absorbed, the impostor hardly, and they look alike in what is left
+        let truth = basis(0) * 5.0 + basis(1) * 1.0 + basis(2) * 0.6;
+        let impostor = basis(0) * 0.2 + basis(1) * 1.0 + basis(3) * 0.5;
+        let residual = tangent.project(&(&truth * 10.0));
+        let statistic = |signature: &DVector<f64>, tangent: &Tangent| {
+            let columns = DMatrix::from_columns(std::slice::from_ref(signature));
+            score(&residual, &columns, &[false], tangent).statistic
+        };
+        assert!(statistic(&truth, &tangent) > statistic(&impostor, &tangent));
+        let raw = |signature: &DVector<f64>| {
+            let along = signature.dot(&residual);
+            along * along / signature.norm_squared()
+        };
+        assert!(raw(&truth) < raw(&impostor));
+    }
+
+    #[test]
+    fn an_effect_that_recalibration_absorbs_cannot_be_seen() {
+        let tangent = tangent(&[basis(0)]);
+        let signature = DMatrix::from_columns(&[basis(0) * 7.0]);
+        let found = score(&basis(1), &signature, &[false], &tangent);
+        assert_eq!(found.freedom, 0);
+        assert!((found.p_value - 1.0).abs() < 1e-12 && found.deviation[0].is_infinite());
+    }
+
+    #[test]
+    fn tails_and_families() {
+        assert!((chi_squared_tail(3.841_458_820_694_124, 1) - 0.05).abs() < 1e-9);
+        assert!((chi_squared_tail(11.070_497_693_516_351, 5) - 0.05).abs() < 1e-9);
+        assert!((family_wise(0.001, 25) - (1.0 - 0.999_f64.powi(25))).abs() < 1e-12);
+        assert!(family_wise(1e-300, 25) > 0.0);
+        // F(1, many) is chi2_1, F(10, 10) has its median at 1
+        assert!((misfit_tail(3.841_458_8, 3, 2, 1e9) - 0.05).abs() < 1e-6);
+        assert!((misfit_tail(10.0, 12, 2, 10.0) - 0.5).abs() < 1e-9);
+        assert!((family_wise(single(0.01, 25), 25) - 0.01).abs() < 1e-12);
+    }
+}

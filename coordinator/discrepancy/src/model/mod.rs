@@ -1,0 +1,11 @@
+//! What is fitted, and how: the case's genes and the parameters of added effects as unknowns, fits of
+//! them to a record, and the experiments that a fit takes. What an effect does it does not know.
+pub mod experiments;
+pub(crate) mod fit;
+pub(crate) mod parameter;
+pub mod probe;
+pub(crate) mod unknowns;
+
+pub use fit::Fit;
+pub use parameter::{absent, at_typical, bounds, shapes, sizes};
+pub use unknowns::{Model, Point};

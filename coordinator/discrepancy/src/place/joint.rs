@@ -1,0 +1,184 @@
+//! Joint: where in the machine an unknown periodic force would explain the residual best.
+//!
+//! A latent force pair across a joint with harmonics up to `H_f`, whose amplitudes have a prior that
+//! falls off with the order, has the Bayes factor
+//! `ln BF = 1/2 u^T (Q^-1 + F)^-1 u - 1/2 ln |I + Q F|`, `u = H^T r`, `F = H^T B H`,
+//! `Q = s^2 diag((1 + h/2)^-4)`, maximised over the scale s. Joints within `max(3 phi^2, 10 %)` nats
+//! of the best are not told apart. The amplitudes that are likeliest then give the force itself over the
+//! revolution: its shape is a hint at the cause where no name fits (a latent force).
+use crate::linear::evidence::log_determinant;
+use crate::linear::tangent::Tangent;
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+/// The case for one joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointEvidence {
+    /// Its name.
+    pub joint: String,
+    /// Log Bayes factor against no force (nats).
+    pub log_bayes: f64,
+    /// The likeliest force: its harmonics.
+    pub force: Vec<Harmonic>,
+    /// Unit of the force.
+    pub unit: String,
+}
+
+/// One part of a periodic force.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Harmonic {
+    /// Order of the crank; 0 for a constant.
+    pub order: usize,
+    /// Whether it is a sine rather than a cosine of the turn from bottom dead centre.
+    pub sine: bool,
+    /// Amplitude, in the joint's unit.
+    pub amplitude: f64,
+}
+
+/// One joint's columns: whitened change per part of a force.
+#[derive(Clone, Debug)]
+pub struct Latent {
+    /// Name of the joint.
+    pub joint: String,
+    /// Entries x parts.
+    pub columns: DMatrix<f64>,
+    /// The parts at which the columns were taken.
+    pub parts: Vec<Harmonic>,
+    /// Unit of their amplitudes.
+    pub unit: String,
+}
+
+impl JointEvidence {
+    /// The likeliest force at a turn of the crank from bottom dead centre (deg), in its unit.
+    pub fn force_at(&self, turn_deg: f64) -> f64 {
+        let part = |part: &Harmonic| {
+            let angle = part.order as f64 * turn_deg.to_radians();
+            let unit = if part.sine {
+                libm::sin(angle)
+            } else {
+                libm::cos(angle)
+            };
+            part.amplitude * unit
+        };
+        self.force.iter().map(part).sum()
+    }
+}
+
+/// All joints, the most likely first.
+pub fn rank(latents: &[Latent], residual: &DVector<f64>, tangent: &Tangent) -> Vec<JointEvidence> {
+    let mut ranked: Vec<JointEvidence> = latents
+        .iter()
+        .map(|latent| evidence(latent, residual, tangent))
+        .collect();
+    ranked.sort_by(|a, b| b.log_bayes.total_cmp(&a.log_bayes));
+    ranked
+}
+
+/// How many of a ranking, from the first on, are not told apart.
+pub fn indistinguishable(ranked: &[JointEvidence], phi: f64) -> usize {
+    let best = ranked.first().map_or(0.0, |first| first.log_bayes);
+    let margin = (3.0 * phi * phi).max(0.1 * best);
+    ranked
+        .iter()
+        .take_while(|one| best - one.log_bayes < margin)
+        .count()
+}
+
+fn evidence(latent: &Latent, residual: &DVector<f64>, tangent: &Tangent) -> JointEvidence {
+    let information = latent
+        .columns
+        .tr_mul(&tangent.project_columns(&latent.columns));
+    let gain = latent.columns.tr_mul(residual);
+    let shape = |k: usize| {
+        let u = 1.0 + 0.5 * latent.parts[k].order as f64;
+        1.0 / (u * u)
+    };
+    // in amplitudes of the prior's own size: I + s^2 S F S
+    let n = gain.len();
+    let scaled = DMatrix::from_fn(n, n, |i, j| shape(i) * information[(i, j)] * shape(j));
+    let u = DVector::from_fn(n, |i, _| shape(i) * gain[i]);
+    let typical = scaled.trace() / n as f64;
+    let mut best = (0.0, DVector::zeros(n));
+    // scales from hardly visible to overwhelming, four a decade
+    for k in -8..=32 {
+        let s2 = libm::exp10(0.25 * f64::from(k)) / typical;
+        // nothing moves the gauges: no scale
+        if !(s2 > 0.0 && s2.is_finite()) {
+            break;
+        }
+        let matrix = DMatrix::identity(n, n) + &scaled * s2;
+        let Some(factor) = matrix.cholesky() else {
+            continue;
+        };
+        let likeliest = factor.solve(&u) * s2;
+        let log_bayes = 0.5 * u.dot(&likeliest) - 0.5 * log_determinant(&factor);
+        if log_bayes > best.0 {
+            best = (log_bayes, likeliest);
+        }
+    }
+    let (log_bayes, likeliest) = best;
+    let parts = latent.parts.iter().enumerate();
+    JointEvidence {
+        joint: latent.joint.clone(),
+        log_bayes,
+        force: parts
+            .map(|(k, part)| Harmonic {
+                amplitude: shape(k) * likeliest[k] * part.amplitude,
+                ..*part
+            })
+            .collect(),
+        unit: latent.unit.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use search::least_squares::Linearized;
+    use search::random::{Phase, Streams};
+
+    /// A force that acted at a joint comes back with its amplitudes and its curve; a joint that has
+    /// nothing to do with it explains less, one that moves no gauge nothing.
+    #[test]
+    fn the_force_that_acted_is_found() {
+        let mut stream = Streams::new(5, 0).at(0, Phase::Initial, 0);
+        let entries = 400;
+        let mut latent = |joint: &str, size: f64| Latent {
+            joint: joint.to_owned(),
+            columns: DMatrix::from_fn(entries, 3, |_, _| size * stream.normal()),
+            parts: [(0, false), (1, false), (1, true)]
+                .map(|(order, sine)| Harmonic {
+                    order,
+                    sine,
+                    amplitude: 800.0,
+                })
+                .to_vec(),
+            unit: "N".to_owned(),
+        };
+        let latents = [
+            latent("other", 2.0),
+            latent("own", 2.0),
+            latent("none", 0.0),
+        ];
+        let noise = DVector::from_fn(entries, |_, _| stream.normal());
+        let residual = &latents[1].columns * DVector::from_row_slice(&[0.5, 0.0, -1.5]) + noise;
+        let nothing = Linearized {
+            x: Vec::new(),
+            residual: residual.clone(),
+            jacobian: DMatrix::zeros(entries, 0),
+        };
+        let ranked = rank(&latents, &residual, &Tangent::new(&nothing, &[]));
+        let names: Vec<&str> = ranked.iter().map(|one| one.joint.as_str()).collect();
+        assert_eq!(names[0], "own");
+        assert!(ranked[0].log_bayes > 100.0 && ranked[1].log_bayes < 0.05 * ranked[0].log_bayes);
+        let none = ranked.iter().find(|one| one.joint == "none").unwrap();
+        assert_eq!(none.log_bayes.to_bits(), 0.0_f64.to_bits());
+        assert!(none.force_at(77.0).abs() < 1e-12);
+        // four standard errors of an amplitude: 800 N over 2 sqrt(400)
+        let force = |turn: f64| ranked[0].force_at(turn);
+        assert!((force(0.0) - 400.0).abs() < 80.0 * 2.0, "{}", force(0.0));
+        assert!((force(90.0) - (400.0 - 1200.0)).abs() < 80.0 * 2.0);
+        assert!((force(270.0) - (400.0 + 1200.0)).abs() < 80.0 * 2.0);
+        assert!((force(360.0) - force(0.0)).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,6 @@
+//! Parameters that would have to wander along the turn or with the condition.
+pub(crate) mod refit;
+pub(crate) mod sheet;
+pub(crate) mod shifts;
+
+pub use shifts::{Part, Shift, Wander};

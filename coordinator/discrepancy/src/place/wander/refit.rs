@@ -1,0 +1,58 @@
+//! Refits of single parameters on parts of the turn and under other conditions.
+use crate::laboratory::{Laboratory, curves};
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::unknowns::Point;
+use crate::place::wander::sheet::Sheet;
+use crate::place::wander::shifts::{Wander, wanders};
+use crate::record::measured::{Curves, Record, difference};
+use search::least_squares::Variable;
+
+/// How the unknowns of a fit would have to wander; the genes come first among them. Each condition
+/// takes a simulation per unknown.
+pub(crate) async fn wander<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    others: &[Record],
+) -> Result<Vec<Wander>, L::Error> {
+    let on = experiments.on;
+    let Some(own) = sheet(experiments, fit, &on.record).await? else {
+        return Ok(Vec::new());
+    };
+    let mut elsewhere = Vec::new();
+    for record in others {
+        elsewhere.extend(sheet(experiments, fit, record).await?);
+    }
+    let prior = |v: &Variable| v.prior.map_or(1e3, |p| p.deviation);
+    let deviations: Vec<f64> = fit.variables().iter().map(prior).collect();
+    Ok(wanders(&own, &deviations, &elsewhere))
+}
+
+/// A record at the fitted point with the change per unknown; nothing where it has too few cycles, or
+/// the point cannot be simulated.
+async fn sheet<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    record: &Record,
+) -> Result<Option<Sheet>, L::Error> {
+    if !Sheet::suits(record) {
+        return Ok(None);
+    }
+    let (steps, moved): (Vec<f64>, Vec<Point>) = fit.neighbours().unzip();
+    let experiment =
+        |point: Point| point.experiment(record.condition, experiments.on.discretisation);
+    let batch = std::iter::once(fit.point())
+        .chain(moved)
+        .map(experiment)
+        .collect();
+    let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
+    let Some((Some(fitted), moved)) = seen.split_first() else {
+        return Ok(None);
+    };
+    // a point that fails tells nothing of its unknown
+    let change = |(moved, step): (&Option<Curves>, &f64)| {
+        difference(moved.as_ref().unwrap_or(fitted), fitted, *step)
+    };
+    let changes: Vec<Curves> = moved.iter().zip(&steps).map(change).collect();
+    Ok(Some(Sheet::new(record, fitted, &changes)))
+}

@@ -1,0 +1,77 @@
+//! The three maps of where simulation and measurement part.
+use crate::ground::base::Base;
+use crate::ground::session::Session;
+use crate::laboratory::{Laboratory, Stage};
+use crate::linear::score::family_wise;
+use crate::linear::tangent::Tangent;
+use crate::model::fit::Fit;
+use crate::place::latent::latents;
+use crate::place::residual::Residual;
+use crate::place::{angle, joint, order};
+use crate::record::whitened::WhitenedRecord;
+use nalgebra::DVector;
+
+/// Where the disagreement lies.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Where {
+    /// By crank angle and channel.
+    pub angle: angle::AngleMap,
+    /// By channel and order of the crank.
+    pub order: order::OrderMap,
+    /// Joints at which a periodic force would explain it, the most likely first.
+    pub joints: Vec<joint::JointEvidence>,
+    /// How many of them are not told apart.
+    pub equivalent: usize,
+}
+
+impl Where {
+    /// Whether the map by angle or that by order rejects that only noise is left, each at a level over
+    /// all its places.
+    pub fn rejects(&self, alpha: f64) -> bool {
+        let entries: usize = self.order.ratio.iter().map(Vec::len).sum();
+        let mut peaks = self.order.peaks.iter();
+        self.angle.windows.iter().any(|w| w.p_value <= alpha)
+            || peaks.any(|peak| family_wise(peak.p_value, entries) <= alpha)
+    }
+}
+
+/// Share of false entries that a map may hold.
+const LEVEL: f64 = 0.05;
+
+/// Draws the maps of what the recalibrated model leaves.
+pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<Where, L::Error> {
+    let (base, inputs) = (session.base, session.inputs);
+    let fit = &base.fit;
+    let tangent = fit.tangent();
+    let left = fit.search.settled_residual();
+    let latents = latents(&mut session.experiments(Stage::Where), fit, &inputs.library).await?;
+    let joints = joint::rank(&latents, &left, &tangent);
+    let residual = Residual {
+        left: &left,
+        metric: &base.on.metric,
+        tangent: &tangent,
+    };
+    let deviations = deviations(&base.on, &tangent);
+    Ok(Where {
+        angle: angle::map::map(&residual, &deviations, inputs.thresholds.draws, LEVEL),
+        order: orders(base, fit),
+        equivalent: joint::indistinguishable(&joints, fit.misfit()),
+        joints,
+    })
+}
+
+/// The map by order alone of what a fit leaves; it takes no simulation.
+pub(crate) fn orders(base: &Base, fit: &Fit) -> order::OrderMap {
+    let residual = Residual {
+        left: &fit.search.settled_residual(),
+        metric: &base.on.metric,
+        tangent: &fit.tangent(),
+    };
+    order::map(&residual, base.freedom, LEVEL)
+}
+
+/// What recalibration leaves of each cycle's deviation from the mean, whitened.
+fn deviations(on: &WhitenedRecord, tangent: &Tangent) -> Vec<DVector<f64>> {
+    let deviation = |cycle| tangent.project(&(on.metric.whiten(cycle) - &on.measured));
+    on.record.cycles.iter().map(deviation).collect()
+}

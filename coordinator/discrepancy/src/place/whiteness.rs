@@ -1,0 +1,108 @@
+//! Whether what is left is white: spread over the orders of the crank as noise spreads.
+//!
+//! Powers of a whitened residual, each over its mean under noise, are summed from the lowest order on. Of
+//! noise the share grows evenly; its largest distance from that line follows Kolmogorov's law
+//! (Bartlett's test of the cumulated periodogram; Priestley, *Spectral Analysis and Time Series*, 6.2.5).
+//! The level does not count, only where it lies: too little noise assumed at every order alike passes
+//! here, and shows as the misfit.
+use crate::place::order::OrderMap;
+
+/// Tail probability that noise alone is spread so unevenly; `freedom` is that of the noise's
+/// variances. 1 for fewer than two entries.
+pub fn p_value(map: &OrderMap, freedom: f64) -> f64 {
+    let highest = map.ratio.iter().map(Vec::len).max().unwrap_or(0);
+    let at = |k: usize| map.ratio.iter().filter_map(move |row| row.get(k));
+    let powers: Vec<f64> = (0..highest).flat_map(at).copied().collect();
+    let (count, sum) = (powers.len() as f64, powers.iter().sum::<f64>());
+    if powers.len() < 2 || !(sum > 0.0 && sum.is_finite()) {
+        return 1.0;
+    }
+    let mut share = 0.0;
+    let mut distance = 0.0_f64;
+    for (k, power) in (1_u32..).zip(&powers) {
+        share += power / sum;
+        distance = distance.max((share - f64::from(k) / count).abs());
+    }
+    // a power is F(2, 2 nu), which scatters more than the exponential that it is for known variances
+    let scatter = (freedom / (freedom - 2.0).max(0.5)).sqrt().max(1.0);
+    let root = count.sqrt();
+    kolmogorov((root + 0.12 + 0.11 / root) * distance / scatter)
+}
+
+/// Tail of Kolmogorov's law.
+fn kolmogorov(x: f64) -> f64 {
+    if x < 0.2 {
+        // one to twelve digits, where the series no longer falls
+        return 1.0;
+    }
+    let term = |j: f64| libm::exp(-2.0 * j * j * x * x);
+    let pairs = (0..50).map(|k| term(f64::from(2 * k + 1)) - term(f64::from(2 * k + 2)));
+    (2.0 * pairs.sum::<f64>()).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use search::random::{Phase, Streams};
+
+    /// Powers of noise with variances from `freedom` draws, of two channels over fifty orders.
+    fn noise(seed: u64, freedom: usize) -> OrderMap {
+        let mut stream = Streams::new(seed, 3).at(0, Phase::Initial, 0);
+        let mut square = |count: usize| (0..count).map(|_| stream.normal().powi(2)).sum::<f64>();
+        let mut power = || {
+            let mean = square(2) / 2.0;
+            if freedom == 0 {
+                mean
+            } else {
+                mean / (square(2 * freedom) / (2 * freedom) as f64)
+            }
+        };
+        OrderMap {
+            ratio: vec![
+                (0..50).map(|_| power()).collect(),
+                (0..50).map(|_| power()).collect(),
+            ],
+            peaks: Vec::new(),
+        }
+    }
+
+    /// Kolmogorov's law at its usual points.
+    #[test]
+    fn kolmogorovs_points() {
+        for (x, p) in [(1.2238, 0.10), (1.3581, 0.05), (1.6276, 0.01)] {
+            assert!((kolmogorov(x) - p).abs() < 1e-4, "{x}");
+        }
+        assert!((kolmogorov(0.2) - 1.0).abs() < 1e-9);
+    }
+
+    /// Of noise one map in twenty falls below 5 %, whether its variances are known or estimated.
+    #[test]
+    fn noise_is_white_as_often_as_it_should() {
+        for freedom in [0, 12] {
+            let sets = 1000;
+            let known = if freedom == 0 { 1e9 } else { freedom as f64 };
+            let below = (0..sets)
+                .filter(|seed| p_value(&noise(*seed, freedom), known) < 0.05)
+                .count();
+            assert!((20..=80).contains(&below), "{below} of {sets}, {freedom}");
+        }
+    }
+
+    /// What is left at some orders more than at others is not white; what is left at all alike is.
+    #[test]
+    fn what_is_left_at_low_orders_is_not_white() {
+        let mut map = noise(4, 12);
+        let white = p_value(&map, 12.0);
+        map.ratio
+            .iter_mut()
+            .flatten()
+            .for_each(|power| *power *= 3.0);
+        assert!((p_value(&map, 12.0) - white).abs() < 1e-9);
+        for row in &mut map.ratio {
+            row[..10].iter_mut().for_each(|power| *power *= 3.0);
+        }
+        assert!(p_value(&map, 12.0) < 1e-3);
+        map.ratio.clear();
+        assert_eq!(p_value(&map, 12.0).to_bits(), 1.0_f64.to_bits());
+    }
+}

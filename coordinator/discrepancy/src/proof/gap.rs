@@ -1,0 +1,218 @@
+//! The gap between a record and a simulation at one gauge, less what the record's own scatter
+//! explains, and where on the revolution and in which orders of the crank it lies.
+//!
+//! With the mean over N cycles `y`, its standard error `se` from the scatter between cycles, and the
+//! simulated curve `s`, both without their means:
+//! `gap = (mean (y - s)^2 - mean se^2) / mean y^2`. A gap of 0 means that nothing is left to explain.
+//! Shares of sectors and orders are those of the squared residual; they say where to look, not what
+//! it is.
+use crate::record::measured::variance;
+use crate::record::spectrum::Orders;
+use protocol::case::GaugeTrace;
+use std::ops::RangeInclusive;
+
+/// Width of a sector of the revolution (deg).
+pub const SECTOR_DEG: f64 = 30.0;
+
+/// Bands of orders of the crank, and what usually lives there.
+pub const BANDS: [(&str, RangeInclusive<usize>); 4] = [
+    ("slow: lengths, weights, lever arms, zero drift", 1..=5),
+    ("load and rod string", 6..=30),
+    ("rope's own modes", 31..=120),
+    ("noise and head modes", 121..=usize::MAX),
+];
+
+/// The remaining disagreement at one gauge.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// Gauge number.
+    pub gauge: u8,
+    /// Mean squared residual (MPa^2).
+    pub mse_mpa2: f64,
+    /// What the scatter between cycles explains of it (MPa^2); 0 with one cycle, where it is
+    /// unknown.
+    pub noise_mpa2: f64,
+    /// Mean square of the measured curve about its mean (MPa^2).
+    pub variance_mpa2: f64,
+    /// Share of the squared residual per sector of [`SECTOR_DEG`], from bottom dead centre on.
+    pub sectors: Vec<f64>,
+    /// Share of the squared residual per band of [`BANDS`].
+    pub bands: [f64; BANDS.len()],
+}
+
+impl Gap {
+    /// Compares a record with a simulated curve (MPa) on the same grid; nothing if the grids
+    /// differ or are empty.
+    pub fn between(trace: &GaugeTrace, cycles: usize, simulated_mpa: &[f64]) -> Option<Self> {
+        let n = trace.mean_mpa.len();
+        if n == 0 || simulated_mpa.len() != n {
+            return None;
+        }
+        let pairs = trace.mean_mpa.iter().zip(simulated_mpa);
+        let mut residual: Vec<f64> = pairs
+            .map(|(measured, simulated)| measured - simulated)
+            .collect();
+        let mean = residual.iter().sum::<f64>() / n as f64;
+        for x in &mut residual {
+            *x -= mean;
+        }
+        let spread = trace.spread_mpa.iter().map(|x| x * x).sum::<f64>() / n as f64;
+        Some(Self {
+            gauge: trace.gauge,
+            mse_mpa2: variance(&residual),
+            noise_mpa2: if cycles > 1 {
+                spread / cycles as f64
+            } else {
+                0.0
+            },
+            variance_mpa2: variance(&trace.mean_mpa),
+            sectors: sectors(&residual),
+            bands: bands(&residual),
+        })
+    }
+
+    /// The gap: residual above the noise over the measured variance; 0 where the noise explains
+    /// all.
+    pub fn share(&self) -> f64 {
+        (self.mse_mpa2 - self.noise_mpa2).max(0.0) / self.variance_mpa2
+    }
+
+    /// How many times the noise of the record the residual is; nothing where the noise is unknown.
+    pub fn over_noise(&self) -> Option<f64> {
+        (self.noise_mpa2 > 0.0).then(|| (self.mse_mpa2 / self.noise_mpa2).sqrt())
+    }
+
+    /// The sector with the largest share: where it begins (deg), and the share.
+    pub fn worst_sector(&self) -> (f64, f64) {
+        largest(&self.sectors).map_or((0.0, 0.0), |(k, share)| (k as f64 * SECTOR_DEG, share))
+    }
+
+    /// The band with the largest share: its name, and the share.
+    pub fn worst_band(&self) -> (&'static str, f64) {
+        largest(&self.bands).map_or(("", 0.0), |(k, share)| (BANDS[k].0, share))
+    }
+}
+
+fn largest(shares: &[f64]) -> Option<(usize, f64)> {
+    let by_size = |a: &(usize, f64), b: &(usize, f64)| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0));
+    shares.iter().copied().enumerate().max_by(by_size)
+}
+
+/// Parts over their sum; zeros where there is nothing to share.
+fn shares(parts: &mut [f64]) {
+    let sum: f64 = parts.iter().sum();
+    if sum > 0.0 {
+        for part in parts {
+            *part /= sum;
+        }
+    }
+}
+
+fn sectors(residual: &[f64]) -> Vec<f64> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a constant that divides 360"
+    )]
+    let count = (360.0 / SECTOR_DEG) as usize;
+    let mut parts = vec![0.0; count];
+    for (i, r) in residual.iter().enumerate() {
+        parts[i * count / residual.len()] += r * r;
+    }
+    shares(&mut parts);
+    parts
+}
+
+/// Power per band: half the grid's orders, once per report.
+fn bands(residual: &[f64]) -> [f64; BANDS.len()] {
+    let n = residual.len();
+    let orders = Orders::new(n, n / 2);
+    let mut parts = [0.0; BANDS.len()];
+    for order in 1..=orders.highest() {
+        // the last order of an even grid has no sine part and counts once
+        let weight = if 2 * order == n { 0.5 } else { 1.0 };
+        if let Some(k) = BANDS.iter().position(|(_, orders)| orders.contains(&order)) {
+            parts[k] += weight * orders.coefficient(residual, order).norm_sqr();
+        }
+    }
+    shares(&mut parts);
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    const N: usize = 720;
+
+    fn wave(order: usize, amplitude: f64) -> Vec<f64> {
+        (0..N)
+            .map(|i| amplitude * (TAU * (order * i) as f64 / N as f64 + 0.3).sin())
+            .collect()
+    }
+
+    fn trace(mean_mpa: Vec<f64>, spread: f64) -> GaugeTrace {
+        GaugeTrace {
+            gauge: 3,
+            spread_mpa: vec![spread; mean_mpa.len()],
+            mean_mpa,
+        }
+    }
+
+    #[test]
+    fn a_perfect_simulation_leaves_no_gap_and_an_offset_is_none() {
+        let measured: Vec<f64> = wave(1, 10.0).iter().map(|x| x + 40.0).collect();
+        let gap = Gap::between(&trace(measured, 0.2), 5, &wave(1, 10.0)).unwrap();
+        assert!(gap.share() < 1e-20 && gap.mse_mpa2 < 1e-20);
+        assert!((gap.variance_mpa2 - 50.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn noise_between_cycles_is_taken_off() {
+        // residual of exactly the standard error 0.2 / sqrt 4 = 0.1
+        let measured: Vec<f64> = wave(1, 10.0)
+            .iter()
+            .enumerate()
+            .map(|(i, x)| x + if i % 2 == 0 { 0.1 } else { -0.1 })
+            .collect();
+        let gap = Gap::between(&trace(measured, 0.2), 4, &wave(1, 10.0)).unwrap();
+        assert!(gap.share() < 1e-12, "{}", gap.share());
+        assert!((gap.over_noise().unwrap() - 1.0).abs() < 1e-9);
+        assert!((gap.bands[3] - 1.0).abs() < 1e-9, "{:?}", gap.bands);
+    }
+
+    #[test]
+    fn a_bump_is_found_in_its_sector_and_a_wave_in_its_band() {
+        let mut measured = wave(1, 10.0);
+        for (i, x) in measured.iter_mut().enumerate() {
+            if (2 * 95..2 * 110).contains(&i) {
+                *x += 3.0;
+            }
+        }
+        let gap = Gap::between(&trace(measured, 0.2), 5, &wave(1, 10.0)).unwrap();
+        let (begin, share) = gap.worst_sector();
+        assert!(
+            (begin - 90.0).abs() < 1e-12 && share > 0.9,
+            "{:?}",
+            gap.sectors
+        );
+
+        let measured: Vec<f64> = wave(1, 10.0)
+            .iter()
+            .zip(wave(60, 0.5))
+            .map(|(a, b)| a + b)
+            .collect();
+        let gap = Gap::between(&trace(measured, 0.2), 5, &wave(1, 10.0)).unwrap();
+        assert_eq!(gap.worst_band().0, "rope's own modes");
+        assert!(gap.worst_band().1 > 0.999);
+        assert!((gap.share() - (0.125 - 0.008) / 50.0).abs() < 1e-3 * gap.share() + 1e-5);
+    }
+
+    #[test]
+    fn different_grids_and_one_cycle_are_said() {
+        assert!(Gap::between(&trace(wave(1, 1.0), 0.0), 5, &[1.0]).is_none());
+        let gap = Gap::between(&trace(wave(1, 1.0), 0.0), 1, &wave(2, 1.0)).unwrap();
+        assert!(gap.over_noise().is_none() && gap.share() > 1.0);
+    }
+}

@@ -1,0 +1,45 @@
+//! A record in the metric in which it counts: what every simulation is compared with.
+use crate::record::measured::{Curves, Record};
+use crate::record::metric::Metric;
+use crate::record::noise::Noise;
+use crate::record::spectrum::Orders;
+use nalgebra::DVector;
+use protocol::job::Discretisation;
+
+/// A record under a metric.
+#[derive(Clone, Debug)]
+pub struct WhitenedRecord {
+    /// What was measured, calibration cycles only.
+    pub record: Record,
+    /// Its metric.
+    pub metric: Metric,
+    /// The whitened mean of the record.
+    pub measured: DVector<f64>,
+    /// How models are discretised that are compared with it.
+    pub discretisation: Discretisation,
+}
+
+impl WhitenedRecord {
+    /// Joins a record and a metric.
+    pub fn new(record: Record, metric: Metric, discretisation: Discretisation) -> Self {
+        let measured = metric.whiten(&record.mean());
+        Self {
+            record,
+            metric,
+            measured,
+            discretisation,
+        }
+    }
+
+    /// A record under a metric of its own noise at some orders, without errors of its inputs.
+    pub fn under_own_noise(record: Record, orders: Orders, discretisation: Discretisation) -> Self {
+        let noise = Noise::estimate(&record, &orders, &[]);
+        let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
+        Self::new(record, metric, discretisation)
+    }
+
+    /// Residual of simulated curves: measured less simulated, whitened.
+    pub fn residual(&self, curves: &Curves) -> DVector<f64> {
+        &self.measured - self.metric.whiten(curves)
+    }
+}

@@ -1,0 +1,194 @@
+//! The value of more data: effects that this record cannot tell apart, how many more cycles of
+//! it would, and whether a record of another condition would.
+//!
+//! Each effect is taken at a few times the size from which it is seen at all: below that nothing tells
+//! anything apart. Linear in the effects, at the recalibrated point; it knows no verdict.
+use crate::cause::round::Round;
+use crate::cause::suspect::Suspect;
+use crate::ground::session::Session;
+use crate::laboratory::{Laboratory, Stage};
+use crate::linear::isolability::pairs;
+use crate::linear::tangent::Tangent;
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::parameter::sizes;
+use crate::model::unknowns::Point;
+use crate::record::whitened::WhitenedRecord;
+use crate::size::limit::Limit;
+use nalgebra::{DMatrix, DVector};
+use search::least_squares::Linearized;
+use serde::Serialize;
+
+/// Two effects that the record would not part, and what would.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LookAlikes {
+    /// Their identifiers.
+    pub effects: [String; 2],
+    /// How many times as many cycles of the same condition would part them, at least 1.
+    pub cycles: f64,
+    /// The same where the records of the other conditions are fitted too, if there are any: at most
+    /// 1 if they part the two without a further cycle.
+    #[serde(rename = "cycles_with_other_conditions")]
+    pub cycles_with_others: Option<f64>,
+}
+
+/// At how many times their detection limits effects are compared.
+const MULTIPLE: f64 = 3.0;
+
+/// A suspect that can be seen, and how much of each of its sizes is compared, in scales.
+struct Visible<'a> {
+    suspect: &'a Suspect,
+    amounts: Vec<f64>,
+}
+
+/// Weighs all pairs of suspects of a round at `fit`.
+pub(crate) async fn weigh<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    fit: &Fit,
+    round: &Round,
+    limits: &[Limit],
+) -> Result<Vec<LookAlikes>, L::Error> {
+    let (base, others) = (&session.base.on, session.inputs.others());
+    let visible = round.suspects.iter();
+    let visible: Vec<Visible<'_>> = visible
+        .filter_map(|suspect| {
+            let amounts = amounts(suspect, limits)?;
+            Some(Visible { suspect, amounts })
+        })
+        .collect();
+    let own = |one: &Visible<'_>| scaled(&one.suspect.signature, &one.amounts);
+    let here: Vec<DMatrix<f64>> = visible.iter().map(own).collect();
+    let at = fit.search.best();
+    let mut alike = pairs(&here, &fit.tangent(), fit.misfit());
+    alike.retain(|pair| pair.apart < 1.0);
+    alike.sort_by(|a, b| a.apart.total_cmp(&b.apart));
+    if alike.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (mut jacobian, mut signatures) = (at.jacobian.clone(), here);
+    let mut joined = false;
+    for record in others.iter().filter(|record| !record.cycles.is_empty()) {
+        let orders = base.metric.orders().clone();
+        let other = WhitenedRecord::under_own_noise(record.clone(), orders, base.discretisation);
+        let mut experiments = session.experiments(Stage::What);
+        let Some(seen) = linearized(&mut experiments.with(&other), fit, &visible).await? else {
+            continue;
+        };
+        joined = true;
+        jacobian = stacked(&jacobian, &seen.jacobian);
+        for (above, below) in signatures.iter_mut().zip(&seen.signatures) {
+            *above = stacked(above, below);
+        }
+    }
+    let together = joined.then(|| {
+        let both = Linearized {
+            x: at.x.clone(),
+            residual: DVector::zeros(jacobian.nrows()),
+            jacobian,
+        };
+        pairs(
+            &signatures,
+            &Tangent::new(&both, fit.variables()),
+            fit.misfit(),
+        )
+    });
+    let name = |k: usize| visible[k].suspect.effect.id.clone();
+    Ok(alike
+        .into_iter()
+        .map(|pair| LookAlikes {
+            effects: pair.members.map(name),
+            cycles: 1.0 / pair.apart,
+            cycles_with_others: together.as_ref().and_then(|all| {
+                let same = all.iter().find(|other| other.members == pair.members)?;
+                Some(1.0 / same.apart)
+            }),
+        })
+        .collect())
+}
+
+/// How much of each size is compared, in scales; nothing for an effect that cannot be seen.
+fn amounts(suspect: &Suspect, limits: &[Limit]) -> Option<Vec<f64>> {
+    let each = sizes(&suspect.effect).into_iter().map(|k| {
+        let parameter = &suspect.effect.parameters[k];
+        let own =
+            |limit: &&Limit| limit.id == suspect.effect.id && limit.parameter == parameter.name;
+        let amount = MULTIPLE * limits.iter().find(own)?.size / parameter.scale;
+        amount.is_finite().then_some(amount)
+    });
+    let all: Option<Vec<f64>> = each.collect();
+    all.filter(|all| !all.is_empty() && all.len() == suspect.signature.ncols())
+}
+
+/// Columns times amounts.
+fn scaled(signature: &DMatrix<f64>, amounts: &[f64]) -> DMatrix<f64> {
+    let mut signature = signature.clone();
+    for (mut column, amount) in signature.column_iter_mut().zip(amounts) {
+        column *= *amount;
+    }
+    signature
+}
+
+/// One matrix on top of another of as many columns.
+fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
+    let rows = above.nrows() + below.nrows();
+    DMatrix::from_fn(rows, above.ncols(), |i, j| {
+        if i < above.nrows() {
+            above[(i, j)]
+        } else {
+            below[(i - above.nrows(), j)]
+        }
+    })
+}
+
+/// The linearised model under another condition.
+struct Seen {
+    jacobian: DMatrix<f64>,
+    signatures: Vec<DMatrix<f64>>,
+}
+
+/// Differences of the genes and of all visible effects on another record; nothing if one of the
+/// simulations failed.
+async fn linearized<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    visible: &[Visible<'_>],
+) -> Result<Option<Seen>, L::Error> {
+    let (steps, moved): (Vec<f64>, Vec<Point>) = fit.neighbours().unzip();
+    let mut points = vec![fit.point()];
+    points.extend(moved);
+    for Visible { suspect, .. } in visible {
+        points.extend(
+            suspect
+                .taken
+                .iter()
+                .map(|own| fit.with(&suspect.effect, own)),
+        );
+    }
+    let curves = experiments.curves(&points).await?;
+    let whiten = |curves: Option<_>| Some(experiments.on.metric.whiten(&curves?));
+    let Some(whitened) = curves.into_iter().map(whiten).collect::<Option<Vec<_>>>() else {
+        return Ok(None);
+    };
+    let mut rest = whitened.iter().skip(1);
+    let base = &whitened[0];
+    // residuals are measured less simulated
+    let columns = steps
+        .iter()
+        .zip(rest.by_ref())
+        .map(|(step, moved)| (base - moved) / *step);
+    let columns: Vec<DVector<f64>> = columns.collect();
+    let mut signatures = Vec::new();
+    for Visible { suspect, amounts } in visible {
+        let own = sizes(&suspect.effect)
+            .into_iter()
+            .zip(&suspect.taken)
+            .zip(rest.by_ref());
+        let columns = own.map(|((size, taken), moved)| (moved - base) / taken[size]);
+        let columns: Vec<DVector<f64>> = columns.collect();
+        signatures.push(scaled(&DMatrix::from_columns(&columns), amounts));
+    }
+    Ok(Some(Seen {
+        jacobian: DMatrix::from_columns(&columns),
+        signatures,
+    }))
+}

@@ -1,0 +1,89 @@
+//! Effects of the answer, with their sizes and intervals.
+use crate::cause::refit::Refitted;
+use crate::cause::round::Round;
+use crate::linear::score::family_wise;
+use crate::model::fit::Fit;
+
+/// An effect of the answer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// Identifier.
+    pub id: String,
+    /// In words.
+    pub title: String,
+    /// Its parameters, in the effect's order.
+    pub parameters: Vec<ParameterEstimate>,
+    /// Family-wise p-value of its score test.
+    pub p_value: f64,
+    /// Log evidence against the model without it, over the squared misfit (nats).
+    pub ln_evidence: f64,
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParameterEstimate {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
+    /// The likeliest value.
+    pub value: f64,
+    /// 95 % interval.
+    pub interval: [f64; 2],
+}
+
+/// Half-width of a 95 % interval in standard deviations: Student's, for the nine degrees of freedom
+/// that the variance of a low order has from a handful of cycles.
+pub(crate) const QUANTILE: f64 = 2.262;
+
+/// The added effects with their sizes, then the other members of their sets.
+pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
+    let mut found: Vec<Estimate> = Vec::new();
+    for added_first in [true, false] {
+        for round in rounds {
+            let members = round
+                .set
+                .iter()
+                .filter(|id| (round.added.as_ref() == Some(id)) == added_first);
+            for id in members {
+                let refitted = round.refits.iter().find(|r| r.id == *id);
+                if let Some(refitted) = refitted.filter(|_| found.iter().all(|e| e.id != *id)) {
+                    found.push(estimate(round, refitted, after));
+                }
+            }
+        }
+    }
+    found
+}
+
+/// Sizes of an added effect are those of the final model, beside everything else that was added; of
+/// a rival, those of its own refit.
+fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
+    let place = |fit: &Fit| fit.model.added.iter().position(|e| e.id == refitted.id);
+    let fit = place(after).map_or(&refitted.fit, |_| after);
+    let position = place(fit).unwrap_or_default();
+    let effect = &fit.model.added[position];
+    let first = fit.model.first_of(position);
+    let covariance = fit.covariance(round.phi);
+    let parameters = effect.parameters.iter().enumerate().map(|(k, p)| {
+        let variance = covariance
+            .as_ref()
+            .map_or(f64::INFINITY, |c| c[(first + k, first + k)]);
+        let half = QUANTILE * variance.sqrt() * p.scale;
+        let value = (p.absent + fit.x()[first + k] * p.scale).clamp(p.lower, p.upper);
+        ParameterEstimate {
+            name: p.name.clone(),
+            unit: p.unit.clone(),
+            value,
+            interval: [(value - half).max(p.lower), (value + half).min(p.upper)],
+        }
+    });
+    let suspect = round.suspects.iter().find(|s| s.effect.id == refitted.id);
+    Estimate {
+        id: refitted.id.clone(),
+        title: effect.title.clone(),
+        parameters: parameters.collect(),
+        p_value: suspect.map_or(1.0, |s| family_wise(s.p_value(), round.suspects.len())),
+        ln_evidence: round.nats(refitted.log_evidence),
+    }
+}

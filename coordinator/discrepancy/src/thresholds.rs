@@ -1,0 +1,62 @@
+//! Thresholds of a diagnosis, fixed before any record is seen.
+use serde::{Deserialize, Serialize};
+
+/// How a diagnosis decides. The defaults are those of every published result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Thresholds {
+    /// Highest order of the crank that is compared.
+    pub orders: usize,
+    /// Level of the family of all effects' tests.
+    pub alpha: f64,
+    /// Level of the test that nothing at all is left: below it a record without a name is unresolved.
+    pub adequacy: f64,
+    /// Misfit from which a fit is suspected to lie outside the valley of the rope's stiffness.
+    pub valley: f64,
+    /// Suspects that are refitted with all genes free.
+    pub suspects: usize,
+    /// Nats, times the squared misfit, that an effect must gain to be believed.
+    pub gain: f64,
+    /// Share of the removable gap that an effect must close to be more than a trace.
+    pub practical: f64,
+    /// Effects that are added at most.
+    pub rounds: usize,
+    /// Factor by which a form of force without a cause must beat the best name.
+    pub generic_factor: f64,
+    /// Units of `chi^2`, times the squared misfit, by which it must beat it besides.
+    pub generic_gain: f64,
+    /// Squared cosine of projected signatures from which a form of force is a name's own.
+    pub alike: f64,
+    /// Noise sets that the angle map is held against.
+    pub draws: usize,
+    /// Longest step of all experiments, as a share of the case's: what is enough for a search is
+    /// seen beside averaged noise.
+    pub step: f64,
+    /// Cylinder length of the numerical check, as a share of the case's. The fits keep the case's
+    /// length: what a finer model changes counts as noise.
+    pub refinement: f64,
+    /// Effects that are not considered.
+    pub without: Vec<String>,
+}
+
+impl Default for Thresholds {
+    fn default() -> Self {
+        Self {
+            orders: 120,
+            alpha: 0.01,
+            adequacy: 1e-3,
+            valley: 3.0,
+            suspects: 8,
+            gain: 3.0,
+            practical: 0.05,
+            rounds: 3,
+            generic_factor: 1.15,
+            generic_gain: 10.0,
+            alike: 0.9,
+            draws: 400,
+            step: 0.7,
+            refinement: 0.5,
+            without: Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The search as a sequence of batches: differences, then a fan of damped steps.
+use super::{
+    differences::{self, Columns},
+    problem::{Ended, Linearized, Settings, Variable},
+    step,
+};
+use nalgebra::{DMatrix, DVector};
+
+/// The points that are planned.
+#[derive(Clone, Debug)]
+enum Phase {
+    Start,
+    Columns(Columns),
+    Fan(Vec<(f64, Vec<f64>)>),
+    Over(Ended),
+}
+
+/// A search as a sequence of batches.
+#[derive(Clone, Debug)]
+pub struct LeastSquares {
+    settings: Settings,
+    variables: Vec<Variable>,
+    steps: Vec<f64>,
+    at: Linearized,
+    /// Whether the Jacobian belongs to the point.
+    fresh: bool,
+    cost: f64,
+    damping: f64,
+    iteration: u32,
+    refused: u32,
+    last_decrease: f64,
+    failures: u64,
+    evaluations: u64,
+    phase: Phase,
+}
+
+impl LeastSquares {
+    /// A search from the variables' starts, clamped into their boxes.
+    pub fn new(variables: Vec<Variable>, settings: Settings) -> Self {
+        let x = variables
+            .iter()
+            .map(|v| v.start.clamp(v.lower, v.upper))
+            .collect();
+        Self {
+            steps: variables.iter().map(|v| v.step).collect(),
+            at: Linearized {
+                x,
+                residual: DVector::zeros(0),
+                jacobian: DMatrix::zeros(0, variables.len()),
+            },
+            fresh: false,
+            cost: f64::INFINITY,
+            damping: 1e-2,
+            iteration: 0,
+            refused: 0,
+            last_decrease: 1.0,
+            failures: 0,
+            evaluations: 0,
+            phase: Phase::Start,
+            settings,
+            variables,
+        }
+    }
+
+    /// A search from a point that is known already; only its Jacobian is missing.
+    pub fn from_known(
+        mut variables: Vec<Variable>,
+        settings: Settings,
+        known: (&[f64], DVector<f64>),
+    ) -> Self {
+        for (variable, x) in variables.iter_mut().zip(known.0) {
+            variable.start = *x;
+        }
+        let mut search = Self::new(variables, settings);
+        search.arrive(known.1);
+        search.plan_columns();
+        search
+    }
+
+    /// Points to evaluate now, in the order in which [`Self::absorb`] takes their residuals; empty
+    /// when the search is over.
+    pub fn plan(&self) -> Vec<Vec<f64>> {
+        match &self.phase {
+            Phase::Start => vec![self.at.x.clone()],
+            Phase::Columns(columns) => columns.points(&self.at.x),
+            Phase::Fan(fan) => fan.iter().map(|(_, x)| x.clone()).collect(),
+            Phase::Over(_) => Vec::new(),
+        }
+    }
+
+    /// Takes the residuals of the planned points; none for one that could not be evaluated. All
+    /// residuals of a search have the same length.
+    pub fn absorb(&mut self, residuals: Vec<Option<DVector<f64>>>) {
+        self.evaluations += residuals.len() as u64;
+        self.failures += residuals.iter().filter(|r| r.is_none()).count() as u64;
+        match std::mem::replace(&mut self.phase, Phase::Over(Ended::StartFailed)) {
+            Phase::Start => {
+                if let Some(residual) = residuals.into_iter().next().flatten() {
+                    self.arrive(residual);
+                    self.plan_columns();
+                }
+            }
+            Phase::Columns(columns) => self.columns(columns, residuals),
+            Phase::Fan(fan) => self.fan(fan, residuals),
+            Phase::Over(ended) => self.phase = Phase::Over(ended),
+        }
+    }
+
+    /// Why the search is over, if it is.
+    pub const fn ended(&self) -> Option<Ended> {
+        match self.phase {
+            Phase::Over(ended) => Some(ended),
+            Phase::Start | Phase::Columns(_) | Phase::Fan(_) => None,
+        }
+    }
+
+    /// The best point with its residual and Jacobian. When the search is over the Jacobian belongs
+    /// to the point.
+    pub const fn best(&self) -> &Linearized {
+        &self.at
+    }
+
+    /// The unknowns.
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// `|r|^2` plus the priors' part at the best point.
+    pub const fn cost(&self) -> f64 {
+        self.cost
+    }
+
+    /// Points evaluated, and how many of them could not be.
+    pub const fn work(&self) -> (u64, u64) {
+        (self.evaluations, self.failures)
+    }
+
+    /// The largest cosine between a column of the Jacobian, with its prior, and the residual; 0 at
+    /// an exact minimum. Columns pressed against a bound do not count.
+    pub fn gradient_ratio(&self) -> f64 {
+        step::gradient_ratio(&self.at, &self.variables, self.cost)
+    }
+
+    /// The residual at the minimum of the linearised problem: the residual itself where the search
+    /// has converged, to first order what it would have become where it has not.
+    pub fn settled_residual(&self) -> DVector<f64> {
+        step::settled(&self.at, &self.variables)
+    }
+
+    /// By which share of the cost one more step would lower it, by the linearised problem.
+    pub fn promised_decrease(&self) -> f64 {
+        let settled = self.settled_residual().norm_squared();
+        ((self.at.residual.norm_squared() - settled) / self.cost).max(0.0)
+    }
+
+    fn arrive(&mut self, residual: DVector<f64>) {
+        self.at.residual = residual;
+        self.cost = self.at.residual.norm_squared() + step::prior_cost(&self.at.x, &self.variables);
+        self.fresh = false;
+    }
+
+    fn plan_columns(&mut self) {
+        let columns = Columns::new(
+            &self.at.x,
+            &self.variables,
+            &self.steps,
+            self.settings.central,
+        );
+        self.phase = Phase::Columns(columns);
+    }
+
+    fn columns(&mut self, mut columns: Columns, residuals: Vec<Option<DVector<f64>>>) {
+        columns.absorb(&self.at.x, &self.variables, residuals);
+        if !columns.is_complete() {
+            self.phase = Phase::Columns(columns);
+            return;
+        }
+        let (jacobian, changes) = columns.jacobian(&self.at.residual, self.variables.len());
+        self.at.jacobian = jacobian;
+        self.fresh = true;
+        self.iteration += 1;
+        for (step, (variable, change)) in self
+            .steps
+            .iter_mut()
+            .zip(self.variables.iter().zip(changes))
+        {
+            *step = differences::next_step(*step, variable, change, &self.settings);
+        }
+        let small = self.last_decrease < self.settings.decrease;
+        if small || self.gradient_ratio() < self.settings.gradient {
+            self.phase = Phase::Over(Ended::Converged);
+        } else if self.iteration >= self.settings.iterations {
+            self.phase = Phase::Over(Ended::Iterations);
+        } else {
+            self.refused = 0;
+            self.plan_fan();
+        }
+    }
+
+    fn plan_fan(&mut self) {
+        let fan = step::fan(&self.at, &self.variables, self.damping);
+        self.phase = if fan.is_empty() {
+            Phase::Over(Ended::Stalled)
+        } else {
+            Phase::Fan(fan)
+        };
+    }
+
+    fn fan(&mut self, fan: Vec<(f64, Vec<f64>)>, residuals: Vec<Option<DVector<f64>>>) {
+        let mut best: Option<(f64, f64, Vec<f64>, DVector<f64>)> = None;
+        for ((damping, x), residual) in fan.into_iter().zip(residuals) {
+            let Some(residual) = residual else { continue };
+            let cost = residual.norm_squared() + step::prior_cost(&x, &self.variables);
+            if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                best = Some((cost, damping, x, residual));
+            }
+        }
+        match best {
+            Some((cost, damping, x, residual)) if cost < self.cost => {
+                self.last_decrease = (self.cost - cost) / self.cost;
+                self.damping = damping.max(1e-9);
+                self.at.x = x;
+                self.arrive(residual);
+                self.plan_columns();
+            }
+            _ => {
+                self.refused += 1;
+                self.damping *= step::REFUSED;
+                if self.refused < 3 {
+                    self.plan_fan();
+                } else {
+                    let flat = self.gradient_ratio() < 10.0 * self.settings.gradient;
+                    self.phase = Phase::Over(if flat {
+                        Ended::Converged
+                    } else {
+                        Ended::Stalled
+                    });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! The catalogue of presets.
+use super::{
+    ask_tell::Strategy,
+    memetic::{generations, window},
+    offer::Preset,
+    quick, random,
+    setting::SettingsError,
+    settings::Settings,
+};
+use crate::space::Space;
+
+/// Every preset, in the order in which help lists them.
+pub const CATALOGUE: &[Preset] = &[
+    quick::QUICK,
+    quick::LEAST_SQUARES,
+    generations::PAPER,
+    generations::PAPER_BATCH,
+    window::WINDOW,
+    random::RANDOM,
+];
+
+/// The preset of a name.
+pub fn preset(name: &str) -> Option<&'static Preset> {
+    CATALOGUE.iter().find(|preset| preset.name == name)
+}
+
+/// The search that settings make over a space, from a seed.
+///
+/// # Errors
+/// If the strategy is unknown, or a setting lies outside its range.
+pub fn build(
+    settings: &Settings,
+    space: &Space,
+    seed: u64,
+) -> Result<Box<dyn Strategy>, SettingsError> {
+    let strategy = settings.strategy();
+    let known = CATALOGUE
+        .iter()
+        .find(|preset| preset.strategy == strategy)
+        .ok_or_else(|| SettingsError::Form {
+            strategy: strategy.to_owned(),
+            problem: "this version has no such strategy".to_owned(),
+        })?;
+    (known.build)(settings, space, seed)
+}

@@ -1,0 +1,286 @@
+//! The paper's algorithm, generation by generation.
+//!
+//! Parents by roulette, uniform crossover, bit mutation, one elite kept; then the elite tries
+//! crossovers with partners, and flips of a few random bits, and moves wherever it gets better.
+use super::{
+    chromosome::Chromosome,
+    climb::{Attempt, Climb},
+    craft::{At, Craft},
+    population::{Individual, best, worst},
+    settings::{Climbers, MemeticSettings, SETTINGS, Survival},
+};
+use crate::{
+    random::{Phase, Streams},
+    space::{Axis, Interval, Space},
+    strategy::{
+        archive::{Archive, Evaluated},
+        ask_tell::Strategy,
+        conductor::Conductor,
+        offer::{Group, Preset, Promise},
+        piece::{Batch, Draft, Piece},
+        proposal::Purpose,
+        setting::SettingsError,
+        settings::{Recipe, Settings, build_as},
+        told::Told,
+    },
+};
+
+/// The paper's numbers.
+pub const PAPER: Preset = Preset {
+    name: "paper",
+    summary: "the reference paper's memetic algorithm: 80 individuals, 60 generations",
+    strategy: MemeticSettings::STRATEGY,
+    settings: |_| Settings::of(&MemeticSettings::paper()),
+    groups: &[Group::whole(SETTINGS)],
+    promise: PROMISE,
+    build: build_as::<MemeticSettings>,
+};
+
+/// The paper's numbers, with trials in batches.
+pub const PAPER_BATCH: Preset = Preset {
+    name: "paper-batch",
+    summary: "the same with 40 + 40 climbing trials at once, the best of which wins",
+    settings: |_| Settings::of(&MemeticSettings::paper_batch()),
+    ..PAPER
+};
+
+/// What the operators with the paper's numbers promise, with or without generations.
+pub(super) const PROMISE: Promise = Promise {
+    one_basin: 0.1,
+    many_basins: 1.1,
+    distance: 0.3,
+    opens_at_recommended: false,
+    valley: None,
+};
+
+impl Recipe for MemeticSettings {
+    const STRATEGY: &'static str = "memetic";
+
+    /// The algorithm alone, over the whole space.
+    fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
+        let intervals = space.axes().iter().map(Axis::interval).collect();
+        let streams = Streams::new(seed, 0);
+        let memetic = Memetic::new(self.clone(), (space, intervals), &[], streams)?;
+        let pieces: Vec<Box<dyn Piece>> = vec![Box::new(memetic)];
+        Ok(Box::new(Conductor::new(pieces, self.reuse_clones)))
+    }
+}
+
+/// What the running batch is.
+enum Stage {
+    /// Nothing has been planned.
+    Start,
+    /// The initial population, or the children of a generation.
+    Evaluating(Vec<Chromosome>),
+    /// Children live; the climb goes on.
+    Climbing(Climb),
+}
+
+/// The algorithm as a piece of a strategy.
+pub struct Memetic {
+    craft: Craft,
+    /// Chromosomes that open the initial population; the rest is random.
+    start: Vec<Chromosome>,
+    population: Vec<Individual>,
+    generation: u32,
+    stage: Stage,
+}
+
+impl Memetic {
+    /// The algorithm in the part of a space that `intervals` (coordinate) cover. The first members
+    /// of the initial population are the points of `start` (coordinate), the others are random.
+    ///
+    /// # Errors
+    /// If a setting lies outside its range.
+    pub fn new(
+        settings: MemeticSettings,
+        (space, intervals): (&Space, Vec<Interval>),
+        start: &[Vec<f64>],
+        streams: Streams,
+    ) -> Result<Self, SettingsError> {
+        let craft = Craft::new(settings, space, intervals, streams)?;
+        let start = start.iter().map(|point| craft.codec.encode(point));
+        Ok(Self {
+            start: start.collect(),
+            craft,
+            population: Vec::new(),
+            generation: 0,
+            stage: Stage::Start,
+        })
+    }
+
+    fn initial(&self) -> Vec<Chromosome> {
+        let size = self.craft.settings.population;
+        let mut population: Vec<_> = self.start.iter().take(size).cloned().collect();
+        population.extend((population.len()..size).map(|index| self.craft.random(index)));
+        population
+    }
+
+    /// Children of this generation: roulette, crossover in pairs, mutation.
+    fn breed(&self) -> Vec<Chromosome> {
+        let selected = self.select();
+        let mut children: Vec<_> = selected.into_iter().map(|one| one.chromosome).collect();
+        for (pair, both) in children.chunks_exact_mut(2).enumerate() {
+            if let [a, b] = both {
+                self.craft.cross(self.at(pair), a, b);
+            }
+        }
+        for (index, child) in children.iter_mut().enumerate() {
+            self.craft.mutate(self.at(index), Phase::Mutation, child);
+        }
+        children
+    }
+
+    /// A population drawn from this one by roulette.
+    fn select(&self) -> Vec<Individual> {
+        let wheel = self.craft.wheel(&self.population);
+        let drawn = (0..self.craft.settings.population).map(|index| {
+            let mut stream = self.craft.stream(self.at(index), Phase::Selection);
+            self.population[wheel.draw(&mut stream)].clone()
+        });
+        drawn.collect()
+    }
+
+    /// The address of an operation of this generation.
+    const fn at(&self, index: usize) -> At {
+        At {
+            generation: self.generation,
+            index,
+        }
+    }
+
+    /// Puts the next generation in place of the population.
+    fn survive(&mut self, mut children: Vec<Individual>) {
+        if self.population.is_empty() {
+            self.population = children;
+            return;
+        }
+        match self.craft.settings.survival {
+            Survival::Generational => {
+                let elite = self.population[best(&self.population)].clone();
+                if elite.told.beats(children[best(&children)].told) {
+                    let last = worst(&children);
+                    children[last] = elite;
+                }
+            }
+            Survival::Plus => {
+                let mut all = std::mem::take(&mut self.population);
+                all.append(&mut children);
+                all.sort_by(|a, b| a.told.order(b.told));
+                all.truncate(self.craft.settings.population);
+                children = all;
+            }
+        }
+        self.population = children;
+    }
+
+    /// Starts the next generation: its first batch, or none after the last.
+    fn next_generation(&mut self) -> Option<Vec<Draft>> {
+        if self.generation >= self.craft.settings.bred_generations() {
+            return None;
+        }
+        self.generation += 1;
+        if self.craft.settings.climbers == Climbers::Literal {
+            let selected = self.select();
+            self.survive(selected);
+            self.stage =
+                Stage::Climbing(Climb::new(&self.craft, self.generation, &self.population));
+            return Some(Vec::new());
+        }
+        Some(self.evaluate(self.breed(), Purpose::Offspring))
+    }
+
+    fn evaluate(&mut self, chromosomes: Vec<Chromosome>, purpose: Purpose) -> Vec<Draft> {
+        let decode = |chromosome| Draft {
+            genes: self.craft.codec.decode(chromosome),
+            purpose,
+        };
+        let drafts = chromosomes.iter().map(decode).collect();
+        self.stage = Stage::Evaluating(chromosomes);
+        drafts
+    }
+}
+
+impl Piece for Memetic {
+    fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
+        loop {
+            let drafts = match &mut self.stage {
+                Stage::Start => Some(self.evaluate(self.initial(), Purpose::Initial)),
+                Stage::Evaluating(_) => self.next_generation(),
+                Stage::Climbing(climb) => {
+                    let attempts = climb.plan(&self.craft, &self.population);
+                    let draft = |attempt: &Attempt| Draft {
+                        genes: self.craft.codec.decode(&attempt.chromosome),
+                        purpose: attempt.purpose,
+                    };
+                    let drafts: Vec<Draft> = attempts.iter().map(draft).collect();
+                    if drafts.is_empty() {
+                        self.next_generation()
+                    } else {
+                        Some(drafts)
+                    }
+                }
+            }?;
+            if !drafts.is_empty() {
+                return Some(Batch {
+                    generation: self.generation,
+                    drafts,
+                });
+            }
+        }
+    }
+
+    fn absorb(&mut self, results: &[Evaluated]) {
+        let told: Vec<Told> = results.iter().map(|result| result.told).collect();
+        match &mut self.stage {
+            Stage::Start => {}
+            Stage::Evaluating(chromosomes) => {
+                let newcomers = std::mem::take(chromosomes).into_iter().zip(told);
+                let children = newcomers
+                    .map(|(chromosome, told)| Individual { chromosome, told })
+                    .collect();
+                self.survive(children);
+                if self.generation > 0 {
+                    let climb = Climb::new(&self.craft, self.generation, &self.population);
+                    self.stage = Stage::Climbing(climb);
+                }
+            }
+            Stage::Climbing(climb) => climb.absorb(&self.craft, &mut self.population, &told),
+        }
+    }
+
+    fn generations(&self) -> u32 {
+        self.craft.settings.bred_generations()
+    }
+
+    /// Speculative trials that are discarded are not foreseen.
+    fn remaining(&self) -> u64 {
+        let settings = &self.craft.settings;
+        let size = settings.population as u64;
+        let trials = match settings.climbers {
+            Climbers::Elite => (settings.crossover_trials + settings.mutation_trials) as u64,
+            Climbers::All | Climbers::Literal => 2 * size,
+        };
+        let children = if settings.climbers == Climbers::Literal {
+            0
+        } else {
+            size
+        };
+        let ahead = u64::from(self.generations().saturating_sub(self.generation));
+        let running = match &self.stage {
+            Stage::Start => size,
+            Stage::Evaluating(waiting) if self.generation == 0 => waiting.len() as u64,
+            Stage::Evaluating(waiting) => waiting.len() as u64 + trials,
+            Stage::Climbing(climb) => climb.remaining() as u64,
+        };
+        running + ahead * (children + trials)
+    }
+
+    fn reached_threshold(&self) -> bool {
+        let Some(threshold) = self.craft.settings.threshold else {
+            return false;
+        };
+        let reached = |one: &Individual| one.told.survived() && one.told.fitness <= threshold;
+        self.population.iter().any(reached)
+    }
+}

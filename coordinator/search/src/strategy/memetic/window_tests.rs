@@ -1,0 +1,172 @@
+//! Windows of every size: the plan, the independence of arrival, and what a window costs.
+use super::*;
+use crate::strategy::build;
+use crate::test_function::{self, SPHERE, TestFunction};
+
+fn settings(window: usize) -> WindowSettings {
+    WindowSettings {
+        window,
+        memetic: MemeticSettings {
+            population: 12,
+            generations: 8,
+            crossover_trials: 2,
+            mutation_trials: 3,
+            ..MemeticSettings::paper()
+        },
+    }
+}
+
+/// Runs to the end; at each step one of the open proposals, chosen by a stream, is told.
+fn run(settings: &WindowSettings, function: &TestFunction, order: Option<u64>) -> Window {
+    let space = function.space();
+    let mut window = Window::new(settings, &space, 3).unwrap();
+    let mut stream = order.map(|order| Streams::new(order, 9).at(0, Phase::Initial, 0));
+    let mut open: Vec<Proposal> = Vec::new();
+    while window.finished().is_none() {
+        open.extend(window.ask());
+        let at = stream.as_mut().map_or(0, |stream| stream.index(open.len()));
+        let proposal = open.remove(at);
+        window.tell(proposal.id, function.tell(&space, &proposal.genes));
+    }
+    window
+}
+
+#[test]
+fn a_window_of_any_size_does_not_see_the_order_of_arrival() {
+    for window in [1, 5, 12, 40] {
+        let straight = run(&settings(window), &SPHERE, None);
+        for order in 1..=4 {
+            let shuffled = run(&settings(window), &SPHERE, Some(order));
+            assert_eq!(
+                straight.archive.entries(),
+                shuffled.archive.entries(),
+                "{window} {order}"
+            );
+        }
+    }
+}
+
+/// The law itself: a result changes no individual that is nearer than the window.
+#[test]
+fn individual_k_depends_on_results_up_to_k_minus_the_window_and_on_no_later_one() {
+    let window = 7;
+    let function = SPHERE;
+    let space = function.space();
+    let record = |changed: Option<u64>| {
+        let mut search = Window::new(&settings(window), &space, 5).unwrap();
+        let mut all = Vec::new();
+        while search.finished().is_none() {
+            for proposal in search.ask() {
+                let mut told = function.tell(&space, &proposal.genes);
+                if changed == Some(proposal.id) {
+                    // better than everything: it must become a parent at once
+                    told.fitness = -1.0;
+                }
+                search.tell(proposal.id, told);
+                all.push(proposal.genes);
+            }
+        }
+        all
+    };
+    let plain = record(None);
+    for changed in [20_u64, 33, 50] {
+        let other = record(Some(changed));
+        let first = (0..)
+            .zip(plain.iter().zip(&other))
+            .find(|(_, (a, b))| a != b);
+        let first = first.expect("it must matter").0;
+        let earliest = changed + window as u64;
+        assert!(
+            (earliest..earliest + 4).contains(&first),
+            "result {changed} first shows in individual {first}"
+        );
+    }
+}
+
+#[test]
+fn at_most_a_window_is_open_after_the_first_population_and_trials_have_their_share() {
+    let settings = settings(5);
+    let space = SPHERE.space();
+    let mut search = Window::new(&settings, &space, 1).unwrap();
+    let (mut open, mut purposes) = (0, BTreeMap::new());
+    while search.finished().is_none() {
+        for proposal in search.ask() {
+            open += 1;
+            *purposes.entry(proposal.purpose).or_insert(0) += 1;
+        }
+        let consumed = search.archive.entries().len() as u64;
+        assert!(
+            open <= 5 || consumed + open <= 12,
+            "{open} after {consumed}"
+        );
+        let genes = search.craft.codec.decode(&search.open[0]);
+        search.tell(consumed, SPHERE.tell(&space, &genes));
+        open -= 1;
+    }
+    let expected = [
+        (Purpose::Initial, 12),
+        (Purpose::Offspring, 8 * 12),
+        (Purpose::CrossoverTrial, 8 * 2),
+        (Purpose::MutationTrial, 8 * 3),
+    ];
+    assert_eq!(purposes, BTreeMap::from(expected));
+}
+
+#[test]
+fn a_threshold_ends_the_search_at_the_same_individual_whatever_has_arrived() {
+    let mut settings = settings(9);
+    settings.memetic.threshold = Some(3.0);
+    let straight = run(&settings, &SPHERE, None);
+    assert_eq!(straight.finished(), Some(Finish::Threshold));
+    let length = straight.archive.entries().len();
+    for order in 1..4 {
+        let other = run(&settings, &SPHERE, Some(order));
+        assert_eq!(other.archive.entries().len(), length);
+    }
+}
+
+/// Makes the table of the module's head; takes a minute in a release build.
+#[test]
+#[ignore = "a study, not a test"]
+fn cost_of_the_window() {
+    const SEEDS: u64 = 25;
+    const EVALUATIONS: usize = 4880;
+    let median = |settings: &Settings, function: &TestFunction| {
+        let space = function.space();
+        let mut found: Vec<f64> = (1..=SEEDS)
+            .map(|seed| {
+                let mut search = build(settings, &space, seed).unwrap();
+                let mut told = 0;
+                while told < EVALUATIONS && search.finished().is_none() {
+                    for proposal in search.ask() {
+                        if told < EVALUATIONS {
+                            search.tell(proposal.id, function.tell(&space, &proposal.genes));
+                            told += 1;
+                        }
+                    }
+                }
+                let best = search
+                    .archive()
+                    .entries()
+                    .iter()
+                    .filter(|e| e.told.complete);
+                best.map(|e| e.told.fitness).fold(f64::INFINITY, f64::min)
+            })
+            .collect();
+        found.sort_by(f64::total_cmp);
+        found[found.len() / 2]
+    };
+    for function in test_function::ALL {
+        let paper = Settings::of(&MemeticSettings::paper());
+        let windows = [1, 16, 48, 120, 240].map(|window| {
+            let settings = Settings::of(&WindowSettings {
+                window,
+                memetic: MemeticSettings::paper(),
+            });
+            format!("{:.3e}", median(&settings, function))
+        });
+        let first = format!("{:.3e}", median(&paper, function));
+        let row = [vec![function.name.to_owned(), first], windows.into()].concat();
+        println!("//! | {} |", row.join(" | "));
+    }
+}

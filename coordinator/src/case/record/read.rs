@@ -1,0 +1,143 @@
+//! One record from its files to the averaged turn.
+use super::{
+    super::{
+        error::{CaseError, damaged},
+        file,
+        note::Note,
+    },
+    agreement::{Expected, RecordFacts, check_sheet, check_speed, check_stated, facts, remark},
+    resample,
+    samples::Samples,
+    sheet::Sheet,
+};
+use discrepancy::record::Record;
+use protocol::case::{GaugeRecord, GaugeTrace};
+use std::path::{Path, PathBuf};
+
+/// Reads the samples of a record alone, without its sheet and without a case; how many there are.
+///
+/// # Errors
+/// Everything that makes the samples unusable, with row and column; `path` is only named.
+pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
+    Samples::read(path, csv).map(|samples| samples.angle_deg.len())
+}
+
+/// A record that was read.
+#[derive(Debug)]
+pub(in super::super) struct Read {
+    pub(in super::super) record: GaugeRecord,
+    /// Every cycle by itself, with what was recorded beside the gauges.
+    pub(in super::super) cycles: Record,
+    pub(in super::super) facts: RecordFacts,
+    pub(in super::super) notes: Vec<Note>,
+}
+
+/// Reads a record and the data sheet beside it.
+///
+/// # Errors
+/// Anything that makes the record unusable or contradicts its sheet or the case.
+pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseError> {
+    let role = format!(
+        "the gauge record of condition `{}` in {}",
+        expected.condition,
+        expected.case_file.display()
+    );
+    let packed = path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("gz"));
+    let bytes = if packed {
+        file::read_gzip(path, &role)?
+    } else {
+        file::read(path, &role)?
+    };
+    let sheet_path = sheet_path(path);
+    let (sheet, document, mut notes) = Sheet::read(
+        &sheet_path,
+        &format!("the data sheet of the record {}", path.display()),
+    )?;
+    check_stated(&sheet, &document, expected)?;
+    let samples = Samples::read(path, &bytes)?;
+    let facts = facts(path, &samples, &sheet);
+    check_speed(path, &samples, &facts, expected)?;
+    check_sheet(path, &samples, &sheet, &document.path, &facts, &mut notes)?;
+    let cycles = resample::cycles(&samples, expected.step_deg);
+    if cycles.whole.is_empty() {
+        return Err(damaged(
+            path,
+            format!(
+                "the record has no whole revolution: {} index pulses, {:.0} deg of crank angle",
+                samples.pulses_s.len(),
+                span(&samples.angle_deg)
+            ),
+            "record at least one revolution from index pulse to index pulse, better five or more",
+        ));
+    }
+    let record = average(path, &cycles, expected.step_deg)?;
+    remark(path, &cycles, &samples, &facts, expected, &mut notes);
+    let stated = sheet.stated(&cycles.channels, samples.step_deg / expected.step_deg);
+    Ok(Read {
+        record,
+        cycles: Record {
+            condition: expected.index,
+            channels: cycles.channels,
+            cycles: cycles.single,
+            stated,
+        },
+        facts,
+        notes,
+    })
+}
+
+/// The data sheet of a record: the same name with the ending `.toml`.
+fn sheet_path(record: &Path) -> PathBuf {
+    let name = record.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.trim_end_matches(".gz").trim_end_matches(".csv");
+    record.with_file_name(format!("{stem}.toml"))
+}
+
+/// The averaged record; every grid angle must have a value.
+fn average(
+    path: &Path,
+    cycles: &resample::Cycles,
+    step_deg: f64,
+) -> Result<GaugeRecord, CaseError> {
+    let turn_deg = resample::grid(step_deg);
+    let mut gauges = Vec::new();
+    for (number, (mean, spread)) in (1..).zip(cycles.mean.iter().zip(&cycles.spread)) {
+        if let Some(first) = mean.iter().position(Option::is_none) {
+            let length = mean
+                .iter()
+                .skip(first)
+                .take_while(|value| value.is_none())
+                .count();
+            let from = turn_deg.get(first).copied().unwrap_or_default();
+            return Err(damaged(
+                path,
+                format!(
+                    "no cycle has samples of `crank_deg` near {from} deg: a gap of about {:.1} deg \
+                     on every cycle; allowed: no angle that is missing in all cycles",
+                    length as f64 * step_deg
+                ),
+                "repeat the measurement, or add a cycle that covers the gap",
+            ));
+        }
+        gauges.push(GaugeTrace {
+            gauge: number,
+            mean_mpa: mean.iter().map(|value| value.unwrap_or_default()).collect(),
+            spread_mpa: spread.clone(),
+        });
+    }
+    Ok(GaugeRecord {
+        turn_deg,
+        cycles: cycles.whole.len(),
+        gauges,
+    })
+}
+
+/// From the first to the last angle.
+fn span(angles: &[f64]) -> f64 {
+    match (angles.first(), angles.last()) {
+        (Some(first), Some(last)) => last - first,
+        _ => 0.0,
+    }
+}

@@ -1,0 +1,57 @@
+//! Where a case comes from, and its reading.
+use crate::{
+    case::{Overrides, load_with_notes},
+    cli::output::terminal,
+};
+use clap::Args;
+use protocol::case::Case;
+use std::path::{Path, PathBuf};
+
+/// Where a case comes from, shared by commands that read one.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct CaseChoice {
+    /// Case folder, with `case.toml` in it.
+    #[arg(value_name = "CASE")]
+    pub(crate) case: PathBuf,
+    /// Folder whose load cards and gauge records replace those of the case: a new test of the
+    /// same machine.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    pub(crate) measured: Option<PathBuf>,
+}
+
+/// A case that was read.
+pub(crate) struct LoadedCase {
+    pub(crate) case: Case,
+    /// Where the records came from.
+    pub(crate) measured: String,
+    /// Whether the case says that they were computed.
+    pub(crate) synthetic: bool,
+    /// What there is to know about them.
+    pub(crate) notes: Vec<String>,
+}
+
+impl CaseChoice {
+    /// Reads the case; what is worth knowing goes to standard error.
+    pub(crate) fn load(&self) -> anyhow::Result<LoadedCase> {
+        load_case(&self.case, self.measured.as_deref())
+    }
+}
+
+/// Reads a case folder, with the records of another folder in place of its own if one is given.
+pub(crate) fn load_case(folder: &Path, measured: Option<&Path>) -> anyhow::Result<LoadedCase> {
+    let overrides = Overrides {
+        measured: measured.map(Path::to_owned),
+    };
+    let loaded = load_with_notes(folder, &overrides)?;
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    for note in &notes {
+        terminal::tell(&format!("note: {note}"));
+    }
+    let measured = measured.unwrap_or(folder).display().to_string();
+    Ok(LoadedCase {
+        case: loaded.case,
+        measured,
+        synthetic: loaded.synthetic,
+        notes,
+    })
+}

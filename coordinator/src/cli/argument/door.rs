@@ -1,0 +1,17 @@
+//! How workers on other machines may join a run.
+use clap::Args;
+use std::path::PathBuf;
+
+/// How workers on other machines may join; not at all by default.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct Door {
+    /// Where workers on other machines may connect, as `quic/0.0.0.0:7447`.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN")]
+    pub(crate) listen: Option<String>,
+    /// Folder of certificates for `quic/` addresses, as `horsehead keys new` makes it.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    pub(crate) tls: Option<PathBuf>,
+    /// Allow other machines to connect without certificates.
+    #[arg(long, env = "HORSEHEAD_INSECURE")]
+    pub(crate) insecure: bool,
+}

@@ -1,0 +1,50 @@
+//! Which parameters are simulated, and under which working condition.
+use crate::{case::read_genes, cli::output::problem::Usage};
+use clap::Args;
+use protocol::case::Case;
+use std::path::Path;
+
+/// Which parameters are simulated, and under which condition.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct IndividualChoice {
+    /// Parameters: `recommended`, or a gene file such as a run's `calibrated.toml`.
+    #[arg(
+        long,
+        value_name = "recommended|FILE",
+        default_value = "recommended",
+        env = "HORSEHEAD_GENES"
+    )]
+    pub(crate) genes: String,
+    /// Working condition; that of the case's objective by default.
+    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
+    pub(crate) condition: Option<String>,
+}
+
+impl IndividualChoice {
+    /// Its genes in the case's order.
+    pub(crate) fn genes(&self, case: &Case) -> anyhow::Result<Vec<f64>> {
+        Ok(match self.genes.as_str() {
+            "recommended" => case.recommended(),
+            file => read_genes(Path::new(file), case)?,
+        })
+    }
+
+    /// Position of its condition in the case.
+    pub(crate) fn condition(&self, case: &Case) -> Result<usize, Usage> {
+        condition(case, self.condition.as_deref())
+    }
+}
+
+/// Position of a condition by name; the calibrated one without.
+pub(crate) fn condition(case: &Case, name: Option<&str>) -> Result<usize, Usage> {
+    let Some(name) = name else {
+        return Ok(case.objective.condition);
+    };
+    case.condition(name).ok_or_else(|| {
+        let known: Vec<&str> = case.conditions.iter().map(|c| c.name.as_str()).collect();
+        Usage {
+            message: format!("the case has no condition `{name}`"),
+            help: format!("it has: {}", known.join(", ")),
+        }
+    })
+}

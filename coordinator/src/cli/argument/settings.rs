@@ -1,0 +1,145 @@
+//! Settings of a search by name: `--set KEY=VALUE`, their table in the help, and what they become.
+use crate::cli::output::problem::Usage;
+use clap::Args;
+use search::{
+    strategy::{CATALOGUE, Plan, Preset, Settings, SettingsError, offer::Named},
+    test_function::RESONANCE,
+};
+use std::{collections::BTreeMap, fmt::Write as _};
+
+/// Settings that replace those of the preset.
+#[derive(Clone, Debug, Default, Args)]
+pub(crate) struct SettingsChoice {
+    /// Set one of the preset's settings; may be given several times, or with commas. The long help
+    /// (--help) lists them.
+    #[arg(
+        long,
+        value_name = "KEY=VALUE",
+        value_delimiter = ',',
+        env = "HORSEHEAD_SET",
+        value_parser = pair
+    )]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+fn pair(text: &str) -> Result<(String, String), String> {
+    let (key, value) = text
+        .split_once('=')
+        .ok_or("write KEY=VALUE, as population=40")?;
+    Ok((key.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// Settings as they were chosen.
+#[derive(Clone, Debug)]
+pub(crate) struct Chosen {
+    /// All of them.
+    pub(crate) settings: Settings,
+    /// Those that differ from the preset's, as `key=value`, in the order of the table.
+    pub(crate) set: Vec<String>,
+}
+
+impl SettingsChoice {
+    /// The settings of a preset for a plan, with what was set in their place.
+    ///
+    /// # Errors
+    /// If a key is unknown, or a value may not be that.
+    pub(crate) fn choose(&self, preset: &Preset, plan: &Plan<'_>) -> Result<Chosen, Usage> {
+        let usual = (preset.settings)(plan);
+        let mut settings = usual.clone();
+        for (key, value) in &self.set {
+            let set = preset.set(&mut settings, key, value);
+            set.map_err(|error| refuse(preset, error))?;
+        }
+        let differs = |one: &Named| {
+            let (usual, value) = (one.value(&usual), one.value(&settings));
+            let typed = one.setting.follows_workers && self.names(&one.key);
+            (typed || usual != value).then(|| format!("{}={}", one.key, value.unwrap_or_default()))
+        };
+        let set = preset.named().iter().filter_map(differs).collect();
+        Ok(Chosen { settings, set })
+    }
+
+    fn names(&self, key: &str) -> bool {
+        self.set.iter().any(|(typed, _)| typed == key)
+    }
+
+    /// Takes over from an earlier session what follows the number of workers and was not set anew:
+    /// the same run may go on with another number of them.
+    pub(crate) fn keep(&self, chosen: &mut Chosen, preset: &Preset, earlier: Option<&Settings>) {
+        let named = preset.named();
+        let follow = named.iter().filter(|one| one.setting.follows_workers);
+        for one in follow.filter(|one| !self.names(&one.key)) {
+            let of_run = earlier.filter(|earlier| earlier.strategy() == preset.strategy);
+            let value = of_run.and_then(|earlier| one.value(earlier));
+            if let Some(value) = value.or_else(|| one.value(&chosen.settings)) {
+                // a value of the table is always taken
+                if let Ok(shown) = preset.set(&mut chosen.settings, &one.key, &value) {
+                    chosen.set.push(format!("{}={shown}", one.key));
+                }
+            }
+        }
+    }
+}
+
+/// What to do about a setting that a preset does not take.
+fn refuse(preset: &Preset, error: SettingsError) -> Usage {
+    let message = format!("preset {}: {error}", preset.name);
+    let help = if let SettingsError::Unknown { key, known } = error {
+        let alike = |one: &&String| strsim::normalized_damerau_levenshtein(&key, one);
+        let near = known.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+        let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+        format!("{near}it has: {}", known.join(", "))
+    } else {
+        "`horsehead calibrate --help` lists what every setting may be".to_owned()
+    };
+    Usage { message, help }
+}
+
+/// The table of all settings for the help: what each may be, its value in every preset that has it,
+/// and what it means.
+pub(crate) fn table() -> String {
+    // a case with the ten coefficients; no default of the table depends on more
+    let space = RESONANCE.space();
+    let plan = Plan {
+        space: &space,
+        workers: 1,
+    };
+    let mut text = String::new();
+    let mut listed: Vec<String> = Vec::new();
+    for one in CATALOGUE.iter().flat_map(Preset::named) {
+        if listed.contains(&one.key) {
+            continue;
+        }
+        let allowed = one.setting.allowed();
+        let _infallible = writeln!(
+            text,
+            "  {}={allowed}\n      {} [{}]",
+            one.key,
+            one.setting.meaning,
+            usual(&one.key, &plan)
+        );
+        listed.push(one.key);
+    }
+    text
+}
+
+/// Values of a setting in the presets that have it, as `quick 32; paper, window 80`.
+fn usual(key: &str, plan: &Plan<'_>) -> String {
+    let mut by_value: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    for preset in CATALOGUE {
+        let named = preset.named();
+        let Some(one) = named.iter().find(|one| one.key == key) else {
+            continue;
+        };
+        let value = if one.setting.follows_workers {
+            Some("by the workers".to_owned())
+        } else {
+            one.value(&(preset.settings)(plan))
+        };
+        let presets = by_value.entry(value.unwrap_or_default()).or_default();
+        presets.push(preset.name);
+    }
+    let words = by_value.iter();
+    let words = words.map(|(value, presets)| format!("{} {value}", presets.join(", ")));
+    words.collect::<Vec<_>>().join("; ")
+}

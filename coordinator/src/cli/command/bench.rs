@@ -1,0 +1,386 @@
+//! `horsehead bench`: what the machinery costs without physics.
+use crate::{
+    cli::{
+        argument::{
+            door::Door,
+            output::{Output, OutputChoice},
+        },
+        output::{problem::EXIT_CODES, terminal},
+        run::bus,
+    },
+    runtime::{self, BenchPlan, BenchWorkers, Silence, SilentPlan, SilentResult},
+};
+use clap::{Args, Subcommand};
+use link::locator::Locator;
+use protocol::{case::Case, wire};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Measure what the machinery costs.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// The bus alone: no-op jobs to local workers.
+    #[command(after_help = format!("\
+Examples:
+  horsehead bench dispatch --workers 2 --jobs 20000
+  horsehead bench dispatch --connections 512
+  horsehead bench dispatch --connections 64 --tls keys
+  horsehead bench dispatch --sessions 512 --jobs 1000000 --result-bytes 300
+  horsehead bench dispatch --silent 5000
+  horsehead bench dispatch --connections 64 --idle 900
+
+{EXIT_CODES}"))]
+    Dispatch {
+        /// Worker processes to start, each with one slot process.
+        #[arg(long, value_name = "N", default_value_t = 2, env = "HORSEHEAD_WORKERS", value_parser = clap::value_parser!(u32).range(1..=1024))]
+        workers: u32,
+        /// Instead of processes, so many workers that are only sessions within this process, over
+        /// the memory link: no transport and no slots, the rest is real.
+        #[arg(long, value_name = "N", env = "HORSEHEAD_SESSIONS", value_parser = clap::value_parser!(u32).range(1..=16_384))]
+        sessions: Option<u32>,
+        /// Instead of processes, so many workers that are only sessions of one other process, over
+        /// TCP on loopback: no slots, the rest is real.
+        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_CONNECTIONS", value_parser = clap::value_parser!(u32).range(1..=990))]
+        connections: Option<u32>,
+        /// Have those connections come over QUIC instead of TCP, with the certificate of `worker-01` of
+        /// this folder of `horsehead keys new DIR --host 127.0.0.1`; nothing without --connections or
+        /// with --silent or --idle.
+        #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+        tls: Option<PathBuf>,
+        /// Jobs to do.
+        #[arg(long, value_name = "N", default_value_t = 10_000, value_parser = clap::value_parser!(u64).range(1..))]
+        jobs: u64,
+        /// Bytes of each result: a score has about 300, one with its residual 10,000.
+        #[arg(long, value_name = "N", default_value_t = 10_000, env = "HORSEHEAD_RESULT_BYTES", value_parser = clap::value_parser!(u32).range(..=10_000_000))]
+        result_bytes: u32,
+        /// Measure too, in turn without and with them, what so many connections cost that say
+        /// nothing and are opened again whenever the coordinator closes them.
+        #[arg(long, value_name = "N", conflicts_with = "sessions", env = "HORSEHEAD_SILENT", value_parser = clap::value_parser!(u32).range(1..=8000))]
+        silent: Option<u32>,
+        /// The same with sessions of the bus that never announce themselves: the coordinator takes
+        /// 1,000 sessions in all.
+        #[arg(long, value_name = "N", conflicts_with_all = ["sessions", "silent"], env = "HORSEHEAD_IDLE", value_parser = clap::value_parser!(u32).range(1..=990))]
+        idle: Option<u32>,
+        /// How often, with --silent or --idle: 8 s without and 8 s with them each time.
+        #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_TURNS", value_parser = clap::value_parser!(u32).range(1..=1000))]
+        turns: u32,
+        #[command(flatten)]
+        output: OutputChoice,
+    },
+    /// Be many workers that are only sessions, for `bench dispatch --connections`.
+    #[command(hide = true, after_help = format!("\
+Example:
+  horsehead bench sessions tcp/127.0.0.1:7447 64
+
+{EXIT_CODES}"))]
+    Sessions {
+        /// Address to dial.
+        #[arg(value_name = "LOCATOR", value_parser = Locator::parse)]
+        connect: Locator,
+        /// How many.
+        #[arg(value_name = "N")]
+        sessions: usize,
+        /// Key material of a worker.
+        #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+        tls: Option<PathBuf>,
+    },
+    /// Hold connections that say nothing, for `bench dispatch` with `--silent` or `--idle`, until
+    /// standard input ends.
+    #[command(hide = true, after_help = format!("\
+Example:
+  horsehead bench silent tcp/127.0.0.1:7447 5000
+
+{EXIT_CODES}"))]
+    Silent {
+        /// Address to dial.
+        #[arg(value_name = "LOCATOR", value_parser = Locator::parse)]
+        connect: Locator,
+        /// How many.
+        #[arg(value_name = "N")]
+        connections: usize,
+        /// Open a session of the bus on each.
+        #[arg(long, env = "HORSEHEAD_OPENED")]
+        opened: bool,
+    },
+}
+
+/// Of `horsehead bench dispatch`.
+#[derive(Debug, Serialize)]
+struct BenchOutput {
+    /// `processes` over TCP on loopback, `connections` of one other process over the same, or
+    /// `sessions` of this process over the memory link.
+    crew: &'static str,
+    /// How many of them.
+    workers: usize,
+    /// Time until all of them had joined (s).
+    joined_s: f64,
+    /// Jobs that were done.
+    jobs: u64,
+    /// Round trip of one job at a time (ms).
+    rtt_ms: RoundTrip,
+    /// Throughput with every worker busy.
+    jobs_per_s: f64,
+    /// CPU time of the coordinator per job (us).
+    coordinator_cpu_us_per_job: f64,
+    /// The same for the last tenth of the jobs over the first.
+    cost_ratio: f64,
+    /// Memory of this process (MiB).
+    coordinator_rss_mib: f64,
+    /// What silent connections cost; null where none were asked for.
+    silent: Option<SilentResult>,
+}
+
+/// Round-trip times (ms).
+#[derive(Debug, Serialize)]
+struct RoundTrip {
+    median: f64,
+    p99: f64,
+}
+
+/// Measures and shows.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    match &arguments.what {
+        What::Dispatch {
+            workers,
+            sessions,
+            connections,
+            tls,
+            jobs,
+            result_bytes,
+            silent,
+            idle,
+            turns,
+            output: OutputChoice { output },
+        } => {
+            let tls = tls
+                .clone()
+                .filter(|_| connections.is_some() && silent.or(*idle).is_none());
+            let (crew, workers, of_what) = match (sessions, connections) {
+                (Some(sessions), _) => (
+                    BenchWorkers::Sessions,
+                    *sessions,
+                    "sessions of this process (memory link)",
+                ),
+                (None, Some(connections)) => (
+                    BenchWorkers::Connections,
+                    *connections,
+                    match &tls {
+                        Some(_) => "sessions of another process (QUIC on loopback)",
+                        None => "sessions of another process (TCP on loopback)",
+                    },
+                ),
+                (None, None) => (
+                    BenchWorkers::Processes,
+                    *workers,
+                    "worker processes (TCP on loopback)",
+                ),
+            };
+            let plan = BenchPlan {
+                by: crew,
+                workers: workers as usize,
+                jobs: *jobs,
+                result_bytes: *result_bytes,
+                silent: silent.or(*idle).map(|connections| SilentPlan {
+                    silence: match idle {
+                        None => Silence::Connection,
+                        Some(_) => Silence::Session,
+                    },
+                    connections: connections as usize,
+                    turns: *turns as usize,
+                }),
+            };
+            dispatch(plan, tls, of_what, *output)
+        }
+        What::Sessions {
+            connect,
+            sessions,
+            tls,
+        } => {
+            bus::block_on(async { Ok(runtime::connect(connect, *sessions, tls.as_deref()).await?) })
+        }
+        What::Silent {
+            connect,
+            connections,
+            opened,
+        } => {
+            let silence = if *opened {
+                Silence::Session
+            } else {
+                Silence::Connection
+            };
+            bus::block_on(async { Ok(runtime::keep_silent(connect, silence, *connections).await?) })
+        }
+    }
+}
+
+fn dispatch(
+    plan: BenchPlan,
+    tls: Option<PathBuf>,
+    of_what: &str,
+    output: Output,
+) -> anyhow::Result<()> {
+    if output == Output::Table {
+        let (jobs, workers) = (plan.jobs, plan.workers);
+        terminal::tell(&format!("{jobs} no-op jobs on {workers} {of_what}"));
+    }
+    let result = bus::block_on(measure(plan, tls))?;
+    let table = || {
+        let mut text = format!(
+            "{} workers   joined within {:.2} s\n\
+             round trip   {:>10.3} ms median, {:.3} ms at 99 %\n\
+             throughput   {:>10.0} jobs/s\n\
+             coordinator  {:>10.1} us CPU per job, {:.2} times as much for the last tenth as for \
+             the first; {:.1} MiB\n",
+            result.workers,
+            result.joined_s,
+            result.rtt_ms.median,
+            result.rtt_ms.p99,
+            result.jobs_per_s,
+            result.coordinator_cpu_us_per_job,
+            result.cost_ratio,
+            result.coordinator_rss_mib
+        );
+        if let Some(silent) = &result.silent {
+            text += &beside(silent);
+        }
+        text
+    };
+    terminal::print(output, table, &result)
+}
+
+fn beside(silent: &SilentResult) -> String {
+    let (smallest, largest) = silent.rate_ratio_range;
+    format!(
+        "beside {} that say nothing ({} held at least, {} opened again in {} blocks):\n\
+         throughput   {:>10.0} jobs/s, {:.0} without: {:.3} times, {smallest:.3} to {largest:.3}\n\
+         coordinator  {:>10.2} times the CPU per job\n",
+        silent.connections,
+        silent.held,
+        silent.reopened,
+        silent.turns,
+        silent.jobs_per_s_beside,
+        silent.jobs_per_s_without,
+        silent.rate_ratio,
+        silent.cpu_ratio,
+    )
+}
+
+/// Measures the dispatcher with no-op jobs, in a scratch folder; with key material, over QUIC.
+async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchOutput> {
+    let scratch = tempfile::tempdir()?;
+    let options = bus::Options {
+        run_dir: scratch.path().to_owned(),
+        door: Door {
+            tls,
+            ..Door::default()
+        },
+        local_workers: 0,
+        kind: "bench".to_owned(),
+        settings: "{}".to_owned(),
+    };
+    let options = options.for_dispatch(&empty_case()?)?;
+    let result = runtime::bench(options, plan)
+        .await
+        .map_err(|error| bus::explain(&error))?;
+    Ok(BenchOutput {
+        crew: match plan.by {
+            BenchWorkers::Processes => "processes",
+            BenchWorkers::Connections => "connections",
+            BenchWorkers::Sessions => "sessions",
+        },
+        workers: result.workers,
+        joined_s: result.joined_s,
+        jobs: result.jobs,
+        rtt_ms: RoundTrip {
+            median: result.rtt_median_ms,
+            p99: result.rtt_p99_ms,
+        },
+        jobs_per_s: result.jobs_per_s,
+        coordinator_cpu_us_per_job: result.coordinator_cpu_us_per_job,
+        cost_ratio: result.cost_ratio,
+        coordinator_rss_mib: result.coordinator_rss_mib,
+        silent: result.silent,
+    })
+}
+
+/// A case in which everything is zero or empty: jobs that do nothing need no more. Its encoding
+/// is a row of zeros, whose length depends on the version of the case.
+fn empty_case() -> anyhow::Result<Case> {
+    let zeros = [0; 4096];
+    (1..zeros.len())
+        .find_map(|length| wire::decode(&zeros[..length]).ok())
+        .ok_or_else(|| anyhow::anyhow!("this version of the case cannot be all zeros"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+
+    fn fields(value: &Value) -> Vec<&str> {
+        let mut fields: Vec<&str> = value
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect();
+        fields.sort_unstable();
+        fields
+    }
+
+    #[test]
+    fn a_bench_has_the_fields_that_programs_rely_on() {
+        let object = BenchOutput {
+            crew: "processes",
+            workers: 2,
+            joined_s: 0.5,
+            jobs: 1000,
+            rtt_ms: RoundTrip {
+                median: 0.25,
+                p99: 1.0,
+            },
+            jobs_per_s: 4000.0,
+            coordinator_cpu_us_per_job: 120.0,
+            cost_ratio: 1.0,
+            coordinator_rss_mib: 22.0,
+            silent: Some(SilentResult {
+                connections: 5000,
+                held: 4900,
+                reopened: 8000,
+                turns: 5,
+                jobs_per_s_without: 2000.0,
+                jobs_per_s_beside: 1900.0,
+                rate_ratio: 0.95,
+                rate_ratio_range: (0.9, 1.0),
+                cpu_ratio: 1.05,
+            }),
+        };
+        let value = serde_json::to_value(&object).unwrap();
+        assert_eq!(
+            fields(&value),
+            [
+                "coordinator_cpu_us_per_job",
+                "coordinator_rss_mib",
+                "cost_ratio",
+                "crew",
+                "jobs",
+                "jobs_per_s",
+                "joined_s",
+                "rtt_ms",
+                "silent",
+                "workers"
+            ]
+        );
+        assert_eq!(fields(&value["rtt_ms"]), ["median", "p99"]);
+        assert_eq!(
+            value["silent"]["rate_ratio_range"],
+            serde_json::json!([0.9, 1.0])
+        );
+    }
+}

@@ -1,0 +1,201 @@
+//! `horsehead calibrate`: identify the parameters, and show what it brought.
+use crate::cli::{
+    argument::{
+        case::{CaseChoice, LoadedCase},
+        door::Door,
+        output::OutputChoice,
+        settings::{self, SettingsChoice},
+        workers::{cores, worker_count},
+    },
+    output::{
+        calibration::show,
+        problem::{EXIT_CODES, Usage},
+        progress::Display,
+        terminal,
+    },
+    run::{
+        begun::Run,
+        bus,
+        calibration::{Calibration, calibrate},
+        command_line::command_line,
+        folder::RunFolder,
+        manifest::{self, CALIBRATE, Manifest, Start},
+        session::Session,
+    },
+};
+use crate::{case::require_record, study::Watch as _};
+use anyhow::Context as _;
+use clap::{Args, builder::PossibleValuesParser};
+use protocol::case::Case;
+use search::{
+    space::Space,
+    strategy::{CATALOGUE, Plan, Preset, preset},
+};
+use std::{path::PathBuf, time::Instant};
+
+/// Identify stiffness and damping from the gauge records; the same command resumes.
+#[derive(Debug, Args)]
+#[command(
+    after_help = format!("{}\n{EXIT_CODES}", examples()),
+    after_long_help = format!(
+        "{}\nSettings, with what each may be and [what it is in the presets that have it]:\n\
+         {}\n{EXIT_CODES}",
+        examples(),
+        settings::table()
+    )
+)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    choice: CaseChoice,
+    /// How to search; see below.
+    #[arg(
+        long,
+        default_value = "quick",
+        env = "HORSEHEAD_PRESET",
+        hide_possible_values = true,
+        value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
+    )]
+    preset: String,
+    /// Gene file to search around instead of the recommended values, such as the `calibrated.toml` of
+    /// an earlier calibration or diagnosis.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
+    genes: Option<PathBuf>,
+    /// Fixes every random choice: the same seed gives the same bits.
+    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
+    seed: u64,
+    /// Run folder [default: runs/CASE-PRESET-seedN, with what --set changes, and with --measured also
+    /// the folder's name and the start of its records' hash].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    settings: SettingsChoice,
+    /// Of the preset `window`, short for --set window=L: an individual is bred from results that are
+    /// this many behind, part of what decides the result [default: that of the run, or 3 times the
+    /// workers planned: those started here, 40 at least with --listen].
+    #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    window: Option<u32>,
+    #[command(flatten)]
+    door: Door,
+    /// Worker processes to start on this machine; 0 for none [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+fn examples() -> String {
+    let line = |preset: &Preset| format!("  {:<14} {}\n", preset.name, preset.summary);
+    let presets: String = CATALOGUE.iter().map(line).collect();
+    format!(
+        "\
+Examples:
+  horsehead calibrate cases/cyjs10-5-37hb
+  horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen tcp/127.0.0.1:7447
+  horsehead calibrate cases/cyjs10-5-37hb --preset paper --set encoding=gray --set population=40
+  horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
+  horsehead calibrate cases/cyjs10-5-37hb --genes runs/cyjs10-5-37hb-diagnose-seed1/calibrated.toml
+
+Presets:
+{presets}
+Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
+"
+    )
+}
+
+/// Workers to plan for where any number of machines may connect.
+const LISTENING: usize = 40;
+
+/// How many workers the run is planned for.
+fn planned_workers(door: &Door, local: usize) -> usize {
+    match door.listen {
+        Some(_) => local.max(LISTENING),
+        None => local,
+    }
+}
+
+/// The space to search, about the recommended values or those of a start.
+fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Usage> {
+    manifest::space(case, start).map_err(|error| Usage {
+        message: match start {
+            Some(start) => format!("{}: {error}", start.file.display()),
+            None => error.to_string(),
+        },
+        help: "choose values inside the bounds, or widen them in case.toml".to_owned(),
+    })
+}
+
+/// The run that was asked for, as it begins or goes on.
+fn begin(arguments: &Arguments, local_workers: usize) -> anyhow::Result<Calibration> {
+    let LoadedCase {
+        case,
+        measured,
+        synthetic,
+        notes,
+    } = arguments.choice.load()?;
+    let start = Start::read(arguments.genes.as_deref(), &case)?;
+    let space = searched(&case, start.as_ref())?;
+    let preset = preset(&arguments.preset).context("the catalogue has lost a preset")?;
+    require_record(&arguments.choice.case, &case, case.objective.condition)?;
+    let plan = Plan {
+        space: &space,
+        workers: planned_workers(&arguments.door, local_workers),
+    };
+    let mut choice = arguments.settings.clone();
+    let window = arguments.window.map(|length| length.to_string());
+    choice
+        .set
+        .extend(window.map(|length| ("window".to_owned(), length)));
+    let mut chosen = choice.choose(preset, &plan)?;
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let replaced = arguments.choice.measured.as_deref();
+        RunFolder::default_path(&case, preset.name, &chosen.set, replaced, arguments.seed)?
+    };
+    let earlier = Calibration::open(&path)
+        .ok()
+        .map(|run| run.manifest.settings);
+    choice.keep(&mut chosen, preset, earlier.as_ref());
+    let manifest = Manifest {
+        kind: CALIBRATE.to_owned(),
+        format: manifest::FORMAT,
+        program: bus::PROGRAM.to_owned(),
+        command: command_line(),
+        preset: preset.name.to_owned(),
+        seed: arguments.seed,
+        set: chosen.set,
+        settings: chosen.settings,
+        start,
+        case_folder: std::path::absolute(&arguments.choice.case)?,
+        measured,
+        synthetic,
+        notes,
+        wall_s: 0.0,
+    };
+    Run::begin(&path, manifest, case)
+}
+
+/// Calibrates from the first proposal to the report.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let session = Session {
+        door: arguments.door.clone(),
+        local_workers: arguments.workers.unwrap_or_else(cores),
+        started: Instant::now(),
+    };
+    let run = begin(arguments, session.local_workers)?;
+    if run.lost_journal() {
+        terminal::tell(&format!(
+            "warning: the journal of {} is gone or empty, and with it the results: the run begins \
+             anew",
+            run.folder.path().display()
+        ));
+    }
+    let found = session.work(&run, async |bus, stop| {
+        let mut display = Display::new();
+        display.resumed(bus.recorded());
+        let found = calibrate(bus, &run, &mut display, stop).await;
+        display.clear();
+        found
+    })?;
+    show(&run, &found, session.wall_s(&run), arguments.output.output)
+}

@@ -1,0 +1,370 @@
+//! Exports of whole runs: what the tables say is what the search saw and the journal holds.
+use super::*;
+use crate::{
+    cli::{
+        argument::output::Output,
+        output::{problem::Usage, progress::Silent},
+        run::{
+            begun::Run,
+            bus,
+            calibration::calibrate,
+            manifest::{CALIBRATE, FORMAT},
+        },
+    },
+    journal::{self, Entry, Journal},
+    store::read_back::{self, Tables, Value},
+    study::{
+        Completed, Crew, EvaluationLog, Evaluator, EvaluatorError,
+        tests::{Oracle, case, physics},
+    },
+};
+use protocol::{
+    event::{Event, Finished, RunHeader},
+    id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
+    job::{Answer, Job},
+    message::{Attempt, Cost},
+};
+use search::{
+    space::Space,
+    strategy::{Plan, preset},
+};
+use std::{
+    fs,
+    io::{Read as _, Seek as _, SeekFrom, Write as _},
+    path::Path,
+};
+
+/// Evaluates as the study's own tests do and writes the journal as a run does; after so many
+/// results it has had enough.
+struct Scribe {
+    oracle: Oracle,
+    journal: Journal,
+    jobs: BTreeMap<JobId, Job>,
+    left: usize,
+}
+
+impl Evaluator for Scribe {
+    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+        self.jobs.insert(id, job.clone());
+        self.oracle.submit(id, job)
+    }
+
+    async fn next(&mut self) -> Result<Completed, EvaluatorError> {
+        if self.left == 0 {
+            return Err(EvaluatorError {
+                message: "enough".to_owned(),
+                help: None,
+            });
+        }
+        self.left -= 1;
+        let completed = self.oracle.next().await?;
+        let id = completed.id;
+        let finished = Finished {
+            attempt: Attempt {
+                job: id,
+                attempt: AttemptId(1 << 16 | u32::try_from(id.0 % 3).unwrap()),
+            },
+            work: self.jobs[&id].work_hash(),
+            worker: Some(WorkerId(7)),
+            cost: Cost {
+                wall_us: 1000 + id.0,
+                cpu_us: id.0,
+            },
+            outcome: completed.outcome.clone(),
+        };
+        let event = Event::Finished(Box::new(finished));
+        self.journal.append(event).unwrap();
+        Ok(completed)
+    }
+
+    fn crew(&self) -> Crew {
+        Crew::default()
+    }
+}
+
+/// A run whose journal holds so many results; the log if it came to its end.
+fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
+    let case = case();
+    let space = Space::new(&case.genes).unwrap();
+    let manifest = Manifest {
+        kind: CALIBRATE.to_owned(),
+        format: FORMAT,
+        program: bus::PROGRAM.to_owned(),
+        command: "horsehead calibrate X".to_owned(),
+        preset: "quick".to_owned(),
+        seed: 3,
+        set: Vec::new(),
+        settings: (preset("quick").unwrap().settings)(&Plan {
+            space: &space,
+            workers: 1,
+        }),
+        start: None,
+        case_folder: folder.to_owned(),
+        measured: "X".to_owned(),
+        synthetic: false,
+        notes: vec!["one".to_owned(), "two, \"quoted\"".to_owned()],
+        wall_s: 1.5,
+    };
+    fs::create_dir_all(folder).unwrap();
+    let run = Run::begin(&folder.join("."), manifest, case).unwrap();
+    run.remember(1.5).unwrap();
+    let header = RunHeader {
+        kind: CALIBRATE.to_owned(),
+        case: ContentHash::of(b"case"),
+        settings: run.manifest.settings_json().unwrap(),
+    };
+    let (journal, _) = Journal::open(folder, &header, RunId(1), 5, |_| {}).unwrap();
+    let mut scribe = Scribe {
+        oracle: Oracle::new(&run.case, 11, physics),
+        journal,
+        jobs: BTreeMap::new(),
+        left: results,
+    };
+    let found = bus::block_on(async {
+        let mut stop = tokio::sync::watch::channel(false).1;
+        calibrate(&mut scribe, &run, &mut Silent, &mut stop).await
+    });
+    (scribe, found.ok().map(|found| found.calibrated.log))
+}
+
+fn arguments(run: &Path, format: Form, to: Option<&Path>) -> Arguments {
+    Arguments {
+        run: run.to_owned(),
+        format,
+        to: to.map(Path::to_owned),
+        force: false,
+        output: OutputChoice {
+            output: Output::Json,
+        },
+    }
+}
+
+/// Values of a column.
+fn column<'a>(tables: &'a Tables, table: &str, column: &str) -> Vec<&'a Value> {
+    let (names, rows) = &tables[table];
+    let place = names.iter().position(|name| name == column).unwrap();
+    rows.iter().map(|row| &row[place]).collect()
+}
+
+fn integers(tables: &Tables, table: &str, name: &str) -> Vec<i64> {
+    let value = |value: &&Value| match value {
+        Value::Integer(number) => Some(*number),
+        Value::Null | Value::Real(_) | Value::Text(_) => None,
+    };
+    let values = column(tables, table, name);
+    values.iter().map(value).map(Option::unwrap).collect()
+}
+
+/// Results of a journal in the order of the file, by the journal's own fold.
+fn results(folder: &Path) -> Vec<(Entry, Finished)> {
+    let mut found = Vec::new();
+    journal::fold(&folder.join(journal::FILE), |entry, event| {
+        if let Event::Finished(finished) = event {
+            found.push((entry, *finished));
+        }
+    })
+    .unwrap();
+    found
+}
+
+/// The rows of the search are those of its log, to the last bit.
+fn expect_log(tables: &Tables, log: &EvaluationLog) {
+    let case = case();
+    let genes: Vec<Vec<&Value>> = (column(tables, "genes", "column").iter())
+        .map(|name| match name {
+            Value::Text(name) => column(tables, "evaluations", name),
+            Value::Null | Value::Integer(_) | Value::Real(_) => Vec::new(),
+        })
+        .collect();
+    assert_eq!(genes.len(), case.genes.len());
+    let purposes = column(tables, "evaluations", "purpose");
+    let fitness = column(tables, "evaluations", "fitness_mpa2");
+    let jobs = integers(tables, "evaluations", "job");
+    let at: BTreeMap<i64, usize> = jobs.iter().copied().zip(0..).collect();
+    for entry in log.entries() {
+        let row = at[&i64::try_from(entry.id).unwrap()];
+        assert_eq!(
+            *purposes[row],
+            Value::Text(entry.purpose.as_str().to_owned())
+        );
+        assert_eq!(*fitness[row], Value::Real(entry.fitness));
+        for (gene, value) in entry.genes.iter().enumerate() {
+            assert_eq!(*genes[gene][row], Value::Real(*value));
+        }
+    }
+}
+
+#[test]
+fn three_forms_hold_what_the_search_saw_and_leave_no_trace() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    let (scribe, log) = run_with(&folder, usize::MAX);
+    drop(scribe);
+    let (log, before) = (log.unwrap(), fs::read(folder.join(journal::FILE)).unwrap());
+    let mut all = Vec::new();
+    for form in [Form::Sqlite, Form::Csv, Form::Parquet] {
+        let made = export(&arguments(&folder, form, None)).unwrap();
+        assert!(made.complete, "{:?}", made.notes);
+        let first = read_back::files(&made.files);
+        let tables = read_back::tables(&folder.join(Format::from(form).usual_name()), form.into());
+        // again, over the first one
+        let again = export(&arguments(&folder, form, None)).unwrap();
+        assert_eq!(read_back::files(&again.files), first, "{form:?}");
+        for (name, rows) in &made.rows {
+            assert_eq!(tables[*name].1.len() as u64, *rows, "{form:?} {name}");
+        }
+        assert_eq!(tables.len(), made.rows.len());
+        all.push(tables);
+    }
+    assert_eq!(fs::read(folder.join(journal::FILE)).unwrap(), before);
+    assert_eq!(all[0], all[1]);
+    assert_eq!(all[0], all[2]);
+    let tables = &all[0];
+    expect_log(tables, &log);
+    let recorded = results(&folder);
+    assert!(log.len() > 500, "{}", log.len());
+    // both parameter sets are scored and simulated under both conditions
+    assert_eq!(recorded.len(), log.len() + 8);
+    assert_eq!(tables["evaluations"].1.len(), recorded.len());
+    let jobs = integers(tables, "results", "job");
+    let attempts = integers(tables, "results", "attempts");
+    for (row, (_, finished)) in recorded.iter().enumerate() {
+        assert_eq!(jobs[row], i64::try_from(finished.job().0).unwrap());
+        assert_eq!(attempts[row], jobs[row] % 3 + 1);
+    }
+    let scored = recorded.iter().map(|(_, finished)| {
+        if let Some(evaluation) = finished.outcome.answer().and_then(Answer::evaluation) {
+            evaluation.channels.len()
+        } else {
+            0
+        }
+    });
+    assert_eq!(tables["scores"].1.len(), scored.sum::<usize>());
+    let kinds: std::collections::BTreeSet<String> = column(tables, "evaluations", "verdict")
+        .iter()
+        .map(|verdict| format!("{verdict:?}"))
+        .collect();
+    assert!(kinds.len() > 1, "no simulation failed: {kinds:?}");
+}
+
+/// The example of the README, as it stands there.
+#[test]
+fn the_query_of_the_readme_finds_the_best_individuals() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    let (_, log) = run_with(&folder, usize::MAX);
+    export(&arguments(&folder, Form::Sqlite, None)).unwrap();
+    let readme = include_str!("../../../../README.md");
+    let (_, behind) = readme.split_once("run.sqlite \"").unwrap();
+    let (query, _) = behind.split_once('"').unwrap();
+    let database = rusqlite::Connection::open(folder.join("run.sqlite")).unwrap();
+    let mut statement = database.prepare(query).unwrap();
+    let mut rows = statement.query([]).unwrap();
+    let mut best = Vec::new();
+    while let Some(row) = rows.next().unwrap() {
+        best.push(row.get::<_, f64>("fitness_mpa2").unwrap());
+    }
+    let log = log.unwrap();
+    let complete = log
+        .entries()
+        .filter(|entry| entry.ending == crate::study::Ending::Complete);
+    let mut expected: Vec<f64> = complete.map(|entry| entry.fitness).collect();
+    expected.sort_by(f64::total_cmp);
+    expected.truncate(best.len());
+    assert!(best.len() >= 5 && best == expected, "{best:?} {expected:?}");
+}
+
+#[test]
+fn a_run_that_goes_on_is_exported_as_far_as_it_got() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    let (mut scribe, log) = run_with(&folder, 300);
+    assert!(log.is_none());
+    // its coordinator is alive: it holds the lock and is in the middle of a record
+    scribe.journal.close();
+    let path = folder.join(journal::FILE);
+    let mut file = fs::OpenOptions::new().append(true).open(&path).unwrap();
+    file.write_all(&journal::MARK).unwrap();
+    let made = export(&arguments(&folder, Form::Csv, None)).unwrap();
+    assert!(!made.complete);
+    assert_eq!((made.rows["results"], made.rows["damage"]), (300, 1));
+    let there = made.rows["evaluations"];
+    assert!((100..=300).contains(&there), "{there}");
+    let words = made.notes.join(" ");
+    assert!(
+        words.contains("unfinished record") && words.contains("have no result in the journal"),
+        "{words}"
+    );
+    let tables = read_back::tables(&folder.join("csv"), Format::Csv);
+    let jobs = integers(&tables, "evaluations", "job");
+    assert!(jobs.is_sorted());
+}
+
+#[test]
+fn damage_costs_what_it_touched_and_what_was_bred_from_it() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    drop(run_with(&folder, usize::MAX));
+    let recorded = results(&folder);
+    let whole = export(&arguments(&folder, Form::Csv, None)).unwrap();
+    let (entry, lost) = &recorded[recorded.len() / 2];
+    let mut file = fs::OpenOptions::new()
+        .read(true)
+        .write(true)
+        .open(folder.join(journal::FILE))
+        .unwrap();
+    let mut byte = [0];
+    file.seek(SeekFrom::Start(entry.at)).unwrap();
+    file.read_exact(&mut byte).unwrap();
+    file.seek(SeekFrom::Start(entry.at)).unwrap();
+    file.write_all(&[byte[0] ^ 0x10]).unwrap();
+    let made = export(&arguments(&folder, Form::Csv, None)).unwrap();
+    assert!(!made.complete && made.notes.join(" ").contains("are damaged"));
+    assert_eq!(made.rows["results"], whole.rows["results"] - 1);
+    assert_eq!(made.rows["damage"], 1);
+    let tables = read_back::tables(&folder.join("csv"), Format::Csv);
+    let jobs = integers(&tables, "evaluations", "job");
+    let lost = i64::try_from(lost.job().0).unwrap();
+    assert!(!jobs.contains(&lost) && jobs.contains(&(lost - 1)));
+    assert!(made.rows["evaluations"] < made.rows["results"]);
+}
+
+#[test]
+fn a_run_without_results_has_empty_tables_and_another_folder_is_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    drop(run_with(&folder, 0));
+    let made = export(&arguments(&folder, Form::Parquet, None)).unwrap();
+    assert_eq!((made.rows["evaluations"], made.rows["results"]), (0, 0));
+    assert_eq!(made.rows["genes"], 10);
+    let tables = read_back::tables(&folder.join("parquet"), Format::Parquet);
+    assert!(tables["evaluations"].1.is_empty() && tables["dictionary"].1.len() > 50);
+    fs::remove_file(folder.join(journal::FILE)).unwrap();
+    let error = export(&arguments(&folder, Form::Csv, None)).unwrap_err();
+    assert!(error.to_string().contains("has no journal yet"), "{error}");
+    let error = export(&arguments(scratch.path(), Form::Csv, None)).unwrap_err();
+    assert!(error.to_string().contains("is no run folder"), "{error}");
+    assert!(error.is::<Usage>());
+    let left: Vec<_> = fs::read_dir(scratch.path()).unwrap().collect();
+    assert_eq!(left.len(), 1, "only the run: {left:?}");
+}
+
+/// What is asked is checked against what was answered, so that settings that were changed behind
+/// the run's back do not put the wrong genes beside a result.
+#[test]
+fn results_of_other_settings_are_not_given_genes() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folder = scratch.path().join("run");
+    drop(run_with(&folder, 200));
+    let file = folder.join("run.json");
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text.replace("\"seed\": 3", "\"seed\": 4")).unwrap();
+    let made = export(&arguments(&folder, Form::Csv, None)).unwrap();
+    // the recommended individual comes first whatever the seed
+    assert_eq!((made.rows["results"], made.rows["evaluations"]), (200, 1));
+    assert!(
+        made.notes.join(" ").contains("is not the one"),
+        "{:?}",
+        made.notes
+    );
+}

@@ -1,0 +1,86 @@
+//! The commands, one per file, each with the same habits.
+//!
+//! A command is a file with its `Arguments` and the function `run`; here it costs its name in two
+//! lists. Its help shows examples and the exit codes, its options have twins in the environment, and
+//! its results go through [`terminal`].
+mod bench;
+mod calibrate;
+mod case;
+mod completions;
+mod diagnose;
+mod explain;
+mod export;
+mod head;
+mod keys;
+#[cfg(test)]
+mod printed;
+mod report;
+mod simulate;
+#[cfg(test)]
+mod tests;
+mod verify;
+
+use super::output::{problem, terminal};
+use clap::{CommandFactory as _, Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Makes a simulation of a rope-driven pumping unit agree with its strain gauges.
+#[derive(Debug, Parser)]
+#[command(name = "horsehead", version, max_term_width = 100, after_help = FIRST_STEPS)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const FIRST_STEPS: &str = "\
+First steps:
+  horsehead case check cases/cyjs10-5-37hb
+  horsehead simulate cases/cyjs10-5-37hb
+  horsehead calibrate cases/cyjs10-5-37hb
+  horsehead diagnose cases/cyjs10-5-37hb
+
+Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
+
+/// Makes the enum of the commands and runs the one that was typed; what stands in brackets is given
+/// to the command beside its arguments.
+macro_rules! commands {
+    ($($name:ident: $file:ident $([$more:expr])?,)*) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($name($file::Arguments),)*
+        }
+
+        impl Command {
+            fn run(&self) -> anyhow::Result<()> {
+                match self {
+                    $(Self::$name(arguments) => $file::run(arguments $(, $more)?),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    Simulate: simulate,
+    Calibrate: calibrate,
+    Verify: verify,
+    Diagnose: diagnose,
+    Head: head,
+    Report: report,
+    Explain: explain,
+    Export: export,
+    Case: case,
+    Keys: keys,
+    Bench: bench,
+    Completions: completions [&mut Cli::command()],
+}
+
+/// Runs the program; its exit code says how it ended.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    terminal::diagnostics();
+    match cli.command.run() {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => problem::explain(&error),
+    }
+}

@@ -1,0 +1,43 @@
+//! `horsehead report`: the files of a finished run again, from its journal.
+use crate::{
+    cli::{
+        argument::output::OutputChoice,
+        output::{problem::EXIT_CODES, progress::Silent},
+        run::{bus, folder::RunFolder, interrupt, kind::AnyRun},
+    },
+    study::Recorded,
+};
+use clap::Args;
+use protocol::{event::Finished, job::Job};
+use std::path::PathBuf;
+
+/// Write tables, figures and report of a finished run again, from its journal.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Example:
+  horsehead report runs/cyjs10-5-37hb-quick-seed1
+  horsehead report runs/cyjs10-5-37hb-diagnose-seed1
+
+Nothing is simulated: an unfinished run is refused.
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Run folder of a calibration or a diagnosis.
+    #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
+    run: PathBuf,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Replays the run and writes its files.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let run = AnyRun::open(&arguments.run)?;
+    run.expect_replayable()?;
+    let recording = RunFolder::new(&arguments.run).recording()?;
+    let mut unseen = |_: &Job, _: &Finished| Ok(());
+    let mut recorded = Recorded::new(&recording, &mut unseen);
+    let repeated = bus::block_on(async {
+        let mut stop = interrupt::listen();
+        run.repeat(&mut recorded, &mut Silent, &mut stop).await
+    })?;
+    repeated.write(arguments.output.output)
+}

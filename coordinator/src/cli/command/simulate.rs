@@ -1,0 +1,135 @@
+//! `horsehead simulate`: one run of the machine.
+use crate::{
+    cli::{
+        argument::{case::CaseChoice, individual::IndividualChoice, output::OutputChoice},
+        output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
+        run::{bus, command_line::command_line, once::compare_once},
+    },
+    report::{self, Origin, SingleRun, table, words},
+    study::{Compared, Curves, Wanted, simulation_digest},
+};
+use anyhow::Context as _;
+use clap::Args;
+use protocol::{case::Case, job::Verdict};
+use std::path::PathBuf;
+
+/// Simulate one revolution: curves, verdict, counters.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead simulate cases/cyjs10-5-37hb
+  horsehead simulate cases/cyjs10-5-37hb --genes cases/cyjs10-5-37hb/table3_optimised.toml \\
+      --condition 4rpm --out simulated
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    choice: CaseChoice,
+    #[command(flatten)]
+    individual: IndividualChoice,
+    /// Folder for the report, the figures and the curves; none are written without.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Simulates and shows.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let loaded = arguments.choice.load()?;
+    let case = &loaded.case;
+    let condition = arguments.individual.condition(case)?;
+    let genes = arguments.individual.genes(case)?;
+    if let Some(folder) = &arguments.out {
+        check_out(folder)?;
+    }
+    let motion_step_deg = if arguments.out.is_some() { 3.0 } else { 0.0 };
+    let mut notes = loaded.notes.clone();
+    for note in outside_bounds(case, &genes) {
+        terminal::tell(&format!("note: {note}"));
+        notes.push(note);
+    }
+    let wanted = Wanted {
+        condition,
+        individuals: vec![(arguments.individual.genes.clone(), genes)],
+        motion_step_deg,
+    };
+    let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
+    let curves = first(groups).context("no result came back")?;
+
+    let verdict = curves.simulation.verdict;
+    if verdict != Verdict::Complete {
+        terminal::tell(&format!("the machine {}", words::verdict(&verdict)));
+    }
+    let run = SingleRun {
+        case: case.clone(),
+        origin: Origin {
+            program: bus::PROGRAM.to_owned(),
+            command: command_line(),
+            run: format!("{} {}", case.name, case.conditions[condition].name),
+            case_hash: bus::case_hash(case)?,
+            measured_name: loaded.measured.clone(),
+            preset: None,
+            seed: None,
+            digest: simulation_digest(&curves.simulation),
+            synthetic: loaded.synthetic,
+        },
+        condition,
+        genes_name: arguments.individual.genes.clone(),
+        genes: curves.genes.clone(),
+        evaluation: curves.evaluation.clone(),
+        simulation: curves.simulation.clone(),
+        notes,
+    };
+    if let Some(folder) = &arguments.out {
+        let files = report::write_simulation(folder, &run)?;
+        if let Some(first) = files.first() {
+            terminal::tell(&format!(
+                "wrote {} files; open {}",
+                files.len(),
+                first.display()
+            ));
+        }
+    }
+    let object = simulation((case, condition), &curves);
+    let tables = || table::text(&table::simulation(&run), terminal::styled());
+    terminal::print(arguments.output.output, tables, &object)
+}
+
+/// Genes that a search of this case would never try, one sentence each.
+fn outside_bounds(case: &Case, genes: &[f64]) -> Vec<String> {
+    let genes = case.genes.iter().zip(genes);
+    genes
+        .filter(|(gene, value)| !(gene.lower..=gene.upper).contains(value))
+        .map(|(gene, value)| {
+            let (name, unit) = (gene.label(), gene.unit());
+            let (lower, upper) = (gene.lower, gene.upper);
+            format!(
+                "{name} = {value:e} {unit} lies outside the case's search bounds, {lower:e} to \
+                 {upper:e} {unit}"
+            )
+        })
+        .collect()
+}
+
+fn first(groups: Vec<Compared>) -> Option<Curves> {
+    groups.into_iter().next()?.individuals.into_iter().next()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::outside_bounds;
+    use std::path::Path;
+
+    #[test]
+    fn genes_outside_the_bounds_are_noted() {
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+        let case = crate::case::load(&shipped, &crate::case::Overrides::default()).unwrap();
+        let mut genes = case.recommended();
+        assert_eq!(outside_bounds(&case, &genes), [""; 0]);
+        genes[1] = 2.0 * case.genes[1].upper;
+        let notes = outside_bounds(&case, &genes);
+        assert_eq!(notes.len(), 1);
+        assert!(notes[0].starts_with("kb23 = "), "{}", notes[0]);
+    }
+}

@@ -1,0 +1,447 @@
+//! Habits of the command line: help, run folders, gene files.
+use super::*;
+use crate::{
+    case::{Overrides, load, read_genes, write_genes},
+    cli::{
+        argument::{
+            individual::condition,
+            settings::{Chosen, SettingsChoice},
+        },
+        output::problem::Usage,
+        run::{
+            begun::Run,
+            bus,
+            calibration::Calibration,
+            folder::RunFolder,
+            manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
+        },
+    },
+    journal,
+};
+use protocol::case::Case;
+use search::{
+    space::Space,
+    strategy::{Plan, preset},
+};
+use std::path::{Path, PathBuf};
+
+fn shipped() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb")
+}
+
+fn manifest(case: &Case, seed: u64) -> Manifest {
+    let space = Space::new(&case.genes).unwrap();
+    Manifest {
+        kind: CALIBRATE.to_owned(),
+        format: FORMAT,
+        program: bus::PROGRAM.to_owned(),
+        command: "horsehead calibrate X".to_owned(),
+        preset: "quick".to_owned(),
+        seed,
+        set: Vec::new(),
+        settings: (preset("quick").unwrap().settings)(&Plan {
+            space: &space,
+            workers: 1,
+        }),
+        start: None,
+        case_folder: shipped(),
+        measured: "X".to_owned(),
+        synthetic: false,
+        notes: Vec::new(),
+        wall_s: 0.0,
+    }
+}
+
+/// A start at other genes than the recommended ones.
+fn started(case: &Case) -> Start {
+    Start {
+        file: "found.toml".into(),
+        genes: case
+            .genes
+            .iter()
+            .map(|gene| 2.0 * gene.recommended)
+            .collect(),
+    }
+}
+
+#[test]
+fn a_run_keeps_the_genes_that_it_started_at() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let manifest = manifest(&case, 3);
+    let elsewhere = Manifest {
+        start: Some(started(&case)),
+        ..manifest.clone()
+    };
+    assert_ne!(
+        manifest.settings_json().unwrap(),
+        elsewhere.settings_json().unwrap()
+    );
+    let begin = |manifest: &Manifest| Run::begin(scratch.path(), manifest.clone(), case.clone());
+    begin(&elsewhere).unwrap().remember(0.0).unwrap();
+    begin(&elsewhere).unwrap();
+    let error = begin(&manifest).unwrap_err();
+    assert!(
+        error.to_string().ends_with("it starts at other genes"),
+        "{error}"
+    );
+    // what is computed again for a report begins there, too
+    let kept = Calibration::open(scratch.path()).unwrap();
+    let origin = vec![0.0; case.genes.len()];
+    assert_eq!(
+        kept.manifest.space(&kept.case).unwrap().values(&origin),
+        started(&case).genes
+    );
+}
+
+/// Every command, also those below others.
+fn commands(command: &clap::Command, path: &str, all: &mut Vec<(String, clap::Command)>) {
+    for sub in command
+        .get_subcommands()
+        .filter(|sub| sub.get_name() != "help")
+    {
+        let path = format!("{path} {}", sub.get_name());
+        all.push((path.clone(), sub.clone()));
+        commands(sub, &path, all);
+    }
+}
+
+#[test]
+fn every_command_shows_an_example_that_parses_and_its_exit_codes() {
+    Cli::command().debug_assert();
+    let mut all = Vec::new();
+    commands(&Cli::command(), "horsehead", &mut all);
+    let leaves = all
+        .into_iter()
+        .filter(|(_, command)| !command.has_subcommands());
+    for (path, mut command) in leaves {
+        let help = command.render_long_help().to_string();
+        assert!(help.contains("Exit codes: 0 done"), "{path}");
+        let joined = help.replace("\\\n", " ");
+        let examples: Vec<&str> = joined
+            .lines()
+            .map(str::trim)
+            .filter(|line| line.starts_with(&path))
+            .collect();
+        assert!(!examples.is_empty(), "{path} has no example:\n{help}");
+        for example in examples {
+            let words = example.split_whitespace().take_while(|word| *word != ">");
+            assert!(Cli::try_parse_from(words).is_ok(), "{example}");
+        }
+    }
+}
+
+#[test]
+fn every_command_that_a_report_advises_parses() {
+    for advised in crate::report::words::command::ALL {
+        let parsed = Cli::try_parse_from(advised.split_whitespace());
+        assert!(parsed.is_ok(), "{advised}");
+    }
+}
+
+#[test]
+fn every_option_has_a_twin_in_the_environment() {
+    let mut all = Vec::new();
+    commands(&Cli::command(), "horsehead", &mut all);
+    for (path, command) in all {
+        for option in command
+            .get_opts()
+            .filter(|option| option.get_id() != "jobs")
+        {
+            let twin = option
+                .get_env()
+                .map(|name| name.to_string_lossy().into_owned());
+            let name = option.get_id().as_str().to_uppercase();
+            assert_eq!(
+                twin,
+                Some(format!("HORSEHEAD_{name}")),
+                "{path} --{}",
+                option.get_id()
+            );
+        }
+    }
+}
+
+#[test]
+fn completions_exist_for_every_shell() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(
+            Cli::try_parse_from(["horsehead", "completions", shell]).is_ok(),
+            "{shell}"
+        );
+    }
+}
+
+#[test]
+fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let path = scratch
+        .path()
+        .join(RunFolder::default_path(&case, "quick", &[], None, 3).unwrap());
+    assert!(path.ends_with("runs/cyjs10-5-37hb-quick-seed3"));
+    // other records in a folder of the same name are another run
+    let mut other = case.clone();
+    other.conditions[0].speed_rpm += 1.0;
+    let beside = |case| {
+        let records = Path::new("tests/of/march");
+        RunFolder::default_path(case, "diagnose", &[], Some(records), 3).unwrap()
+    };
+    assert_ne!(beside(&case), beside(&other));
+    let named = beside(&case).display().to_string();
+    assert!(
+        named.starts_with("runs/cyjs10-5-37hb-diagnose-march-"),
+        "{named}"
+    );
+    let begin = |seed, case: &Case| Run::begin(&path, manifest(case, seed), case.clone());
+    let first = begin(3, &case).unwrap();
+    assert!(!first.folder.is_begun() && !first.folder.is_finished());
+    assert!(!path.exists(), "nothing is written before the journal is");
+    std::fs::create_dir_all(&path).unwrap();
+    first.remember(12.5).unwrap();
+    let again = begin(3, &case).unwrap();
+    assert!(again.folder.is_begun());
+    assert!(again.lost_journal(), "12.5 s were spent on nothing");
+    assert!((again.manifest.wall_s - 12.5).abs() < 1e-12);
+
+    let other = begin(4, &case).unwrap_err();
+    assert!(
+        other
+            .to_string()
+            .ends_with("holds another run: its seed is 3, not 4"),
+        "{other}"
+    );
+    let mut changed = case.clone();
+    changed.ropes.diameter_m *= 1.0 + f64::EPSILON;
+    let other = begin(3, &changed).unwrap_err();
+    assert!(
+        other
+            .to_string()
+            .ends_with("its case or its records differ"),
+        "{other}"
+    );
+    // the case comes back with every bit, so its hash and the journal still fit
+    let kept = Calibration::open(&path).unwrap().case;
+    assert_eq!(kept, case);
+    assert_eq!(
+        bus::case_hash(&kept).unwrap(),
+        bus::case_hash(&case).unwrap()
+    );
+}
+
+#[test]
+fn calibrated_parameters_come_back_from_their_file_bit_for_bit() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let values: Vec<f64> = (0..)
+        .zip(&case.genes)
+        .map(|(n, gene)| gene.recommended * (1.0 + f64::from(n) / 7.0))
+        .collect();
+    let file = scratch.path().join("calibrated.toml");
+    std::fs::write(&file, write_genes(&case, &values, "a test")).unwrap();
+    let back = read_genes(&file, &case).unwrap();
+    for (value, back) in values.iter().zip(&back) {
+        assert_eq!(value.to_bits(), back.to_bits());
+    }
+}
+
+#[test]
+fn an_unknown_condition_is_refused_with_those_there_are() {
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    assert_eq!(condition(&case, None).unwrap(), case.objective.condition);
+    assert_eq!(condition(&case, Some("4rpm")).unwrap(), 1);
+    let error = condition(&case, Some("9rpm")).unwrap_err();
+    assert_eq!(error.help, "it has: 5rpm, 4rpm");
+}
+
+#[test]
+fn a_folder_of_something_else_is_no_run_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let begin = |path: &Path| Run::begin(path, manifest(&case, 3), case.clone());
+    let message = |path: &Path| begin(path).unwrap_err().to_string();
+    assert!(begin(scratch.path()).is_ok(), "an empty one is fine");
+    let file = scratch.path().join("letter.txt");
+    std::fs::write(&file, "mine").unwrap();
+    assert!(message(scratch.path()).ends_with("is not empty, and no run was begun in it"));
+    assert!(message(&file).contains("cannot be a run folder"));
+    std::fs::write(scratch.path().join(journal::FILE), "x").unwrap();
+    assert!(begin(scratch.path()).is_ok(), "a journal makes it one");
+    std::fs::write(scratch.path().join("run.json"), "{").unwrap();
+    let error = begin(scratch.path()).unwrap_err();
+    let usage = error.downcast_ref::<Usage>().unwrap();
+    assert!(usage.message.contains("run.json is damaged"), "{usage}");
+    assert!(usage.help.contains("(the same command"), "{}", usage.help);
+}
+
+#[test]
+fn the_way_to_go_on_names_the_folder_in_hand() {
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let manifest = manifest(&case, 3);
+    let command = manifest.resume_command(Path::new("moved here/run"));
+    assert!(
+        command.ends_with("--preset quick --seed 3 --run 'moved here/run' --measured X"),
+        "{command}"
+    );
+    let started = Manifest {
+        start: Some(started(&case)),
+        ..manifest
+    };
+    let command = started.resume_command(Path::new("run"));
+    assert!(
+        command.ends_with("--seed 3 --run run --genes found.toml --measured X"),
+        "{command}"
+    );
+    let words = [
+        "horsehead",
+        "calibrate",
+        "case",
+        "--preset",
+        "quick",
+        "--seed",
+        "3",
+        "--workers",
+    ];
+    let with = |count: &'static str| Cli::try_parse_from(words.into_iter().chain([count]));
+    assert!(with("0").is_ok() && with("1024").is_ok());
+    assert!(with("1025").is_err() && with("-1").is_err());
+}
+
+/// What `--set` makes of a preset's settings, with so many workers planned.
+fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<Chosen, Usage> {
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let space = Space::new(&case.genes).unwrap();
+    let plan = Plan {
+        space: &space,
+        workers,
+    };
+    choice(set).choose(preset(name).unwrap(), &plan)
+}
+
+fn choice(set: &[(&str, &str)]) -> SettingsChoice {
+    let words = set.iter();
+    let set = words.map(|(key, value)| ((*key).to_owned(), (*value).to_owned()));
+    SettingsChoice { set: set.collect() }
+}
+
+#[test]
+fn settings_by_name_make_another_run_in_a_folder_of_its_own() {
+    let scratch = tempfile::tempdir().unwrap();
+    let case = load(&shipped(), &Overrides::default()).unwrap();
+    let plain = chosen("paper", &[], 1).unwrap();
+    let same = chosen("paper", &[("population", "80")], 1).unwrap();
+    assert_eq!((plain.set.len(), &plain.settings), (0, &same.settings));
+    assert_eq!(same.set, plain.set, "the preset says 80");
+    let gray = chosen("paper", &[("encoding", "gray"), ("threshold", "0.5")], 1).unwrap();
+    assert_eq!(gray.set, ["threshold=0.5", "encoding=gray"]);
+
+    let path = |set: &[String]| RunFolder::default_path(&case, "paper", set, None, 3).unwrap();
+    assert!(path(&plain.set).ends_with("cyjs10-5-37hb-paper-seed3"));
+    let own = path(&gray.set);
+    assert!(
+        own.ends_with("cyjs10-5-37hb-paper-threshold-0.5-encoding-gray-seed3"),
+        "{}",
+        own.display()
+    );
+
+    let of = |chosen: &Chosen| Manifest {
+        preset: "paper".to_owned(),
+        settings: chosen.settings.clone(),
+        set: chosen.set.clone(),
+        ..manifest(&case, 3)
+    };
+    let begin = |chosen| Run::begin(scratch.path(), of(chosen), case.clone());
+    begin(&gray).unwrap().remember(0.0).unwrap();
+    let run = begin(&gray).unwrap();
+    let error = begin(&plain).unwrap_err().to_string();
+    assert!(
+        error.contains("threshold is 0.5, not none, encoding is gray, not binary"),
+        "{error}"
+    );
+    let command = run.resume_command();
+    assert!(
+        command.contains("--preset paper --set threshold=0.5 --set encoding=gray"),
+        "{command}"
+    );
+    Cli::try_parse_from(shlex::split(&command).unwrap()).unwrap();
+}
+
+#[test]
+fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_allowed() {
+    let error = chosen("paper", &[("encodign", "gray")], 1).unwrap_err();
+    assert!(
+        error.help.starts_with("did you mean `encoding`?"),
+        "{error:?}"
+    );
+    let error = chosen("quick", &[("roulette", "wheel")], 1).unwrap_err();
+    assert!(
+        error
+            .message
+            .ends_with("must be inverse, inverse_plus_one, difference, rank"),
+        "{error:?}"
+    );
+    let error = chosen("quick", &[("window", "4")], 1).unwrap_err();
+    assert!(error.message.contains("no setting `window`"), "{error:?}");
+    let line = ["horsehead", "calibrate", "CASE", "--set"];
+    let typed = |set: &'static str| Cli::try_parse_from(line.into_iter().chain([set]));
+    assert!(typed("population=40,encoding=gray").is_ok() && typed("population").is_err());
+}
+
+/// A run goes on with its own window, however many workers there are then.
+#[test]
+fn what_follows_the_workers_stays_with_the_run() {
+    let window = preset("window").unwrap();
+    let kept = |set: &[(&str, &str)], earlier: Option<&Chosen>| {
+        let mut now = chosen("window", set, 40).unwrap();
+        let earlier = earlier.map(|earlier| &earlier.settings);
+        choice(set).keep(&mut now, window, earlier);
+        now.set
+    };
+    let earlier = chosen("window", &[], 2).unwrap();
+    assert_eq!(kept(&[], None), ["window=120"]);
+    assert_eq!(kept(&[], Some(&earlier)), ["window=6"]);
+    assert_eq!(kept(&[("window", "9")], Some(&earlier)), ["window=9"]);
+    let other = chosen("paper", &[], 2).unwrap();
+    assert_eq!(kept(&[], Some(&other)), ["window=120"]);
+}
+
+#[test]
+fn help_lists_every_setting_of_every_preset_with_its_values() {
+    let mut command = Cli::command();
+    let calibrate = command.find_subcommand_mut("calibrate").unwrap();
+    let help = calibrate.render_long_help().to_string();
+    for named in search::strategy::CATALOGUE
+        .iter()
+        .flat_map(search::strategy::Preset::named)
+    {
+        let line = format!("  {}={}", named.key, named.setting.allowed());
+        assert!(help.contains(&line), "{line}");
+    }
+    assert!(
+        !calibrate
+            .render_help()
+            .to_string()
+            .contains("special_crossover=")
+    );
+}
+
+/// The journal still knows which command a damaged folder belongs to.
+#[test]
+fn the_way_out_of_damage_is_the_command_of_the_run() {
+    let scratch = tempfile::tempdir().unwrap();
+    let header = protocol::event::RunHeader {
+        kind: DIAGNOSE.to_owned(),
+        case: protocol::id::ContentHash::of(b"case"),
+        settings: "{}".to_owned(),
+    };
+    let run = protocol::id::RunId(1);
+    drop(journal::Journal::open(scratch.path(), &header, run, 5, |_| {}).unwrap());
+    std::fs::write(scratch.path().join("run.json"), "{").unwrap();
+    let error = RunFolder::new(scratch.path()).head().err().unwrap();
+    let usage = error.downcast_ref::<Usage>().unwrap();
+    assert!(
+        usage.help.contains("horsehead diagnose CASE --seed N"),
+        "{}",
+        usage.help
+    );
+}

@@ -1,0 +1,97 @@
+//! `horsehead verify`: the parameters of a run under a condition that took no part in the fit.
+use crate::{
+    case::{read_genes, require_record},
+    cli::{
+        argument::{
+            case::load_case,
+            individual::condition,
+            output::OutputChoice,
+            workers::{cores, worker_count},
+        },
+        output::{
+            calibration::condition_result,
+            object::{calibration::VerifyOutput, score},
+            problem::{EXIT_CODES, Usage},
+            terminal,
+        },
+        run::{
+            calibration::{Calibration, pair},
+            folder::GENES,
+            once::compare_once,
+        },
+    },
+    report::table,
+    study::Wanted,
+};
+use anyhow::Context as _;
+use clap::Args;
+use std::{path::PathBuf, time::Instant};
+
+/// Score a run's parameters under another working condition (the paper's Table 4).
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Example:
+  horsehead verify runs/cyjs10-5-37hb-quick-seed1 --condition 4rpm
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Run folder of a calibration.
+    #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
+    run: PathBuf,
+    /// Working condition, one with a gauge record.
+    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
+    condition: String,
+    /// Folder whose load cards and gauge records replace those of the case.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    measured: Option<PathBuf>,
+    /// Worker processes to start [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Scores both parameter sets and shows them side by side.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let started = Instant::now();
+    let run = Calibration::open(&arguments.run)?;
+    let case = match &arguments.measured {
+        Some(measured) => load_case(&run.manifest.case_folder, Some(measured))?.case,
+        None => run.case.clone(),
+    };
+    let parameters = run.folder.file(GENES);
+    if !parameters.exists() {
+        return Err(Usage {
+            message: format!(
+                "{} has no calibrated parameters yet",
+                arguments.run.display()
+            ),
+            help: format!("finish the run first:\n  {}", run.resume_command()),
+        }
+        .into());
+    }
+    let best = read_genes(&parameters, &case)?;
+    let condition = condition(&case, Some(&arguments.condition))?;
+    require_record(&run.manifest.case_folder, &case, condition)?;
+    let wanted = Wanted {
+        condition,
+        individuals: pair(&case, &best),
+        motion_step_deg: 0.0,
+    };
+    let workers = arguments.workers.unwrap_or_else(|| cores().min(4)).max(1);
+    let groups = compare_once("verify", &case, std::slice::from_ref(&wanted), workers)?;
+    let compared = groups.first().context("no result came back")?;
+    let result = condition_result(compared).context("a result is missing")?;
+    let [recommended, optimised] = compared.individuals.as_slice() else {
+        anyhow::bail!("a result is missing");
+    };
+    let object = VerifyOutput {
+        run: run.folder.path().display().to_string(),
+        case: &case.name,
+        condition: &arguments.condition,
+        wall_s: started.elapsed().as_secs_f64(),
+        scores: score::condition(recommended, optimised),
+    };
+    let tables = || table::text(&table::table_4(&case, &result), terminal::styled());
+    terminal::print(arguments.output.output, tables, &object)
+}

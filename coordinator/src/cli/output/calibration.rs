@@ -1,0 +1,194 @@
+//! The files and the output of a finished calibration.
+use super::{
+    object::{
+        calibration::CalibrateOutput,
+        score::{Both, ConditionOutput, condition, genes},
+    },
+    terminal,
+};
+use crate::{
+    account,
+    case::write_genes,
+    cli::{
+        argument::output::Output,
+        run::{
+            bus,
+            calibration::{Calibration as Run, Found},
+            folder::{GENES, RESULT},
+            tables,
+        },
+    },
+    journal,
+    report::{self, Calibration, ConditionResult, HistoryPoint, Individual, Origin, WorkerUse},
+    study::{self, Calibrated, Compared, Curves},
+};
+use protocol::{
+    event::WorkerAccount,
+    job::{Counters, Evaluation},
+};
+use search::strategy::Finish;
+use std::collections::BTreeMap;
+
+/// The report's form of one comparison of recommended and optimised.
+pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
+    let [recommended, optimised] = compared.individuals.as_slice() else {
+        return None;
+    };
+    Some(ConditionResult {
+        condition: compared.condition,
+        recommended: report_run(recommended),
+        optimised: report_run(optimised),
+    })
+}
+
+fn report_run(curves: &Curves) -> report::Run {
+    let unscored = || Evaluation {
+        verdict: curves.simulation.verdict,
+        fitness: f64::NAN,
+        channels: Vec::new(),
+        residual_mpa: Vec::new(),
+        counters: Counters::default(),
+    };
+    report::Run {
+        evaluation: curves.evaluation.clone().unwrap_or_else(unscored),
+        simulation: curves.simulation.clone(),
+    }
+}
+
+/// Writes the files of a finished run and prints its result.
+///
+/// # Errors
+/// If a file cannot be written.
+pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> anyhow::Result<()> {
+    let calibration = calibration(run, found, wall_s)?;
+    let folder = &run.folder;
+    let about = format!(
+        "Calibrated parameters of {}: preset {}, seed {}, log {}",
+        run.case.name, run.manifest.preset, run.manifest.seed, calibration.origin.digest
+    );
+    let genes = write_genes(&run.case, &found.calibrated.best.genes, &about);
+    folder.write(GENES, &genes)?;
+    let mut files = report::write_calibration(folder.path(), &calibration)?;
+    files.extend(tables::calibration(run)?);
+    files.extend([GENES, RESULT].map(|name| folder.file(name)));
+    let files = files.iter().map(|path| path.display().to_string());
+    let object = result_object(run, found, wall_s, files.collect());
+    folder.write_json(RESULT, &object)?;
+    terminal::tell(&format!(
+        "open {}\nparameters in {}",
+        folder.file("report.html").display(),
+        folder.file(GENES).display()
+    ));
+    let tables = || report::parameters(&calibration, terminal::styled());
+    terminal::print(output, tables, &object)
+}
+
+fn result_object<'a>(
+    run: &'a Run,
+    found: &Found,
+    wall_s: f64,
+    files: Vec<String>,
+) -> CalibrateOutput<'a> {
+    let case = &run.case;
+    let log = &found.calibrated.log;
+    let mut calibrated = ConditionOutput {
+        objective: Both {
+            recommended: None,
+            optimised: None,
+        },
+        channels: BTreeMap::new(),
+    };
+    let mut other_conditions = BTreeMap::new();
+    for compared in &found.compared {
+        let [recommended, optimised] = compared.individuals.as_slice() else {
+            continue;
+        };
+        let scores = condition(recommended, optimised);
+        if compared.condition == case.objective.condition {
+            calibrated = scores;
+        } else {
+            other_conditions.insert(case.conditions[compared.condition].name.clone(), scores);
+        }
+    }
+    CalibrateOutput {
+        run: run.folder.path().display().to_string(),
+        case: &case.name,
+        preset: &run.manifest.preset,
+        seed: run.manifest.seed,
+        evaluations: log.len(),
+        failed_simulations: log.failed(),
+        wall_s,
+        genes: genes(case, &found.calibrated.best.genes),
+        objective: calibrated.objective,
+        channels: calibrated.channels,
+        other_conditions,
+        log_digest: log.digest(),
+        files,
+    }
+}
+
+fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibration> {
+    let case = &run.case;
+    // what workers of earlier sessions did is in the journal alone
+    let (account, costs) = account::read_with_costs(&run.folder.file(journal::FILE))?;
+    let Calibrated { best, finish, log } = &found.calibrated;
+    let mut notes = run.manifest.notes.clone();
+    if !best.complete {
+        notes.push("no individual completed its simulation".to_owned());
+    }
+    let history = log.entries().map(|entry| HistoryPoint {
+        id: entry.id,
+        generation: entry.generation,
+        purpose: entry.purpose.as_str().to_owned(),
+        genes: entry.genes.clone(),
+        fitness: entry.fitness,
+        complete: entry.ending == study::Ending::Complete,
+        failure: entry.ending.failure(),
+        cost: costs.get(&entry.id).copied(),
+    });
+    Ok(Calibration {
+        case: case.clone(),
+        origin: Origin {
+            program: run.manifest.program.clone(),
+            command: run.manifest.command.clone(),
+            run: run.folder.path().display().to_string(),
+            case_hash: bus::case_hash(case)?,
+            measured_name: run.manifest.measured.clone(),
+            preset: Some(run.manifest.preset.clone()),
+            seed: Some(run.manifest.seed),
+            digest: log.digest(),
+            synthetic: run.manifest.synthetic,
+        },
+        recommended: Individual {
+            id: None,
+            genes: case.recommended(),
+        },
+        optimised: Individual {
+            id: Some(best.id),
+            genes: best.genes.clone(),
+        },
+        history: history.collect(),
+        workers: account.workers.iter().map(worker_use).collect(),
+        spent: account.spent,
+        wall_s,
+        finish: match finish {
+            Finish::Planned => "everything that was planned has been evaluated".to_owned(),
+            Finish::Threshold => "the fitness threshold was reached".to_owned(),
+        },
+        conditions: found.compared.iter().filter_map(condition_result).collect(),
+        notes,
+    })
+}
+
+fn worker_use(worker: &WorkerAccount) -> WorkerUse {
+    let seconds = |us: u64| us as f64 / 1e6;
+    WorkerUse {
+        name: worker.worker.to_string(),
+        host: worker.host.clone(),
+        slots: worker.slots,
+        done: worker.done,
+        failed: worker.failed,
+        busy_s: seconds(worker.spent.useful_us),
+        present_s: seconds(worker.spent.connected_us) / f64::from(worker.slots.max(1)),
+    }
+}

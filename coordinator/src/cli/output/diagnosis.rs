@@ -1,0 +1,108 @@
+//! The files and the output of a finished diagnosis.
+use super::{
+    object::diagnosis::answer::{DiagnoseOutput, object},
+    terminal,
+};
+use crate::{
+    case::{Loaded, append_effects, write_genes},
+    cli::{
+        argument::output::Output,
+        run::{
+            bus,
+            command_line::quote_path,
+            diagnosis::{Diagnosis, Found},
+            folder::{GENES, RESULT},
+        },
+    },
+    report::{Origin, diagnosis as report, text},
+};
+use std::path::Path;
+
+/// A finished diagnosis with everything that its files name.
+pub(crate) struct Answer<'a> {
+    /// How it was begun, and where its files go.
+    pub(crate) run: &'a Diagnosis,
+    /// Its case with the cycles of the records.
+    pub(crate) loaded: &'a Loaded,
+    /// What was found.
+    pub(crate) found: &'a Found,
+    /// Wall time of all sessions (s).
+    pub(crate) wall_s: f64,
+}
+
+impl Answer<'_> {
+    fn subject(&self) -> anyhow::Result<report::Subject<'_>> {
+        let manifest = &self.run.manifest;
+        Ok(report::Subject {
+            case: &self.loaded.case,
+            records: &self.loaded.cycles,
+            library: &self.found.library,
+            diagnosed: &self.found.diagnosed,
+            origin: Origin {
+                program: manifest.program.clone(),
+                command: manifest.command.clone(),
+                run: self.run.folder.path().display().to_string(),
+                case_hash: bus::case_hash(&self.loaded.case)?,
+                measured_name: manifest.measured.clone(),
+                synthetic: manifest.synthetic,
+                preset: None,
+                seed: Some(manifest.seed),
+                digest: String::new(),
+            },
+            notes: &manifest.notes,
+            wall_s: self.wall_s,
+        })
+    }
+
+    /// Writes the parameters that the answer rests on: with the effects in the case, a simulation of
+    /// them is the diagnosis's "after".
+    fn write_genes(&self) -> anyhow::Result<()> {
+        let Some(fit) = &self.found.diagnosed.diagnosis.after else {
+            return Ok(());
+        };
+        let about = format!("Parameters of {}", self.run.folder.path().display());
+        let genes = write_genes(&self.loaded.case, &fit.model.genes(fit.x()), &about);
+        self.run.folder.write(GENES, &genes)
+    }
+
+    /// Writes the files into the run folder; returns the object of `--output json`.
+    pub(crate) fn write(&self) -> anyhow::Result<DiagnoseOutput> {
+        let subject = self.subject()?;
+        if let Some(text) = report::effects_toml(&subject) {
+            self.run.folder.write("effects.toml", &text)?;
+        }
+        self.write_genes()?;
+        for file in report::write(self.run.folder.path(), &subject)?
+            .iter()
+            .take(1)
+        {
+            terminal::tell(&format!("open {}", file.display()));
+        }
+        let object = object(&subject);
+        self.run.folder.write_json(RESULT, &object)?;
+        Ok(object)
+    }
+
+    /// Prints the answer as the user wants it.
+    pub(crate) fn print(&self, output: Output, object: &DiagnoseOutput) -> anyhow::Result<()> {
+        let subject = self.subject()?;
+        let whole = || text(&report::report(&subject), terminal::styled());
+        terminal::print(output, whole, object)
+    }
+
+    /// Appends what was found to a case file, if anything was.
+    pub(crate) fn add(&self, file: &Path) -> anyhow::Result<()> {
+        let found = report::effects(&self.subject()?);
+        if found.is_empty() {
+            return Ok(());
+        }
+        append_effects(file, &found)?;
+        terminal::tell(&format!("added to {}", file.display()));
+        terminal::tell(&format!(
+            "to search it with everything else, from what was found:\n  horsehead calibrate {} --genes {}",
+            quote_path(&self.run.manifest.case_folder),
+            quote_path(&self.run.folder.file(GENES)),
+        ));
+        Ok(())
+    }
+}

@@ -1,0 +1,29 @@
+//! Folders that a user names for results.
+use super::problem::Usage;
+use std::path::Path;
+
+/// Refuses a folder that cannot be written, before anything is simulated for it.
+pub(crate) fn check_out(folder: &Path) -> Result<(), Usage> {
+    let tried = std::fs::create_dir_all(folder).and_then(|()| tempfile::tempfile_in(folder));
+    match tried {
+        Ok(_) => Ok(()),
+        Err(error) => Err(Usage {
+            message: format!("cannot write into {}: {error}", folder.display()),
+            help: "choose a folder that can be written, with --out DIR".to_owned(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_no_folder_for_results() {
+        let scratch = tempfile::tempdir().unwrap();
+        let file = scratch.path().join("file");
+        std::fs::write(&file, "").unwrap();
+        assert!(check_out(&file).is_err());
+        check_out(&scratch.path().join("new")).unwrap();
+    }
+}

@@ -1,0 +1,52 @@
+//! The objects of `horsehead calibrate` and `horsehead verify`.
+use super::score::{Both, ConditionOutput, GeneOutput};
+use protocol::job::ChannelScore;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Of `horsehead calibrate`, and kept as `result.json` in the run folder.
+#[derive(Debug, Serialize)]
+pub(crate) struct CalibrateOutput<'a> {
+    /// The run folder.
+    pub(crate) run: String,
+    /// Name of the machine.
+    pub(crate) case: &'a str,
+    /// The preset.
+    pub(crate) preset: &'a str,
+    /// The seed.
+    pub(crate) seed: u64,
+    /// How many individuals were evaluated.
+    pub(crate) evaluations: usize,
+    /// How many of them did not complete.
+    pub(crate) failed_simulations: usize,
+    /// Wall time over all sessions (s).
+    pub(crate) wall_s: f64,
+    /// The identified parameters by name.
+    pub(crate) genes: BTreeMap<String, GeneOutput>,
+    /// Objective of both parameter sets `MPa^2`.
+    pub(crate) objective: Both<Option<f64>>,
+    /// Agreement by gauge number, of both parameter sets, at the calibrated condition.
+    pub(crate) channels: BTreeMap<String, Both<Option<ChannelScore>>>,
+    /// Other conditions with a record, by name.
+    pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
+    /// Hash of the evaluation log in index order.
+    pub(crate) log_digest: String,
+    /// Files that were written.
+    pub(crate) files: Vec<String>,
+}
+
+/// Of `horsehead verify`.
+#[derive(Debug, Serialize)]
+pub(crate) struct VerifyOutput<'a> {
+    /// The run folder.
+    pub(crate) run: String,
+    /// Name of the machine.
+    pub(crate) case: &'a str,
+    /// Name of the condition.
+    pub(crate) condition: &'a str,
+    /// Wall time (s).
+    pub(crate) wall_s: f64,
+    /// Scores of both parameter sets.
+    #[serde(flatten)]
+    pub(crate) scores: ConditionOutput,
+}

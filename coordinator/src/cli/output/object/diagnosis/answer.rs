@@ -1,0 +1,168 @@
+//! The object as a whole.
+use super::{
+    effects::{EffectOutput, ForceOutput, RoundOutput, effect, force, rounds},
+    gap::{GapOutput, gap},
+    place::{WhereOutput, whereabouts},
+    wander::{WanderedOutput, wandered},
+};
+use crate::report::diagnosis::Subject;
+use discrepancy::{
+    diagnose::{Diagnosis, Limit, LookAlikes},
+    ground::preflight::Preflight,
+    verdict::Verdict,
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Of `horsehead diagnose`.
+#[derive(Debug, Serialize)]
+pub(crate) struct DiagnoseOutput {
+    run: String,
+    case: String,
+    verdict: Verdict,
+    /// Why, where the verdict needs a reason.
+    reason: Option<String>,
+    /// Added effects, then the other members of their ambiguity sets; the best first. Where the
+    /// verdict is unresolved, suspects, of which none is added.
+    effects: Vec<EffectOutput>,
+    /// Form and joint of a force that beats every name.
+    generic: Option<String>,
+    /// That force with its size, also where the verdict does not believe it.
+    generic_force: Option<ForceOutput>,
+    rounds: Vec<RoundOutput>,
+    #[serde(rename = "where")]
+    whereabouts: Option<WhereOutput>,
+    wander: WanderedOutput,
+    detection_limits: Vec<Limit>,
+    /// Pairs that this record cannot tell apart at three times their detection limits.
+    inseparable: Vec<[String; 2]>,
+    /// What would part those pairs, in their order.
+    data_worth: Vec<LookAlikes>,
+    gap: GapOutput,
+    whiteness: Option<WhitenessOutput>,
+    rival: Option<RivalOutput>,
+    assumed_noise: bool,
+    numerical_error: Option<NumericalOutput>,
+    genes: BTreeMap<String, f64>,
+    stages: Vec<StageOutput>,
+    wall_s: f64,
+}
+
+/// Tail probabilities that what is left is white noise.
+#[derive(Debug, Serialize)]
+struct WhitenessOutput {
+    p_before: f64,
+    p_after: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct RivalOutput {
+    id: String,
+    gap: GapOutput,
+}
+
+/// How far a finer model moves the channels (in their units).
+#[derive(Debug, Serialize)]
+struct NumericalOutput {
+    rms: Vec<f64>,
+    rms_after_recalibration: Vec<f64>,
+    standard_error: Vec<f64>,
+    /// The same at the answer, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    at_answer: Option<Box<Self>>,
+}
+
+impl NumericalOutput {
+    fn of(check: &Preflight) -> Self {
+        Self {
+            rms: check.rms.clone(),
+            rms_after_recalibration: check.rms_left.clone(),
+            standard_error: check.standard_error.clone(),
+            at_answer: None,
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct StageOutput {
+    stage: &'static str,
+    simulations: u64,
+    failed: u64,
+    batches: u64,
+    wall_s: f64,
+}
+
+/// The object of a diagnosis.
+pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
+    let diagnosis = &subject.diagnosed.diagnosis;
+    let calibrated = subject.case.objective.condition;
+    let genes = diagnosis
+        .after
+        .as_ref()
+        .map(|fit| fit.model.genes(fit.x()))
+        .unwrap_or_default();
+    DiagnoseOutput {
+        run: subject.origin.run.clone(),
+        case: subject.case.name.clone(),
+        verdict: diagnosis.verdict,
+        reason: diagnosis.reason.clone(),
+        effects: diagnosis
+            .effects
+            .iter()
+            .map(|e| effect(diagnosis, e))
+            .collect(),
+        generic: diagnosis.generic.clone(),
+        generic_force: diagnosis
+            .force
+            .as_ref()
+            .map(|found| force(found, calibrated)),
+        rounds: rounds(diagnosis),
+        whereabouts: whereabouts(subject),
+        wander: wandered(subject),
+        detection_limits: diagnosis.limits.clone(),
+        inseparable: diagnosis
+            .look_alikes
+            .iter()
+            .map(|pair| pair.effects.clone())
+            .collect(),
+        data_worth: diagnosis.look_alikes.clone(),
+        gap: gap(&diagnosis.rows, calibrated),
+        whiteness: diagnosis
+            .whiteness
+            .map(|[p_before, p_after]| WhitenessOutput { p_before, p_after }),
+        rival: diagnosis.rival.as_ref().map(|(id, rows)| RivalOutput {
+            id: id.clone(),
+            gap: gap(rows, calibrated),
+        }),
+        assumed_noise: diagnosis.assumed_noise,
+        numerical_error: numerical_error(diagnosis),
+        genes: subject
+            .case
+            .genes
+            .iter()
+            .zip(genes)
+            .map(|(gene, value)| (gene.label(), value))
+            .collect(),
+        stages: subject
+            .diagnosed
+            .accounts
+            .iter()
+            .map(|(stage, account)| StageOutput {
+                stage: stage.name(),
+                simulations: account.experiments,
+                failed: account.failed,
+                batches: account.batches,
+                wall_s: account.wall.as_secs_f64(),
+            })
+            .collect(),
+        wall_s: subject.wall_s,
+    }
+}
+
+fn numerical_error(diagnosis: &Diagnosis) -> Option<NumericalOutput> {
+    let at_answer = diagnosis.preflight_after.as_ref();
+    diagnosis.preflight.as_ref().map(|check| NumericalOutput {
+        at_answer: at_answer.map(|after| Box::new(NumericalOutput::of(after))),
+        ..NumericalOutput::of(check)
+    })
+}

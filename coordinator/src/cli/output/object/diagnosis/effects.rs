@@ -1,0 +1,124 @@
+//! Effects, suspects and forces with their sizes and tests.
+use super::gap::{GapOutput, gap};
+use discrepancy::diagnose::{Diagnosis, Estimate, Force, ParameterEstimate};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// An effect with its size.
+#[derive(Debug, Serialize)]
+pub(super) struct EffectOutput {
+    id: String,
+    title: String,
+    added: bool,
+    parameters: BTreeMap<String, ParameterOutput>,
+    p_value: f64,
+    ln_evidence: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct ParameterOutput {
+    value: f64,
+    unit: String,
+    ci95: [f64; 2],
+}
+
+/// A round of the search for effects.
+#[derive(Debug, Serialize)]
+pub(super) struct RoundOutput {
+    p_value: f64,
+    misfit: f64,
+    added: Option<String>,
+    set: Vec<String>,
+    reason: Option<String>,
+    suspects: Vec<SuspectOutput>,
+}
+
+/// One suspect: its test, and its refit where it was refitted.
+#[derive(Debug, Serialize)]
+struct SuspectOutput {
+    id: String,
+    p_value: f64,
+    statistic: f64,
+    absorbed: Option<f64>,
+    ln_evidence: Option<f64>,
+}
+
+/// A force without a cause.
+#[derive(Debug, Serialize)]
+pub(super) struct ForceOutput {
+    id: String,
+    joint: String,
+    form: String,
+    amplitude: ParameterOutput,
+    /// Of a harmonic.
+    phase_deg: Option<f64>,
+    ln_evidence: f64,
+    gap: GapOutput,
+}
+
+/// An effect of the answer.
+pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
+    let parameter = |own: &ParameterEstimate| {
+        let output = ParameterOutput {
+            value: own.value,
+            unit: own.unit.clone(),
+            ci95: own.interval,
+        };
+        (own.name.clone(), output)
+    };
+    EffectOutput {
+        id: found.id.clone(),
+        title: found.title.clone(),
+        added: diagnosis
+            .rounds
+            .iter()
+            .any(|round| round.added.as_ref() == Some(&found.id)),
+        parameters: found.parameters.iter().map(parameter).collect(),
+        p_value: found.p_value,
+        ln_evidence: found.ln_evidence,
+    }
+}
+
+/// The force that the answer names, its gap at the calibrated condition.
+pub(super) fn force(found: &Force, calibrated: usize) -> ForceOutput {
+    ForceOutput {
+        id: found.id.clone(),
+        joint: found.joint.clone(),
+        form: found.form.clone(),
+        amplitude: ParameterOutput {
+            value: found.amplitude,
+            unit: found.unit.clone(),
+            ci95: found.interval,
+        },
+        phase_deg: found.phase_deg,
+        ln_evidence: found.ln_evidence,
+        gap: gap(&found.rows, calibrated),
+    }
+}
+
+/// All rounds, in order.
+pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
+    let round = |round: &discrepancy::diagnose::Round| RoundOutput {
+        p_value: round.p_value,
+        misfit: round.phi,
+        added: round.added.clone(),
+        set: round.set.clone(),
+        reason: round.reason.clone(),
+        suspects: round
+            .suspects
+            .iter()
+            .map(|suspect| SuspectOutput {
+                id: suspect.effect.id.clone(),
+                p_value: suspect.p_value(),
+                statistic: suspect.statistic(),
+                absorbed: suspect.score.as_ref().map(|score| score.absorbed),
+                ln_evidence: round
+                    .refits
+                    .iter()
+                    .find(|refit| refit.id == suspect.effect.id)
+                    .map(|refit| round.nats(refit.log_evidence)),
+            })
+            .collect(),
+    };
+    diagnosis.rounds.iter().map(round).collect()
+}

@@ -1,0 +1,87 @@
+//! Where simulation and record part: windows of the turn, orders of the crank, joints.
+use crate::report::diagnosis::Subject;
+use discrepancy::place::joint::Harmonic;
+use serde::Serialize;
+
+/// Where simulation and record part.
+#[derive(Debug, Serialize)]
+pub(super) struct WhereOutput {
+    windows: Vec<WindowOutput>,
+    orders: Vec<PeakOutput>,
+    joints: Vec<JointOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct WindowOutput {
+    channel: String,
+    from_deg: f64,
+    to_deg: f64,
+    strength: f64,
+    p_value: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct PeakOutput {
+    channel: String,
+    order: usize,
+    ratio: f64,
+    p_value: f64,
+}
+
+#[derive(Debug, Serialize)]
+struct JointOutput {
+    joint: String,
+    ln_bayes: f64,
+    /// Whether it is not told apart from the best.
+    equivalent: bool,
+    /// Unit of the likeliest force, and its harmonics of the turn from bottom dead centre.
+    unit: String,
+    force: Vec<Harmonic>,
+}
+
+/// Where they part, if that was looked for.
+pub(super) fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
+    let seen = subject.diagnosed.diagnosis.whereabouts.as_ref()?;
+    let record = subject
+        .records
+        .iter()
+        .find(|r| r.condition == subject.case.objective.condition)?;
+    let channel = |c: usize| record.channels.get(c).map(|s| s.name()).unwrap_or_default();
+    Some(WhereOutput {
+        windows: seen
+            .angle
+            .windows
+            .iter()
+            .map(|window| WindowOutput {
+                channel: channel(window.channel),
+                from_deg: window.from_deg,
+                to_deg: window.to_deg,
+                strength: window.strength,
+                p_value: window.p_value,
+            })
+            .collect(),
+        orders: seen
+            .order
+            .peaks
+            .iter()
+            .map(|peak| PeakOutput {
+                channel: channel(peak.channel),
+                order: peak.order,
+                ratio: peak.ratio,
+                p_value: peak.p_value,
+            })
+            .collect(),
+        joints: seen
+            .joints
+            .iter()
+            .enumerate()
+            .map(|(k, joint)| JointOutput {
+                joint: joint.joint.clone(),
+                ln_bayes: joint.log_bayes,
+                equivalent: k < seen.equivalent,
+                unit: joint.unit.clone(),
+                force: joint.force.clone(),
+            })
+            .collect(),
+    })
+}

@@ -1,0 +1,349 @@
+//! The contract of `horsehead diagnose CASE --output json`: fields by name, for every verdict.
+use super::{answer::object, times::Times};
+use crate::{
+    report::{Origin, diagnosis::Subject},
+    study::{Diagnosed, StageCost},
+};
+use discrepancy::{
+    diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round},
+    laboratory::Stage,
+    model::{Fit, Model},
+    place::{
+        angle, joint, order,
+        wander::{Part, Shift, Wander},
+        whereabouts::Where,
+    },
+    proof::{closed::Closed, compare::Row},
+    record::{Record, Source, Stated},
+    verdict::Verdict,
+};
+use protocol::case::Case;
+use search::{
+    least_squares::{LeastSquares, Settings},
+    space::Space,
+};
+use serde_json::Value;
+use std::{path::Path, time::Duration};
+
+fn case() -> Case {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
+}
+
+fn row(condition: usize, fitted: bool, closed: f64) -> Row {
+    Row {
+        condition,
+        fitted,
+        closed: Closed {
+            before: 0.04,
+            after: 0.04 * (1.0 - closed),
+            closed,
+            interval: fitted.then_some([closed - 0.1, closed + 0.1]),
+        },
+        before: Vec::new(),
+        after: Vec::new(),
+    }
+}
+
+fn estimate(id: &str) -> Estimate {
+    Estimate {
+        id: id.to_owned(),
+        title: "Drift of the gauges".to_owned(),
+        parameters: vec![ParameterEstimate {
+            name: "size".to_owned(),
+            unit: "MPa".to_owned(),
+            value: 0.5,
+            interval: [0.4, 0.6],
+        }],
+        p_value: 1e-9,
+        ln_evidence: 120.5,
+    }
+}
+
+/// Nothing but a verdict and its reason.
+fn bare(verdict: Verdict) -> Diagnosis {
+    Diagnosis {
+        verdict,
+        assumed_noise: true,
+        ..Diagnosis::unresolved("because")
+    }
+}
+
+/// Everything that can be said without a fit.
+fn full(verdict: Verdict) -> Diagnosis {
+    let set = vec!["gauge_drift".to_owned(), "gauge_gain".to_owned()];
+    let rows = vec![row(0, true, 0.9), row(0, false, 0.8), row(1, false, 0.7)];
+    Diagnosis {
+        reason: None,
+        effects: set.iter().map(|id| estimate(id)).collect(),
+        rounds: vec![Round {
+            suspects: Vec::new(),
+            generics: Vec::new(),
+            refits: Vec::new(),
+            null_evidence: -900.0,
+            phi: 1.0,
+            p_value: 1e-9,
+            set,
+            added: Some("gauge_drift".to_owned()),
+            reason: None,
+        }],
+        whereabouts: Some(Where {
+            angle: angle::AngleMap {
+                strength: Vec::new(),
+                windows: vec![angle::Window {
+                    channel: 1,
+                    from_deg: 345.0,
+                    to_deg: 378.0,
+                    strength: -9.0,
+                    p_value: 0.0025,
+                }],
+            },
+            order: order::OrderMap {
+                ratio: Vec::new(),
+                peaks: Vec::new(),
+            },
+            joints: vec![joint::JointEvidence {
+                joint: "saddle".to_owned(),
+                log_bayes: f64::NEG_INFINITY,
+                force: Vec::new(),
+                unit: "N.m".to_owned(),
+            }],
+            equivalent: 1,
+        }),
+        limits: vec![Limit {
+            id: "beam_inertia".to_owned(),
+            parameter: "share".to_owned(),
+            unit: "1".to_owned(),
+            size: f64::INFINITY,
+        }],
+        look_alikes: vec![LookAlikes {
+            effects: ["gauge_drift".to_owned(), "gauge_gain".to_owned()],
+            cycles: 2.5,
+            cycles_with_others: None,
+        }],
+        rows: rows.clone(),
+        rival: Some(("rope_toe".to_owned(), rows)),
+        assumed_noise: false,
+        ..bare(verdict)
+    }
+}
+
+fn printed(diagnosis: Diagnosis) -> Value {
+    let case = case();
+    let records = [Record {
+        condition: case.objective.condition,
+        channels: vec![Source::Gauge(1), Source::Gauge(3)],
+        cycles: Vec::new(),
+        stated: Stated::default(),
+    }];
+    let diagnosed = Diagnosed {
+        diagnosis,
+        accounts: vec![(
+            Stage::What,
+            StageCost {
+                experiments: 40,
+                failed: 2,
+                batches: 3,
+                wall: Duration::from_millis(1500),
+            },
+        )],
+    };
+    let subject = Subject {
+        case: &case,
+        records: &records,
+        library: &[],
+        diagnosed: &diagnosed,
+        origin: Origin::default(),
+        notes: &[],
+        wall_s: 2.0,
+    };
+    let text = serde_json::to_string(&object(&subject)).unwrap();
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn every_verdict_has_its_word_and_every_field_of_the_contract() {
+    for (verdict, word) in [
+        (Verdict::NothingDetected, "nothing_detected"),
+        (Verdict::Named, "named"),
+        (Verdict::Ambiguous, "ambiguous"),
+        (Verdict::Unlisted, "unlisted"),
+        (Verdict::Unresolved, "unresolved"),
+    ] {
+        for diagnosis in [bare(verdict), full(verdict)] {
+            let said = printed(diagnosis);
+            assert_eq!(said["verdict"], word);
+            let fields = said.as_object().unwrap();
+            for field in [
+                "effects",
+                "rounds",
+                "where",
+                "detection_limits",
+                "gap",
+                "rival",
+                "reason",
+                "generic",
+                "generic_force",
+                "stages",
+            ] {
+                assert!(fields.contains_key(field), "{word} has no {field}");
+            }
+        }
+    }
+}
+
+/// The fit of a force needs a record; everything else of it is as documented.
+#[test]
+fn a_force_without_a_cause_is_printed_with_its_size() {
+    let case = case();
+    let space = Space::new(&case.genes).unwrap();
+    let model = Model::plain(space);
+    let search = LeastSquares::new(model.variables(&[]), Settings::default());
+    let found = Force {
+        id: "probe.saddle.cos3".to_owned(),
+        joint: "saddle".to_owned(),
+        form: "harmonic 3".to_owned(),
+        amplitude: 900.0,
+        unit: "N.m".to_owned(),
+        interval: [800.0, 1000.0],
+        phase_deg: Some(-40.0),
+        ln_evidence: 75.0,
+        fit: Fit {
+            model,
+            search,
+            curves: Vec::new(),
+        },
+        rows: vec![row(0, true, 0.9), row(1, false, 0.7)],
+    };
+    let said = printed(Diagnosis {
+        generic: Some(found.id.clone()),
+        force: Some(found),
+        ..full(Verdict::Unlisted)
+    });
+    assert_eq!(said["generic"], "probe.saddle.cos3");
+    let force = &said["generic_force"];
+    assert_eq!(force["joint"], "saddle");
+    assert_eq!(force["form"], "harmonic 3");
+    let amplitude = serde_json::json!({"value": 900.0, "unit": "N.m", "ci95": [800.0, 1000.0]});
+    assert_eq!(force["amplitude"], amplitude);
+    assert_eq!(force["phase_deg"], -40.0);
+    assert_eq!(force["gap"]["other_condition"]["closed"], 0.7);
+    assert!(printed(full(Verdict::Named))["generic_force"].is_null());
+}
+
+/// Parts of the turn have angles, other conditions their name, and both a value.
+#[test]
+fn wandering_genes_have_their_values() {
+    let case = case();
+    let model = Model::plain(Space::new(&case.genes).unwrap());
+    let search = LeastSquares::new(model.variables(&[]), Settings::default());
+    let sector = Part::Sector {
+        from_deg: 90.0,
+        to_deg: 180.0,
+    };
+    let shift = |part, by| Shift {
+        part,
+        by,
+        p_value: 0.01,
+    };
+    let said = printed(Diagnosis {
+        before: Some(Fit {
+            model,
+            search,
+            curves: Vec::new(),
+        }),
+        wander: vec![Wander {
+            unknown: 1,
+            shifts: vec![shift(sector, 1.0), shift(Part::Condition(1), -1.0)],
+            explained: 0.25,
+        }],
+        ..full(Verdict::Named)
+    });
+    let first = &said["wander"]["before"][0];
+    assert_eq!(first["gene"], case.genes[1].label());
+    assert_eq!(first["explained"], 0.25);
+    let [turn, speed] = [&first["parts"][0], &first["parts"][1]];
+    assert_eq!(turn["sector_deg"], serde_json::json!([90.0, 180.0]));
+    assert!(turn["condition"].is_null() && speed["sector_deg"].is_null());
+    assert_eq!(speed["condition"], case.conditions[1].name);
+    for (part, factor) in [(turn, 10.0), (speed, 0.1)] {
+        let ratio = part["value"].as_f64().unwrap() / case.genes[1].recommended;
+        assert!((ratio / factor - 1.0).abs() < 1e-12, "{ratio}");
+    }
+    assert_eq!(said["wander"]["after"], serde_json::json!([]));
+}
+
+#[test]
+fn a_diagnosis_that_stopped_has_empty_lists_and_nulls() {
+    let said = printed(bare(Verdict::Unresolved));
+    assert_eq!(said["reason"], "because");
+    for list in [
+        "effects",
+        "rounds",
+        "detection_limits",
+        "inseparable",
+        "data_worth",
+    ] {
+        assert_eq!(said[list], Value::Array(Vec::new()), "{list}");
+    }
+    assert!(said["where"].is_null() && said["rival"].is_null());
+    for part in ["calibration", "held_out", "other_condition"] {
+        assert!(said["gap"].as_object().unwrap().contains_key(part));
+        assert!(said["gap"][part].is_null(), "{part}");
+    }
+}
+
+#[test]
+fn effects_gaps_and_limits_are_as_documented() {
+    let said = printed(full(Verdict::Ambiguous));
+    let first = &said["effects"][0];
+    assert_eq!(first["id"], "gauge_drift");
+    assert_eq!(first["added"], true);
+    assert_eq!(said["effects"][1]["added"], false);
+    assert_eq!(first["parameters"]["size"]["value"], 0.5);
+    assert_eq!(first["parameters"]["size"]["unit"], "MPa");
+    assert_eq!(
+        first["parameters"]["size"]["ci95"],
+        serde_json::json!([0.4, 0.6])
+    );
+    assert_eq!(first["p_value"], 1e-9);
+    assert_eq!(first["ln_evidence"], 120.5);
+    let gap = &said["gap"];
+    for (part, closed) in [
+        ("calibration", 0.9),
+        ("held_out", 0.8),
+        ("other_condition", 0.7),
+    ] {
+        assert_eq!(gap[part]["closed"], closed, "{part}");
+        assert_eq!(gap[part]["before"], 0.04);
+    }
+    assert!(gap["calibration"]["ci95"].is_array() && gap["held_out"]["ci95"].is_null());
+    assert_eq!(said["rival"]["id"], "rope_toe");
+    assert_eq!(said["rival"]["gap"]["held_out"]["closed"], 0.8);
+    let window = &said["where"]["windows"][0];
+    assert_eq!(window["channel"], "gauge 3");
+    assert_eq!(window["from_deg"], 345.0);
+    // infinities are null: JSON has none
+    assert!(said["detection_limits"][0]["size"].is_null());
+    assert!(said["where"]["joints"][0]["ln_bayes"].is_null());
+    let pair = serde_json::json!(["gauge_drift", "gauge_gain"]);
+    assert_eq!(said["inseparable"][0], pair);
+    assert_eq!(said["data_worth"][0]["effects"], pair);
+    assert_eq!(said["data_worth"][0]["cycles"], 2.5);
+    assert!(said["data_worth"][0]["cycles_with_other_conditions"].is_null());
+    assert_eq!(said["stages"][0]["simulations"], 40);
+    assert_eq!(said["stages"][0]["batches"], 3);
+    assert_eq!(said["stages"][0]["wall_s"], 1.5);
+}
+
+#[test]
+fn times_that_were_written_are_put_back() {
+    let times: Times = serde_json::from_value(printed(full(Verdict::Named))).unwrap();
+    let mut accounts = [
+        (Stage::What, StageCost::default()),
+        (Stage::Refit, StageCost::default()),
+    ];
+    times.restore(&mut accounts);
+    assert_eq!(accounts[0].1.wall, Duration::from_millis(1500));
+    assert_eq!(accounts[1].1.wall, Duration::ZERO);
+}

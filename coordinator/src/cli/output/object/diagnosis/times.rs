@@ -1,0 +1,28 @@
+//! The times of the stages in an object that was written earlier.
+use crate::study::StageCost;
+use discrepancy::laboratory::Stage;
+use serde::Deserialize;
+use std::time::Duration;
+
+/// The times in an object that was written earlier.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Times {
+    stages: Vec<StageTime>,
+}
+
+#[derive(Debug, Deserialize)]
+struct StageTime {
+    stage: String,
+    wall_s: f64,
+}
+
+impl Times {
+    /// Puts the times of the stages back.
+    pub(crate) fn restore(&self, accounts: &mut [(Stage, StageCost)]) {
+        for (stage, account) in accounts {
+            let known = self.stages.iter().find(|time| time.stage == stage.name());
+            let wall = known.and_then(|time| Duration::try_from_secs_f64(time.wall_s).ok());
+            account.wall = wall.unwrap_or(account.wall);
+        }
+    }
+}

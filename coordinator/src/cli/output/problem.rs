@@ -1,0 +1,114 @@
+//! Errors as people see them: what happened, why, and what to do; and the exit code they mean.
+use super::terminal;
+use crate::{
+    case::CaseError,
+    study::{EvaluatorError, StudyError},
+};
+use std::{fmt, process::ExitCode};
+
+/// What the help of every command ends with.
+pub(crate) const EXIT_CODES: &str =
+    "Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
+
+/// Exit code of a command that could not do its work.
+const FAILED: u8 = 1;
+/// Exit code of a wrong command line or wrong input.
+const BAD_INPUT: u8 = 2;
+/// Exit code after Ctrl-C.
+pub(crate) const INTERRUPTED: u8 = 130;
+
+/// The command line or a file it names cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Usage {
+    /// What is wrong.
+    pub(crate) message: String,
+    /// What to do.
+    pub(crate) help: String,
+}
+
+impl fmt::Display for Usage {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// Prints an error with its causes and remedies, and gives its exit code.
+pub(crate) fn explain(error: &anyhow::Error) -> ExitCode {
+    terminal::tell(&describe(error));
+    ExitCode::from(code(error))
+}
+
+fn code(error: &anyhow::Error) -> u8 {
+    let mut code = FAILED;
+    for cause in error.chain() {
+        if cause.is::<Usage>() || cause.is::<CaseError>() {
+            code = BAD_INPUT;
+        }
+        match cause.downcast_ref::<StudyError>() {
+            Some(StudyError::Settings(_)) => code = BAD_INPUT,
+            Some(StudyError::Interrupted) => code = INTERRUPTED,
+            _ => {}
+        }
+    }
+    code
+}
+
+/// `error:`, then its causes, then `help:` lines.
+fn describe(error: &anyhow::Error) -> String {
+    let mut causes: Vec<String> = error.chain().map(ToString::to_string).collect();
+    causes.dedup();
+    let mut text = format!("error: {}", causes.join("\n  caused by: "));
+    for cause in error.chain() {
+        let study = cause
+            .downcast_ref::<StudyError>()
+            .and_then(StudyError::help);
+        let evaluator = cause
+            .downcast_ref::<EvaluatorError>()
+            .and_then(|e| e.help.clone());
+        let usage = cause
+            .downcast_ref::<Usage>()
+            .map(|usage| usage.help.clone());
+        for help in study
+            .or(evaluator)
+            .or(usage)
+            .into_iter()
+            .filter(|help| !help.is_empty())
+        {
+            let line = format!("\nhelp: {help}");
+            if !text.contains(&line) {
+                text.push_str(&line);
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use anyhow::Context as _;
+
+    #[test]
+    fn causes_and_remedies_are_told_and_the_code_tells_whose_fault_it_is() {
+        let usage = Usage {
+            message: "no such condition".into(),
+            help: "it has: 5rpm".into(),
+        };
+        let error = Err::<(), _>(usage).context("cannot verify").unwrap_err();
+        assert_eq!(
+            describe(&error),
+            "error: cannot verify\n  caused by: no such condition\nhelp: it has: 5rpm"
+        );
+        assert_eq!(code(&error), 2);
+        let lost = EvaluatorError {
+            message: "no worker".into(),
+            help: Some("start one".into()),
+        };
+        let error = anyhow::Error::from(StudyError::from(lost));
+        assert_eq!(describe(&error), "error: no worker\nhelp: start one");
+        assert_eq!(code(&error), 1);
+        assert_eq!(code(&anyhow::Error::from(StudyError::Interrupted)), 130);
+    }
+}

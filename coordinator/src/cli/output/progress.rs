@@ -1,0 +1,269 @@
+//! Progress on standard error: a bar on a terminal, else a line per generation or ten seconds.
+use super::terminal;
+use crate::study::{Crew, ProgressView, StageView, View, Watch};
+use discrepancy::laboratory::Stage;
+use indicatif::{ProgressBar, ProgressStyle};
+use protocol::event::Spent;
+use std::{
+    io::{self, IsTerminal as _},
+    time::{Duration, Instant},
+};
+
+/// Longest silence where there is no terminal.
+const SILENCE: Duration = Duration::from_secs(10);
+/// Least time between two looks at the workers, which cost more than a result does.
+const LOOK: Duration = Duration::from_millis(200);
+
+/// Shows how a calibration comes along.
+pub(crate) struct Display {
+    bar: Option<ProgressBar>,
+    last: Instant,
+    generation: Option<u32>,
+    /// Results of earlier sessions that come back at once.
+    recorded: u64,
+}
+
+impl Display {
+    pub(crate) fn new() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let template = "{bar:32} {pos}/{len}  {msg}";
+            let style = ProgressStyle::with_template(template)
+                .unwrap_or_else(|_| ProgressStyle::default_bar())
+                .progress_chars("=> ");
+            ProgressBar::new(1).with_style(style)
+        });
+        Self {
+            bar,
+            last: Instant::now(),
+            generation: None,
+            recorded: 0,
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows how a diagnosis comes along: the stage, its experiments, the workers.
+pub(crate) struct StageDisplay {
+    bar: Option<ProgressBar>,
+    last: Instant,
+    stage: Option<Stage>,
+}
+
+impl StageDisplay {
+    pub(crate) fn new() -> Self {
+        let bar = io::stderr().is_terminal().then(|| {
+            let style = ProgressStyle::with_template("{spinner} {msg}")
+                .unwrap_or_else(|_| ProgressStyle::default_spinner());
+            ProgressBar::new_spinner().with_style(style)
+        });
+        Self {
+            bar,
+            last: Instant::now(),
+            stage: None,
+        }
+    }
+
+    /// Takes the line away.
+    pub(crate) fn clear(&self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Watch<StageView> for StageDisplay {
+    fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> Crew) {
+        let StageView { stage, done, open } = *view;
+        let now = Instant::now();
+        let silent = now.duration_since(self.last);
+        let patience = if self.bar.is_some() { LOOK } else { SILENCE };
+        if self.stage == Some(stage) && silent < patience {
+            return;
+        }
+        self.last = now;
+        self.stage = Some(stage);
+        let number = 1 + Stage::ALL
+            .iter()
+            .take_while(|other| **other != stage)
+            .count();
+        let workers = at_work(&crew());
+        let line = format!(
+            "stage {number} of {}: {}  {done} simulations, {open} open  {workers}",
+            Stage::ALL.len(),
+            stage.name()
+        );
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(line);
+                bar.tick();
+            }
+            None => terminal::tell(&line),
+        }
+    }
+}
+
+/// Shows nothing: for a replay, which takes a moment and whose workers are those of the past.
+pub(crate) struct Silent;
+
+impl<V: View> Watch<V> for Silent {
+    fn progress(&mut self, _view: &V, _crew: &dyn Fn() -> Crew) {}
+}
+
+impl Watch<ProgressView> for Display {
+    fn resumed(&mut self, recorded: usize) {
+        self.recorded = recorded as u64;
+    }
+
+    fn progress(&mut self, view: &ProgressView, crew: &dyn Fn() -> Crew) {
+        // what is only read again needs neither workers nor lines
+        let reading = view.completed == view.replayed && view.completed < self.recorded;
+        if reading && view.completed < view.expected {
+            return;
+        }
+        let now = Instant::now();
+        let silent = now.duration_since(self.last);
+        let due = match &self.bar {
+            Some(_) => silent >= LOOK,
+            None => self.generation != Some(view.generation) || silent >= SILENCE,
+        };
+        if !due && view.completed < view.expected {
+            return;
+        }
+        self.last = now;
+        self.generation = Some(view.generation);
+        let words = describe(view, &crew());
+        match &self.bar {
+            Some(bar) => {
+                bar.set_length(view.expected);
+                bar.set_position(view.completed);
+                bar.set_message(words);
+            }
+            None => terminal::tell(&format!("{}/{}  {words}", view.completed, view.expected)),
+        }
+    }
+}
+
+/// One line: generation, best, failures, workers, rate, time left.
+fn describe(view: &ProgressView, crew: &Crew) -> String {
+    let mut parts = vec![format!(
+        "generation or stage {} of {}",
+        view.generation, view.generations
+    )];
+    if let Some(best) = view.best {
+        parts.push(format!("best {best:.4} MPa^2"));
+    }
+    if view.failed > 0 {
+        parts.push(format!("{} failed", view.failed));
+    }
+    let read_only = view.completed > 0 && view.completed == view.replayed;
+    parts.push(if read_only && crew.workers.is_empty() {
+        "all from the journal".to_owned()
+    } else {
+        at_work(crew)
+    });
+    parts.extend(slot_use(&crew.spent));
+    if let Some(rate) = view.rate(crew.computing) {
+        parts.push(format!("{rate:.1}/s"));
+    }
+    if let Some(left) = view.remaining(crew.computing) {
+        parts.push(format!("{} left", clock(left)));
+    }
+    parts.join("  ")
+}
+
+/// Who is at work. Until the first job is given out workers fetch the case and build the model.
+fn at_work(crew: &Crew) -> String {
+    let attached = crew.workers.iter().filter(|worker| worker.attached).count();
+    let workers = match attached {
+        0 => return "waiting for workers".to_owned(),
+        1 => "1 worker".to_owned(),
+        several => format!("{several} workers"),
+    };
+    if crew.computing.is_zero() {
+        return format!("waiting for {workers} to get ready");
+    }
+    workers
+}
+
+/// What slots do beside what they are there for, as `slots 91 % useful, 8 % barrier`; nothing as
+/// long as there is little to go by.
+fn slot_use(spent: &Spent) -> Option<String> {
+    if spent.connected_us < 5_000_000 {
+        return None;
+    }
+    let percent = |us: u64| 100.0 * us as f64 / spent.connected_us as f64;
+    let kinds = spent
+        .kinds()
+        .into_iter()
+        .map(|(kind, us)| (kind, percent(us)));
+    let shown: Vec<String> = kinds
+        .filter(|(kind, share)| *kind == "useful" || *share >= 1.0)
+        .map(|(kind, share)| format!("{share:.0} % {kind}"))
+        .collect();
+    Some(format!("slots {}", shown.join(", ")))
+}
+
+/// `42 s`, `3 min 05 s`, `2 h 07 min`.
+fn clock(time: Duration) -> String {
+    let seconds = time.as_secs();
+    match seconds {
+        0..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {:02} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {:02} min", seconds / 3600, seconds / 60 % 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::WorkerStatus;
+
+    #[test]
+    fn a_line_says_everything_that_is_known() {
+        let view = ProgressView {
+            generation: 3,
+            generations: 60,
+            completed: 240,
+            expected: 6080,
+            failed: 12,
+            replayed: 40,
+            best: Some(0.31239),
+        };
+        let mut crew = Crew::default();
+        assert_eq!(
+            describe(&ProgressView::default(), &crew),
+            "generation or stage 0 of 0  waiting for workers"
+        );
+        crew.workers.push(WorkerStatus {
+            attached: true,
+            ..WorkerStatus::default()
+        });
+        assert_eq!(
+            describe(&ProgressView::default(), &crew),
+            "generation or stage 0 of 0  waiting for 1 worker to get ready"
+        );
+        crew.computing = Duration::from_secs(20);
+        assert_eq!(
+            describe(&view, &crew),
+            "generation or stage 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
+        );
+        crew.spent = Spent {
+            connected_us: 10_000_000,
+            useful_us: 8_950_000,
+            barrier_us: 1_000_000,
+            starved_us: 50_000,
+            ..Spent::default()
+        };
+        let line = describe(&view, &crew);
+        assert!(
+            line.contains("1 worker  slots 90 % useful, 10 % barrier  10.0/s"),
+            "{line}"
+        );
+    }
+}

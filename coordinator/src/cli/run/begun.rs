@@ -1,0 +1,145 @@
+//! A run that was begun: its folder, how it was begun, and its case.
+use super::{
+    folder::{CASE, MANIFEST, RunFolder},
+    manifest::{Decides, Manifest},
+};
+use crate::cli::output::problem::Usage;
+use protocol::case::Case;
+use std::path::Path;
+
+/// A run of one kind; `S` is what decides its result beside case, seed and start.
+#[derive(Clone, Debug)]
+pub(crate) struct Run<S> {
+    /// Its folder.
+    pub(crate) folder: RunFolder,
+    /// How it was begun, with the wall time of the sessions that are over.
+    pub(crate) manifest: Manifest<S>,
+    /// Its case.
+    pub(crate) case: Case,
+}
+
+impl<S: Decides> Run<S> {
+    /// Opens a run that was begun before.
+    ///
+    /// # Errors
+    /// If the folder holds no run, or one of another version or kind.
+    pub(crate) fn open(path: &Path) -> anyhow::Result<Self> {
+        Self::load(RunFolder::at(path)?)
+    }
+
+    fn load(folder: RunFolder) -> anyhow::Result<Self> {
+        let head = folder.head()?;
+        if head.kind != S::KIND {
+            return Err(Usage {
+                message: format!(
+                    "{} holds a run of `horsehead {}`, not of `horsehead {}`",
+                    folder.path().display(),
+                    head.kind,
+                    S::KIND
+                ),
+                help: "name the folder of another run, or begin a new one with --run DIR"
+                    .to_owned(),
+            }
+            .into());
+        }
+        Ok(Self {
+            manifest: folder.read_json(MANIFEST)?,
+            case: folder.read_json(CASE)?,
+            folder,
+        })
+    }
+
+    /// A run in a folder where it can begin, or where it goes on because it is the same one. Writes
+    /// nothing: [`Run::remember`] does, once the journal has agreed.
+    ///
+    /// # Errors
+    /// If the folder holds another run or something else.
+    pub(crate) fn begin(path: &Path, manifest: Manifest<S>, case: Case) -> anyhow::Result<Self> {
+        let folder = RunFolder::new(path);
+        let mut run = Self {
+            folder,
+            manifest,
+            case,
+        };
+        if !run.folder.is_begun() {
+            run.folder.check_vacant()?;
+            return Ok(run);
+        }
+        let earlier = Self::load(run.folder.clone())?;
+        if let Some(difference) = run.difference(&earlier) {
+            return Err(Usage {
+                message: format!("{} holds another run: {difference}", path.display()),
+                help: format!(
+                    "choose another folder with --run, or go on with that run:\n  {}",
+                    earlier.resume_command()
+                ),
+            }
+            .into());
+        }
+        run.manifest.wall_s = earlier.manifest.wall_s;
+        Ok(run)
+    }
+
+    /// In what it is not the same run as an earlier one, in words.
+    fn difference(&self, earlier: &Self) -> Option<String> {
+        let (was, is) = (&earlier.manifest, &self.manifest);
+        if was.seed != is.seed {
+            Some(format!("its seed is {}, not {}", was.seed, is.seed))
+        } else if was.start_genes() != is.start_genes() {
+            Some("it starts at other genes".to_owned())
+        } else if was.settings != is.settings {
+            let difference = is.settings.difference(&was.settings);
+            Some(match was.preset.as_str() {
+                "" => difference,
+                preset => format!("{difference} (it was begun with preset {preset})"),
+            })
+        } else {
+            (earlier.case != self.case).then(|| "its case or its records differ".to_owned())
+        }
+    }
+
+    /// Whether its results are gone although there were some.
+    pub(crate) fn lost_journal(&self) -> bool {
+        let computed = self.manifest.wall_s > 0.0 || self.folder.is_finished();
+        self.folder.is_begun() && computed && !self.folder.has_journal()
+    }
+
+    /// Makes sure that the run can be replayed: it is finished and its journal is there.
+    ///
+    /// # Errors
+    /// If not; the error says how to go on.
+    pub(crate) fn expect_replayable(&self) -> Result<(), Usage> {
+        let path = self.folder.path().display();
+        let (message, remedy) = if !self.folder.is_finished() {
+            (format!("{path} is not finished"), "go on with it first")
+        } else if !self.folder.has_journal() {
+            (
+                format!("the journal of {path} is gone or empty"),
+                "put it back, or compute the run anew",
+            )
+        } else {
+            return Ok(());
+        };
+        Err(Usage {
+            message,
+            help: format!("{remedy}:\n  {}", self.resume_command()),
+        })
+    }
+
+    /// Remembers how the run was begun and the wall time that was spent (s).
+    pub(crate) fn remember(&self, wall_s: f64) -> anyhow::Result<()> {
+        if !self.folder.file(CASE).exists() {
+            self.folder.write_json(CASE, &self.case)?;
+        }
+        let manifest = Manifest {
+            wall_s,
+            ..self.manifest.clone()
+        };
+        self.folder.write_json(MANIFEST, &manifest)
+    }
+
+    /// The command that goes on with the run in the folder where it lies now.
+    pub(crate) fn resume_command(&self) -> String {
+        self.manifest.resume_command(self.folder.path())
+    }
+}

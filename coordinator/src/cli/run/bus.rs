@@ -1,0 +1,214 @@
+//! The dispatcher as an evaluator: opening it, and its refusals in words that help.
+use crate::{
+    cli::{argument::door::Door, output::problem::Usage},
+    journal::JournalError,
+    runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
+    study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
+};
+use link::LinkError;
+use protocol::{
+    case::Case,
+    id::{ContentHash, JobId},
+    job::Job,
+    wire,
+};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Name and version of this program.
+pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
+
+/// How to open the bus.
+pub(crate) struct Options {
+    /// Folder of the journal.
+    pub(crate) run_dir: PathBuf,
+    /// How other machines may join.
+    pub(crate) door: Door,
+    /// Worker processes to start here.
+    pub(crate) local_workers: usize,
+    /// Which command the run belongs to.
+    pub(crate) kind: String,
+    /// Canonical JSON of everything that decides the result.
+    pub(crate) settings: String,
+}
+
+impl Options {
+    /// The same as the dispatcher takes it.
+    pub(crate) fn for_dispatch(self, case: &Case) -> anyhow::Result<DispatchOptions> {
+        Ok(DispatchOptions {
+            run_dir: self.run_dir,
+            listen: self.door.listen,
+            insecure: self.door.insecure,
+            tls: self.door.tls,
+            local_workers: self.local_workers,
+            case: case.clone(),
+            header: RunHeader {
+                kind: self.kind,
+                case: content_hash(case)?,
+                settings: self.settings,
+            },
+        })
+    }
+}
+
+/// The dispatcher, as an evaluator.
+pub(crate) struct Bus {
+    dispatch: Dispatch,
+}
+
+impl Bus {
+    /// Opens or resumes the journal and starts local workers.
+    pub(crate) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
+        let options = options.for_dispatch(case)?;
+        let dispatch = Dispatch::open(options)
+            .await
+            .map_err(|error| refuse(&error))?;
+        Ok(Self { dispatch })
+    }
+
+    /// How many results earlier sessions left in the journal.
+    pub(crate) const fn recorded(&self) -> usize {
+        self.dispatch.recorded()
+    }
+
+    /// Tells the workers to end and waits for the local ones.
+    pub(crate) async fn close(self) -> anyhow::Result<()> {
+        self.dispatch
+            .close()
+            .await
+            .map_err(|error| explain(&error))?;
+        Ok(())
+    }
+}
+
+impl Evaluator for Bus {
+    fn submit(&mut self, id: JobId, job: Job) -> Result<(), EvaluatorError> {
+        self.dispatch
+            .submit(id, job)
+            .map_err(|error| explain(&error))
+    }
+
+    async fn next(&mut self) -> Result<Completed, EvaluatorError> {
+        self.dispatch.next().await.map_err(|error| explain(&error))
+    }
+
+    fn crew(&self) -> Crew {
+        crew(self.dispatch.snapshot())
+    }
+}
+
+fn crew(snapshot: Snapshot) -> Crew {
+    let workers = snapshot.workers.into_iter().map(|worker| WorkerStatus {
+        name: worker.id.to_string(),
+        host: worker.host,
+        attached: true,
+        slots: worker.slots,
+        busy: worker.busy,
+        done: worker.done,
+        failed: worker.failed,
+        busy_s: worker.spent.useful_us as f64 / 1e6,
+        present_s: worker.spent.connected_us as f64 / 1e6 / f64::from(worker.slots.max(1)),
+    });
+    Crew {
+        workers: workers.collect(),
+        queued: snapshot.queued,
+        running: snapshot.running,
+        spent: snapshot.spent,
+        computing: snapshot.computing,
+    }
+}
+
+/// Why a run cannot be opened: most often because of what was typed.
+fn refuse(error: &DispatchError) -> anyhow::Error {
+    let help = match error {
+        DispatchError::NobodyToAsk => "for example --workers 2, or --listen tcp/127.0.0.1:7447",
+        DispatchError::Listen { .. } => {
+            "choose another address or port, as --listen tcp/127.0.0.1:7447; port 0 takes any \
+             free one"
+        }
+        DispatchError::Link(LinkError::Transport { .. }) => "choose another address with --listen",
+        DispatchError::Link(LinkError::NoKeys { .. } | LinkError::Keys(_)) => {
+            "`horsehead keys new DIR --host NAME` makes certificates; --tls DIR uses them"
+        }
+        DispatchError::Link(_) => "for example --listen tcp/127.0.0.1:7447",
+        DispatchError::Journal(JournalError::Io { .. }) => {
+            "choose a folder that can be written, with --run DIR"
+        }
+        DispatchError::Journal(_) => "another folder is chosen with --run DIR",
+        DispatchError::Locate(_)
+        | DispatchError::Case(_)
+        | DispatchError::Start(_)
+        | DispatchError::LocalWorkers { .. }
+        | DispatchError::JobDiffers { .. }
+        | DispatchError::Stopped(_)
+        | DispatchError::Closed => return explain(error).into(),
+    };
+    Usage {
+        message: without_source_places(&error.to_string()),
+        help: help.to_owned(),
+    }
+    .into()
+}
+
+/// The text without ` at /some/file.rs:12`, with which the transport tells where in its own
+/// source an error was made.
+fn without_source_places(text: &str) -> String {
+    let mut kept = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(" at /") {
+        let (before, place) = rest.split_at(at);
+        kept.push_str(before);
+        let path = place.trim_start_matches(" at ");
+        let end = path.find(char::is_whitespace).unwrap_or(path.len());
+        let (path, after) = path.split_at(end);
+        if !path.contains(".rs:") {
+            kept.push_str(" at ");
+            kept.push_str(path);
+        }
+        rest = after;
+    }
+    kept + rest
+}
+
+/// The error of work that cannot go on.
+pub(crate) fn explain(error: &DispatchError) -> EvaluatorError {
+    EvaluatorError {
+        message: without_source_places(&error.to_string()),
+        help: None,
+    }
+}
+
+/// The name of some content.
+pub(crate) fn content_hash(content: &impl Serialize) -> anyhow::Result<ContentHash> {
+    Ok(ContentHash::of(&wire::encode(content)?))
+}
+
+/// The name of a case's content, in hexadecimal digits.
+pub(crate) fn case_hash(case: &Case) -> anyhow::Result<String> {
+    Ok(content_hash(case)?.to_string())
+}
+
+/// Runs a future to its end on a runtime of its own.
+pub(crate) fn block_on<T>(future: impl Future<Output = anyhow::Result<T>>) -> anyhow::Result<T> {
+    tokio::runtime::Builder::new_multi_thread()
+        .enable_all()
+        .build()?
+        .block_on(future)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_source_places;
+
+    #[test]
+    fn places_in_the_source_of_the_transport_are_left_out() {
+        assert_eq!(
+            without_source_places(
+                "cannot listen: in use (os error 98) at /a/b-1.2/src/unicast.rs:362. at /c/d.rs:1"
+            ),
+            "cannot listen: in use (os error 98)"
+        );
+        let plain = "cannot write at /data/run: full";
+        assert_eq!(without_source_places(plain), plain);
+    }
+}

@@ -1,0 +1,68 @@
+//! The work of a calibration: the search, then recommended and best individual side by side.
+use super::begun::Run;
+use crate::study::{
+    self, Calibrated, Compared, Evaluator, ProgressView, Stop, StudyError, Wanted, Watch,
+};
+use protocol::case::Case;
+use search::strategy::{self, Settings};
+
+/// A calibration that was begun.
+pub(crate) type Calibration = Run<Settings>;
+
+/// What a calibration finds.
+pub(crate) struct Found {
+    /// The best individual and the log of the search.
+    pub(crate) calibrated: Calibrated,
+    /// Recommended and best individual, the calibrated condition first.
+    pub(crate) compared: Vec<Compared>,
+}
+
+/// Searches and compares on whatever evaluates: workers, or the recording of a journal, which gives
+/// the same again.
+///
+/// # Errors
+/// As [`study::calibrate()`] and [`study::compare()`].
+pub(crate) async fn calibrate<E: Evaluator>(
+    evaluator: &mut E,
+    run: &Calibration,
+    watch: &mut dyn Watch<ProgressView>,
+    stop: &mut Stop,
+) -> anyhow::Result<Found> {
+    let (case, manifest) = (&run.case, &run.manifest);
+    let space = manifest.space(case)?;
+    let built = strategy::build(&manifest.settings, &space, manifest.seed);
+    let mut strategy = built.map_err(StudyError::from)?;
+    let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
+    let wanted = comparison(case, &calibrated.best.genes);
+    let compared = study::compare(evaluator, case, &wanted, stop).await?;
+    Ok(Found {
+        calibrated,
+        compared,
+    })
+}
+
+/// Recommended and best individual under every condition with a record, the calibrated one first
+/// and with the moving machine.
+fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
+    let calibrated = case.objective.condition;
+    let recorded = |index: &usize| case.conditions[*index].record.is_some();
+    let others = (0..case.conditions.len())
+        .filter(|index| *index != calibrated)
+        .filter(recorded);
+    std::iter::once(calibrated)
+        .chain(others)
+        .map(|condition| Wanted {
+            condition,
+            individuals: pair(case, best),
+            motion_step_deg: if condition == calibrated { 3.0 } else { 0.0 },
+        })
+        .collect()
+}
+
+/// The two parameter sets of the paper's tables.
+pub(crate) fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
+    vec![
+        ("recommended".to_owned(), case.recommended()),
+        ("optimised".to_owned(), best.to_vec()),
+    ]
+}

@@ -1,0 +1,151 @@
+//! The work of a diagnosis: what decides it, the case with its cycles, the experiments.
+use super::{
+    begun::Run,
+    bus,
+    command_line::quote,
+    manifest::{self, DIAGNOSE, Manifest},
+};
+use crate::{
+    case::{Loaded, Overrides, load_with_notes},
+    cli::output::problem::Usage,
+    study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
+};
+use discrepancy::{diagnose::Inputs, thresholds::Thresholds};
+use protocol::{announce::EffectDescriptor, job::Discretisation};
+use search::space::Space;
+use serde::{Deserialize, Serialize};
+
+/// A diagnosis that was begun.
+pub(crate) type Diagnosis = Run<Decides>;
+
+/// Everything that decides a diagnosis beside case, seed and start.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Decides {
+    /// Thresholds.
+    pub(crate) thresholds: Thresholds,
+}
+
+impl manifest::Decides for Decides {
+    const KIND: &'static str = DIAGNOSE;
+
+    fn arguments(&self) -> String {
+        let mut words = format!(" --rounds {}", self.thresholds.rounds);
+        if !self.thresholds.without.is_empty() {
+            words.extend([" --without ", &quote(&self.thresholds.without.join(","))]);
+        }
+        words
+    }
+}
+
+/// What a diagnosis finds.
+pub(crate) struct Found {
+    /// The answer and what it cost.
+    pub(crate) diagnosed: Diagnosed,
+    /// Effects that the workers know and the case has not.
+    pub(crate) library: Vec<EffectDescriptor>,
+}
+
+impl Diagnosis {
+    /// The case with its records: a run keeps its case, but not the cycles of the records.
+    ///
+    /// # Errors
+    /// If the case has changed since the run was begun.
+    pub(crate) fn loaded(&self) -> anyhow::Result<Loaded> {
+        let manifest = &self.manifest;
+        let overrides = Overrides {
+            measured: manifest.replaced_records().map(ToOwned::to_owned),
+        };
+        let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
+        if loaded.case != self.case {
+            return Err(Usage {
+                message: format!(
+                    "the case has changed since {} was made, and its records are read anew",
+                    self.folder.path().display()
+                ),
+                help: format!(
+                    "put {} back as it was, or diagnose it again with another --run",
+                    manifest.case_folder.display()
+                ),
+            }
+            .into());
+        }
+        Ok(loaded)
+    }
+
+    /// A case without what this very diagnosis has added to it.
+    pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
+        Ok(loaded.without_found_in(&bus::case_hash(&self.case)?))
+    }
+}
+
+/// Learns the library and diagnoses, on whatever evaluates: workers, or the recording of a journal,
+/// which gives the same again.
+///
+/// # Errors
+/// If an effect that is to be left out is unknown; as [`study::diagnose_on`].
+pub(crate) async fn diagnose<E: Evaluator>(
+    evaluator: &mut E,
+    manifest: &Manifest<Decides>,
+    loaded: &Loaded,
+    watch: &mut dyn Watch<StageView>,
+    stop: &mut Stop,
+) -> anyhow::Result<Found> {
+    let library = study::library(evaluator, stop).await?;
+    for id in &manifest.settings.thresholds.without {
+        if library.iter().all(|effect| effect.id != *id) {
+            let names = library.iter().filter(|e| !e.generic).map(|e| e.id.as_str());
+            let known: Vec<&str> = names.collect();
+            return Err(Usage {
+                message: format!("the workers know no effect `{id}`"),
+                help: format!("they know: {}", known.join(", ")),
+            }
+            .into());
+        }
+    }
+    let inputs = inputs(loaded, manifest, library)?;
+    let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
+    Ok(Found {
+        diagnosed,
+        library: inputs.library,
+    })
+}
+
+/// What the pipeline takes: the calibrated condition's record first.
+fn inputs(
+    loaded: &Loaded,
+    manifest: &Manifest<Decides>,
+    library: Vec<EffectDescriptor>,
+) -> anyhow::Result<Inputs> {
+    let case = &loaded.case;
+    let space = Space::new(&case.genes)?;
+    let calibrated = case.objective.condition;
+    let mut records = loaded.cycles.clone();
+    records.sort_by_key(|record| record.condition != calibrated);
+    records.retain(|record| record.condition == calibrated || !record.cycles.is_empty());
+    // effects that the case has already are ordinary physics, not suspects
+    let library = library
+        .into_iter()
+        .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
+        .collect();
+    let available = case.modal_head.frequencies_hz.len();
+    let thresholds = &manifest.settings.thresholds;
+    Ok(Inputs {
+        start: manifest.start_genes().map(|genes| space.point(genes)),
+        space,
+        records,
+        library,
+        usual: Discretisation {
+            longest_step_s: Some(thresholds.step * case.run.longest_step_s),
+            ..Discretisation::default()
+        },
+        finer: Discretisation {
+            cylinder_length_m: Some(case.ropes.cylinder_length_m * thresholds.refinement),
+            lead_in_deg: Some(case.run.lead_in_deg + 180.0),
+            modes: Some((case.run.modes + 2).min(available)),
+            longest_step_s: Some(0.5 * thresholds.step * case.run.longest_step_s),
+            ..Discretisation::OF_THE_CASE
+        },
+        seed: manifest.seed,
+        thresholds: thresholds.clone(),
+    })
+}

@@ -1,0 +1,47 @@
+//! Ctrl-C: the first stops cleanly, the second at once.
+use crate::{
+    cli::output::{problem::INTERRUPTED, terminal},
+    study::Stop,
+};
+use tokio::sync::watch;
+
+/// Listens for Ctrl-C and SIGTERM from now on; needs a running asynchronous runtime. What is
+/// returned becomes true with the first of them.
+pub(crate) fn listen() -> Stop {
+    let (sender, stop) = watch::channel(false);
+    tokio::spawn(async move {
+        signal().await;
+        terminal::tell("stopping; once more to stop at once");
+        // whoever listened may be busy ending the run, which may have to wait for a full disk
+        sender.send_replace(true);
+        signal().await;
+        leave();
+    });
+    stop
+}
+
+#[expect(
+    clippy::exit,
+    reason = "the user asked twice: nothing is worth waiting for"
+)]
+fn leave() {
+    std::process::exit(i32::from(INTERRUPTED));
+}
+
+#[cfg(unix)]
+async fn signal() {
+    use tokio::signal::unix::{SignalKind, signal};
+    let Ok(mut terminate) = signal(SignalKind::terminate()) else {
+        let _unheard = tokio::signal::ctrl_c().await;
+        return;
+    };
+    tokio::select! {
+        _heard = tokio::signal::ctrl_c() => {}
+        _heard = terminate.recv() => {}
+    }
+}
+
+#[cfg(not(unix))]
+async fn signal() {
+    let _unheard = tokio::signal::ctrl_c().await;
+}

@@ -1,0 +1,13 @@
+//! Runs: their folders, what is remembered of them, and what opens, resumes and repeats them.
+pub(super) mod begun;
+pub(super) mod bus;
+pub(super) mod calibration;
+pub(super) mod command_line;
+pub(super) mod diagnosis;
+pub(super) mod folder;
+pub(super) mod interrupt;
+pub(super) mod kind;
+pub(super) mod manifest;
+pub(super) mod once;
+pub(super) mod session;
+pub(super) mod tables;

@@ -1,0 +1,55 @@
+//! Work of one command on local workers, without a run folder that outlives it.
+use super::{
+    bus::{self, Bus},
+    interrupt,
+};
+use crate::{
+    cli::argument::door::Door,
+    study::{self, Compared, Stop, StudyError, Wanted},
+};
+use anyhow::Context as _;
+use protocol::case::Case;
+
+/// Works with so many local workers in a scratch folder.
+///
+/// # Errors
+/// If workers cannot be started, or the work fails.
+pub(crate) fn in_scratch<T>(
+    case: &Case,
+    kind: &str,
+    local_workers: usize,
+    work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> Result<T, StudyError>,
+) -> anyhow::Result<T> {
+    let scratch = tempfile::tempdir().context("cannot make a scratch folder")?;
+    // what decides the result is not written down where nothing is resumed
+    let settings = serde_json::to_string(&(kind, scratch.path()))?;
+    bus::block_on(async {
+        let mut stop = interrupt::listen();
+        let options = bus::Options {
+            run_dir: scratch.path().to_owned(),
+            door: Door::default(),
+            local_workers,
+            kind: kind.to_owned(),
+            settings,
+        };
+        let mut bus = Bus::open(options, case).await?;
+        let result = work(&mut bus, &mut stop).await;
+        bus.close().await?;
+        Ok(result?)
+    })
+}
+
+/// Scores and simulates parameter sets.
+///
+/// # Errors
+/// As [`in_scratch`] and [`study::compare()`].
+pub(crate) fn compare_once(
+    kind: &str,
+    case: &Case,
+    wanted: &[Wanted],
+    workers: usize,
+) -> anyhow::Result<Vec<Compared>> {
+    in_scratch(case, kind, workers, async |bus, stop| {
+        study::compare(bus, case, wanted, stop).await
+    })
+}

@@ -1,0 +1,86 @@
+//! One session of a run: the bus is opened in its folder, the work is done, the time is kept.
+use super::{
+    begun::Run,
+    bus::{self, Bus},
+    interrupt,
+    manifest::Decides,
+};
+use crate::{
+    cli::{argument::door::Door, output::terminal},
+    study::{Stop, StudyError},
+};
+use std::time::Instant;
+
+/// Who works on a run, and since when.
+pub(crate) struct Session {
+    /// How other machines may join.
+    pub(crate) door: Door,
+    /// Worker processes to start here.
+    pub(crate) local_workers: usize,
+    /// When the command began.
+    pub(crate) started: Instant,
+}
+
+impl Session {
+    /// Wall time of a run with this session (s).
+    pub(crate) fn wall_s<S>(&self, run: &Run<S>) -> f64 {
+        run.manifest.wall_s + self.started.elapsed().as_secs_f64()
+    }
+
+    /// Has the work of a run done on the bus; what the journal holds is not computed again. Says at
+    /// the beginning whether the run is new, and how to go on where it is stopped.
+    pub(crate) fn work<S: Decides, T>(
+        &self,
+        run: &Run<S>,
+        work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> anyhow::Result<T>,
+    ) -> anyhow::Result<T> {
+        let done = bus::block_on(async {
+            let mut stop = interrupt::listen();
+            let options = bus::Options {
+                run_dir: run.folder.path().to_owned(),
+                door: self.door.clone(),
+                local_workers: self.local_workers,
+                kind: S::KIND.to_owned(),
+                settings: run.manifest.settings_json()?,
+            };
+            let resumed = run.folder.is_begun();
+            let mut bus = Bus::open(options, &run.case).await?;
+            // the journal is ours now: before, another run may have it
+            run.remember(run.manifest.wall_s)?;
+            let path = run.folder.path().display();
+            terminal::tell(&match (resumed || bus.recorded() > 0, bus.recorded()) {
+                (false, _) => format!("beginning {path}"),
+                (true, 1) => format!("going on with {path}: its journal holds 1 result"),
+                (true, recorded) => {
+                    format!("going on with {path}: its journal holds {recorded} results")
+                }
+            });
+            let done = work(&mut bus, &mut stop).await;
+            // while the run is still locked
+            let remembered = run.remember(self.wall_s(run));
+            let closed = bus.close().await;
+            let done = done?;
+            remembered?;
+            closed?;
+            Ok(done)
+        });
+        done.inspect_err(|error| {
+            if can_go_on(error) {
+                terminal::tell(&format!(
+                    "results so far are kept in {}; to go on:\n  {}",
+                    run.folder.path().display(),
+                    run.manifest.command
+                ));
+            }
+        })
+    }
+}
+
+/// Whether the same command may bring more: not if the case or the workers are at fault.
+fn can_go_on(error: &anyhow::Error) -> bool {
+    let study = error.downcast_ref::<StudyError>();
+    matches!(
+        study,
+        Some(StudyError::Interrupted | StudyError::Evaluator(_))
+    )
+}

@@ -1,0 +1,219 @@
+//! A run as tables for queries: its study is repeated on its journal, and every simulation that it
+//! asks for becomes a row.
+use super::{
+    bus,
+    calibration::{Calibration, calibrate},
+    folder::RunFolder,
+    interrupt,
+    manifest::Manifest,
+};
+use crate::{
+    cli::output::{problem::Usage, terminal},
+    journal,
+    store::{Exported, Format, Label, Store, StoreError, Target},
+    study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch},
+};
+use discrepancy::laboratory::Stage;
+use protocol::{case::Case, event::Finished, job::Job};
+use search::strategy::Proposal;
+use serde::Serialize;
+use std::{cell::RefCell, collections::BTreeMap, path::PathBuf};
+
+/// What is known of the run as a whole, beside its journal.
+pub(crate) fn facts<S: Serialize>(
+    manifest: &Manifest<S>,
+) -> anyhow::Result<Vec<(&'static str, String)>> {
+    let Manifest {
+        kind,
+        format: _,
+        program,
+        command,
+        preset,
+        set,
+        seed,
+        settings,
+        start,
+        case_folder,
+        measured,
+        synthetic,
+        notes,
+        wall_s,
+    } = manifest;
+    let start = start.as_ref().map_or_else(
+        || "recommended".to_owned(),
+        |start| start.file.display().to_string(),
+    );
+    Ok(vec![
+        ("kind", kind.clone()),
+        ("program", program.clone()),
+        ("exported_by", bus::PROGRAM.to_owned()),
+        ("command", command.clone()),
+        ("preset", preset.clone()),
+        ("set", set.join(" ")),
+        ("seed", seed.to_string()),
+        ("settings", serde_json::to_string(settings)?),
+        ("start", start),
+        ("case_folder", case_folder.display().to_string()),
+        ("measured", measured.clone()),
+        (
+            "records",
+            if *synthetic { "synthetic" } else { "measured" }.to_owned(),
+        ),
+        ("notes", notes.join("\n")),
+        ("wall_s", wall_s.to_string()),
+    ])
+}
+
+/// Labels of the simulations that were asked for and have not come back.
+type Waiting = RefCell<BTreeMap<u64, Label>>;
+
+/// Notes down why the study wants what it asks for.
+pub(crate) struct Labels<'a>(&'a Waiting);
+
+impl Watch<ProgressView> for Labels<'_> {
+    fn progress(&mut self, _: &ProgressView, _: &dyn Fn() -> Crew) {}
+
+    fn asked(&mut self, id: u64, proposal: &Proposal) {
+        let label = Label {
+            generation: Some(proposal.generation),
+            purpose: proposal.purpose.as_str().to_owned(),
+        };
+        self.0.borrow_mut().insert(id, label);
+    }
+}
+
+impl Watch<StageView> for Labels<'_> {
+    fn progress(&mut self, _: &StageView, _: &dyn Fn() -> Crew) {}
+
+    fn asked(&mut self, id: u64, stage: &Stage) {
+        let label = Label {
+            generation: None,
+            purpose: stage.name().to_owned(),
+        };
+        self.0.borrow_mut().insert(id, label);
+    }
+}
+
+/// What is asked for outside the search: both parameter sets of the tables.
+fn comparison() -> Label {
+    Label {
+        generation: None,
+        purpose: "comparison".to_owned(),
+    }
+}
+
+/// A run that tables are made of.
+pub(crate) struct Source<'a> {
+    /// Its folder.
+    pub(crate) folder: &'a RunFolder,
+    /// Its case.
+    pub(crate) case: &'a Case,
+    /// What is known of it as a whole: of [`facts`].
+    pub(crate) facts: Vec<(&'static str, String)>,
+}
+
+/// The tables of a calibration as CSV files of its folder; their paths.
+///
+/// # Errors
+/// As [`make`].
+pub(crate) fn calibration(run: &Calibration) -> anyhow::Result<Vec<PathBuf>> {
+    let format = Format::Csv;
+    let target = Target {
+        path: run.folder.file(format.usual_name()),
+        format,
+        force: true,
+    };
+    let source = Source {
+        folder: &run.folder,
+        case: &run.case,
+        facts: facts(&run.manifest)?,
+    };
+    let (exported, notes) = make(&source, target, async |recorded, labels, stop| {
+        calibrate(recorded, run, labels, stop).await.map(drop)
+    })?;
+    for note in &notes {
+        terminal::tell(&format!("note: {note}"));
+    }
+    Ok(exported.files)
+}
+
+/// Reads the journal of a run, has its study repeated on it, and writes; what is missing in words.
+///
+/// # Errors
+/// If there is no journal, the target cannot be written, or the user stops.
+pub(crate) fn make(
+    source: &Source<'_>,
+    target: Target,
+    repeat: impl AsyncFnOnce(&mut Recorded<'_>, &mut Labels<'_>, &mut Stop) -> anyhow::Result<()>,
+) -> anyhow::Result<(Exported, Vec<String>)> {
+    let path = source.folder.file(journal::FILE);
+    if !path.exists() {
+        return Err(Usage {
+            message: format!("{} has no journal yet", source.folder.path().display()),
+            help: "the command that began the run makes it".to_owned(),
+        }
+        .into());
+    }
+    let mut store = Store::begin(target, source.case).map_err(explained)?;
+    store.fact("case", &source.case.name)?;
+    store.fact("case_hash", &bus::case_hash(source.case)?)?;
+    for (name, value) in &source.facts {
+        store.fact(name, value)?;
+    }
+    let recording = store.journal(&path)?;
+    let mut notes = journal::words(&recording.report().damage);
+    let (waiting, mut failed) = (Waiting::default(), None);
+    let mut seen = |job: &Job, finished: &Finished| {
+        let label = waiting.borrow_mut().remove(&finished.job().0);
+        let added = store.evaluation(label.unwrap_or_else(comparison), job, finished);
+        added.map_err(|error| {
+            let message = error.to_string();
+            failed = Some(error);
+            EvaluatorError {
+                message,
+                help: None,
+            }
+        })
+    };
+    let mut recorded = Recorded::new(&recording, &mut seen);
+    let repeated = bus::block_on(async {
+        let mut stop = interrupt::listen();
+        repeat(&mut recorded, &mut Labels(&waiting), &mut stop).await
+    });
+    let (ended, unknown) = (recorded.ended(), recorded.unknown());
+    if let Some(error) = failed {
+        return Err(error.into());
+    }
+    if let Err(error) = repeated {
+        if matches!(error.downcast_ref(), Some(StudyError::Interrupted)) {
+            return Err(error);
+        }
+        notes.push(if ended {
+            format!(
+                "{unknown} of the simulations that the run has asked for so far have no result \
+                 in the journal"
+            )
+        } else {
+            format!(
+                "the table evaluations ends where the run could not be repeated on its journal, \
+                 the table results does not: {error:#}"
+            )
+        });
+    }
+    store.fact("missing", &notes.join("\n"))?;
+    Ok((store.finish()?, notes))
+}
+
+/// Says what to do where something else is in the way.
+fn explained(error: StoreError) -> anyhow::Error {
+    let help = match &error {
+        StoreError::Foreign { .. } => "choose another place with --to, or replace it with --force",
+        StoreError::Io { .. } => "choose a place that can be written, with --to",
+        StoreError::Table { .. } | StoreError::Journal(_) => return error.into(),
+    };
+    Usage {
+        message: error.to_string(),
+        help: help.to_owned(),
+    }
+    .into()
+}

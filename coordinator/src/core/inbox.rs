@@ -1,0 +1,113 @@
+//! Everything that can happen to a core, and who sees to it.
+use super::{
+    admission, assign,
+    input::{Command, Input},
+    lease, membership, reconcile, result,
+    slot_time::Doing,
+    state::{Core, Pending, Phase},
+    tail,
+};
+use protocol::{
+    id::{JobId, WorkerId},
+    job::Job,
+    message::{Beat, FromWorker, ToWorker},
+};
+use std::{mem, time::Duration};
+
+impl Core {
+    /// Takes note of something at a time since any fixed moment; what follows from it must be
+    /// done in order.
+    pub fn handle(&mut self, input: Input, now: Duration) -> Vec<Command> {
+        self.clocks.advance(now);
+        membership::forgive_stall(self, now);
+        match input {
+            Input::Submit { id, job } => submit(self, id, job, now),
+            Input::Heard { from, message } => heard(self, from, message, now),
+            Input::Stranger { from } => self.send(from, ToWorker::Identify),
+            Input::OtherVersion { from, version } => {
+                admission::other_version(self, from, version);
+            }
+            Input::Gone { worker } => membership::gone(self, worker, now),
+            Input::Stored { jobs } => result::stored(self, jobs),
+            Input::Slept { time } => membership::excuse(self, time, now),
+            Input::Tick => tick(self, now),
+            Input::Finish => self.phase = Phase::Finishing,
+            Input::Writable(writable) => self.paused = !writable,
+            Input::Close => close(self, now),
+        }
+        if self.may_give_out() && membership::is_complete(self, now) {
+            assign::assign(self, now);
+            tail::steal(self, now);
+        }
+        self.clocks.go_on(Doing {
+            computes: self.jobs.len() > self.queue.len(),
+            waits_for_others: self.waits_for_others(),
+        });
+        mem::take(&mut self.out)
+    }
+}
+
+fn submit(core: &mut Core, id: JobId, job: Job, now: Duration) {
+    if core.has_finished(id) || core.jobs.contains_key(&id) {
+        return;
+    }
+    core.jobs.insert(id, Pending::new(job));
+    core.queue.insert(id);
+    lease::adopt(core, id, now);
+    if let Some((from, done)) = core.early.take(id) {
+        result::done(core, from, done, now);
+    }
+}
+
+fn heard(core: &mut Core, from: WorkerId, message: FromWorker, now: Duration) {
+    let member = core.members.get_mut(&from);
+    let known = member.map(|member| member.heard = now).is_some();
+    match message {
+        FromWorker::Announce(_) if core.phase == Phase::Closed => {}
+        FromWorker::Announce(announcement) => admission::announce(core, from, *announcement, now),
+        FromWorker::Beat(beat) if known => beaten(core, from, &beat, now),
+        FromWorker::Beat(_) => core.send(from, ToWorker::Identify),
+        // it differs from the others, and so may what it computes
+        FromWorker::Done(_) if core.refused.contains(&from) => {}
+        FromWorker::Done(done) => {
+            if !known {
+                core.send(from, ToWorker::Identify);
+            }
+            result::done(core, from, *done, now);
+        }
+        FromWorker::Leaving { reason } if known => membership::leave(core, from, &reason, now),
+        FromWorker::Leaving { .. } => {}
+    }
+}
+
+fn beaten(core: &mut Core, from: WorkerId, beat: &Beat, now: Duration) {
+    let Some(ready) = admission::is_ready(core, from, beat) else {
+        return;
+    };
+    if let Some(member) = core.members.get_mut(&from) {
+        member.set_ready(ready, &core.clocks);
+    }
+    reconcile::reconcile(core, from, beat, now);
+    if beat.case.is_some() {
+        membership::welcome(core, from, now);
+    }
+}
+
+fn tick(core: &mut Core, now: Duration) {
+    membership::check_silence(core, now);
+    result::check_overdue(core, now);
+    membership::check_deserted(core, now);
+    tail::copy_slow(core, now);
+    if now.saturating_sub(core.accounted) >= core.options.policy.account_interval {
+        core.account(now);
+    }
+}
+
+fn close(core: &mut Core, now: Duration) {
+    let members: Vec<WorkerId> = core.members.keys().copied().collect();
+    for to in members {
+        core.send(to, ToWorker::Ended);
+    }
+    core.account(now);
+    core.phase = Phase::Closed;
+}

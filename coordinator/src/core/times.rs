@@ -1,0 +1,153 @@
+//! How long jobs of each kind take, and what follows from it: deadlines, orders ahead, copies.
+use super::policy::Policy;
+use crate::quantile;
+use protocol::job::kind::REDUCE_HEAD;
+use std::{
+    collections::{BTreeMap, VecDeque},
+    time::Duration,
+};
+
+/// Times of finished jobs by kind, for deadlines and copies: a reduction of a head takes minutes
+/// where a simulation takes tenths of a second.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Times(BTreeMap<&'static str, Kind>);
+
+#[derive(Clone, Debug, Default)]
+struct Kind {
+    recent: VecDeque<u64>,
+    longest: Duration,
+    /// What 95 % of the recent jobs needed at most.
+    usual: Option<Duration>,
+    /// Jobs since that was last looked at.
+    since: usize,
+}
+
+impl Times {
+    /// Jobs of a kind that count as recent.
+    const KEPT: usize = 101;
+    /// Jobs after which the usual time is looked at anew.
+    const RENEW: usize = 8;
+    /// Share of recent jobs that needed no more than the usual time [percent].
+    const USUAL: usize = 95;
+
+    /// A job took so long.
+    pub(super) fn add(&mut self, kind: &'static str, wall_us: u64, policy: &Policy) {
+        let kind = self.0.entry(kind).or_default();
+        if kind.recent.len() == Self::KEPT {
+            kind.recent.pop_front();
+        }
+        kind.recent.push_back(wall_us);
+        kind.longest = kind.longest.max(Duration::from_micros(wall_us));
+        kind.since += 1;
+        let enough = kind.recent.len() >= policy.deadline_samples;
+        if enough && (kind.usual.is_none() || kind.since >= Self::RENEW) {
+            let mut sorted: Vec<u64> = kind.recent.iter().copied().collect();
+            sorted.sort_unstable();
+            kind.usual = quantile::of(&sorted, Self::USUAL).map(Duration::from_micros);
+            kind.since = 0;
+        }
+    }
+
+    /// Time for the next attempt of a job that was overdue `overdue` times.
+    pub(super) fn deadline(&self, kind: &'static str, overdue: u32, policy: &Policy) -> Duration {
+        let known = self.0.get(kind);
+        let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
+        let first = match kind {
+            REDUCE_HEAD => policy.reduction_deadline,
+            _ => policy.first_deadline,
+        };
+        let once = usual.map_or(first, |(usual, longest)| {
+            usual
+                .saturating_mul(policy.deadline_factor)
+                .max(longest.saturating_mul(policy.longest_time_factor))
+                .max(policy.least_deadline)
+        });
+        once.saturating_mul(2_u32.saturating_pow(overdue.min(8)))
+    }
+
+    /// Whether a slot would wait too long for its next order if it did not have it already, `latency`
+    /// being the time from a result to the next job's beginning; until something is known, it would.
+    pub(super) fn needs_prefetch(
+        &self,
+        kind: &'static str,
+        latency: Option<Duration>,
+        policy: &Policy,
+    ) -> bool {
+        let usual = self.0.get(kind).and_then(|kind| kind.usual);
+        let known = usual.zip(latency);
+        known.is_none_or(|(usual, latency)| {
+            latency.saturating_mul(100) > usual.saturating_mul(policy.prefetch_percent)
+        })
+    }
+
+    /// How long a job must have been computed before an idle slot may take a copy of it; none
+    /// before anything is known.
+    pub(super) fn copy_after(&self, kind: &'static str, policy: &Policy) -> Option<Duration> {
+        let usual = self.0.get(kind)?.usual?;
+        Some((usual.saturating_mul(policy.copy_after_percent) / 100).max(policy.least_copy_after))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(seconds: impl IntoIterator<Item = u64>) -> Times {
+        let mut times = Times::default();
+        for seconds in seconds {
+            times.add("score", seconds * 1_000_000, &Policy::default());
+        }
+        times
+    }
+
+    #[test]
+    fn a_deadline_follows_the_quantile_of_its_own_kind() {
+        let policy = Policy::default();
+        let none = Times::default();
+        assert_eq!(none.deadline("score", 0, &policy), Duration::from_mins(2));
+        let times = after([7, 8, 9, 10, 8]);
+        assert_eq!(times.deadline("score", 0, &policy), Duration::from_secs(40));
+        assert_eq!(times.deadline("score", 1, &policy), Duration::from_secs(80));
+        assert_eq!(
+            times.deadline("score", 2, &policy),
+            Duration::from_secs(160)
+        );
+        assert_eq!(
+            times.deadline("simulate", 0, &policy),
+            Duration::from_mins(2),
+            "nothing is known of that kind"
+        );
+        assert_eq!(
+            times.deadline(REDUCE_HEAD, 0, &policy),
+            Duration::from_mins(30),
+            "a fine mesh takes long on a busy node"
+        );
+    }
+
+    /// Most runs fail early and are short: those that work must not be taken for overdue.
+    #[test]
+    fn many_short_failures_do_not_shorten_the_deadline_of_good_runs() {
+        let policy = Policy::default();
+        let times = after((0..100).map(|n| if n % 10 == 0 { 30 } else { 1 }));
+        assert_eq!(times.deadline("score", 0, &policy), Duration::from_mins(2));
+        // only one in fifty works: the longest that ever did still has time
+        let times = after((0..100).map(|n| if n == 7 { 30 } else { 1 }));
+        assert_eq!(times.deadline("score", 0, &policy), Duration::from_mins(1));
+    }
+
+    #[test]
+    fn no_deadline_is_below_the_least_and_a_liar_cannot_overflow_it() {
+        let policy = Policy::default();
+        let times = after([0; 50]);
+        assert_eq!(times.deadline("score", 0, &policy), policy.least_deadline);
+        assert_eq!(
+            times.copy_after("score", &policy),
+            Some(policy.least_copy_after)
+        );
+        let mut times = Times::default();
+        for _ in 0..9 {
+            times.add("score", u64::MAX, &policy);
+        }
+        assert!(times.deadline("score", 8, &policy) > Duration::from_hours(1000));
+    }
+}

@@ -1,0 +1,100 @@
+//! Files that are there whole or not at all: what is new is written beside its place and takes it in one
+//! step, so that whoever reads the file, or cuts the power, finds the old one or the new one. It does not
+//! know what the files hold.
+use std::{
+    fs::{self, Permissions},
+    io::{self, Write},
+    os::unix::fs::PermissionsExt,
+    path::{Path, PathBuf},
+};
+use tempfile::NamedTempFile;
+
+/// A file that is complete, on the disk, and not yet in its place; without [`Self::publish`] it goes away.
+#[derive(Debug)]
+pub(crate) struct Draft {
+    file: NamedTempFile,
+    place: PathBuf,
+}
+
+impl Draft {
+    /// Writes the content beside its place. A file that is there already gives its permissions, and a
+    /// link the place that it points to.
+    ///
+    /// # Errors
+    /// What the system says; there is nothing left of the draft then.
+    pub(crate) fn new(place: &Path, content: &[u8]) -> io::Result<Self> {
+        let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
+        let permissions = match fs::metadata(&place) {
+            Ok(there) => there.permissions(),
+            // what a file gets that is simply created: the system takes the user's mask off
+            Err(_) => Permissions::from_mode(0o666),
+        };
+        let folder = match place.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            Some(_) | None => Path::new("."),
+        };
+        let mut file = tempfile::Builder::new()
+            .prefix(".horsehead-")
+            .permissions(permissions)
+            .tempfile_in(folder)?;
+        file.write_all(content)?;
+        file.as_file().sync_all()?;
+        Ok(Self { file, place })
+    }
+
+    /// Takes the place.
+    ///
+    /// # Errors
+    /// What the system says; the old file is still there then.
+    pub(crate) fn publish(self) -> io::Result<()> {
+        let persisted = self.file.persist(self.place);
+        persisted.map(drop).map_err(|failed| failed.error)
+    }
+}
+
+/// Replaces a file, or makes it, in one step.
+///
+/// # Errors
+/// What the system says; the old file is still there then.
+pub(crate) fn replace(place: &Path, content: &[u8]) -> io::Result<()> {
+    Draft::new(place, content)?.publish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Draft, replace};
+    use std::{fs, os::unix::fs::PermissionsExt as _};
+
+    #[test]
+    fn a_file_is_replaced_whole_with_its_permissions_and_through_its_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("a.toml"), folder.path().join("b.toml"));
+        replace(&file, b"one").unwrap();
+        fs::set_permissions(&file, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        let draft = Draft::new(&link, b"two").unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"one");
+        draft.publish().unwrap();
+        assert_eq!(fs::read(&file).unwrap(), b"two");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(
+            fs::metadata(&file).unwrap().permissions().mode() & 0o777,
+            0o640
+        );
+        drop(Draft::new(&file, b"three").unwrap());
+        assert_eq!(fs::read(&file).unwrap(), b"two");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+        assert!(replace(&folder.path().join("no/such"), b"").is_err());
+    }
+
+    /// A new file is as readable as any other that is simply written.
+    #[test]
+    fn a_new_file_has_the_permissions_of_any_other() {
+        let folder = tempfile::tempdir().unwrap();
+        let (own, plain) = (folder.path().join("own"), folder.path().join("plain"));
+        replace(&own, b"x").unwrap();
+        fs::write(&plain, b"x").unwrap();
+        let mode = |path| fs::metadata(path).unwrap().permissions().mode();
+        assert_eq!(mode(own), mode(plain));
+    }
+}

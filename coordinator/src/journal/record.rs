@@ -1,0 +1,40 @@
+//! The form of a journal on the disk: the names of its files, and what a record is made of.
+use protocol::{
+    event::Event,
+    wire::{self, VERSION},
+};
+
+/// Name of the journal within a run's folder.
+pub const FILE: &str = "journal.hhj";
+/// Name of the copy of the journal's first record within a run's folder.
+pub const HEAD: &str = "journal.head";
+/// Name of the lock within a run's folder.
+pub const LOCK: &str = "lock";
+
+/// What each record begins with; the last byte is the version, as a digit.
+pub const MARK: [u8; 4] = [b'H', b'H', b'J', b'0' + VERSION];
+/// Bytes before a record's body.
+pub(super) const RECORD_HEADER: usize = 12;
+
+/// Encodes an event as a record.
+pub(super) fn record(event: &Event) -> Result<Vec<u8>, wire::WireError> {
+    let body = wire::encode(event)?;
+    let length = u32::try_from(body.len()).map_err(|_| wire::WireError::TooLong {
+        bytes: body.len(),
+        limit: wire::BODY_LIMIT,
+    })?;
+    let mut record = Vec::with_capacity(RECORD_HEADER + body.len());
+    record.extend_from_slice(&MARK);
+    record.extend_from_slice(&length.to_le_bytes());
+    record.extend_from_slice(&checksum(length, &body).to_le_bytes());
+    record.extend_from_slice(&body);
+    Ok(record)
+}
+
+/// The checksum of a record: over its length too, which would otherwise be trusted.
+pub(super) fn checksum(length: u32, body: &[u8]) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    hasher.update(&length.to_le_bytes());
+    hasher.update(body);
+    hasher.finalize()
+}

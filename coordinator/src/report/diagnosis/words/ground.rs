@@ -1,0 +1,120 @@
+//! How sure a diagnosis is, and how far it reaches: one sentence per ground.
+use super::effect::named;
+use super::value::{equals, interval, nats, p_value};
+use crate::report::diagnosis::subject::Subject;
+use crate::report::number::{figure, percent, quantity};
+use crate::report::words::condition_name;
+use discrepancy::diagnose::{Force, Limit};
+use discrepancy::proof::compare::Row;
+
+/// How sure the verdict is.
+pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
+    let diagnosis = subject.diagnosis();
+    let added = subject.added();
+    let mut sentences: Vec<String> = added
+        .iter()
+        .map(|effect| {
+            format!(
+                "{}: if it were not there, a test as clear as this one anywhere in the library would \
+                 have the probability p {}; with every gene fitted again, the record speaks for it by \
+                 {} nats.",
+                effect.id,
+                equals(&p_value(effect.p_value)),
+                nats(effect.ln_evidence)
+            )
+        })
+        .collect();
+    if let Some((round, rival)) = diagnosis.rejected()
+        && let Some(best) = round.refits.first()
+    {
+        let behind = (best.log_evidence - rival.log_evidence) / (round.phi * round.phi);
+        sentences.push(format!(
+            "The best rejected rival, {}, lies {} nats behind; 3 are asked for.",
+            named(subject, &rival.id),
+            nats(behind)
+        ));
+    }
+    if let Some(found) = &diagnosis.force {
+        sentences.extend(force(subject, found));
+    }
+    if !added.is_empty() {
+        let unseen = diagnosis.rows.iter().filter(|row| !row.fitted);
+        sentences.extend(unseen.map(|row| closing(subject, row)));
+    }
+    if diagnosis.assumed_noise {
+        sentences.push(
+            "The noise was assumed, not seen: with one cycle there is no scatter to take it from, so \
+             every probability and every limit here is as good as the data sheet."
+                .to_owned(),
+        );
+    }
+    sentences
+}
+
+/// The size of a force without a cause, and by how much it closes the gap on each record.
+fn force(subject: &Subject<'_>, force: &Force) -> Vec<String> {
+    let phase = force.phase_deg.map_or_else(String::new, |phase| {
+        format!(", largest at {} deg of its own turn", figure(phase))
+    });
+    let mut sentences = vec![format!(
+        "The force {}: amplitude {} (95\u{a0}% interval {}){phase}; with every gene fitted again, the \
+         record speaks for it by {} nats.",
+        force.id,
+        quantity(force.amplitude, &force.unit),
+        interval(force.interval, &force.unit),
+        nats(force.ln_evidence)
+    )];
+    let rows = force.rows.iter().filter(|row| !row.fitted);
+    sentences.extend(rows.map(|row| format!("With that force, {}", closing(subject, row))));
+    sentences
+}
+
+/// By how much the gap of a row closed.
+fn closing(subject: &Subject<'_>, row: &Row) -> String {
+    let closed = row.closed;
+    let spread = closed.interval.map_or_else(String::new, |[low, high]| {
+        format!(
+            " (95\u{a0}% interval {} to {})",
+            percent(low),
+            percent(high)
+        )
+    });
+    let direction = if closed.closed < 0.0 {
+        "opened"
+    } else {
+        "closed"
+    };
+    format!(
+        "{}, {}: {} of the gap {direction}{spread}.",
+        condition_name(subject.case, row.condition),
+        role(subject, row),
+        percent(closed.closed.abs()),
+    )
+}
+
+/// What a row's cycles were to the fit.
+pub(in crate::report::diagnosis) fn role(subject: &Subject<'_>, row: &Row) -> &'static str {
+    let calibrated = row.condition == subject.case.objective.condition;
+    match (row.fitted, calibrated) {
+        (true, _) => "cycles that were fitted",
+        (false, true) => "held-out cycles",
+        (false, false) => "another condition, which took no part",
+    }
+}
+
+/// How many of the library's sizes would have been seen at their usual size.
+pub(in crate::report::diagnosis) fn reach(subject: &Subject<'_>) -> Option<String> {
+    let limits = &subject.diagnosis().limits;
+    let usual = |limit: &&Limit| {
+        let known = subject.parameter(&limit.id, &limit.parameter);
+        known.is_some_and(|known| limit.size <= known.scale)
+    };
+    let seen = limits.iter().filter(usual).count();
+    (!limits.is_empty()).then(|| {
+        format!(
+            "Of {} sizes in the library, {seen} would have been seen at the size that is usual on \
+             machines of this kind.",
+            limits.len()
+        )
+    })
+}

@@ -1,0 +1,132 @@
+//! A report as one HTML file: everything inline, nothing fetched, readable on paper.
+use super::block::{Block, Fact, Report};
+use super::figure::Figure;
+use super::table::{Label, Row, Table};
+use crate::report::words::{meaning, symbol};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+const STYLE: &str = include_str!("style.css");
+
+/// The page.
+pub fn page(report: &Report) -> String {
+    let (title, run) = (&report.title, &report.run);
+    let page: Markup = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                header {
+                    p.kind { "Horsehead" @if !run.is_empty() { " · " (run) } }
+                    h1 { (title) }
+                    nav {
+                        @for section in &report.sections {
+                            a href=(format!("#{}", section.id)) { (section.title) }
+                        }
+                    }
+                }
+                main {
+                    @for section in &report.sections {
+                        section id=(section.id) {
+                            h2 { (section.title) }
+                            @for block in &section.blocks { (markup(block)) }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn markup(block: &Block) -> Markup {
+    match block {
+        Block::Lead(sentence) => html! { p.verdict { (sentence) } },
+        Block::Heading(text, remark) => html! {
+            h3 { (text) @if !remark.is_empty() { span.role { (remark) } } }
+        },
+        Block::Text(text) => html! { p { (text) } },
+        Block::List(items) => html! { ul { @for item in items { li { (item) } } } },
+        Block::Warning(all) => html! { div.warning { @for one in all { p { (one) } } } },
+        Block::Facts(facts) => html! { dl.facts { @for fact in facts { (fact_markup(fact)) } } },
+        Block::Code(lines) => html! { pre { code { (lines) } } },
+        Block::Table(table) => table_markup(table),
+        Block::Figure(figure) => figure_markup(figure),
+        Block::Markup(markup) => markup.clone(),
+        Block::Folded(title, blocks) => html! {
+            details {
+                summary { (title) }
+                @for block in blocks { (markup(block)) }
+            }
+        },
+    }
+}
+
+fn fact_markup(fact: &Fact) -> Markup {
+    html! {
+        dt { (fact.name) }
+        dd { @if fact.is_code { code { (fact.value) } } @else { (fact.value) } }
+    }
+}
+
+fn figure_markup(figure: &Figure) -> Markup {
+    html! {
+        figure id=(format!("figure-{}", figure.name)) {
+            (PreEscaped(&figure.svg))
+            figcaption { (figure.caption) }
+        }
+    }
+}
+
+fn table_markup(table: &Table) -> Markup {
+    html! {
+        figure.table {
+            figcaption { (table.title) }
+            table {
+                thead {
+                    tr {
+                        @for (column, head) in table.head.iter().enumerate() {
+                            @let prose = column > 0 && table.is_prose(column - 1);
+                            th.prose[prose] scope="col" { (head) }
+                        }
+                    }
+                }
+                tbody { @for row in &table.rows { (row_markup(table, row)) } }
+            }
+            @for note in &table.notes { p.note { (note) } }
+        }
+    }
+}
+
+fn row_markup(table: &Table, row: &Row) -> Markup {
+    match row {
+        Row::Group(name) => html! {
+            tr.group { th scope="rowgroup" colspan=(table.head.len()) { (name) } }
+        },
+        Row::Values(label, cells) => html! {
+            tr {
+                th scope="row" { (label_markup(label)) }
+                @for (column, cell) in cells.iter().enumerate() {
+                    td.prose[table.is_prose(column)] { (cell) }
+                }
+            }
+        },
+    }
+}
+
+fn label_markup(label: &Label) -> Markup {
+    match label {
+        Label::Text(text) => html! { (text) },
+        Label::Gene(gene) => {
+            let (letter, index) = symbol(*gene);
+            html! {
+                span.symbol { i { (letter) } sub { (index) } } " " (meaning(*gene))
+                " " span.id { (gene.as_str()) }
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! How the result was made: enough to make it again and to compare it.
+use crate::report::data::{Calibration, Origin, SingleRun};
+use crate::report::document::{Block, Fact, Section};
+use crate::report::number::{NONE, count, duration};
+use crate::report::words::listed;
+use protocol::case::{Case, Offset};
+use protocol::job::Simulation;
+
+pub(super) fn calibration(calibration: &Calibration) -> Section {
+    let optimum = calibration.optimised.id;
+    let mut facts = facts(&calibration.origin, &calibration.case);
+    facts.extend([
+        Fact::new("objective", objective(&calibration.case)),
+        Fact::new(
+            "optimum",
+            optimum.map_or_else(|| NONE.to_owned(), |id| format!("individual {}", count(id))),
+        ),
+        Fact::new("wall time", duration(calibration.wall_s)),
+        Fact::code("digest of the evaluation log", &calibration.origin.digest),
+    ]);
+    let mut blocks = vec![Block::Facts(facts)];
+    let result = calibration.calibrated();
+    blocks.extend(result.map(|result| work(&result.optimised.simulation)));
+    section(blocks)
+}
+
+pub(super) fn simulation(run: &SingleRun) -> Section {
+    let mut facts = facts(&run.origin, &run.case);
+    facts.push(Fact::code("digest of the result", &run.origin.digest));
+    section(vec![Block::Facts(facts), work(&run.simulation)])
+}
+
+/// The section about it, in every report.
+pub(in crate::report) const fn section(blocks: Vec<Block>) -> Section {
+    Section {
+        id: "provenance",
+        title: "How it was made",
+        blocks,
+    }
+}
+
+/// Where any result comes from.
+pub(in crate::report) fn facts(origin: &Origin, case: &Case) -> Vec<Fact> {
+    let mut facts = vec![
+        Fact::new("program", &origin.program),
+        Fact::code("command", &origin.command),
+        Fact::new("run", &origin.run),
+        Fact::new("case", &case.name),
+        Fact::code("digest of the case", &origin.case_hash),
+        Fact::new("measured records", &origin.measured_name),
+    ];
+    let preset = origin.preset.iter();
+    facts.extend(preset.map(|preset| Fact::new("preset", preset)));
+    let seed = origin.seed.iter();
+    facts.extend(seed.map(|seed| Fact::new("seed", seed.to_string())));
+    facts
+}
+
+/// What is minimised.
+fn objective(case: &Case) -> String {
+    let gauges = case.objective.gauges.iter();
+    let terms: Vec<_> = gauges
+        .map(|(gauge, weight)| format!("{weight} × MSE at point {gauge}"))
+        .collect();
+    let offset = match case.objective.offset {
+        Offset::Free => "free: the mean difference of each gauge is removed first",
+        Offset::Fixed => "fixed: absolute values are compared",
+    };
+    format!("{}; offset {offset}", terms.join(" + "))
+}
+
+/// What one simulation took of the integrator.
+fn work(simulation: &Simulation) -> Block {
+    let counters = simulation.counters.named();
+    let counted = counters.map(|(_, what, number)| format!("{} {what}", count(number)));
+    Block::Text(format!(
+        "One simulation with these parameters took {}, in {} on its worker.",
+        listed(&counted, "and"),
+        duration(simulation.wall_s)
+    ))
+}

@@ -1,0 +1,19 @@
+//! Results in words, from numbers: what happened, by how much, where it got worse.
+//!
+//! Says what the data say and no more; every sentence stands by itself.
+mod calibration;
+mod change;
+pub(crate) mod command;
+mod ending;
+mod gene;
+mod name;
+
+pub(super) use calibration::{absolute_worse, complete_objective, gauges, headline, warnings};
+pub use ending::{failure, verdict};
+pub(super) use gene::{at_bound, bound, meaning, symbol};
+pub(super) use name::{capitalised, condition_name, listed, lower};
+pub use name::{integrator_name, mode_family};
+
+/// What to know of records that come from no test.
+pub(super) const SYNTHETIC: &str = "The gauge records of this case are synthetic: they were \
+    computed, not measured on a machine, and say nothing about how well a real one is met.";

@@ -1,0 +1,13 @@
+//! The bus alone: jobs that do nothing, over a real journal; workers are real processes, or mere
+//! sessions where there are to be more of them than the machine can bear.
+mod load;
+mod measure;
+mod meter;
+mod plan;
+mod sessions;
+mod silent;
+
+pub use measure::bench;
+pub use plan::{BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult};
+pub use sessions::connect;
+pub use silent::keep_silent;

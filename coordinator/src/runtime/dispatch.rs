@@ -1,0 +1,171 @@
+//! An open run, as its owner sees it.
+use super::{
+    engine::{Engine, Request, Summary},
+    error::DispatchError,
+    listen::{addresses, admissible, allow_connections, keys},
+    local::LocalWorkers,
+    locate,
+    options::DispatchOptions,
+    parts::Parts,
+};
+use crate::core::{Completed, Snapshot};
+use link::{
+    Blob, CoordinatorEnd,
+    locator::Locator,
+    zenoh::{CoordinatorOptions, ZenohCoordinator},
+};
+use protocol::{
+    id::{JobId, RunId},
+    job::Job,
+};
+use std::sync::{Arc, Mutex, PoisonError};
+use tokio::{
+    sync::mpsc::{UnboundedReceiver, UnboundedSender, unbounded_channel},
+    task::JoinHandle,
+};
+
+/// A run that is open.
+#[derive(Debug)]
+pub struct Dispatch {
+    requests: UnboundedSender<Request>,
+    completed: UnboundedReceiver<Result<Completed, DispatchError>>,
+    snapshot: Arc<Mutex<Snapshot>>,
+    engine: JoinHandle<Summary>,
+    listening: Vec<Locator>,
+    recorded: usize,
+}
+
+impl Dispatch {
+    /// Opens the journal (or goes on with it), the bus and the local workers.
+    ///
+    /// # Errors
+    /// [`DispatchError::Journal`] if the run cannot be written or was begun with something else,
+    /// [`DispatchError::Link`] if the address cannot be listened on, [`DispatchError::Locate`] if
+    /// there is no worker program, [`DispatchError::NobodyToAsk`] without any workers.
+    pub async fn open(options: DispatchOptions) -> Result<Self, DispatchError> {
+        let (listen, local) = addresses(&options)?;
+        allow_connections();
+        // a folder that was made for a run that cannot begin would only be in the way
+        for locator in &listen {
+            admissible(locator, options.insecure)?;
+        }
+        let keys = keys(&options, &listen)?;
+        let program = match local {
+            Some(_) => Some(locate::worker_program()?),
+            None => None,
+        };
+        let parts = Parts::open(&options)?;
+        let (run, blob) = (parts.run, parts.blob.clone());
+        let insecure = options.insecure;
+        let link_options = CoordinatorOptions {
+            listen,
+            insecure,
+            keys,
+            run,
+            blob,
+        };
+        let link = ZenohCoordinator::open(link_options).await?;
+        let listening = link.listening().to_vec();
+        let workers = match (local.and_then(|at| listening.get(at)), program) {
+            (Some(locator), Some(program)) => {
+                let count = options.local_workers;
+                Some(LocalWorkers::start(program, &locator.from_here(), count)?)
+            }
+            _ => None,
+        };
+        let only_local = options.listen.is_none();
+        Ok(Self::begin(parts, link, workers, only_local, listening))
+    }
+
+    /// Opens a run over any link, without workers of its own; `make` is given the run's name and
+    /// what workers may fetch. `options.listen`, `insecure` and `local_workers` are not used.
+    ///
+    /// # Errors
+    /// [`DispatchError::Journal`] as [`Self::open`].
+    pub fn over<L: CoordinatorEnd>(
+        options: &DispatchOptions,
+        make: impl FnOnce(RunId, Blob) -> L,
+    ) -> Result<Self, DispatchError> {
+        let parts = Parts::open(options)?;
+        let link = make(parts.run, parts.blob.clone());
+        Ok(Self::begin(parts, link, None, false, Vec::new()))
+    }
+
+    fn begin<L: CoordinatorEnd>(
+        parts: Parts,
+        link: L,
+        workers: Option<LocalWorkers>,
+        only_local: bool,
+        listening: Vec<Locator>,
+    ) -> Self {
+        let recorded = parts.journal.len();
+        let (requests, asked) = unbounded_channel();
+        let (deliver, completed) = unbounded_channel();
+        let snapshot = Arc::new(Mutex::new(Snapshot::default()));
+        let shown = Arc::clone(&snapshot);
+        let engine = Engine::new(parts, link, workers, only_local, deliver, shown);
+        let engine = tokio::spawn(engine.run(asked));
+        Self {
+            requests,
+            completed,
+            snapshot,
+            engine,
+            listening,
+            recorded,
+        }
+    }
+
+    /// How many results the journal held when the run was opened.
+    pub const fn recorded(&self) -> usize {
+        self.recorded
+    }
+
+    /// Where workers can connect, the first one as asked for.
+    pub fn listening(&self) -> Vec<String> {
+        self.listening.iter().map(ToString::to_string).collect()
+    }
+
+    /// Asks for a job to be done, once per process; a result that the journal holds already is
+    /// delivered again at once.
+    ///
+    /// # Errors
+    /// [`DispatchError::Closed`] once the run has been stopped.
+    pub fn submit(&mut self, id: JobId, job: Job) -> Result<(), DispatchError> {
+        let asked = Request::Submit {
+            id,
+            job: Box::new(job),
+        };
+        self.requests.send(asked).map_err(|_| DispatchError::Closed)
+    }
+
+    /// Waits for the next result, in the order of arrival; loses nothing when dropped.
+    ///
+    /// # Errors
+    /// The reason why the run cannot go on: nothing but [`Self::close`] is of use afterwards.
+    pub async fn next(&mut self) -> Result<Completed, DispatchError> {
+        self.completed
+            .recv()
+            .await
+            .unwrap_or(Err(DispatchError::Closed))
+    }
+
+    /// The state of the run, some hundredths of a second old at most.
+    pub fn snapshot(&self) -> Snapshot {
+        self.snapshot
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+
+    /// Ends the run: workers are told, local ones ended, the journal closed; within 3 s, unless the
+    /// disk is full: it waits for room, since workers forget their results at the end of a run. The
+    /// same run can be opened again later.
+    ///
+    /// # Errors
+    /// [`DispatchError::Closed`] if the runtime broke down before.
+    pub async fn close(self) -> Result<Summary, DispatchError> {
+        // an engine that has stopped needs no request
+        drop(self.requests);
+        self.engine.await.map_err(|_| DispatchError::Closed)
+    }
+}

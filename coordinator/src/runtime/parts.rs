@@ -1,0 +1,76 @@
+//! What any run consists of, whatever its link: a core that knows the past, and the journal.
+use super::{error::DispatchError, options::DispatchOptions};
+use crate::{
+    core::{Core, CoreOptions, Policy},
+    journal::{self, Appended, Journal},
+};
+use link::Blob;
+use protocol::{
+    id::{RunId, draw},
+    wire,
+};
+use std::{
+    collections::BTreeSet,
+    time::{SystemTime, UNIX_EPOCH},
+};
+use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
+
+/// What any run consists of, whatever its link.
+pub(super) struct Parts {
+    pub(super) run: RunId,
+    pub(super) core: Core,
+    pub(super) journal: Journal,
+    pub(super) said: UnboundedReceiver<Appended>,
+    pub(super) blob: Blob,
+}
+
+impl Parts {
+    /// Opens the journal, or begins it.
+    pub(super) fn open(options: &DispatchOptions) -> Result<Self, DispatchError> {
+        let now = SystemTime::now()
+            .duration_since(UNIX_EPOCH)
+            .unwrap_or_default();
+        let place = format!("{}:{}", options.run_dir.display(), std::process::id());
+        let fresh = RunId(draw(&place, now.as_nanos()));
+        let (say, said) = unbounded_channel();
+        let at_unix_ms = u64::try_from(now.as_millis()).unwrap_or(u64::MAX);
+        let folder = &options.run_dir;
+        let (journal, begun) = Journal::open(
+            folder,
+            &options.header,
+            fresh,
+            at_unix_ms,
+            move |appended| {
+                // at the very end nobody listens any more
+                drop(say.send(appended));
+            },
+        )?;
+        for damage in journal::words(&begun.report.damage) {
+            tracing::warn!("{damage}");
+        }
+        let blob = Blob::new(wire::encode(&options.case)?);
+        let core = Core::new(CoreOptions {
+            run: begun.run,
+            epoch: begun.epoch,
+            case: blob.hash,
+            case_bytes: blob.bytes.len() as u64,
+            model_digest: begun.model_digest,
+            proof: begun.proof,
+            finished: journal.finished().collect(),
+            // local workers end with their coordinator
+            expected: if options.listen.is_some() {
+                begun.present
+            } else {
+                BTreeSet::new()
+            },
+            policy: Policy::default(),
+        });
+        Ok(Self {
+            run: begun.run,
+            core,
+            journal,
+            said,
+            blob,
+        })
+    }
+}

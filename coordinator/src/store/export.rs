@@ -1,0 +1,244 @@
+//! An export while it is made: events of the journal and evaluations of the study become rows.
+use super::{
+    book::Book,
+    error::StoreError,
+    row::{Added, Brief, Evaluated, Fact, Happened, Scored},
+    table::Tables,
+    target::{Draft, Target},
+};
+use crate::{
+    account::Folding,
+    journal::{Damage, Entry, Recording},
+};
+use protocol::{
+    case::Case,
+    event::{Event, Finished},
+    job::{Individual, Job},
+};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
+
+/// Why a simulation was wanted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Label {
+    /// Generation it was proposed in, in a search.
+    pub generation: Option<u32>,
+    /// What it was for.
+    pub purpose: String,
+}
+
+/// An export that is complete.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Exported {
+    /// Its files.
+    pub files: Vec<PathBuf>,
+    /// Rows of each table.
+    pub rows: BTreeMap<&'static str, u64>,
+}
+
+/// An export that is being made.
+pub struct Store<'a> {
+    case: &'a Case,
+    draft: Draft,
+    book: Book,
+    tables: Tables,
+}
+
+impl<'a> Store<'a> {
+    /// Begins an export of a run over a case.
+    ///
+    /// # Errors
+    /// [`StoreError::Foreign`] if something else is in its place, [`StoreError::Io`] or
+    /// [`StoreError::Table`] if one cannot write there.
+    pub fn begin(target: Target, case: &'a Case) -> Result<Self, StoreError> {
+        let draft = Draft::begin(target)?;
+        let mut book = Book::new(draft.sink()?);
+        let tables = Tables::begin(&mut book, case)?;
+        for gene in &case.genes {
+            book.put(&tables.genes, gene)?;
+        }
+        Ok(Self {
+            case,
+            draft,
+            book,
+            tables,
+        })
+    }
+
+    /// Adds something that is known of the run as a whole.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] or [`StoreError::Table`] if it cannot be written.
+    pub fn fact(&mut self, name: &str, value: &str) -> Result<(), StoreError> {
+        let fact = Fact {
+            name: name.to_owned(),
+            value: value.to_owned(),
+        };
+        self.book.put(&self.tables.run, &fact)
+    }
+
+    /// Reads the journal and adds everything that it says by itself.
+    ///
+    /// # Errors
+    /// [`StoreError::Journal`] if it cannot be read, others if something cannot be written.
+    pub fn journal(&mut self, path: &Path) -> Result<Recording, StoreError> {
+        let mut folding = Folding::default();
+        let mut process = None;
+        let mut failed = None;
+        let recording = Recording::read(path, |entry, event| {
+            folding.apply(&event);
+            if let Event::Opened { epoch, .. } = event {
+                process = Some(epoch);
+            }
+            if failed.is_none() {
+                failed = self.event(entry, process, event).err();
+            }
+        })?;
+        if let Some(error) = failed {
+            return Err(error);
+        }
+        let account = folding.finish(recording.report().damage.clone());
+        for worker in &account.workers {
+            self.book.put(&self.tables.workers, worker)?;
+        }
+        for damage in &account.damage {
+            self.book.put::<Damage>(&self.tables.damage, damage)?;
+        }
+        self.fact("processes", &account.processes.to_string())?;
+        self.fact("results", &recording.len().to_string())?;
+        self.fact("failed_attempts", &account.failed.to_string())?;
+        self.fact("accounted_wall_s", &account.wall_s.to_string())?;
+        let lost: u64 = account.damage.iter().map(|damage| damage.bytes).sum();
+        self.fact("journal_records", &recording.report().records.to_string())?;
+        self.fact("journal_bytes_lost", &lost.to_string())?;
+        Ok(recording)
+    }
+
+    fn event(
+        &mut self,
+        entry: Entry,
+        process: Option<u32>,
+        event: Event,
+    ) -> Result<(), StoreError> {
+        let happened = Happened {
+            at_byte: entry.at,
+            process,
+            ..Happened::default()
+        };
+        let happened = match event {
+            Event::Finished(finished) => return self.result(&finished),
+            // repeated at each opening, and told by the account
+            Event::Begun { .. } | Event::Accounted(_) => return Ok(()),
+            Event::Opened { at_unix_ms, .. } => Happened {
+                event: "opened",
+                at_unix_ms: Some(at_unix_ms),
+                ..happened
+            },
+            Event::Joined {
+                worker,
+                host,
+                slots,
+                model_digest,
+            } => Happened {
+                event: "joined",
+                worker: Some(worker),
+                host: Some(host),
+                slots: Some(slots),
+                detail: Some(model_digest),
+                ..happened
+            },
+            Event::Left { worker, reason } => Happened {
+                event: "left",
+                worker: Some(worker),
+                detail: Some(reason),
+                ..happened
+            },
+            Event::Proved { proof } => Happened {
+                event: "proved",
+                detail: Some(proof.to_string()),
+                ..happened
+            },
+            Event::Closed => Happened {
+                event: "closed",
+                ..happened
+            },
+        };
+        self.book.put(&self.tables.events, &happened)
+    }
+
+    fn result(&mut self, finished: &Finished) -> Result<(), StoreError> {
+        let brief = Brief::of(finished);
+        for score in &brief.scores {
+            let scored = Scored {
+                job: brief.job,
+                score: *score,
+            };
+            self.book.put(&self.tables.scores, &scored)?;
+        }
+        self.book.put(&self.tables.results, &brief)
+    }
+
+    /// Adds a job that the run asked for, with its result; one that simulates nothing is no row.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] or [`StoreError::Table`] if it cannot be written.
+    pub fn evaluation(
+        &mut self,
+        label: Label,
+        job: &Job,
+        finished: &Finished,
+    ) -> Result<(), StoreError> {
+        let Some(Individual {
+            condition,
+            genes,
+            effects,
+        }) = job.individual()
+        else {
+            return Ok(());
+        };
+        for effect in effects {
+            let mut parameters = effect.parameters.iter().cloned().map(Some).collect();
+            if effect.parameters.is_empty() {
+                parameters = vec![None];
+            }
+            for parameter in parameters {
+                let added = Added {
+                    job: finished.job(),
+                    effect: effect.id.clone(),
+                    parameter,
+                };
+                self.book.put(&self.tables.effects, &added)?;
+            }
+        }
+        let condition = self.case.conditions.get(*condition);
+        let evaluated = Evaluated {
+            generation: label.generation,
+            purpose: label.purpose,
+            condition: condition.map_or_else(String::new, |one| one.name.clone()),
+            genes: genes.clone(),
+            effects: effects.len(),
+            result: Brief::of(finished),
+        };
+        self.book.put(&self.tables.evaluations, &evaluated)
+    }
+
+    /// Completes the export and puts it into its place.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] or [`StoreError::Table`] if something cannot be written.
+    pub fn finish(mut self) -> Result<Exported, StoreError> {
+        for shape in self.book.shapes() {
+            for column in shape.columns {
+                let row = (shape.name.to_owned(), column);
+                self.book.put(&self.tables.dictionary, &row)?;
+            }
+        }
+        let rows = self.book.finish()?;
+        Ok(Exported {
+            files: self.draft.publish()?,
+            rows,
+        })
+    }
+}

@@ -1,0 +1,76 @@
+//! Tables about the run as a whole: what is known of it, its genes, and what every column means.
+use crate::store::{
+    column::{Column, Columns},
+    row::Fact,
+};
+use protocol::{
+    case::{Gene, Quantity},
+    unit::Unit,
+};
+
+pub(super) fn run() -> Columns<Fact> {
+    Columns::new()
+        .text("name", "what is known of the run", |fact: &Fact| {
+            Some(fact.name.clone())
+        })
+        .text("value", "its value", |fact| Some(fact.value.clone()))
+}
+
+/// Name of the column of a gene, with its unit: `kb1_n_per_m`.
+pub(super) fn gene_column(gene: &Gene) -> String {
+    let unit = gene.unit().to_lowercase();
+    let unit = unit.replace('/', "_per_").replace(['.', '^'], "_");
+    let name = gene.label().replace('.', "_");
+    format!("{name}_{unit}")
+}
+
+const fn coefficient_unit(gene: &Gene) -> Option<Unit> {
+    match gene.quantity {
+        Quantity::Coefficient { unit, .. } => Some(unit),
+        Quantity::Effect { .. } => None,
+    }
+}
+
+pub(super) fn genes() -> Columns<Gene> {
+    Columns::new()
+        .text("gene", "its name in the case", |gene: &Gene| {
+            Some(gene.label())
+        })
+        .text("column", "its column in the table evaluations", |gene| {
+            Some(gene_column(gene))
+        })
+        .text("unit", "unit that the case states it in", |gene| {
+            Some(gene.unit().to_owned())
+        })
+        .real("recommended", "recommended value, in that unit", |gene| {
+            Some(gene.recommended)
+        })
+        .real("lower", "smallest value to search", |gene| Some(gene.lower))
+        .real("upper", "largest value to search", |gene| Some(gene.upper))
+        .text(
+            "si_unit",
+            "its SI unit; none for a parameter of an effect",
+            |gene| Some(coefficient_unit(gene)?.si().symbol().to_owned()),
+        )
+        .real(
+            "si_factor",
+            "what one of the unit is in SI; none for a parameter of an effect",
+            |gene| Some(coefficient_unit(gene)?.si_factor()),
+        )
+}
+
+pub(super) fn dictionary() -> Columns<(String, Column)> {
+    Columns::new()
+        .text("table_name", "table", |(table, _): &(String, Column)| {
+            Some(table.clone())
+        })
+        .text("column_name", "column", |(_, column)| {
+            Some(column.name.clone())
+        })
+        .text("kind", "integer, real or text", |(_, column)| {
+            Some(column.kind.as_str().to_owned())
+        })
+        .text("meaning", "what it says, with its unit", |(_, column)| {
+            Some(column.about.clone())
+        })
+}

@@ -1,0 +1,65 @@
+//! The tables: what there is to query, each column once.
+//!
+//! A new column is a line in one of the files here; a new table a function there, a line in
+//! [`Tables::begin`] and the place where its rows come from.
+mod about;
+mod event;
+mod result;
+
+use super::{
+    book::{Book, Table},
+    column::Column,
+    error::StoreError,
+    row::{Added, Brief, Evaluated, Fact, Happened, Scored},
+};
+use crate::journal::Damage;
+use protocol::{
+    case::{Case, Gene},
+    event::WorkerAccount,
+};
+
+/// Every table of an export.
+pub(super) struct Tables {
+    pub(super) run: Table<Fact>,
+    pub(super) genes: Table<Gene>,
+    pub(super) evaluations: Table<Evaluated>,
+    pub(super) effects: Table<Added>,
+    pub(super) results: Table<Brief>,
+    pub(super) scores: Table<Scored>,
+    pub(super) workers: Table<WorkerAccount>,
+    pub(super) events: Table<Happened>,
+    pub(super) damage: Table<Damage>,
+    pub(super) dictionary: Table<(String, Column)>,
+}
+
+impl Tables {
+    /// Begins all of them.
+    pub(super) fn begin(book: &mut Book, case: &Case) -> Result<Self, StoreError> {
+        Ok(Self {
+            run: book.begin("run", about::run())?,
+            genes: book.begin("genes", about::genes())?,
+            evaluations: book.begin("evaluations", result::evaluations(case))?,
+            effects: book.begin("effects", result::effects())?,
+            results: book.begin("results", result::results())?,
+            scores: book.begin("scores", result::scores())?,
+            workers: book.begin("workers", event::workers())?,
+            events: book.begin("events", event::events())?,
+            damage: book.begin("damage", event::damage())?,
+            dictionary: book.begin("dictionary", about::dictionary())?,
+        })
+    }
+}
+
+/// Their names.
+pub(super) const NAMES: [&str; 10] = [
+    "run",
+    "genes",
+    "evaluations",
+    "effects",
+    "results",
+    "scores",
+    "workers",
+    "events",
+    "damage",
+    "dictionary",
+];

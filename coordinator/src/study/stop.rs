@@ -1,0 +1,24 @@
+//! How the user stops a study.
+use super::error::StudyError;
+use tokio::sync::watch;
+
+/// Becomes true when the user wants to stop.
+pub type Stop = watch::Receiver<bool>;
+
+/// A future's result, unless the user stops first.
+pub(super) async fn or_stop<T>(
+    future: impl Future<Output = T>,
+    stop: &mut Stop,
+) -> Result<T, StudyError> {
+    let stopped = async {
+        // a sender that is gone can no longer stop anything
+        if stop.wait_for(|stopped| *stopped).await.is_err() {
+            std::future::pending::<()>().await;
+        }
+    };
+    tokio::select! {
+        biased;
+        () = stopped => Err(StudyError::Interrupted),
+        result = future => Ok(result),
+    }
+}

@@ -1,0 +1,84 @@
+//! The dependency arrows between the crates of the workspace.
+use crate::workspace::{dependencies, packages};
+use std::collections::BTreeSet;
+
+/// Every arrow that may exist between our own crates: `(from, to)`.
+const ARROWS: &[(&str, &str)] = &[
+    ("link", "protocol"),
+    ("worker", "protocol"),
+    ("worker", "link"),
+    ("worker", "simulation"),
+    ("search", "protocol"),
+    ("discrepancy", "search"),
+    ("discrepancy", "protocol"),
+    ("coordinator", "protocol"),
+    ("coordinator", "link"),
+    ("coordinator", "search"),
+    ("coordinator", "discrepancy"),
+    // the truth generator takes from everybody, and nobody from it
+    ("truth", "protocol"),
+    ("truth", "simulation"),
+    ("truth", "worker"),
+    ("truth", "coordinator"),
+    // developers' measurements of the dynamics
+    ("bench", "protocol"),
+    ("bench", "worker"),
+    ("bench", "coordinator"),
+    ("bench", "search"),
+];
+
+/// Heavy or impure crates and who alone may name them.
+const GATED: &[(&str, &[&str])] = &[
+    ("zenoh", &["link", "tests"]),
+    ("tokio", &["link", "worker", "coordinator", "tests"]),
+    (
+        "anyhow",
+        &["worker", "coordinator", "tests", "truth", "bench"],
+    ),
+    ("clap", &["worker", "coordinator", "truth", "bench"]),
+    ("nalgebra", &["simulation", "search", "discrepancy"]),
+    ("faer", &["simulation"]),
+    ("rusqlite", &["coordinator"]),
+    ("parquet", &["coordinator"]),
+];
+
+#[test]
+fn nobody_depends_on_the_truth() {
+    let packages = packages();
+    assert!(packages.iter().any(|p| p["name"] == "truth"));
+    for package in &packages {
+        let names = dependencies(package);
+        let name = &package["name"];
+        assert!(
+            names.iter().all(|(to, _)| *to != "truth"),
+            "{name} must not depend on truth"
+        );
+    }
+}
+
+#[test]
+fn arrows_point_one_way() {
+    let packages = packages();
+    let ours: BTreeSet<&str> = packages
+        .iter()
+        .map(|p| p["name"].as_str().unwrap())
+        .collect();
+    for package in &packages {
+        let from = package["name"].as_str().unwrap();
+        // tests may build what the program itself must not
+        for (to, in_tests) in dependencies(package) {
+            if ours.contains(to) && from != "tests" {
+                assert!(
+                    ARROWS.contains(&(from, to)),
+                    "{from} must not depend on {to}"
+                );
+            }
+            if let Some((_, users)) = GATED.iter().find(|(name, _)| *name == to) {
+                assert!(
+                    in_tests || users.contains(&from),
+                    "{from} must not use {to}"
+                );
+            }
+        }
+    }
+}

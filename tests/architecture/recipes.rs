@@ -1,0 +1,49 @@
+//! The recipes of `coordinator/README.md`: every file that they name is there, and none costs more files
+//! than was promised.
+use std::path::{Path, PathBuf};
+
+/// Files of sources and of their tests below a folder.
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in folder.read_dir().expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            files(&path, found);
+        } else {
+            found.push(path);
+        }
+    }
+}
+
+/// What stands between back quotes.
+fn quoted(text: &str) -> impl Iterator<Item = &str> {
+    text.split('`').skip(1).step_by(2)
+}
+
+#[test]
+fn recipes_name_files_that_exist_and_keep_their_promises() {
+    let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let mut known = Vec::new();
+    for folder in ["coordinator", "protocol", "worker"] {
+        files(&base.join(folder), &mut known);
+    }
+    let text = std::fs::read_to_string(base.join("coordinator/README.md")).expect("the README");
+    let (_, recipes) = text.split_once("## What a new one costs").expect("recipes");
+    let rows = recipes.lines().filter(|line| line.starts_with("| "));
+    let mut counted = 0;
+    // a heading comes first
+    for row in rows.skip(1) {
+        let cells: Vec<&str> = row.trim_matches('|').split('|').collect();
+        let [what, write, change, example] = cells[..] else {
+            panic!("four cells are expected: {row}");
+        };
+        let named = |name: &str| known.iter().any(|path| path.ends_with(name));
+        for name in quoted(change).chain(quoted(example)) {
+            assert!(name.ends_with('/') || named(name), "{what}: no {name}");
+        }
+        let cost = quoted(write).chain(quoted(change)).count();
+        let most = if what.contains("job kind") { 8 } else { 3 };
+        assert!(cost <= most, "{what}: {cost} files");
+        counted += 1;
+    }
+    assert!(counted >= 7, "{counted} recipes");
+}

@@ -1,0 +1,75 @@
+//! The machine of a case under one condition, and one simulation of it.
+use anyhow::{Context as _, anyhow, bail};
+use clap::Args;
+use coordinator::case::{Overrides, load};
+use protocol::case::Case;
+use protocol::job::{Discretisation, Individual, Job, Reply, SimulateSpec, Simulation};
+use std::path::PathBuf;
+use worker::handler::Prepared;
+
+/// Which machine is simulated.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct MachineChoice {
+    /// Case folder, with `case.toml` in it.
+    #[arg(value_name = "CASE")]
+    case: PathBuf,
+    /// Working condition; that of the case's objective by default.
+    #[arg(long, value_name = "NAME")]
+    condition: Option<String>,
+}
+
+/// A machine that can be simulated, from several threads at once.
+pub(crate) struct Machine {
+    /// Its case.
+    pub(crate) case: Case,
+    prepared: Prepared,
+    condition: usize,
+}
+
+impl MachineChoice {
+    /// Reads the case and builds its machines.
+    pub(crate) fn load(&self) -> anyhow::Result<Machine> {
+        let case = load(&self.case, &Overrides::default())?;
+        let condition = match &self.condition {
+            None => case.objective.condition,
+            Some(name) => case.condition(name).with_context(|| {
+                let known: Vec<&str> = case.conditions.iter().map(|c| c.name.as_str()).collect();
+                format!("no condition `{name}`; there are: {}", known.join(", "))
+            })?,
+        };
+        let prepared = match Prepared::new(&case) {
+            Ok(prepared) => prepared,
+            Err(failure) => bail!("the case cannot be built: {failure:?}"),
+        };
+        Ok(Machine {
+            case,
+            prepared,
+            condition,
+        })
+    }
+}
+
+impl Machine {
+    /// One simulation of an individual.
+    pub(crate) fn simulate(
+        &self,
+        genes: &[f64],
+        discretisation: Discretisation,
+    ) -> anyhow::Result<Simulation> {
+        let job = Job::Simulate(SimulateSpec {
+            individual: Individual {
+                condition: self.condition,
+                genes: genes.to_vec(),
+                effects: Vec::new(),
+            },
+            discretisation,
+            reply: Reply::Curves {
+                motion_step_deg: 0.0,
+            },
+        });
+        let done = self.prepared.evaluate(&job).done();
+        let answer = done.map_err(|failure| anyhow!("not simulated: {failure}"))?;
+        let curves = answer.into_curves()?;
+        Ok(*curves)
+    }
+}

@@ -1,0 +1,76 @@
+//! Where results go: tables or one JSON object on standard output, files into a folder, the rest to
+//! standard error.
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
+use comfy_table::{CellAlignment, LineStyle, Table, presets};
+use serde::Serialize;
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::PathBuf;
+
+/// How results are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Form {
+    /// A table for people.
+    Table,
+    /// One JSON object for programs.
+    Json,
+}
+
+/// Where results go.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct Output {
+    /// Folder for files; none are written without.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How results are printed.
+    #[arg(long, value_enum, default_value = "table")]
+    output: Form,
+}
+
+impl Output {
+    /// Prints one result.
+    pub(crate) fn print(&self, table: &Table, object: &impl Serialize) -> anyhow::Result<()> {
+        let text = match self.output {
+            Form::Table => table.to_string(),
+            Form::Json => serde_json::to_string(object)?,
+        };
+        Ok(writeln!(io::stdout().lock(), "{text}")?)
+    }
+
+    /// Writes a file, if there is a folder for it.
+    pub(crate) fn write(
+        &self,
+        name: &str,
+        content: impl FnOnce() -> anyhow::Result<Vec<u8>>,
+    ) -> anyhow::Result<()> {
+        let Some(folder) = &self.out else {
+            return Ok(());
+        };
+        let path = folder.join(name);
+        let content = content()?;
+        fs::create_dir_all(folder)
+            .and_then(|()| fs::write(&path, content))
+            .with_context(|| format!("cannot write {}", path.display()))?;
+        self.tell(&format!("wrote {}", path.display()))
+    }
+
+    /// Prints a line beside the results, for people only.
+    pub(crate) fn tell(&self, line: &str) -> anyhow::Result<()> {
+        match self.output {
+            Form::Table => Ok(writeln!(io::stderr().lock(), "{line}")?),
+            Form::Json => Ok(()),
+        }
+    }
+}
+
+/// A table with this head; numbers stand at the right.
+pub(crate) fn table(head: &[&str]) -> Table {
+    let mut table = Table::new();
+    table.load_style(presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none()));
+    table.set_header(head);
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}

@@ -1,0 +1,122 @@
+//! How individuals of a whole box ended, counted: by verdict, with what they cost.
+use protocol::job::{Counters, Reached, Verdict};
+use serde::Serialize;
+
+/// One individual.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Ended {
+    /// How it ended.
+    pub(crate) verdict: Verdict,
+    /// Work.
+    pub(crate) counters: Counters,
+    /// Wall time \[s\].
+    pub(crate) wall_s: f64,
+}
+
+/// Individuals that ended alike.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Class {
+    /// `complete`, a kind of failure, or `failed` for all of them.
+    pub(crate) verdict: &'static str,
+    /// `under_load` or `in_motion`; none for complete runs and for all failures together.
+    pub(crate) stage: Option<&'static str>,
+    /// How many.
+    pub(crate) runs: usize,
+    /// Newton iterations: the median, what nine in ten do not exceed, the most.
+    pub(crate) newton_iterations: [u64; 3],
+    /// Wall time \[s\], the same.
+    pub(crate) wall_s: [f64; 3],
+}
+
+/// The individuals by how they ended, the commonest first, then all that failed, if any did.
+pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
+    let mut kinds: Vec<(&str, Option<&str>)> = Vec::new();
+    for kind in individuals.iter().map(|one| kind(&one.verdict)) {
+        if !kinds.contains(&kind) {
+            kinds.push(kind);
+        }
+    }
+    let alike = |wanted| {
+        let alike = individuals
+            .iter()
+            .filter(|one| kind(&one.verdict) == wanted);
+        class(wanted, &alike.collect::<Vec<_>>())
+    };
+    let mut classes: Vec<Class> = kinds.into_iter().map(alike).collect();
+    // equally common ones stay in the order in which they came first
+    classes.sort_by_key(|class| std::cmp::Reverse(class.runs));
+    let failed = individuals
+        .iter()
+        .filter(|one| one.verdict != Verdict::Complete);
+    let failed = class(("failed", None), &failed.collect::<Vec<_>>());
+    classes.extend((failed.runs > 0).then_some(failed));
+    classes
+}
+
+/// A verdict without how far it got.
+const fn kind(verdict: &Verdict) -> (&'static str, Option<&'static str>) {
+    match verdict {
+        Verdict::Complete => ("complete", None),
+        Verdict::Failed { kind, reached } => {
+            let stage = match reached {
+                Reached::LoadFraction(_) => "under_load",
+                Reached::TimeFraction(_) => "in_motion",
+            };
+            (kind.as_str(), Some(stage))
+        }
+    }
+}
+
+fn class((verdict, stage): (&'static str, Option<&'static str>), individuals: &[&Ended]) -> Class {
+    let mut newton_iterations: Vec<u64> = individuals
+        .iter()
+        .map(|one| one.counters.newton_iterations)
+        .collect();
+    let mut wall_s: Vec<f64> = individuals.iter().map(|one| one.wall_s).collect();
+    newton_iterations.sort_unstable();
+    wall_s.sort_by(f64::total_cmp);
+    let places = [5, 9, 10].map(|tenths| individuals.len().saturating_sub(1) * tenths / 10);
+    Class {
+        verdict,
+        stage,
+        runs: individuals.len(),
+        newton_iterations: places.map(|at| newton_iterations.get(at).copied().unwrap_or_default()),
+        wall_s: places.map(|at| wall_s.get(at).copied().unwrap_or_default()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::job::PhysicsFailure;
+
+    #[test]
+    fn individuals_are_counted_by_how_they_ended() {
+        let through = |reached| Verdict::Failed {
+            kind: PhysicsFailure::RopeThroughHead,
+            reached,
+        };
+        let individuals = [
+            (through(Reached::LoadFraction(0.3)), 0),
+            (Verdict::Complete, 3000),
+            (through(Reached::TimeFraction(0.7)), 900),
+            (through(Reached::LoadFraction(0.1)), 10),
+        ]
+        .map(|(verdict, iterations)| Ended {
+            verdict,
+            counters: Counters {
+                newton_iterations: iterations,
+                ..Counters::default()
+            },
+            wall_s: 1e-4 * iterations as f64,
+        });
+        let classes = classes(&individuals);
+        let runs: Vec<usize> = classes.iter().map(|class| class.runs).collect();
+        assert_eq!(runs, [2, 1, 1, 3]);
+        assert_eq!(classes[0].newton_iterations, [0, 0, 10]);
+        assert_eq!(classes[1].verdict, "complete");
+        assert_eq!((classes[3].verdict, classes[3].stage), ("failed", None));
+        assert_eq!(classes[3].newton_iterations, [10, 10, 900]);
+        assert!((classes[3].wall_s[2] - 0.09).abs() < 1e-12);
+    }
+}

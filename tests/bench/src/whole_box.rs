@@ -1,0 +1,193 @@
+//! `bench box`: how individuals end all over the box that a search may propose from, and what that
+//! costs.
+//!
+//! Points are a seeded Latin hypercube over the logarithms of the genes, so the same case, seed and
+//! number of points are the same individuals. Everything but the wall times is deterministic.
+use crate::machine::{Machine, MachineChoice};
+use crate::output::{Output, table};
+use crate::verdicts::{Class, Ended, classes};
+use clap::Args;
+use comfy_table::Table;
+use protocol::case::{Case, Gene};
+use protocol::job::Discretisation;
+use search::space::{Interval, Space};
+use search::strategy::latin_hypercube;
+use serde::Serialize;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::thread;
+
+/// Simulate individuals from all over the box of genes: verdicts, Newton iterations, times.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  bench box cases/cyjs10-5-37hb --points 1000 --out box
+  bench box cases/cyjs10-5-37hb --points 200 --decades 1 --threads 1
+
+--out takes box.csv, one row per individual. Every run ends complete or with a named failure, within its
+budget of iterations. Verdicts and iterations are the same on any machine; times are those of a run that
+has a core to itself: with as many threads as cores they disturb each other a little, with other programs
+at work a lot.")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    machine: MachineChoice,
+    /// How many individuals.
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    points: u32,
+    /// No farther from the recommended values than so many decades (of a parameter of an effect, halves
+    /// of its interval); to the bounds of the case by default.
+    #[arg(long, value_name = "X", value_parser = decades)]
+    decades: Option<f64>,
+    /// Seed of the points.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Simulations at the same time [default: one per core].
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    #[command(flatten)]
+    output: Output,
+}
+
+fn decades(typed: &str) -> Result<f64, String> {
+    let value: f64 = typed.parse().map_err(|_| "not a number".to_owned())?;
+    if value > 0.0 && value <= 100.0 {
+        return Ok(value);
+    }
+    Err("must be above 0, at most 100".to_owned())
+}
+
+/// What `--output json` prints.
+#[derive(Debug, Serialize)]
+struct Object<'a> {
+    points: u32,
+    seed: u64,
+    classes: &'a [Class],
+}
+
+/// Runs, counts, writes.
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let machine = arguments.machine.load()?;
+    let individuals = individuals(&Space::new(&machine.case.genes)?, arguments);
+    let cores = thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.unwrap_or(cores).max(1);
+    let output = &arguments.output;
+    let done = |so_far: usize| output.tell(&format!("{so_far} of {}", individuals.len()));
+    let ended = simulate(&machine, &individuals, threads, done)?;
+    output.write("box.csv", || rows(&machine.case, &individuals, &ended))?;
+    let classes = classes(&ended);
+    let object = Object {
+        points: arguments.points,
+        seed: arguments.seed,
+        classes: &classes,
+    };
+    output.print(&counted(&classes), &object)
+}
+
+fn individuals(space: &Space, arguments: &Arguments) -> Vec<Vec<f64>> {
+    let reach = arguments.decades.unwrap_or(f64::INFINITY);
+    let near = Interval {
+        from: -reach,
+        to: reach,
+    };
+    let axes = space.axes().iter();
+    let intervals: Vec<Interval> = axes.map(|axis| near.within(axis.interval())).collect();
+    let points = latin_hypercube(&intervals, arguments.points as usize, arguments.seed);
+    points.iter().map(|point| space.values(point)).collect()
+}
+
+/// Simulates all individuals on some threads, and tells of every hundredth; returns them in their order.
+fn simulate(
+    machine: &Machine,
+    individuals: &[Vec<f64>],
+    threads: usize,
+    done: impl Fn(usize) -> anyhow::Result<()>,
+) -> anyhow::Result<Vec<Ended>> {
+    let next = AtomicUsize::new(0);
+    // a thread ends when nothing is left, or when nobody listens any more because of an error
+    let work = |to: &mpsc::Sender<_>| {
+        let at = next.fetch_add(1, Ordering::Relaxed);
+        let genes = individuals.get(at)?;
+        let simulated = machine
+            .simulate(genes, Discretisation::OF_THE_CASE)
+            .map(|done| Ended {
+                verdict: done.verdict,
+                counters: done.counters,
+                wall_s: done.wall_s,
+            });
+        to.send((at, simulated)).ok()
+    };
+    let mut ended = vec![None; individuals.len()];
+    thread::scope(|scope| {
+        let (to, ends) = mpsc::channel();
+        for to in vec![to; threads] {
+            scope.spawn(move || while work(&to).is_some() {});
+        }
+        for (so_far, (at, simulated)) in (1..).zip(ends) {
+            ended[at] = Some(simulated?);
+            if so_far % 100 == 0 {
+                done(so_far)?;
+            }
+        }
+        anyhow::Ok(())
+    })?;
+    Ok(ended.into_iter().flatten().collect())
+}
+
+/// Individuals as CSV: genes in declared units, how each ended, what it cost.
+fn rows(case: &Case, genes: &[Vec<f64>], ended: &[Ended]) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let rest = [
+        "verdict",
+        "load_fraction",
+        "time_fraction",
+        "steps",
+        "newton_iterations",
+        "factorizations",
+        "wall_s",
+    ];
+    let names = case.genes.iter().map(Gene::label);
+    let head = std::iter::once("point".to_owned()).chain(names);
+    writer.write_record(head.chain(rest.map(str::to_owned)))?;
+    for (index, (genes, one)) in genes.iter().zip(ended).enumerate() {
+        let (verdict, counters) = (one.verdict, &one.counters);
+        let share = |share: Option<f64>| share.map(|x| x.to_string()).unwrap_or_default();
+        let mut fields = vec![index.to_string()];
+        fields.extend(genes.iter().map(f64::to_string));
+        fields.extend([
+            verdict.as_str().to_owned(),
+            share(verdict.load_fraction()),
+            share(verdict.time_fraction()),
+            counters.steps.to_string(),
+            counters.newton_iterations.to_string(),
+            counters.factorizations.to_string(),
+            one.wall_s.to_string(),
+        ]);
+        writer.write_record(fields)?;
+    }
+    Ok(writer.into_inner()?)
+}
+
+/// One row per verdict, the commonest first, then all that failed.
+fn counted(classes: &[Class]) -> Table {
+    let mut table = table(&[
+        "verdict",
+        "runs",
+        "iterations, median",
+        "90 %",
+        "most",
+        "time [s], median",
+        "90 %",
+        "most",
+    ]);
+    for class in classes {
+        let stage = class.stage.map(|stage| format!(", {stage}"));
+        let mut cells = vec![
+            format!("{}{}", class.verdict, stage.unwrap_or_default()),
+            class.runs.to_string(),
+        ];
+        cells.extend(class.newton_iterations.map(|count| count.to_string()));
+        cells.extend(class.wall_s.map(|time| format!("{time:.3}")));
+        table.add_row(cells);
+    }
+    table
+}

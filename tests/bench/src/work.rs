@@ -1,0 +1,277 @@
+//! Accuracy of the gauge curves against work, for every method of integration.
+//!
+//! Two runs of different fourth-order methods at a hundredth of the usual tolerance are the truth;
+//! where they differ, nothing can be resolved. A method is run along a ladder of tolerances and
+//! longest steps: which of the two limits it differs from method to method, so that only the
+//! undominated points of each count. Everything but the wall times is deterministic.
+use crate::machine::Machine;
+use anyhow::ensure;
+use protocol::case::Integrator;
+use protocol::job::{Discretisation, Simulation, Verdict};
+use serde::Serialize;
+
+/// Tolerance and longest step \[s\], from coarse to fine.
+const LADDER: [(f64, f64); 9] = [
+    (1.0, 0.05),
+    (1.0, 0.03),
+    (1.0, 0.02),
+    (1.0, 0.012),
+    (0.1, 0.03),
+    (1.0, 0.007),
+    (0.03, 0.02),
+    (0.01, 0.01),
+    (0.001, 0.005),
+];
+
+/// How the truth is computed: tolerance and longest step \[s\].
+const TRUTH: (f64, f64) = (1e-3, 2e-3);
+
+/// Newton iterations that one point may take: ten of the most expensive ordinary ones.
+const BUDGET: u64 = 120_000;
+
+/// The step that the reference paper's program was given, throughout; the tolerance rejects nothing.
+const FIXED: Integration = Integration {
+    integrator: Integrator::Bdf,
+    longest_step_s: 1e-5,
+    tolerance: 1e12,
+    budget: u64::MAX,
+};
+
+/// How one run is integrated: with these steps, whatever the swing.
+#[derive(Clone, Copy, Debug)]
+struct Integration {
+    integrator: Integrator,
+    longest_step_s: f64,
+    tolerance: f64,
+    /// Newton iterations after which the run ends.
+    budget: u64,
+}
+
+impl Integration {
+    const fn discretisation(&self) -> Discretisation {
+        Discretisation {
+            integrator: Some(self.integrator),
+            longest_step_s: Some(self.longest_step_s),
+            step_as_stated: true,
+            tolerance: Some(self.tolerance),
+            budget: Some(self.budget),
+            ..Discretisation::OF_THE_CASE
+        }
+    }
+}
+
+/// What is compared.
+pub(crate) struct Plan {
+    /// Gene values in declared units.
+    pub(crate) genes: Vec<f64>,
+    /// Methods.
+    pub(crate) methods: Vec<Integrator>,
+    /// How many levels of the ladder, from the coarse end; 0 for the whole of it.
+    pub(crate) levels: usize,
+    /// Whether the reference paper's fixed step is run too, whole: it takes as long as hundreds of
+    /// ordinary runs.
+    pub(crate) fixed: bool,
+}
+
+/// One run; a row of `integrators.csv`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub(crate) struct Point {
+    /// Method.
+    pub(crate) integrator: Integrator,
+    /// Tolerance.
+    pub(crate) tolerance: f64,
+    /// Longest step \[s\].
+    pub(crate) longest_step_s: f64,
+    /// How it ended.
+    #[serde(skip)]
+    pub(crate) verdict: Verdict,
+    /// Whether the whole revolution was simulated.
+    pub(crate) complete: bool,
+    /// Accepted steps.
+    pub(crate) steps: u64,
+    /// Steps that were taken back.
+    pub(crate) rejected_steps: u64,
+    /// Newton iterations; of a Rosenbrock method, linear solutions.
+    pub(crate) newton_iterations: u64,
+    /// Tangents.
+    pub(crate) jacobians: u64,
+    /// Factorisations.
+    pub(crate) factorizations: u64,
+    /// Wall time \[s\].
+    pub(crate) wall_s: f64,
+    /// Root mean square difference to the truth over the range of the worst gauge; none unless
+    /// complete.
+    #[serde(rename = "error_over_range")]
+    pub(crate) error: Option<f64>,
+    /// Defect of the energy ledger over the work.
+    pub(crate) energy_error: f64,
+}
+
+impl Point {
+    fn new(integration: &Integration, simulation: &Simulation, truth: &Simulation) -> Self {
+        let counters = &simulation.counters;
+        Self {
+            integrator: integration.integrator,
+            tolerance: integration.tolerance,
+            longest_step_s: integration.longest_step_s,
+            verdict: simulation.verdict,
+            complete: simulation.verdict == Verdict::Complete,
+            steps: counters.steps,
+            rejected_steps: counters.rejected_steps,
+            newton_iterations: counters.newton_iterations,
+            jacobians: counters.jacobians,
+            factorizations: counters.factorizations,
+            wall_s: simulation.wall_s,
+            error: worst_gauge(simulation, truth),
+            energy_error: simulation.energy.relative_error,
+        }
+    }
+}
+
+/// All methods side by side; what `--output json` prints.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Comparison {
+    /// How far the two candidates for the truth are apart, as an error.
+    pub(crate) resolution: f64,
+    /// Method by method, from the coarse end of the ladder.
+    pub(crate) points: Vec<Point>,
+    /// The reference paper's kind of step, over the whole run; none unless asked for.
+    pub(crate) fixed_step: Option<Point>,
+}
+
+impl Comparison {
+    /// The complete points of a method that no other of its points beats in both work and error,
+    /// by work.
+    pub(crate) fn front(
+        &self,
+        integrator: Integrator,
+        work: impl Fn(&Point) -> f64,
+    ) -> Vec<(f64, f64)> {
+        let own = self.points.iter().filter(|p| p.integrator == integrator);
+        let mut points: Vec<(f64, f64)> = own
+            .filter_map(|point| Some((work(point), point.error?)))
+            .collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut best = f64::INFINITY;
+        points.retain(|&(_, error)| {
+            let better = error < best;
+            best = best.min(error);
+            better
+        });
+        points
+    }
+}
+
+/// Runs the comparison, one run after the other, so that wall times do not disturb each other.
+pub(crate) fn compare(
+    machine: &Machine,
+    plan: &Plan,
+    mut done: impl FnMut(&Point) -> anyhow::Result<()>,
+) -> anyhow::Result<Comparison> {
+    let truth = converged(machine, plan, Integrator::Rodas4)?;
+    let second = converged(machine, plan, Integrator::Esdirk4)?;
+    let run = |integration: Integration| {
+        let simulation = machine.simulate(&plan.genes, integration.discretisation())?;
+        anyhow::Ok(Point::new(&integration, &simulation, &truth))
+    };
+    let levels = match plan.levels {
+        0 => LADDER.len(),
+        some => some,
+    };
+    let mut points = Vec::new();
+    for &integrator in &plan.methods {
+        for &(tolerance, longest_step_s) in LADDER.iter().take(levels) {
+            let point = run(Integration {
+                integrator,
+                longest_step_s,
+                tolerance,
+                budget: BUDGET,
+            })?;
+            done(&point)?;
+            points.push(point);
+        }
+    }
+    Ok(Comparison {
+        resolution: worst_gauge(&second, &truth).unwrap_or(f64::NAN),
+        points,
+        fixed_step: plan.fixed.then(|| run(FIXED)).transpose()?,
+    })
+}
+
+/// A run that is as good as exact.
+fn converged(machine: &Machine, plan: &Plan, integrator: Integrator) -> anyhow::Result<Simulation> {
+    let (tolerance, longest_step_s) = TRUTH;
+    let integration = Integration {
+        integrator,
+        longest_step_s,
+        tolerance,
+        budget: u64::MAX,
+    };
+    let simulation = machine.simulate(&plan.genes, integration.discretisation())?;
+    ensure!(
+        simulation.verdict == Verdict::Complete,
+        "these parameters have no complete run to compare with ({:?}): choose others with --genes",
+        simulation.verdict
+    );
+    Ok(simulation)
+}
+
+/// Largest root mean square difference of a gauge over its range; none unless both are complete.
+fn worst_gauge(simulation: &Simulation, truth: &Simulation) -> Option<f64> {
+    if simulation.verdict != Verdict::Complete {
+        return None;
+    }
+    let mut worst: f64 = 0.0;
+    for (found, exact) in simulation.gauge_mpa.iter().zip(&truth.gauge_mpa) {
+        if found.len() != exact.len() || exact.is_empty() {
+            return None;
+        }
+        let squares = found.iter().zip(exact).map(|(a, b)| (a - b) * (a - b));
+        let mean = squares.sum::<f64>() / exact.len() as f64;
+        let low = exact.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        worst = worst.max(mean.sqrt() / (high - low));
+    }
+    Some(worst)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(integrator: Integrator, newton_iterations: u64, error: Option<f64>) -> Point {
+        Point {
+            integrator,
+            tolerance: 1.0,
+            longest_step_s: 0.01,
+            verdict: Verdict::Complete,
+            complete: true,
+            steps: 0,
+            rejected_steps: 0,
+            newton_iterations,
+            jacobians: 0,
+            factorizations: 0,
+            wall_s: 0.0,
+            error,
+            energy_error: 0.0,
+        }
+    }
+
+    #[test]
+    fn only_undominated_points_of_a_method_count() {
+        let all = Comparison {
+            resolution: 1e-6,
+            points: vec![
+                point(Integrator::Esdirk4, 500, Some(0.1)),
+                point(Integrator::Esdirk4, 400, Some(0.2)),
+                point(Integrator::Esdirk4, 600, Some(0.15)),
+                point(Integrator::Esdirk4, 900, None),
+                point(Integrator::TrBdf2, 100, Some(0.01)),
+                point(Integrator::Esdirk4, 800, Some(0.02)),
+            ],
+            fixed_step: None,
+        };
+        let front = all.front(Integrator::Esdirk4, |p| p.newton_iterations as f64);
+        assert_eq!(front, [(400.0, 0.2), (500.0, 0.1), (800.0, 0.02)]);
+    }
+}

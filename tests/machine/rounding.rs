@@ -1,0 +1,80 @@
+//! What it means that a worker rounds the channels that a diagnosis works with: bytes saved, and by how
+//! much its numbers move, in units of the noise of the shipped records.
+use super::folder;
+use coordinator::case::{Overrides, load_with_notes};
+use discrepancy::laboratory::channels;
+use discrepancy::record::metric::Metric;
+use discrepancy::record::noise::Noise;
+use discrepancy::record::spectrum::Orders;
+use protocol::case::EffectSetting;
+use protocol::job::{Answer, Individual, Job, Observation, Outcome, Reply, SimulateSpec};
+use worker::handler::Prepared;
+
+/// Orders that a diagnosis compares.
+const ORDERS: usize = 120;
+/// What a message of six channels of 720 samples may take (bytes): 6,800 of them are a diagnosis.
+const MOST_BYTES: usize = 7_000;
+
+fn done(prepared: &Prepared, individual: &Individual, reply: Reply) -> Answer {
+    let spec = SimulateSpec::new(individual.clone(), reply);
+    prepared.evaluate(&Job::Simulate(spec)).done().unwrap()
+}
+
+/// The channels as they travel, and as they were before.
+fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
+    let rounded = done(prepared, individual, Reply::Channels);
+    let bytes = protocol::wire::encode(&Outcome::Done(rounded.clone())).unwrap();
+    assert!(bytes.len() < MOST_BYTES);
+    let everything = Reply::Curves {
+        motion_step_deg: 0.0,
+    };
+    let whole = done(prepared, individual, everything).into_curves();
+    let whole = whole.unwrap();
+    let exact = Observation {
+        verdict: whole.verdict,
+        counters: whole.counters,
+        gauge_mpa: whole.gauge_mpa,
+        suspension_m: whole.suspension_m,
+        crank_torque_n_m: whole.crank_torque_n_m,
+    };
+    [rounded.into_channels().unwrap(), exact]
+}
+
+/// Whitened residuals move by less than three thousandths of a standard deviation each, and the whole
+/// change that a twentieth of a gene's decade or a friction makes by less than a twentieth of one:
+/// nothing that is sized or tested with them moves by more than that share of its own uncertainty.
+#[test]
+fn rounded_channels_are_short_and_far_below_the_noise() {
+    let loaded = load_with_notes(&folder(), &Overrides::default()).unwrap();
+    let case = &loaded.case;
+    let condition = case.objective.condition;
+    let record = loaded.cycles.iter().find(|it| it.condition == condition);
+    let record = record.unwrap();
+    let orders = Orders::new(record.samples(), ORDERS);
+    let noise = Noise::estimate(record, &orders, &[]);
+    let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
+    let prepared = Prepared::new(case).unwrap();
+    let whitened = |individual: &Individual| {
+        let seen = both(&prepared, individual);
+        seen.map(|seen| metric.whiten(&channels(&seen, &record.channels).unwrap()))
+    };
+    let plain = Individual::new(condition, case.recommended());
+    let at = whitened(&plain);
+    let moved = &at[0] - &at[1];
+    eprintln!("residuals move by {:.1e} at most", moved.amax());
+    assert!(moved.amax() < 3e-3);
+    let mut beside = vec![plain; 3];
+    beside[0].genes[0] *= 10_f64.powf(0.05);
+    beside[1].genes[4] *= 10_f64.powf(0.05);
+    beside[2].effects = vec![EffectSetting::new("pivot_friction", &[("moment", 500.0)])];
+    for individual in &beside {
+        let there = whitened(individual);
+        let [rounded, exact] = [0, 1].map(|k| &there[k] - &at[k]);
+        let error = (&rounded - &exact).norm();
+        eprintln!(
+            "a column of length {:.2} moves by {error:.1e}",
+            exact.norm()
+        );
+        assert!(error < 0.05);
+    }
+}

@@ -1,0 +1,91 @@
+//! Tests of judge and table: what a few verdicts are worth, and how they are counted.
+use crate::judge::Trial;
+use crate::plan::{Answer, AnswerEffect, Stratum};
+use crate::table::table;
+use std::collections::BTreeMap;
+
+fn answer(stratum: Stratum, ids: &[&str]) -> Answer {
+    let effects = ids.iter().map(|id| AnswerEffect {
+        id: (*id).to_owned(),
+        listed: true,
+        parameter: "force".to_owned(),
+        value: 900.0,
+        unit: "N".to_owned(),
+        times_scale: 1.0,
+        shape: BTreeMap::new(),
+    });
+    Answer {
+        seed: 1,
+        stratum,
+        case: "case".to_owned(),
+        noise: 1.0,
+        cycles: 5,
+        genes: BTreeMap::new(),
+        effects: effects.collect(),
+    }
+}
+
+fn trial(stratum: Stratum, ids: &[&str], verdict: &str) -> Trial {
+    Trial {
+        name: "set".to_owned(),
+        answer: answer(stratum, ids),
+        verdict: serde_json::from_str(verdict).unwrap(),
+    }
+}
+
+const PACKING: &str = r#"{"verdict": "ambiguous",
+    "effects": [
+        {"id": "stuffing_box_friction", "added": true,
+         "parameters": {"force": {"value": 990.0, "unit": "N", "ci95": [880.0, 1100.0]}}},
+        {"id": "pivot_friction", "added": false, "parameters": {}}],
+    "rounds": [{"added": "stuffing_box_friction", "set": ["stuffing_box_friction", "pivot_friction"]},
+               {"added": null, "set": []}],
+    "detection_limits": [{"id": "stuffing_box_friction", "parameter": "force", "unit": "N", "size": 150.0},
+                         {"id": "pivot_friction", "parameter": "moment", "unit": "N.m", "size": null}],
+    "gap": {"other_condition": {"before": 0.1, "after": 0.01, "closed": 0.9, "ci95": null}}}"#;
+
+#[test]
+fn a_right_name_a_set_that_holds_the_truth_and_a_false_name() {
+    let right = trial(Stratum::Single, &["stuffing_box_friction"], PACKING);
+    assert!(right.first_is_right() && right.covered() && right.false_names() == 0);
+    assert!((right.over_limit().unwrap() - 6.0).abs() < 1e-12);
+    let (error, covered) = right.size_error().unwrap();
+    assert!((error - 0.1).abs() < 1e-12 && covered);
+    let alike = trial(Stratum::Single, &["pivot_friction"], PACKING);
+    assert!(!alike.first_is_right() && alike.covered() && alike.false_names() == 0);
+    let wrong = trial(Stratum::Single, &["gauge_drift"], PACKING);
+    assert!(!wrong.covered() && wrong.false_names() == 1);
+    assert_eq!(wrong.mark(), "FALSE NAME");
+}
+
+#[test]
+fn claims_are_counted_by_stratum() {
+    let nothing = r#"{"verdict": "nothing_detected"}"#;
+    let unlisted = r#"{"verdict": "unlisted", "effects": []}"#;
+    let trials = [
+        trial(Stratum::Zero, &[], nothing),
+        trial(Stratum::Zero, &[], PACKING),
+        trial(Stratum::Below, &["gauge_drift"], nothing),
+        trial(Stratum::Outside, &["beam_gust"], unlisted),
+        trial(Stratum::Outside, &["beam_gust"], nothing),
+        trial(
+            Stratum::Double,
+            &["stuffing_box_friction", "gauge_drift"],
+            PACKING,
+        ),
+        trial(Stratum::Single, &["stuffing_box_friction"], PACKING),
+    ];
+    let table = table(&trials, 2).unwrap();
+    for line in [
+        "| zero: any claim | <= 5 % | 1/2 = 50 % [1-99] |",
+        "| below the limit: any claim | <= 5 % | 0/1 = 0 % [0-98] |",
+        "| outside, detected: unlisted | >= 90 % | 1/1 = 100 % [2-100] |",
+        "| double: exactly both | >= 60 % | 0/1 = 0 % [0-98] |",
+        "| double: at least one | >= 85 % | 1/1 = 100 % [2-100] |",
+        "| single, at least 3 x limit: first name right | >= 85 % | 1/1 = 100 % [2-100] |",
+        "| false names of all names | <= 10 % | 1/3 = 33 % [1-91] |",
+        "7 sets judged, 2 without a verdict.",
+    ] {
+        assert!(table.contains(line), "{line}\n{table}");
+    }
+}

@@ -1,0 +1,109 @@
+//! A strong friction that is named by a diagnosis that is killed on the way, gone on with, judged, added
+//! to the case, told again and simulated: always the same numbers. One diagnosis, for it takes minutes.
+use crate::coarse::{FRICTION, Trial, run};
+use protocol::{curve::rounded, job::Observation};
+use serde_json::Value;
+use std::{fs, path::Path, process::Stdio, thread::sleep, time::Duration};
+
+/// Results in the journal before the diagnosis is killed (bytes): far fewer than it needs.
+const KILLED_AT: u64 = 500_000;
+
+/// What a diagnosis says, but for the times it took.
+fn said(text: &str) -> Value {
+    let mut all: Value = serde_json::from_str(text).expect("an object");
+    let fields = all.as_object_mut().expect("an object");
+    fields.remove("wall_s").expect("a time");
+    for stage in fields["stages"].as_array_mut().expect("stages") {
+        stage.as_object_mut().expect("a stage").remove("wall_s");
+    }
+    all
+}
+
+/// What each gauge shows with what was found, every half degree.
+fn after(curves: &Path, condition: &str) -> [Vec<f64>; 4] {
+    let text = fs::read_to_string(curves).expect("curves");
+    let mut gauges: [Vec<f64>; 4] = Default::default();
+    for line in text.lines().skip(1) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let gauge = fields[1].strip_prefix("gauge ").map(str::parse::<usize>);
+        if let (true, Some(Ok(gauge))) = (fields[0] == condition, gauge) {
+            gauges[gauge - 1].push(fields[7].parse().expect("a stress"));
+        }
+    }
+    gauges
+}
+
+#[test]
+fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbers() {
+    let trial = Trial::make(&FRICTION);
+    // killed on the way
+    let mut first = trial.diagnose();
+    let mut first = first.stdout(Stdio::null()).spawn().expect("it starts");
+    let journal = trial.at("run/journal.hhj");
+    while fs::metadata(&journal).map_or(0, |file| file.len()) < KILLED_AT {
+        assert!(
+            first.try_wait().expect("a state").is_none(),
+            "it ended before"
+        );
+        sleep(Duration::from_millis(20));
+    }
+    first.kill().expect("a signal");
+    first.wait().expect("an end");
+    assert!(!trial.at("run/result.json").exists());
+
+    let verdict = run(&mut trial.diagnose());
+    let whole = said(&verdict);
+    assert_eq!(whole["verdict"], "named", "{whole}");
+    assert_eq!(whole["effects"][0]["id"], "pivot_friction", "{whole}");
+    let table = trial.open(&verdict);
+    eprintln!("{table}");
+    assert!(table.contains("| single, all: first name right |  | 1/1 = 100 %"));
+    assert!(table.contains("| false names of all names | <= 10 % | 0/1 = 0 %"));
+
+    // the case has what was found, once, and the run still knows its case
+    for _ in 0..2 {
+        assert_eq!(said(&run(trial.diagnose().arg("--add"))), whole);
+    }
+    let case = fs::read_to_string(trial.at("case/case.toml")).expect("a case");
+    assert_eq!(case.matches("id = \"pivot_friction\"").count(), 1);
+    // the next calibration fits it: its size is a gene of the case, within an interval about it
+    let checked = run(&mut trial.horsehead(&["case", "check", "case", "--output", "json"]));
+    let checked: Value = serde_json::from_str(&checked).expect("an object");
+    let genes = checked["genes"].as_array().expect("genes");
+    assert!(genes.len() > 10, "{genes:?}");
+    assert!(genes.contains(&"pivot_friction.moment".into()), "{genes:?}");
+    assert!(case.contains(", search = ["), "{case}");
+    assert_eq!(
+        said(&run(
+            &mut trial.horsehead(&["report", "run", "--output", "json"])
+        )),
+        whole
+    );
+
+    // with the step of the diagnosis, a simulation of the case is its "after": rounded as channels of a
+    // diagnosis are
+    let usual = "longest_step_s = 0.06 ";
+    assert_eq!(case.matches(usual).count(), 1);
+    let finer = format!("longest_step_s = {:e} ", 0.7 * 0.06);
+    fs::write(trial.at("case/case.toml"), case.replace(usual, &finer)).expect("a case");
+    let mut simulate = trial.horsehead(&["simulate", "case", "--output", "json", "--measured"]);
+    simulate
+        .arg(&trial.set)
+        .args(["--genes", "run/calibrated.toml"]);
+    let simulated: Value = serde_json::from_str(&run(&mut simulate)).expect("an object");
+    let after = after(&trial.at("run/curves.csv"), "5rpm");
+    for (gauge, diagnosed) in (1..).zip(&after) {
+        let stress = &simulated["gauge_mpa"][gauge.to_string()];
+        let stress = stress.as_array().expect("a curve");
+        let stress: Vec<f64> = stress.iter().filter_map(Value::as_f64).collect();
+        let stress = rounded(&stress, Observation::GAUGE_EXPONENT);
+        let bits = |curve: &[f64]| {
+            curve
+                .iter()
+                .map(|value| value.to_bits())
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(stress.len(), 720);
+        assert_eq!(bits(&stress), bits(diagnosed), "gauge {gauge}");
+    }
+}

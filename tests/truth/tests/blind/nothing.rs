@@ -1,0 +1,13 @@
+//! A record that hides nothing, and a diagnosis that says so.
+use crate::coarse::{Trial, run};
+
+#[test]
+fn nothing_is_named_where_nothing_is() {
+    let trial = Trial::make(&["--seed", "2", "--stratum", "zero", "--noise", "4"]);
+    let said = run(&mut trial.diagnose());
+    let verdict: serde_json::Value = serde_json::from_str(&said).expect("a verdict");
+    assert_eq!(verdict["verdict"], "nothing_detected", "{verdict}");
+    let table = trial.open(&said);
+    eprintln!("{table}");
+    assert!(table.contains("| zero: any claim | <= 5 % | 0/1 = 0 %"));
+}

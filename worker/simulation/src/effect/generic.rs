@@ -1,0 +1,365 @@
+//! Generic forces for localisation: a joint and a form of force, without a cause.
+//!
+//! The catalogue is the product of two tables. A force of unit amplitude is a function of place
+//! `u` and rate `w`, both over their largest values in the ideal motion, and of the turn angle:
+//! constant, `sgn w` (as a steep `tanh`), `w`, `w |w|`, `u^2`, `u^3`, and cosine or sine of the first
+//! six harmonics of the crank. What depends on the motion resists it; the amplitude has either sign.
+use super::descriptor::{Descriptor, Place};
+use super::unit::Unit;
+use crate::drive::DriveState;
+use crate::math::elementary::{sin_cos, tanh};
+use crate::math::spline::Splines;
+use crate::model::hook::{Along, Axial, Effect, Hooks, LineForce, Site, Strain};
+use crate::model::strand::{BACK, FRONT};
+use std::f64::consts::TAU;
+
+/// A place where a generic force may act.
+#[derive(Debug)]
+struct Joint {
+    name: &'static str,
+    title: &'static str,
+    line: Line,
+    unit: Unit,
+    /// Typical amplitude.
+    typical: f64,
+}
+
+/// What is moved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Line {
+    Beam,
+    Suspension,
+    Rod,
+    Head,
+    Rope(usize),
+}
+
+const JOINTS: [Joint; 6] = [
+    Joint {
+        name: "saddle",
+        title: "Moment at the saddle bearing",
+        line: Line::Beam,
+        unit: Unit::NewtonMetre,
+        typical: 1500.0,
+    },
+    Joint {
+        name: "suspension",
+        title: "Force at the suspension point",
+        line: Line::Suspension,
+        unit: Unit::Newton,
+        typical: 800.0,
+    },
+    Joint {
+        name: "crank_pin",
+        title: "Moment between crank and rod",
+        line: Line::Rod,
+        unit: Unit::NewtonMetre,
+        typical: 1000.0,
+    },
+    Joint {
+        name: "back_head",
+        title: "Force on the back head's first mode",
+        line: Line::Head,
+        unit: Unit::ModalNewton,
+        typical: 10.0,
+    },
+    Joint {
+        name: "back_rope",
+        title: "Pull along the back rope",
+        line: Line::Rope(BACK),
+        unit: Unit::Newton,
+        typical: 1000.0,
+    },
+    Joint {
+        name: "front_rope",
+        title: "Pull along the front rope",
+        line: Line::Rope(FRONT),
+        unit: Unit::Newton,
+        typical: 1000.0,
+    },
+];
+
+/// How a generic force depends on motion and time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Constant,
+    SignOfRate,
+    Rate,
+    RateSquared,
+    PlaceSquared,
+    PlaceCubed,
+    Cosine(u8),
+    Sine(u8),
+}
+
+const HARMONICS: u8 = 6;
+
+impl Form {
+    fn all() -> impl Iterator<Item = Self> {
+        let motion = [
+            Self::Constant,
+            Self::SignOfRate,
+            Self::Rate,
+            Self::RateSquared,
+            Self::PlaceSquared,
+            Self::PlaceCubed,
+        ];
+        let time = (1..=HARMONICS).flat_map(|h| [Self::Cosine(h), Self::Sine(h)]);
+        motion.into_iter().chain(time)
+    }
+
+    fn name(self) -> String {
+        match self {
+            Self::Constant => "const".to_owned(),
+            Self::SignOfRate => "sgn_v".to_owned(),
+            Self::Rate => "v".to_owned(),
+            Self::RateSquared => "v_abs_v".to_owned(),
+            Self::PlaceSquared => "d2".to_owned(),
+            Self::PlaceCubed => "d3".to_owned(),
+            Self::Cosine(h) => format!("cos{h}"),
+            Self::Sine(h) => format!("sin{h}"),
+        }
+    }
+
+    fn words(self) -> String {
+        match self {
+            Self::Constant => "constant".to_owned(),
+            Self::SignOfRate => "by the sign of the speed".to_owned(),
+            Self::Rate => "with the speed".to_owned(),
+            Self::RateSquared => "with the square of the speed".to_owned(),
+            Self::PlaceSquared => "with the square of the displacement".to_owned(),
+            Self::PlaceCubed => "with the cube of the displacement".to_owned(),
+            Self::Cosine(h) => format!("cosine of harmonic {h}"),
+            Self::Sine(h) => format!("sine of harmonic {h}"),
+        }
+    }
+
+    /// Resistance of unit amplitude; energy per unit of `u`.
+    fn resistance(self, u: f64, w: f64, turn: f64) -> Along {
+        let mut along = Along::default();
+        match self {
+            Self::Constant => along.other = 1.0,
+            Self::SignOfRate => {
+                along.other = tanh(w / CREEP);
+                along.by_rate = (1.0 - along.other * along.other) / CREEP;
+            }
+            Self::Rate => (along.other, along.by_rate) = (w, 1.0),
+            Self::RateSquared => (along.other, along.by_rate) = (w * w.abs(), 2.0 * w.abs()),
+            Self::PlaceSquared => {
+                (along.spring, along.by_place, along.energy) = (u * u, 2.0 * u, u * u * u / 3.0);
+            }
+            Self::PlaceCubed => {
+                let square = u * u;
+                along.spring = square * u;
+                along.by_place = 3.0 * square;
+                along.energy = 0.25 * square * square;
+            }
+            Self::Cosine(h) => along.other = sin_cos(f64::from(h) * turn).1,
+            Self::Sine(h) => along.other = sin_cos(f64::from(h) * turn).0,
+        }
+        along
+    }
+}
+
+/// Every generic force.
+pub(super) fn descriptors() -> impl Iterator<Item = Descriptor> {
+    JOINTS.iter().flat_map(|joint| {
+        Form::all().map(move |form| {
+            let reach = 20.0 * joint.typical;
+            let id = format!("probe.{}.{}", joint.name, form.name());
+            Descriptor::new(id, format!("{}, {}", joint.title, form.words()))
+                .at(joint.name, Place::Dynamics)
+                .generic()
+                .size("amplitude", joint.unit, joint.typical, [-reach, reach])
+                .builds(move |v| Probe {
+                    line: joint.line,
+                    form,
+                    amplitude: v.get("amplitude"),
+                })
+        })
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Probe {
+    line: Line,
+    form: Form,
+    amplitude: f64,
+}
+
+/// Middle, half range and largest rate of a motion.
+#[derive(Clone, Copy, Debug)]
+struct Range {
+    middle: f64,
+    reach: f64,
+    rate: f64,
+}
+
+/// Share of the largest rate at which three quarters of a dry friction are there.
+const CREEP: f64 = 0.02;
+
+impl Range {
+    /// Of a function of the turn, for a crank at `speed` [rad/s].
+    fn of(speed: f64, motion: impl Fn(f64) -> f64) -> Self {
+        const NODES: u32 = 360;
+        let at = |k: u32| motion(TAU * f64::from(k) / f64::from(NODES));
+        let (mut low, mut high, mut steepest) = (f64::MAX, f64::MIN, 0.0_f64);
+        for k in 0..NODES {
+            let value = at(k);
+            low = low.min(value);
+            high = high.max(value);
+            steepest = steepest.max((at(k + 1) - value).abs());
+        }
+        Self {
+            middle: 0.5 * (low + high),
+            reach: 0.5 * (high - low),
+            rate: steepest * f64::from(NODES) / TAU * speed,
+        }
+    }
+
+    /// Resistance of an amplitude at a place and its rate.
+    fn resistance(&self, probe: &Probe, place: f64, rate: f64, turn: f64) -> Along {
+        let u = (place - self.middle) / self.reach;
+        let unit = probe.form.resistance(u, rate / self.rate, turn);
+        let a = probe.amplitude;
+        Along {
+            spring: a * unit.spring,
+            other: a * unit.other,
+            energy: a * self.reach * unit.energy,
+            by_place: a * unit.by_place / self.reach,
+            by_rate: a * unit.by_rate / self.rate,
+        }
+    }
+}
+
+impl Effect for Probe {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let (d, layout, cycle) = (site.description, site.layout, site.cycle);
+        let speed = d.crank.speed;
+        let (index, range) = match self.line {
+            Line::Rope(rope) => {
+                let (slow, weight) = if rope == BACK {
+                    (cycle.tensions().clone(), 0.0)
+                } else {
+                    (site.card.clone(), d.suspension_mass * d.gravity)
+                };
+                let tension = Range::of(speed, |turn| slow.value(turn, 0) + weight);
+                let law = AlongRope {
+                    probe: *self,
+                    tension,
+                    slow,
+                    sense: d.crank.sense,
+                };
+                hooks.add_axial(rope, law);
+                return;
+            }
+            Line::Beam => (
+                layout.beam(),
+                Range::of(speed, |turn| cycle.beam(turn).value),
+            ),
+            Line::Suspension => {
+                let length = d.rope.front as f64 * d.rope.pitch;
+                let arm = d.front_arc.radius;
+                (
+                    layout.suspension(),
+                    Range::of(speed, |turn| {
+                        arm * (d.front_arc.anchor + cycle.beam(turn).value) - length
+                    }),
+                )
+            }
+            Line::Rod => (
+                layout.rod(),
+                Range::of(speed, |turn| {
+                    cycle.tangent(turn).value + cycle.beam(turn).value - 0.25 * TAU
+                }),
+            ),
+            Line::Head => {
+                let [face, ..] = site.faces else {
+                    return;
+                };
+                let Some(shape) = face.anchor.first().map(|shape| shape.moves) else {
+                    return;
+                };
+                let w = d.head.frequencies[0];
+                let anchor = d.back_arc.anchor;
+                let (s, c) = sin_cos(anchor);
+                let end = shape[1] * c - shape[0] * s;
+                // the wrapped rope presses with T / R and pulls with T where it ends
+                let slow = Range::of(speed, |turn| {
+                    let wrapped = cycle.tangent(turn).value - anchor;
+                    let parts = 24;
+                    let pressed: f64 = (0..parts)
+                        .map(|k| {
+                            let share = (f64::from(k) + 0.5) / f64::from(parts);
+                            face.radial.value(anchor + share * wrapped, 0)
+                        })
+                        .sum();
+                    let pressed = pressed * wrapped / f64::from(parts);
+                    cycle.tension(turn) * (end - pressed) / (w * w)
+                });
+                // the mode swings at its own frequency, far faster than the crank moves it
+                let rate = slow.reach * w;
+                (layout.mode(0), Range { rate, ..slow })
+            }
+        };
+        let probe = *self;
+        hooks.on(index, AlongLine { probe, range });
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct AlongLine {
+    probe: Probe,
+    range: Range,
+}
+
+impl LineForce for AlongLine {
+    fn along(&self, drive: &DriveState, place: f64, rate: f64) -> Along {
+        let against = self.range.resistance(&self.probe, place, rate, drive.turn);
+        Along {
+            spring: -against.spring,
+            other: -against.other,
+            energy: against.energy,
+            by_place: -against.by_place,
+            by_rate: -against.by_rate,
+        }
+    }
+}
+
+/// A pull along a rope; place and rate are those of the tension that the strain stands for.
+///
+/// What is not proportional to the rate goes by that of the ideal tension instead: cylinders swing
+/// against each other faster than the load stretches them, and would stick or be torn.
+#[derive(Clone, Debug)]
+struct AlongRope {
+    probe: Probe,
+    tension: Range,
+    /// Ideal tension over the turn, up to a constant \[N\].
+    slow: Splines,
+    /// Of rotation.
+    sense: f64,
+}
+
+impl Axial for AlongRope {
+    fn pull(&self, at: &Strain<'_>) -> Along {
+        let (k, turn) = (at.stiffness, at.drive.turn);
+        let place = at.strain * k;
+        if matches!(self.probe.form, Form::SignOfRate | Form::RateSquared) {
+            let slope = self.slow.jet(&self.slow.place(turn), 0).first;
+            let rate = slope * self.sense * at.drive.pin_rate;
+            let pull = self.tension.resistance(&self.probe, place, rate, turn);
+            return Along {
+                by_rate: 0.0,
+                ..pull
+            };
+        }
+        let rate = at.rate * k;
+        let pull = self.tension.resistance(&self.probe, place, rate, turn);
+        Along {
+            energy: pull.energy / k,
+            by_place: pull.by_place * k,
+            by_rate: pull.by_rate * k,
+            ..pull
+        }
+    }
+}

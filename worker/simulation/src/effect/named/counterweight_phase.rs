@@ -1,0 +1,49 @@
+//! The counterweight stands before or behind its place, or has another moment.
+//!
+//! Under a prescribed crank that shows only where the motor slips: this effect is the difference that
+//! the counterweight makes to the ripple of the crank's speed, at the slip of a usual motor, so that it
+//! stands apart from the ripple itself. Slip would be no shape but a factor of phase and moment: a
+//! record tells their product alone.
+//!
+//! Source: counterbalance moment with its phase angle: API Spec 11E.
+use super::crank_speed_ripple::{RATED, sampled, warp};
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+use crate::model::hook::{Effect, Hooks, Site};
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new(
+        "counterweight_phase",
+        "Phase or moment of the counterweight, seen through the slip of the motor",
+    )
+    .at("crank", Place::Drive)
+    .size("phase", Unit::Degree, 5.0, [-45.0, 45.0])
+    .size("moment", Unit::NewtonMetre, 5000.0, [-5e4, 5e4])
+    .builds(|v| Counterweight {
+        phase: v.get("phase"),
+        moment: v.get("moment"),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Counterweight {
+    phase: f64,
+    moment: f64,
+}
+
+/// Slip at [`RATED`] torque \[1\].
+const SLIP: f64 = 0.0267;
+
+impl Effect for Counterweight {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let crank = &site.description.crank;
+        let (phase, moment) = (crank.counterweight_phase, crank.counterweight_moment);
+        let slow = sampled(|turn| {
+            let now = site
+                .cycle
+                .torque(turn, phase + self.phase, moment + self.moment);
+            SLIP / RATED * (now - site.cycle.torque(turn, phase, moment))
+        });
+        hooks.add_warp(warp(&slow));
+    }
+}

@@ -1,0 +1,34 @@
+//! The front head's arc has another radius, or its centre lies above or below the pivot.
+//!
+//! A centre lower by `e` makes the arm `A + e sin(theta)`: it differs with the sign of the beam
+//! angle. The suspension point stays under the arc's foremost point at beam angle 0.
+//!
+//! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+use crate::model::description::Description;
+use crate::model::hook::Effect;
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new("front_head_radius", "Radius or centre of the front head")
+        .at("front_head", Place::Dynamics)
+        .size("radius", Unit::Metre, 0.02, [-0.1, 0.1])
+        .size("centre", Unit::Metre, 0.02, [-0.1, 0.1])
+        .builds(|v| Arc {
+            radius: v.get("radius"),
+            centre: v.get("centre"),
+        })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Arc {
+    radius: f64,
+    centre: f64,
+}
+
+impl Effect for Arc {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        d.front_arc.radius += self.radius;
+        d.front_arc.center[1] -= self.centre;
+    }
+}

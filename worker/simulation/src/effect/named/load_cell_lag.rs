@@ -1,0 +1,54 @@
+//! The load cell or its logger lags: `t F_m' + F_m = F`, where the card holds `F_m` and the machine
+//! feels `F`.
+//!
+//! A logger's filter has more than one pole: with `p` of them, of one time constant each, harmonic `n`
+//! of the card is multiplied by `(1 + i n w t / p)^p`. `t` is the delay of slow changes, whatever `p`; one
+//! pole is a load cell, many are nearly a pure delay. For a negative time the card is the true load and
+//! the machine is loaded by a lagged one, `(1 + i n w |t| / p)^-p`; the two agree to first order. What is
+//! restored is noise from some harmonic on: the gain's change fades out as `1 / (1 + (n / 90)^4)`, above
+//! the ropes' own modes (orders 60 to 80).
+//!
+//! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+use crate::math::elementary::{atan2, powf, sin_cos};
+use crate::math::harmonics::filter;
+use crate::model::description::Description;
+use crate::model::hook::Effect;
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new("load_cell_lag", "Lag of the load cell or its logger")
+        .at("load_cell", Place::Load)
+        .size("lag", Unit::Second, 0.15, [-0.5, 0.5])
+        .shape("poles", Unit::One, 1.0, [1.0, 4.0])
+        .builds(|v| Lag {
+            lag: v.get("lag"),
+            poles: v.get("poles"),
+        })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Lag {
+    lag: f64,
+    poles: f64,
+}
+
+/// Harmonic at which half of the correction is left.
+const FADES: f64 = 90.0;
+
+impl Effect for Lag {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        let w = d.crank.speed;
+        d.card = filter(&d.card, u32::MAX, |harmonic| {
+            let n = f64::from(harmonic);
+            let x = n * w * self.lag / self.poles;
+            let fade = n / FADES;
+            let left = 1.0 / (1.0 + fade * fade * fade * fade);
+            let size = powf(1.0 + x * x, 0.5 * self.poles);
+            let size = if x > 0.0 { size } else { 1.0 / size };
+            let (im, re) = sin_cos(self.poles * atan2(x, 1.0));
+            let [re, im] = [size * re, size * im];
+            [1.0 + left * (re - 1.0), left * im]
+        });
+    }
+}

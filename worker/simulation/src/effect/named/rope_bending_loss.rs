@@ -1,0 +1,61 @@
+//! The back rope loses power where it winds on and off the back head: capstan loss.
+//!
+//! The tension that pulls the head is `T (1 -+ e)` as the rope winds on or off, so that the same
+//! moment needs `dT = -e T sign(psi')`: a couple `M = e T h sign(psi')` on the head, with `psi` the
+//! angle of the tangent point on it. It changes sign where the winding turns round, which is not at the
+//! dead centres, and with `tanh(psi' / w_0)`, since one wire slips after another. Tension, arm and speed
+//! of winding are those of the ideal mechanism.
+//!
+//! Source: efficiency of ropes over sheaves: Feyrer, *Wire Ropes*, 2nd ed. (2015).
+use crate::drive::DriveState;
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+use crate::math::elementary::tanh;
+use crate::model::cycle::Cycle;
+use crate::model::hook::{Along, Effect, Hooks, LineForce, Site};
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new("rope_bending_loss", "Bending loss of the back rope on its head")
+        .at("back_rope", Place::Dynamics)
+        .size("loss", Unit::One, 0.015, [0.0, 0.1])
+        // speed of winding at which three quarters of the loss are there; it reaches 0.5 rad/s
+        .shape("creep", Unit::RadianPerSecond, 1e-2, [1e-3, 0.2])
+        .builds(|v| Loss {
+            loss: v.get("loss"),
+            creep: v.get("creep"),
+        })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Loss {
+    loss: f64,
+    creep: f64,
+}
+
+impl Effect for Loss {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let couple = Couple {
+            law: *self,
+            cycle: site.cycle.clone(),
+        };
+        hooks.on(site.layout.beam(), couple);
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Couple {
+    law: Loss,
+    cycle: Cycle,
+}
+
+impl LineForce for Couple {
+    fn along(&self, drive: &DriveState, _: f64, _: f64) -> Along {
+        let turning = self.cycle.crank().sense * drive.pin_rate;
+        let winding = self.cycle.tangent(drive.turn).first * turning;
+        let pull = self.cycle.tension(drive.turn) * self.cycle.arm(drive.turn);
+        Along {
+            other: self.law.loss * pull * tanh(winding / self.law.creep),
+            ..Along::default()
+        }
+    }
+}

@@ -1,0 +1,32 @@
+//! The back rope is longer than drawn: construction stretch, bedding, creep, warmth.
+//!
+//! The length is put where the rope hangs on the crossbeam: `L_0 + x`.
+//!
+//! Source: permanent elongation: Feyrer, *Wire Ropes*, 2nd ed. (2015).
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+use crate::model::description::Description;
+use crate::model::hook::Effect;
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new(
+        "rope_stretch",
+        "Length of the back rope: stretch, bedding, warmth",
+    )
+    .at("back_rope", Place::Dynamics)
+    .size("length", Unit::Metre, 0.02, [-0.1, 0.1])
+    .builds(|v| Stretch {
+        length: v.get("length"),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    length: f64,
+}
+
+impl Effect for Stretch {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        d.rod.length += self.length;
+    }
+}

@@ -1,0 +1,76 @@
+//! Two ropes of unequal length share the pull unequally: `T / 2 (1 +- e)`, `e = dL EA / (2 T L)`.
+//!
+//! `EA` and `T` are those of both ropes together, `L` is the back rope's length. The gauges on one
+//! cheek (1, 2) feel `1 + e`, those on the other (3, 4) `1 - e`. A rope that is slack carries
+//! nothing: `|e| <= 1`.
+//!
+//! Where a description has twin ropes the length is cut off the back rope at +z instead, and everything
+//! follows from the motion.
+//!
+//! Source: sharing among parallel ropes: Feyrer, *Wire Ropes*, 2nd ed. (2015).
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+use crate::model::description::Description;
+use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new(
+        "twin_rope_inequality",
+        "Unequal lengths of the twin back ropes",
+    )
+    .at("back_rope", Place::Gauge)
+    .size("length", Unit::Metre, 0.002, [-0.05, 0.05])
+    .builds(|v| Twins {
+        length: v.get("length"),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Twins {
+    length: f64,
+}
+
+impl Effect for Twins {
+    fn describe(&self, d: &mut Description, _: &mut usize) {
+        if let Some(twins) = &mut d.twins {
+            twins.longer[0] += self.length;
+        }
+    }
+
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        if site.description.twins.is_none() {
+            let rope = &site.description.rope;
+            hooks.add_reading(Sharing {
+                difference: self.length,
+                pitch: rope.pitch,
+                length: rope.back as f64 * rope.pitch,
+            });
+        }
+    }
+}
+
+/// How one rope's length and another's share the pull.
+#[derive(Clone, Copy, Debug)]
+struct Sharing {
+    /// By how much one rope is longer, and the length of both \[m\].
+    difference: f64,
+    length: f64,
+    /// Length of rope that a joint stands for \[m\].
+    pitch: f64,
+}
+
+impl Reading for Sharing {
+    fn sample(&self, at: &Sampled, stress: &mut [f64; 4]) {
+        let stiffness = at.joint_stiffness * self.pitch;
+        let tension = at.back_tension;
+        let difference = 0.5 * self.difference * stiffness / self.length;
+        let e = if difference.abs() < tension {
+            difference / tension
+        } else {
+            difference.signum()
+        };
+        for (stress, side) in stress.iter_mut().zip([e, e, -e, -e]) {
+            *stress *= 1.0 + side;
+        }
+    }
+}

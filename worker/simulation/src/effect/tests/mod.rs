@@ -1,0 +1,5 @@
+//! What holds for every effect of the catalogue.
+mod contract;
+mod force;
+mod load_cell_lag;
+mod shape;

@@ -1,0 +1,48 @@
+//! What all kinds add up at an integration point.
+use nalgebra::{Matrix3, SMatrix, Vector3};
+
+/// `d x_column / d xi_row` from the slopes of the shape functions.
+pub(super) fn jacobian(slopes: &[Vector3<f64>], nodes: &[[f64; 3]]) -> Matrix3<f64> {
+    let mut jacobian = Matrix3::zeros();
+    for (slope, node) in slopes.iter().zip(nodes) {
+        jacobian += slope * Vector3::from(*node).transpose();
+    }
+    jacobian
+}
+
+/// Adds one integration point to a stiffness: for gradients `g` and an isotropic material the block
+/// of shapes i, j is `lambda g_i g_j' + mu (g_j g_i' + g_i . g_j)`.
+pub(super) fn add_stiffness<const ALL: usize>(
+    full: &mut SMatrix<f64, ALL, ALL>,
+    gradients: &[Vector3<f64>],
+    (first, shear): (f64, f64),
+    volume: f64,
+) {
+    for (i, a) in gradients.iter().enumerate() {
+        for (j, b) in gradients.iter().enumerate() {
+            let both = shear * volume * a.dot(b);
+            for k in 0..3 {
+                for l in 0..3 {
+                    let mut entry = volume * (first * a[k] * b[l] + shear * a[l] * b[k]);
+                    if k == l {
+                        entry += both;
+                    }
+                    full[(3 * i + k, 3 * j + l)] += entry;
+                }
+            }
+        }
+    }
+}
+
+/// Adds one integration point to the mass between shapes, the same for every direction.
+pub(super) fn add_weight<const SHAPES: usize>(
+    weight: &mut [[f64; SHAPES]; SHAPES],
+    shapes: &[f64; SHAPES],
+    mass: f64,
+) {
+    for (row, a) in weight.iter_mut().zip(shapes) {
+        for (entry, b) in row.iter_mut().zip(shapes) {
+            *entry += mass * a * b;
+        }
+    }
+}

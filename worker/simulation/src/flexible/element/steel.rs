@@ -1,0 +1,23 @@
+//! What a head is made of.
+
+/// Isotropic, linear elastic material.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Steel {
+    /// Young's modulus \[Pa\].
+    pub young: f64,
+    /// Poisson's ratio \[1\].
+    pub poisson: f64,
+    /// Density [kg/m3].
+    pub density: f64,
+}
+
+impl Steel {
+    /// Lamé's coefficients \[Pa\]: first, and the shear modulus.
+    pub(super) fn lame(&self) -> (f64, f64) {
+        let shear = self.young / (2.0 * (1.0 + self.poisson));
+        (
+            2.0 * shear * self.poisson / (1.0 - 2.0 * self.poisson),
+            shear,
+        )
+    }
+}

@@ -1,0 +1,96 @@
+//! The markers of a chain's joints.
+use super::parts::{Chain, Held, Joints};
+use super::state::ChainState;
+use crate::element::bushing::{Bushing, Marker};
+use crate::element::plane::PlaneMarker;
+use crate::model::layout::Motion;
+use crate::model::pose::{PlanePose, Pose};
+use nalgebra::Matrix3;
+
+/// Which body of a joint a block's rows belong to.
+#[derive(Clone, Copy)]
+pub(super) enum Side {
+    I,
+    J,
+}
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "one file per term of the equations"
+)]
+impl Chain {
+    /// Whether a joint lies between two cylinders that move in the plane.
+    pub(super) const fn in_plane(&self, joint: usize) -> bool {
+        matches!(self.motion, Motion::Plane) && joint > 0 && joint < self.count
+    }
+
+    /// Markers I and J of a joint between two cylinders.
+    #[inline]
+    pub(super) fn plane_markers(&self, joint: usize, poses: &[PlanePose]) -> [PlaneMarker; 2] {
+        let half = 0.5 * self.pitch;
+        [
+            plane_on_cylinder(&poses[joint], -half),
+            plane_on_cylinder(&poses[joint - 1], half),
+        ]
+    }
+
+    /// Markers I and J of a joint and its law; nothing where an end is free. Between cylinders that
+    /// move in the plane there are plane markers instead.
+    pub(super) fn link<'a>(
+        &self,
+        joint: usize,
+        joints: &Joints<'a>,
+        state: &ChainState,
+    ) -> Option<([Marker; 2], &'a Bushing)> {
+        let half = 0.5 * self.pitch;
+        if joint == 0 {
+            let held = joints.base?;
+            let markers = [on_cylinder(&state.pose(0), -half), held.marker];
+            return Some((held.with_law_axes(&markers), held.law));
+        }
+        if joint == self.count {
+            let held = joints.head?;
+            let j = on_cylinder(&state.pose(joint - 1), half);
+            return Some((held.with_law_axes(&[held.marker, j]), held.law));
+        }
+        let j = on_cylinder(&state.poses[joint - 1], half);
+        Some(([on_cylinder(&state.poses[joint], -half), j], joints.inner))
+    }
+}
+
+impl Held<'_> {
+    /// Markers of a joint with the axes that its law refers to.
+    fn with_law_axes(&self, markers: &[Marker; 2]) -> [Marker; 2] {
+        if !self.pinned {
+            return *markers;
+        }
+        markers.map(|marker| {
+            let [x, y, z] = [0, 1, 2].map(|k| marker.R.column(k).into_owned());
+            Marker {
+                R: Matrix3::from_columns(&[z, x, y]),
+                ..marker
+            }
+        })
+    }
+}
+
+fn on_cylinder(pose: &Pose, along: f64) -> Marker {
+    Marker {
+        p: pose.p,
+        rho: pose.axis() * along,
+        v: pose.v,
+        w: pose.w,
+        R: pose.R,
+    }
+}
+
+fn plane_on_cylinder(pose: &PlanePose, along: f64) -> PlaneMarker {
+    PlaneMarker {
+        p: pose.p,
+        rho: pose.axis * along,
+        v: pose.v,
+        w: pose.rate,
+        axis: pose.axis,
+        angle: pose.angle,
+    }
+}

@@ -1,0 +1,30 @@
+//! What one evaluation of a machine's forces leaves behind: poses, joint loads, contact.
+use crate::math::spline::sum::Sum;
+use crate::model::chain::state::ChainState;
+use crate::model::machine::Machine;
+
+/// Buffers of a simulation.
+#[derive(Clone, Debug)]
+pub struct Scratch {
+    /// Poses and loads of the back ropes, then of the front ropes.
+    pub chains: Vec<ChainState>,
+    /// Deflection of the back head's arc under each back rope.
+    pub deflection: Vec<Sum>,
+}
+
+impl Scratch {
+    /// Buffers for a machine.
+    pub fn new(machine: &Machine) -> Self {
+        Self {
+            chains: machine.chains.iter().map(ChainState::new).collect(),
+            deflection: vec![Sum::default(); machine.faces.len()],
+        }
+    }
+
+    /// Deepest penetration of a rope into a head \[m\].
+    pub(crate) fn deepest(&self) -> f64 {
+        self.chains
+            .iter()
+            .fold(0.0, |deepest, chain| deepest.max(chain.deepest))
+    }
+}

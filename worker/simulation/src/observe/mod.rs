@@ -1,0 +1,11 @@
+//! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
+mod curves;
+mod recorder;
+mod shape;
+mod stress;
+#[cfg(test)]
+mod tests;
+
+pub use curves::{Curves, Shape};
+pub use recorder::Recorder;
+pub use stress::gauge_stress;

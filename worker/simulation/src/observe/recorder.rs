@@ -1,0 +1,123 @@
+//! Records a run: the gauges alone for a score, or everything.
+use super::curves::Curves;
+use super::shape::shape;
+use super::stress::gauge_stress;
+use crate::drive::DriveState;
+use crate::math::elementary::sin_cos;
+use crate::model::hook::Sampled;
+use crate::model::strand::{BACK, FRONT};
+use crate::model::{BackHeadLoads, Individual, Instant, Machine};
+use crate::run::Observe;
+use crate::system::{State, System};
+
+/// Records the gauges alone (for scoring), or everything.
+#[derive(Clone, Debug, Default)]
+pub struct Recorder {
+    /// What was recorded.
+    pub curves: Curves,
+    gauges_only: bool,
+    shape_every: usize,
+    force: Vec<f64>,
+}
+
+impl Recorder {
+    /// Records gauge stress alone: what a score needs.
+    pub fn gauges_only() -> Self {
+        Self {
+            gauges_only: true,
+            ..Self::default()
+        }
+    }
+
+    /// Records everything, and the machine's shape at every `shape_every`-th sample.
+    pub fn everything(shape_every: usize) -> Self {
+        Self {
+            shape_every,
+            ..Self::default()
+        }
+    }
+}
+
+impl Observe for Recorder {
+    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
+        self.force.resize(state.q.len(), 0.0);
+        // stress of the head asks for less than all loads; what readings and curves ask for is unknown
+        let part = self.gauges_only && !system.equations.machine.hooks.has_readings();
+        let mut stress = if part {
+            let at = state.motion();
+            let loads = system.equations.back_head_loads(at, &mut self.force);
+            gauge_stress(&loads, &state.a)
+        } else {
+            let loads = system.forces(state.motion(), &mut self.force);
+            gauge_stress(&BackHeadLoads::of(&loads), &state.a)
+        };
+        let system = &mut system.equations;
+        let drive = system.drive_state(state.t);
+        let at = Instant {
+            ropes: &system.ropes,
+            drive: &drive,
+            q: &state.q,
+            v: &state.v,
+        };
+        let machine = system.machine;
+        let hooks = &machine.hooks;
+        let recorded = system.drive.turn(state.t)[0] - hooks.index_offset();
+        let sampled = Sampled {
+            head_push: system.head_push(),
+            back_tension: system.base_tensions(BACK).sum(),
+            joint_stiffness: system.ropes.joint.stiffness[0],
+            beam: state.q[machine.layout.beam()],
+            elapsed: recorded / std::f64::consts::TAU,
+        };
+        hooks.read(&sampled, &mut stress);
+        for (curve, stress) in self.curves.gauge.iter_mut().zip(stress) {
+            curve.push(stress);
+        }
+        if self.gauges_only {
+            return;
+        }
+        let layout = machine.layout;
+        let c = &mut self.curves;
+        c.back_tension.push(system.base_tensions(BACK).sum());
+        c.front_tension.push(system.base_tensions(FRONT).sum());
+        if layout.twins() {
+            for (rope, curve) in c.tension_difference.iter_mut().enumerate() {
+                let signed = [1.0, -1.0].into_iter().zip(system.base_tensions(rope));
+                curve.push(signed.map(|(side, tension)| side * tension).sum());
+            }
+        }
+        c.beam.push(state.q[layout.beam()]);
+        let height = layout.suspension();
+        for (curve, value) in
+            c.suspension
+                .iter_mut()
+                .zip([state.q[height], state.v[height], state.a[height]])
+        {
+            curve.push(value);
+        }
+        let pin = machine.pin_force(&at, &state.a, &system.scratch);
+        c.torque.push(crank_torque(machine, &drive, &pin));
+        c.modal.resize(layout.modes, Vec::new());
+        for (k, curve) in c.modal.iter_mut().enumerate() {
+            curve.push(state.q[layout.mode(k)]);
+        }
+        if self.shape_every > 0 && index.is_multiple_of(self.shape_every) {
+            c.shapes.push(shape(index, system, &drive, state));
+        }
+    }
+
+    fn complete(&mut self, machine: &Machine, spacing: f64) {
+        machine.hooks.read_series(spacing, &mut self.curves.gauge);
+    }
+}
+
+/// Net torque that the reducer must give in the sense of rotation, counterweight included [N m].
+fn crank_torque(machine: &Machine, drive: &DriveState, pin: &nalgebra::Vector2<f64>) -> f64 {
+    let crank = &machine.description.crank;
+    let (s, c) = sin_cos(drive.pin_angle);
+    let rope = crank.radius * crank.sense * (pin.y * c - pin.x * s);
+    // the counterweight hangs opposite the pin and falls while the rope is pulled
+    let weight = crank.counterweight_moment
+        * sin_cos(drive.pin_angle + crank.sense * crank.counterweight_phase).1;
+    rope + crank.sense * weight
+}

@@ -1,0 +1,166 @@
+//! Gauge stress of a state, from modes and forces.
+use crate::math::elementary::sin_cos;
+use crate::model::chain::ChainState;
+use crate::model::description::StressRecovery;
+use crate::model::layout::MAX_MODES;
+use crate::model::strand::Face;
+use crate::model::{BackHeadLoads, Machine};
+use crate::system::StateRef;
+
+/// Stress at the four gauges \[Pa\] of a state under accelerations `a`.
+///
+/// Mode acceleration: exact static stress of the contact and anchor forces (influence lines) and of
+/// the base acceleration, plus what the modes move beyond their own static answer,
+/// `sum_k s_k (q_k - f_k / w_k^2)`. So a truncated set of modes costs no static accuracy.
+///
+/// Mode displacement: `sum_k s_k q_k` alone. The strain beside a pin is local, and six modes miss
+/// much of it; it is here to compare with programs that recover stress so.
+pub fn gauge_stress(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
+    let machine = loads.individual().machine;
+    match machine.description.head.recovery {
+        StressRecovery::ModeAcceleration => mode_acceleration(loads, a),
+        StressRecovery::ModeDisplacement => mode_displacement(machine, loads.state()),
+    }
+}
+
+fn mode_displacement(machine: &Machine, state: StateRef<'_>) -> [f64; 4] {
+    let mut stress = [0.0; 4];
+    for (k, row) in machine.description.head.gauge_stress[..machine.layout.modes]
+        .iter()
+        .enumerate()
+    {
+        for (stress, per_unit) in stress.iter_mut().zip(row) {
+            *stress += state.q[machine.layout.mode(k)] * per_unit;
+        }
+    }
+    stress
+}
+
+fn mode_acceleration(loads: &BackHeadLoads<'_, '_>, a: &[f64]) -> [f64; 4] {
+    let (machine, state) = (loads.individual().machine, loads.state());
+    let head = &machine.description.head;
+    let layout = machine.layout;
+    let modes = layout.modes;
+    let mut stress = [0.0; 4];
+    let mut modal_force = [0.0; MAX_MODES];
+    for chain in 0..machine.faces.len() {
+        let load = HeadLoad::new(loads, chain);
+        load.add_stress(&mut stress);
+        load.add_modal(&mut modal_force[..modes]);
+    }
+
+    // gravity acts like a base acceleration upwards, seen from the beam
+    let beam = layout.beam();
+    let (s, c) = sin_cos(state.q[beam]);
+    let g = machine.description.gravity;
+    let base = [g * s, g * c, a[beam]];
+    let base_stress = [
+        &head.weight_stress[0],
+        &head.weight_stress[1],
+        &head.turning_stress,
+    ];
+    for (k, acceleration) in base.iter().enumerate() {
+        for (stress, unit) in stress.iter_mut().zip(base_stress[k]) {
+            *stress += acceleration * unit;
+        }
+        for (m, modal) in modal_force[..modes].iter_mut().enumerate() {
+            *modal -= acceleration * head.participation[m][k];
+        }
+    }
+    for m in 0..modes {
+        let w = head.frequencies[m];
+        let beyond = state.q[layout.mode(m)] - modal_force[m] / (w * w);
+        for (gauge, stress) in stress.iter_mut().enumerate() {
+            *stress += beyond * head.gauge_stress[m][gauge];
+        }
+    }
+    stress
+}
+
+/// What one back rope does to the head.
+struct HeadLoad<'a> {
+    machine: &'a Machine,
+    face: &'a Face,
+    back: &'a ChainState,
+    /// Force of the rope's end, in the beam frame \[N\].
+    pull: [f64; 3],
+    /// Its moment about the tangent of the arc and about the radius, where it turns the head [N m].
+    moments: Option<[f64; 2]>,
+}
+
+impl<'a> HeadLoad<'a> {
+    fn new(loads: &BackHeadLoads<'a, 'a>, chain: usize) -> Self {
+        let individual = loads.individual();
+        let machine = individual.machine;
+        let (face, back) = (&machine.faces[chain], &individual.scratch.chains[chain]);
+        let beam = loads.state().q[machine.layout.beam()];
+        let (s, c) = sin_cos(beam);
+        let load = &back.joints[machine.layout.back];
+        let force = load.force;
+        let (sa, ca) = sin_cos(machine.description.back_arc.anchor + beam);
+        let torque = load.torque_i;
+        let moments = [torque.y * ca - torque.x * sa, torque.x * ca + torque.y * sa];
+        Self {
+            machine,
+            face,
+            back,
+            pull: [
+                c * force.x + s * force.y,
+                c * force.y - s * force.x,
+                force.z,
+            ],
+            moments: face.beside.map(|_| moments),
+        }
+    }
+
+    /// Adds its static stress: influence lines.
+    fn add_stress(&self, stress: &mut [f64; 4]) {
+        let Self { face, pull, .. } = self;
+        for (angle, force) in self.back.points.forces() {
+            let place = face.normal_influence.place(angle);
+            let mut unit = [0.0; 4];
+            face.normal_influence.values(&place, &mut unit);
+            for (stress, unit) in stress.iter_mut().zip(unit) {
+                *stress += force * unit;
+            }
+        }
+        let anchor = self.machine.description.back_arc.anchor;
+        let (sa, ca) = sin_cos(anchor);
+        let inward = -(pull[0] * ca + pull[1] * sa);
+        let along = pull[1] * ca - pull[0] * sa;
+        let place = face.normal_influence.place(anchor);
+        let place_t = face.tangential_influence.place(anchor);
+        for (gauge, stress) in stress.iter_mut().enumerate() {
+            *stress += inward * face.normal_influence.jet(&place, gauge).value
+                + along * face.tangential_influence.jet(&place_t, gauge).value;
+        }
+        if let (Some(beside), Some(moments)) = (&face.beside, self.moments) {
+            for (gauge, stress) in stress.iter_mut().enumerate() {
+                *stress += pull[2] * beside.lateral[gauge];
+                for (moment, unit) in moments.iter().zip(&beside.turning) {
+                    *stress += moment * unit[gauge];
+                }
+            }
+        }
+    }
+
+    /// Adds what it does to the modes.
+    fn add_modal(&self, modal_force: &mut [f64]) {
+        let Self { face, pull, .. } = self;
+        let mut pressed = [0.0; MAX_MODES];
+        let pressed = &mut pressed[..modal_force.len()];
+        // what the arc's contact does to the modes is at hand
+        self.back.pressure.gather(&face.radial, pressed);
+        for (modal, pressed) in modal_force.iter_mut().zip(pressed) {
+            *modal -= *pressed;
+        }
+        for (modal, shape) in modal_force.iter_mut().zip(&face.anchor) {
+            *modal += pull[0] * shape.moves[0] + pull[1] * shape.moves[1];
+            if let Some(moments) = self.moments {
+                *modal += pull[2] * shape.moves[2]
+                    + moments[0] * shape.turns[0]
+                    + moments[1] * shape.turns[1];
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! The beam's own weight where its centre of mass is off the line through the pivot.
+use simulation::drive::Drive;
+use simulation::model::{Individual, Machine, description::Description};
+use simulation::reference;
+use simulation::run::{RunSettings, settle};
+use simulation::system::{Equations as _, Shift, State, StateRef, System};
+
+/// Weight times the place of the centre of mass at beam angle 0, towards the well and up [N m].
+const ACROSS: f64 = 9.0e3;
+const UP: f64 = 4.0e4;
+
+/// The reference machine whose beam weighs so.
+fn machine([across, up]: [f64; 2]) -> Machine {
+    let description = Description {
+        beam_gravity_moment: across,
+        beam_gravity_height: up,
+        ..reference::description()
+    };
+    Machine::new(description, 2).unwrap()
+}
+
+/// Forces, stiffness of the beam alone, and energy at rest.
+fn at_rest(system: &mut System<Individual<'_>>, q: &[f64], beam: usize) -> (Vec<f64>, f64, f64) {
+    let still = vec![0.0; q.len()];
+    let mut force = still.clone();
+    let mut matrix = system.equations.matrix();
+    let mut loads = system.forces(StateRef::new(0.0, q, &still), &mut force);
+    loads.tangent(Shift::NONE, &mut matrix);
+    let mut unit = still;
+    unit[beam] = 1.0;
+    let stiffness = matrix.product(&unit)[beam];
+    let rest = State::at_rest(0.0, q.to_vec());
+    (force, stiffness, system.equations.energy(&rest))
+}
+
+/// A mass on the beam is a pendulum: at the beam angle `theta` it stands `x sin theta + y cos theta`
+/// above the pivot; its weight times that is energy, the slope is a torque, the curvature a stiffness.
+/// Nothing else feels it, and the machine comes to rest with it.
+#[test]
+fn a_heavy_beam_is_a_pendulum() {
+    let (plain, heavy) = (machine([0.0, 0.0]), machine([ACROSS, UP]));
+    let settings = RunSettings::default();
+    let law = reference::law();
+    let mut angles = Vec::new();
+    for turn in [0.4, 2.4, 4.4] {
+        let drive = Drive {
+            start: -turn,
+            ramp: settings.ramp,
+            speed: plain.description.crank.speed,
+        };
+        let system = |machine| {
+            System::new(Individual::new(
+                machine,
+                Machine::ropes(machine, &law),
+                drive,
+            ))
+        };
+        let (mut light, mut loaded) = (system(&plain), system(&heavy));
+        let q = settle(&mut light, &settings, None).unwrap();
+        let beam = plain.layout.beam();
+        let theta: f64 = q[beam];
+        let (force, stiffness, energy) = at_rest(&mut light, &q, beam);
+        let (more, stiffer, higher) = at_rest(&mut loaded, &q, beam);
+        let height = ACROSS * theta.sin() + UP * theta.cos();
+        let torque = -(ACROSS * theta.cos() - UP * theta.sin());
+        assert!(
+            (higher - energy - height).abs() < 1e-6,
+            "{theta}: {}",
+            higher - energy
+        );
+        assert!((more[beam] - force[beam] - torque).abs() < 1e-6, "{theta}");
+        let curvature = -height;
+        assert!(
+            (stiffer - stiffness - curvature).abs() < 1e-9 * stiffness.abs(),
+            "{theta}: {stiffness} {stiffer}"
+        );
+        for (i, (more, force)) in more.iter().zip(&force).enumerate() {
+            assert!(
+                i == beam || more.to_bits() == force.to_bits(),
+                "coordinate {i}"
+            );
+        }
+        let rest = settle(&mut loaded, &settings, None).unwrap();
+        assert!((rest[beam] - theta).abs() < 0.01, "{} {theta}", rest[beam]);
+        angles.push(theta);
+    }
+    let wide = angles.iter().any(|a| *a < -0.3) && angles.iter().any(|a| *a > 0.2);
+    assert!(
+        wide,
+        "the angles do not tell sines from cosines: {angles:?}"
+    );
+}

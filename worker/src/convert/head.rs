@@ -1,0 +1,75 @@
+//! The back head's tables as the dynamics take them: equally spaced stations in radians, stress in pascals.
+use protocol::case::{Case, StressRecovery};
+use protocol::job::Failure;
+use simulation::model::description::{self, Head};
+
+pub(super) const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
+
+/// The reduced head of a case.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the table whose stations are not equally spaced.
+pub(super) fn head(case: &Case) -> Result<Head, Failure> {
+    let head = &case.modal_head;
+    let (start, step) = grid("modal_head.arc_deg", &head.arc_deg)?;
+    let (influence_start, influence_step) = grid("influence.psi_deg", &head.influence.psi_deg)?;
+    let base_stress = head
+        .inertia_stress_mpa
+        .map(|row| row.map(|s| s * PASCAL_PER_MEGAPASCAL));
+    Ok(Head {
+        frequencies: head
+            .frequencies_hz
+            .iter()
+            .map(|f| f * std::f64::consts::TAU)
+            .collect(),
+        damping_ratio: head.damping_ratio,
+        recovery: match head.stress {
+            StressRecovery::ModeAcceleration => description::StressRecovery::ModeAcceleration,
+            StressRecovery::ModeDisplacement => description::StressRecovery::ModeDisplacement,
+        },
+        start,
+        step,
+        radial: head.radial.clone(),
+        tangential: head.tangential.clone(),
+        gauge_stress: head
+            .gauge_stress_mpa
+            .iter()
+            .map(|row| row.map(|s| s * PASCAL_PER_MEGAPASCAL))
+            .collect(),
+        participation: head.participation.clone(),
+        weight_stress: [base_stress[0], base_stress[1]],
+        turning_stress: base_stress[2],
+        influence_start,
+        influence_step,
+        normal_influence: curves(&head.influence.normal_mpa_per_n),
+        tangential_influence: curves(&head.influence.tangential_mpa_per_n),
+    })
+}
+
+/// Influence lines gauge by gauge [Pa/N].
+pub(super) fn curves(rows: &[[f64; 4]]) -> Vec<Vec<f64>> {
+    let line = |gauge: usize| {
+        rows.iter()
+            .map(move |row| row[gauge] * PASCAL_PER_MEGAPASCAL)
+    };
+    (0..4).map(|gauge| line(gauge).collect()).collect()
+}
+
+/// Start and spacing \[rad\] of a table that must be equally spaced.
+fn grid(field: &str, degrees: &[f64]) -> Result<(f64, f64), Failure> {
+    let [first, second, ..] = degrees else {
+        return Err(Failure::misconfigured(field, "needs at least two stations"));
+    };
+    let step = second - first;
+    let even = degrees
+        .iter()
+        .enumerate()
+        .all(|(i, x)| (x - first - step * i as f64).abs() < 1e-6 * step.abs());
+    if !(even && step > 0.0) {
+        return Err(Failure::misconfigured(
+            field,
+            "must ascend in equal steps; resample the table",
+        ));
+    }
+    Ok((first.to_radians(), step.to_radians()))
+}

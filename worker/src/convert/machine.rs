@@ -1,0 +1,125 @@
+//! The machine of a case under one of its conditions.
+use super::{effect, head::head, twins};
+use protocol::case::{Case, Condition, EffectSetting, RopeEnds, Smoothing, TurnSense, merged};
+use protocol::job::{Failure, Individual};
+use simulation::model::Machine;
+use simulation::model::description::{Arc, Crank, Description, Rod, Rope};
+
+/// The machine of a case under one of its conditions, with the case's effects as they are stated.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] naming the field that cannot be built.
+pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
+    build(case, condition, &case.effects)
+}
+
+/// The machine of an individual: the case's effects have the values that its genes give them, and a
+/// job's own replace those of the case that have their names.
+///
+/// # Errors
+/// As [`machine`]; an effect that is refused is named by its place in the merged list.
+pub fn machine_with(case: &Case, individual: &Individual) -> Result<Machine, Failure> {
+    let own = effect::of_individual(case, &individual.genes)?;
+    build(
+        case,
+        individual.condition,
+        &merged(&own, &individual.effects),
+    )
+}
+
+fn build(case: &Case, condition: usize, effects: &[EffectSetting]) -> Result<Machine, Failure> {
+    effect::check_units(&case.effects, &case.effect_units)?;
+    let selection = effect::selection(effects)?;
+    let condition = case
+        .conditions
+        .get(condition)
+        .ok_or_else(|| no_condition(condition))?;
+    let modes = case.run.modes;
+    Machine::with_effects(description(case, condition)?, modes, selection.effects())
+        .map_err(|error| Failure::misconfigured("machine", error.to_string()))
+}
+
+/// A condition that the case does not have.
+pub(crate) fn no_condition(condition: usize) -> Failure {
+    Failure::misconfigured("conditions", format!("has no entry {condition}"))
+}
+
+fn description(case: &Case, condition: &Condition) -> Result<Description, Failure> {
+    let back = &case.back_head;
+    Ok(Description {
+        gravity: case.gravity_m_s2,
+        beam_inertia: case.beam.inertia_kg_m2,
+        beam_gravity_moment: case.beam.gravity_moment_n_m,
+        beam_gravity_height: case.beam.gravity_height_moment_n_m,
+        crank: Crank {
+            center: [case.crank.center_x_m, case.crank.center_y_m],
+            radius: case.crank.radius_m,
+            sense: match case.crank.sense {
+                TurnSense::Clockwise => -1.0,
+                TurnSense::CounterClockwise => 1.0,
+            },
+            speed: condition.speed_rpm * std::f64::consts::TAU / 60.0,
+            counterweight_moment: condition.counterweight_moment_n_m,
+            counterweight_phase: case.crank.counterweight_phase_deg.to_radians(),
+        },
+        rod: Rod {
+            length: case.rod.length_m,
+            mass: case.rod.mass_kg,
+            center_of_mass: case.rod.center_of_mass_m,
+            inertia: case.rod.inertia_kg_m2,
+        },
+        suspension_mass: case.suspension.mass_kg,
+        rope: Rope {
+            diameter: case.ropes.diameter_m,
+            pitch: case.ropes.cylinder_length_m,
+            density: case.ropes.density_kg_m3,
+            reference_pitch: case.ropes.reference_length_m,
+            end_pitches: match case.ropes.ends {
+                RopeEnds::HalfPitch => 0.5,
+                RopeEnds::WholePitch => 1.0,
+            },
+            back: case.ropes.back_cylinders,
+            front: case.ropes.front_cylinders,
+        },
+        front_arc: Arc {
+            center: [0.0, 0.0],
+            radius: case.front_head.radius_m,
+            anchor: case.front_head.rope_anchor_deg.to_radians(),
+            sense: 1.0,
+        },
+        back_arc: Arc {
+            center: [back.center_x_m, back.center_y_m],
+            radius: back.radius_m,
+            anchor: back.rope_anchor_deg.to_radians(),
+            sense: -1.0,
+        },
+        head: head(case)?,
+        twins: twins::twins(case)?,
+        card: card(condition),
+    })
+}
+
+/// The load card after smoothing \[N\].
+fn card(condition: &Condition) -> Vec<f64> {
+    let load = &condition.card.load_n;
+    let n = load.len();
+    match condition.card.smoothing {
+        Smoothing::None => load.clone(),
+        Smoothing::Harmonics(kept) => simulation::math::harmonics::low_pass(load, kept),
+        Smoothing::MovingAverageDeg(width) => {
+            let reach = (0.5 * width / 360.0 * n as f64).round();
+            #[expect(
+                clippy::cast_possible_truncation,
+                clippy::cast_sign_loss,
+                reason = "a width between 0 and 360 degrees was checked with the case"
+            )]
+            let reach = (reach as usize).min(n / 2);
+            (0..n)
+                .map(|i| {
+                    let window = (0..=2 * reach).map(|k| load[(i + n + k - reach) % n]);
+                    window.sum::<f64>() / (2 * reach + 1) as f64
+                })
+                .collect()
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! How a run is started, sampled and integrated.
+use protocol::case::{Case, Integrator};
+use protocol::job::Discretisation;
+use simulation::integrator::method::Method;
+use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
+use simulation::run::RunSettings;
+
+/// How a case wants its runs.
+pub fn run_settings(case: &Case) -> RunSettings {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the case check lets only steps through that divide 360"
+    )]
+    let samples = (360.0 / case.run.output_step_deg).round() as usize;
+    RunSettings {
+        lead_in: case.run.lead_in_deg.to_radians(),
+        ramp: case.run.ramp_s,
+        samples,
+        tolerance: case.run.tolerance,
+        method: method(case.run.integrator, case.run.spectral_radius),
+        longest_step: case.run.longest_step_s,
+        budget: case.run.iteration_budget,
+        ..RunSettings::default()
+    }
+}
+
+/// How a case wants its runs where a job discretises it otherwise; the case is the [`super::refined`] one.
+pub fn discretised_settings(case: &Case, discretisation: &Discretisation) -> RunSettings {
+    let mut settings = run_settings(case);
+    if discretisation.step_as_stated {
+        settings.slow_swing = f64::INFINITY;
+    }
+    if let Some(budget) = discretisation.budget {
+        settings.budget = budget;
+    }
+    settings
+}
+
+fn method(integrator: Integrator, spectral_radius: f64) -> Method {
+    match integrator {
+        Integrator::TrBdf2 => (&TR_BDF2).into(),
+        Integrator::Esdirk4 => (&ESDIRK4).into(),
+        Integrator::Rodas4 => Method::Rosenbrock,
+        Integrator::GeneralizedAlpha => Method::GeneralizedAlpha { spectral_radius },
+        Integrator::Bdf => Method::Bdf { highest: 2 },
+        Integrator::Bdf5 => Method::Bdf { highest: 5 },
+    }
+}

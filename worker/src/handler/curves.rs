@@ -1,0 +1,101 @@
+//! Every curve of a simulation that can be drawn.
+use super::machines::Machines;
+use super::ran::Ran;
+use protocol::job::{Energy, Failure, Motion, SimulateSpec, Simulation};
+use simulation::observe::{Recorder, Shape};
+use simulation::run::RunResult;
+
+/// Simulates.
+///
+/// # Errors
+/// As [`Ran::new`].
+pub(super) fn run(
+    machines: &Machines,
+    spec: &SimulateSpec,
+    motion_step_deg: f64,
+) -> Result<Simulation, Failure> {
+    let step_deg = machines.case.run.output_step_deg;
+    let recorder = Recorder::everything(samples_apart(motion_step_deg, step_deg));
+    let ran = Ran::new(machines, spec, recorder)?;
+    let (gauge_mpa, suspension_m) = (ran.gauge_mpa(), ran.suspension_m());
+    let curves = ran.curves;
+    let degrees = |values: &[f64]| values.iter().map(|x| x.to_degrees()).collect();
+    let [_, velocity, acceleration] = curves.suspension;
+    let turn_deg = (0..curves.beam.len()).map(|i| step_deg * i as f64);
+    let shapes = curves.shapes.iter();
+    Ok(Simulation {
+        verdict: ran.verdict,
+        counters: ran.counters,
+        wall_s: ran.wall_s,
+        turn_deg: turn_deg.collect(),
+        gauge_mpa,
+        back_rope_tension_n: curves.back_tension,
+        front_rope_tension_n: curves.front_tension,
+        tension_difference_n: curves.tension_difference,
+        beam_deg: degrees(&curves.beam),
+        suspension_m,
+        suspension_velocity_m_s: velocity,
+        suspension_acceleration_m_s2: acceleration,
+        crank_torque_n_m: curves.torque,
+        modal: curves.modal,
+        energy: energy(&ran.result),
+        motion: shapes.map(|shape| motion(shape, step_deg)).collect(),
+    })
+}
+
+/// How many samples lie between two shapes; 0 where none are wanted.
+fn samples_apart(motion_step_deg: f64, step_deg: f64) -> usize {
+    if motion_step_deg > 0.0 {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "clamped to the samples of one turn"
+        )]
+        let apart = (motion_step_deg / step_deg)
+            .round()
+            .clamp(1.0, 360.0 / step_deg) as usize;
+        apart
+    } else {
+        0
+    }
+}
+
+fn energy(result: &RunResult) -> Energy {
+    let work = &result.work;
+    let missing = work.input - work.output - work.dissipated - result.stored;
+    let scale = work.input.abs().max(work.output.abs());
+    Energy {
+        input_j: work.input,
+        output_j: work.output,
+        dissipated_j: work.dissipated,
+        stored_j: result.stored,
+        relative_error: if scale > 0.0 {
+            missing.abs() / scale
+        } else {
+            0.0
+        },
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "pictures need no more than single precision"
+)]
+fn motion(shape: &Shape, step_deg: f64) -> Motion {
+    let point = |p: &[f64; 2]| [p[0] as f32, p[1] as f32];
+    let points = |all: &[[f64; 2]]| all.iter().map(point).collect();
+    let floats = |all: &[f64]| all.iter().map(|&x| x as f32).collect();
+    Motion {
+        turn_deg: step_deg * shape.sample as f64,
+        crank_pin_m: point(&shape.pin),
+        beam_deg: shape.beam.to_degrees() as f32,
+        crossbeam_m: point(&shape.crossbeam),
+        suspension_m: point(&shape.suspension),
+        back_rope_m: points(&shape.centers[0]),
+        back_tension_n: floats(&shape.tension[0]),
+        back_contact_n: floats(&shape.contact[0]),
+        front_rope_m: points(&shape.centers[1]),
+        front_tension_n: floats(&shape.tension[1]),
+        front_contact_n: floats(&shape.contact[1]),
+    }
+}
