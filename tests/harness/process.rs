@@ -3,11 +3,16 @@ use coordinator::runtime::locate;
 use rustix::process::{Pid, Signal, kill_process};
 use std::{
     fs,
+    net::{Ipv4Addr, TcpListener, UdpSocket},
     path::{Path, PathBuf},
     process::{Child, Command, Stdio},
+    sync::atomic::{AtomicU32, Ordering},
     thread,
     time::{Duration, Instant},
 };
+
+const FIRST_PORT: u32 = 20_000;
+const PORTS: u32 = 12_000;
 
 /// The worker program: `cargo test --workspace` puts it, and the coordinator's, where the suites look.
 ///
@@ -44,9 +49,24 @@ pub fn free_quic_locator() -> String {
     free_port("quic/127.0.0.1:0")
 }
 
+/// Ports that no outgoing connection is given (Linux takes those from 32,768 on), each handed out once
+/// in this process: nobody takes one between here and the one who listens.
 fn free_port(any: &str) -> String {
-    let any = link::locator::Locator::parse(any).expect("a locator");
-    any.with_free_port().expect("a free port").to_string()
+    static HANDED_OUT: AtomicU32 = AtomicU32::new(0);
+    let mut any = link::locator::Locator::parse(any).expect("a locator");
+    let first = std::process::id().wrapping_mul(97);
+    (0..PORTS)
+        .map(|_| first.wrapping_add(HANDED_OUT.fetch_add(1, Ordering::Relaxed)) % PORTS)
+        .filter_map(|offset| u16::try_from(FIRST_PORT + offset).ok())
+        .find(|port| {
+            let at = (Ipv4Addr::LOCALHOST, *port);
+            TcpListener::bind(at).is_ok() && UdpSocket::bind(at).is_ok()
+        })
+        .map(|port| {
+            any.port = port;
+            any.to_string()
+        })
+        .expect("a free port")
 }
 
 /// A process that is killed when dropped.
