@@ -11,5 +11,6 @@ pub mod job;
 pub mod key;
 pub mod message;
 pub mod name;
+pub mod pumping_unit;
 pub mod unit;
 pub mod wire;

@@ -4,8 +4,9 @@ use protocol::{
     case::EffectSetting,
     event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{Answer, Discretisation, Failure, Individual, Job, Outcome, Reply, SimulateSpec},
+    job::{Answer, Failure, Individual, Job, Outcome, Reply, SimulateSpec},
     message::{Attempt, Beat, Cost, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
+    pumping_unit::Discretisation,
     wire::{self, Kind, WireError},
 };
 

@@ -5,17 +5,14 @@
 //! belongs to the present version, as read from the types.
 use protocol::{
     announce::{Place, Role, Sign},
-    case::{
-        Case, Coefficient, Integrator, Offset, Quantity, RopeEnds, Smoothing, StressRecovery,
-        TurnSense,
-    },
+    case::{Case, Coefficient, Offset, Quantity},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::{
-        Answer, ElementKind, Failure, Job, ModeFamily, Outcome, PhysicsFailure, Reached, Reply,
-        Verdict,
-    },
+    job::{Answer, Failure, Job, Outcome, PhysicsFailure, Reached, Reply, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
+    pumping_unit::{
+        ElementKind, Integrator, ModeFamily, RopeEnds, Smoothing, StressRecovery, TurnSense,
+    },
     unit::Unit,
     wire::{self, Kind},
 };

@@ -10,7 +10,7 @@ use coordinator::{
     case::{self, mesh},
     study,
 };
-use protocol::{case::Influence, job::ElementKind as ReadKind};
+use protocol::pumping_unit::{ElementKind as ReadKind, Influence};
 use simulation::flexible::{
     ElementKind, Family, Gauge, Mesh, Mode, Reduction, Request, Steel, reduce,
 };

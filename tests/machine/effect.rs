@@ -6,9 +6,9 @@
 )]
 use super::{case, run};
 use protocol::case::{Case, EffectSetting};
-use protocol::job::{
-    Answer, Discretisation, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec,
-    Verdict,
+use protocol::{
+    job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec, Verdict},
+    pumping_unit::Discretisation,
 };
 use simulation::effect::{Descriptor, Place, catalogue};
 use worker::handler::Prepared;

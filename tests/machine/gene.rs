@@ -10,10 +10,11 @@ use coordinator::study::{
 };
 use protocol::case::{Case, EffectSetting, GaugeRecord, GaugeTrace, Gene, Quantity};
 use protocol::id::JobId;
-use protocol::job::{
-    Answer, Discretisation, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec,
-};
 use protocol::message::Cost;
+use protocol::{
+    job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec},
+    pumping_unit::Discretisation,
+};
 use search::space::Space;
 use search::strategy::{
     Settings, build,

@@ -2,7 +2,7 @@
 use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
 use search::space::Space;
 
 /// A case with its records, and what may be suspected.

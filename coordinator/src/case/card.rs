@@ -4,7 +4,7 @@ use super::{
     file,
     table::Table,
 };
-use protocol::case::{LoadCard, Smoothing};
+use protocol::pumping_unit::{LoadCard, Smoothing};
 use std::path::Path;
 
 /// Reads `turn_deg, polished_rod_load_n` \[deg, N\] and checks it; `role` says in words what the file is.

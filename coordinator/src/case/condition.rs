@@ -8,7 +8,7 @@ use super::{
     schema::{CaseFile, ConditionEntry},
 };
 use discrepancy::record::Record;
-use protocol::case::{Condition, Smoothing};
+use protocol::{case::Condition, pumping_unit::Smoothing};
 use std::path::{Path, PathBuf};
 
 /// Where the conditions of a case come from.

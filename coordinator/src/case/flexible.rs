@@ -6,7 +6,7 @@ use super::{
     schema::CaseFile,
     twin,
 };
-use protocol::case::{ModalHead, TwinRopes};
+use protocol::pumping_unit::{ModalHead, TwinRopes};
 use std::path::Path;
 
 /// The flexible head as its files have it.

@@ -7,7 +7,10 @@
 //! the worker know nothing of this file.
 use super::schema::CaseFile;
 use crate::line::periodic;
-use protocol::case::{BackHead, Case, Condition, Crank, TurnSense};
+use protocol::{
+    case::{Case, Condition},
+    pumping_unit::{BackHead, Crank, TurnSense},
+};
 
 /// Extremes over one turn.
 #[derive(Clone, Copy, Debug, PartialEq)]

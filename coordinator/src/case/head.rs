@@ -7,8 +7,8 @@ use super::{
     file,
     table::Table,
 };
-use protocol::case::{Influence, ModalHead, StressRecovery};
-use protocol::job::HeadGauge;
+use protocol::pumping_unit::HeadGauge;
+use protocol::pumping_unit::{Influence, ModalHead, StressRecovery};
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, path::Path};
 

@@ -5,7 +5,7 @@ use super::{
     load::{Overrides, Resolved, resolve},
     mesh,
 };
-use protocol::{case::Case, job::HeadGauge};
+use protocol::{case::Case, pumping_unit::HeadGauge};
 use std::path::{Path, PathBuf};
 
 /// What a reduction of the back head starts from, and where its tables are kept.

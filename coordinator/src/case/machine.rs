@@ -6,7 +6,7 @@ use super::{
     geometry::{self, Envelope},
     schema::{CaseFile, ConditionEntry},
 };
-use protocol::case::Smoothing;
+use protocol::pumping_unit::Smoothing;
 
 /// Checks a case file alone.
 ///

@@ -2,9 +2,10 @@
 //! checked beside the data they name.
 use super::{effect::CaseEffect, recommended::Recommended};
 use protocol::{
-    case::{
-        BackHead, Beam, Coefficient, Contact, Crank, FrontHead, Offset, Rod, Ropes, RunSettings,
-        Smoothing, StressRecovery, Suspension,
+    case::{Coefficient, Offset},
+    pumping_unit::{
+        BackHead, Beam, Contact, Crank, FrontHead, Rod, Ropes, RunSettings, Smoothing,
+        StressRecovery, Suspension,
     },
     unit::Unit,
 };

@@ -9,7 +9,7 @@ use super::{
     file, mesh,
     schema::TwinRopesEntry,
 };
-use protocol::case::{Influence, ModalHead, TwinHead, TwinRopes};
+use protocol::pumping_unit::{Influence, ModalHead, TwinHead, TwinRopes};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -4,7 +4,7 @@
 use super::data::{ConditionResult, Run, SingleRun};
 use super::words::condition_name;
 use protocol::case::{Case, GaugeRecord};
-use protocol::job::Simulation;
+use protocol::pumping_unit::Simulation;
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.

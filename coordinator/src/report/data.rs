@@ -4,7 +4,7 @@
 use crate::account::JobCost;
 use protocol::case::Case;
 use protocol::event::Spent;
-use protocol::job::{Evaluation, Simulation};
+use protocol::{job::Evaluation, pumping_unit::Simulation};
 
 /// One parameter set of a calibration.
 #[derive(Clone, Debug, PartialEq)]

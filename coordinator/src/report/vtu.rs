@@ -1,7 +1,7 @@
 //! A mesh with fields for `ParaView`: an unstructured grid as VTK XML, in plain text.
 //!
 //! Knows the file format and nothing of what the fields mean.
-use protocol::job::{ElementKind, HeadMesh};
+use protocol::pumping_unit::{ElementKind, HeadMesh};
 use std::io::{self, Write};
 
 /// An element as VTK knows it: the number of its cell, and for each of its nodes the place that it

@@ -7,7 +7,8 @@ use super::{
 use protocol::{
     case::Case,
     id::JobId,
-    job::{Evaluation, Individual, Job, Reply, SimulateSpec, Simulation},
+    job::{Evaluation, Individual, Job, Reply, SimulateSpec},
+    pumping_unit::Simulation,
 };
 use std::collections::BTreeMap;
 

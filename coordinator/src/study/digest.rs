@@ -1,5 +1,8 @@
 //! The digest of a simulation: two runs with the same digest have the same bits.
-use protocol::job::{Reached, Simulation, Verdict};
+use protocol::{
+    job::{Reached, Verdict},
+    pumping_unit::Simulation,
+};
 
 /// BLAKE3 over verdict, counters and every number of the curves, little endian; 64 hexadecimal
 /// digits. Wall time and the shapes of the moving machine are left out.

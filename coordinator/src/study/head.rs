@@ -10,9 +10,9 @@ use super::{
 };
 use crate::{case::QuasiStatic, line::held};
 use protocol::{
-    case::{Influence, ModalHead},
     id::JobId,
-    job::{Answer, Job, ReduceHeadSpec, ReducedHead},
+    job::{Answer, Job},
+    pumping_unit::{Influence, ModalHead, ReduceHeadSpec, ReducedHead},
 };
 
 /// Shapes smaller than this share of the table's largest move nothing.

@@ -4,10 +4,11 @@ use protocol::{
     case::Case,
     id::JobId,
     job::{
-        Answer, ChannelScore, Counters, Energy, Evaluation, Failure, Individual, Job, Outcome,
-        PhysicsFailure, Reached, Reply, Simulation, Verdict,
+        Answer, ChannelScore, Counters, Evaluation, Failure, Individual, Job, Outcome,
+        PhysicsFailure, Reached, Reply, Verdict,
     },
     message::Cost,
+    pumping_unit::{Energy, Simulation},
 };
 use search::{
     random::{Phase, Stream, Streams},

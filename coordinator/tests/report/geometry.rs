@@ -1,7 +1,7 @@
 //! A double-horse-head unit in closed form: inextensible ropes on rigid arcs, so that the report's
 //! samples look like the machine without any simulation.
 use protocol::case::Case;
-use protocol::job::Motion;
+use protocol::pumping_unit::Motion;
 
 /// Length of rod and rope along the path, from the crank pin to the anchor \[m\].
 const PATH_M: f64 = 6.476;

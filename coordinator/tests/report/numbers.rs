@@ -1,7 +1,7 @@
 //! The numbers behind the figures, as CSV.
 use super::{sample, with_failed_recommended};
 use coordinator::report::csv;
-use protocol::job::Motion;
+use protocol::pumping_unit::Motion;
 
 #[test]
 fn the_curves_are_written_with_all_their_digits() {

@@ -4,16 +4,19 @@ use coordinator::account::JobCost;
 use coordinator::report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
-use protocol::case::{
-    BackHead, Beam, Case, Coefficient, Condition, Contact, Crank, FrontHead, GaugeRecord,
-    GaugeTrace, Gene, Influence, LoadCard, ModalHead, Objective, Offset, Rod, RopeEnds, Ropes,
-    RunSettings, Smoothing, Suspension, TurnSense,
-};
 use protocol::event::Spent;
-use protocol::job::{
-    ChannelScore, Counters, Energy, Evaluation, PhysicsFailure, Reached, Simulation, Verdict,
-};
 use protocol::unit::Unit;
+use protocol::{
+    case::{Case, Coefficient, Condition, GaugeRecord, GaugeTrace, Gene, Objective, Offset},
+    pumping_unit::{
+        BackHead, Beam, Contact, Crank, FrontHead, Influence, LoadCard, ModalHead, Rod, RopeEnds,
+        Ropes, RunSettings, Smoothing, Suspension, TurnSense,
+    },
+};
+use protocol::{
+    job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
+    pumping_unit::{Energy, Simulation},
+};
 
 /// Output points per revolution.
 const GRID: usize = 720;
@@ -147,7 +150,7 @@ pub(crate) fn case() -> Case {
             tangential: Vec::new(),
             gauge_stress_mpa: Vec::new(),
             participation: Vec::new(),
-            stress: protocol::case::StressRecovery::ModeAcceleration,
+            stress: protocol::pumping_unit::StressRecovery::ModeAcceleration,
             inertia_stress_mpa: [[0.0; 4]; 3],
             mass_kg: 881.0,
             influence: Influence {
@@ -169,7 +172,7 @@ pub(crate) fn case() -> Case {
             output_step_deg: 0.5,
             lead_in_deg: 30.0,
             ramp_s: 2.0,
-            integrator: protocol::case::Integrator::Esdirk4,
+            integrator: protocol::pumping_unit::Integrator::Esdirk4,
             spectral_radius: 0.5,
             longest_step_s: 0.03,
             tolerance: 1.0,

@@ -1,4 +1,5 @@
 //! Working conditions: speed, load card and the gauge record that belongs to them.
+use crate::pumping_unit::LoadCard;
 use serde::{Deserialize, Serialize};
 
 /// One working condition.
@@ -14,29 +15,6 @@ pub struct Condition {
     pub card: LoadCard,
     /// Measured stress; absent where a condition is only simulated.
     pub record: Option<GaugeRecord>,
-}
-
-/// Load at the suspension point over one turn, periodic.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LoadCard {
-    /// Crank angle from bottom dead centre, equally spaced from 0, without 360 \[deg\].
-    pub turn_deg: Vec<f64>,
-    /// Load, positive downwards \[N\]; same length.
-    pub load_n: Vec<f64>,
-    /// What is done to the card before it is applied.
-    pub smoothing: Smoothing,
-}
-
-/// Smoothing of a load card.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Smoothing {
-    /// None: the card as delivered.
-    None,
-    /// Only this many harmonics of the crank are kept.
-    Harmonics(u32),
-    /// Centred moving average over this many degrees.
-    MovingAverageDeg(f64),
 }
 
 /// Measured stress on the output grid, averaged over cycles.

@@ -11,25 +11,23 @@
 //! else lists the kinds. Another reply of a simulation is cheaper: a variant of [`Reply`] and of
 //! [`Answer`], and a file in `worker/src/handler`.
 mod channels;
-mod curves;
 mod failure;
-mod reduce_head;
 mod score;
 mod simulate;
 mod verdict;
 
 pub use channels::Observation;
-pub use curves::{Energy, Motion, Simulation};
 pub use failure::{Failure, WrongKind};
-pub use reduce_head::{
-    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily,
-    ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
-};
 pub use score::{ChannelScore, Evaluation};
-pub use simulate::{Discretisation, Individual, Reply, SimulateSpec};
+pub use simulate::{Individual, Reply, SimulateSpec};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
-use crate::{announce::EffectDescriptor, id::ContentHash, wire};
+use crate::{
+    announce::EffectDescriptor,
+    id::ContentHash,
+    pumping_unit::{ReduceHeadSpec, ReducedHead, Simulation},
+    wire,
+};
 use serde::{Deserialize, Serialize};
 
 /// Names of the kinds of jobs, simulations by their reply: what workers announce, what tables show,

@@ -1,5 +1,5 @@
 //! What to simulate, how finely, and what to say of it: the one job of all simulations.
-use crate::case::{EffectSetting, Integrator};
+use crate::{case::EffectSetting, pumping_unit::Discretisation};
 use serde::{Deserialize, Serialize};
 
 /// A simulation of one revolution.
@@ -46,43 +46,6 @@ impl Individual {
     }
 }
 
-/// How space and time are divided; what is absent stays as the case has it.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Discretisation {
-    /// Length of a rope cylinder \[m\]; both ropes keep their lengths, which it must divide.
-    pub cylinder_length_m: Option<f64>,
-    /// Crank angle that is run before the recorded revolution \[deg\].
-    pub lead_in_deg: Option<f64>,
-    /// Number of head modes.
-    pub modes: Option<usize>,
-    /// Method of integration.
-    pub integrator: Option<Integrator>,
-    /// Longest step \[s\].
-    pub longest_step_s: Option<f64>,
-    /// Whether the longest step stays as long on a machine that swings fast, where it would be
-    /// shortened otherwise: comparisons of methods are made at the step that they name.
-    pub step_as_stated: bool,
-    /// Tolerance of the integrator, relative to its built-in error scales; so large a one that no
-    /// step is ever rejected makes the longest step a fixed one.
-    pub tolerance: Option<f64>,
-    /// Newton iterations after which the run ends.
-    pub budget: Option<u64>,
-}
-
-impl Discretisation {
-    /// Nothing is divided otherwise than in the case.
-    pub const OF_THE_CASE: Self = Self {
-        cylinder_length_m: None,
-        lead_in_deg: None,
-        modes: None,
-        integrator: None,
-        longest_step_s: None,
-        step_as_stated: false,
-        tolerance: None,
-        budget: None,
-    };
-}
-
 /// What is wanted of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
@@ -93,7 +56,7 @@ pub enum Reply {
     },
     /// The measured channels alone: an [`super::Observation`].
     Channels,
-    /// Everything that can be drawn: a [`super::Simulation`].
+    /// Everything that can be drawn: a [`crate::pumping_unit::Simulation`].
     Curves {
         /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
         motion_step_deg: f64,

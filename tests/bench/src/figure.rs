@@ -3,7 +3,7 @@
 use crate::work::{Comparison, Point};
 use coordinator::report::words::integrator_name;
 use maud::{Markup, html};
-use protocol::case::Integrator;
+use protocol::pumping_unit::Integrator;
 
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 400.0;

@@ -7,7 +7,7 @@ use clap::Args;
 use comfy_table::Table;
 use coordinator::case::read_genes;
 use coordinator::report::words;
-use protocol::case::Integrator;
+use protocol::pumping_unit::Integrator;
 use std::path::PathBuf;
 
 /// Compare methods of integration: error of the gauge curves against Newton iterations and time.

@@ -3,7 +3,10 @@ use anyhow::{Context as _, anyhow, bail};
 use clap::Args;
 use coordinator::case::{Overrides, load};
 use protocol::case::Case;
-use protocol::job::{Discretisation, Individual, Job, Reply, SimulateSpec, Simulation};
+use protocol::{
+    job::{Individual, Job, Reply, SimulateSpec},
+    pumping_unit::{Discretisation, Simulation},
+};
 use std::path::PathBuf;
 use worker::handler::Prepared;
 

@@ -9,7 +9,7 @@ use crate::verdicts::{Class, Ended, classes};
 use clap::Args;
 use comfy_table::Table;
 use protocol::case::{Case, Gene};
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
 use search::space::{Interval, Space};
 use search::strategy::latin_hypercube;
 use serde::Serialize;

@@ -6,8 +6,11 @@
 //! undominated points of each count. Everything but the wall times is deterministic.
 use crate::machine::Machine;
 use anyhow::ensure;
-use protocol::case::Integrator;
-use protocol::job::{Discretisation, Simulation, Verdict};
+use protocol::pumping_unit::Integrator;
+use protocol::{
+    job::Verdict,
+    pumping_unit::{Discretisation, Simulation},
+};
 use serde::Serialize;
 
 /// Tolerance and longest step \[s\], from coarse to fine.

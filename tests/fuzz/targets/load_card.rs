@@ -3,7 +3,7 @@
 use coordinator::case::read_card;
 use fuzz::file;
 use libfuzzer_sys::fuzz_target;
-use protocol::case::Smoothing;
+use protocol::pumping_unit::Smoothing;
 
 fuzz_target!(|bytes: &[u8]| {
     match read_card(&file("card.csv", bytes), Smoothing::None, "a card") {

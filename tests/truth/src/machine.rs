@@ -5,7 +5,7 @@ use crate::law::Hidden;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
 use protocol::case::{Case, Coefficient};
-use protocol::job::{Discretisation, Failure};
+use protocol::{job::Failure, pumping_unit::Discretisation};
 use simulation::effect::Effect;
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::TR_BDF2;

@@ -1,6 +1,6 @@
 //! The back head's tables as the dynamics take them: equally spaced stations in radians, stress in pascals.
-use protocol::case::{Case, StressRecovery};
 use protocol::job::Failure;
+use protocol::{case::Case, pumping_unit::StressRecovery};
 use simulation::model::description::{self, Head};
 
 pub(super) const PASCAL_PER_MEGAPASCAL: f64 = 1e6;

@@ -1,7 +1,10 @@
 //! The machine of a case under one of its conditions.
 use super::{effect, head::head, twins};
-use protocol::case::{Case, Condition, EffectSetting, RopeEnds, Smoothing, TurnSense, merged};
 use protocol::job::{Failure, Individual};
+use protocol::{
+    case::{Case, Condition, EffectSetting, merged},
+    pumping_unit::{RopeEnds, Smoothing, TurnSense},
+};
 use simulation::model::Machine;
 use simulation::model::description::{Arc, Crank, Description, Rod, Rope};
 

@@ -1,6 +1,6 @@
 //! The same machine, discretised otherwise.
 use protocol::case::Case;
-use protocol::job::{Discretisation, Failure};
+use protocol::{job::Failure, pumping_unit::Discretisation};
 
 /// A case with another discretisation.
 ///

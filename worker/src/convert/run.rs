@@ -1,6 +1,6 @@
 //! How a run is started, sampled and integrated.
-use protocol::case::{Case, Integrator};
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
+use protocol::{case::Case, pumping_unit::Integrator};
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
 use simulation::run::RunSettings;

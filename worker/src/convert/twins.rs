@@ -1,7 +1,10 @@
 //! Twin ropes of a case as the dynamics take them.
 use super::head::{PASCAL_PER_MEGAPASCAL, curves};
-use protocol::case::{Case, TwinHead, TwinRopes};
 use protocol::job::Failure;
+use protocol::{
+    case::Case,
+    pumping_unit::{TwinHead, TwinRopes},
+};
 use simulation::model::description::{Sway, Twins};
 
 /// The pair of ropes, if the case has one.

@@ -1,7 +1,10 @@
 //! Every curve of a simulation that can be drawn.
 use super::machines::Machines;
 use super::ran::Ran;
-use protocol::job::{Energy, Failure, Motion, SimulateSpec, Simulation};
+use protocol::{
+    job::{Failure, SimulateSpec},
+    pumping_unit::{Energy, Motion, Simulation},
+};
 use simulation::observe::{Recorder, Shape};
 use simulation::run::RunResult;
 

@@ -2,7 +2,8 @@
 use crate::convert;
 use protocol::{
     case::Case,
-    job::{Discretisation, Failure, Individual},
+    job::{Failure, Individual},
+    pumping_unit::Discretisation,
 };
 use simulation::model::Machine;
 use std::borrow::Cow;

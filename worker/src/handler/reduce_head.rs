@@ -1,8 +1,11 @@
 //! Reduces the back head of a job: plain data in, plain data out; the case plays no part.
-use protocol::case::{Influence, TwinHead};
-use protocol::job::{
-    ElementKind, Failure, HeadFields, HeadMode, LeftOutMode, ModeFamily, ReduceHeadSpec,
-    ReducedHead, RopeWrap,
+use protocol::pumping_unit::{Influence, TwinHead};
+use protocol::{
+    job::Failure,
+    pumping_unit::{
+        ElementKind, HeadFields, HeadMode, LeftOutMode, ModeFamily, ReduceHeadSpec, ReducedHead,
+        RopeWrap,
+    },
 };
 use simulation::flexible::{
     self, Family, Gauge, Mesh, Pair, Reduction, Request, Steel, SwayTables, Wrap, reduce,

@@ -11,7 +11,7 @@ use crate::record::measured::{Curves, difference};
 use crate::record::metric::Metric;
 use crate::record::whitened::WhitenedRecord;
 use nalgebra::{Complex, DVector};
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
 
 /// What a finer model says.
 #[derive(Clone, Debug)]

@@ -5,7 +5,10 @@
 //! the workers' business; here it is a name with numbers.
 use crate::model::parameter::{setting, variable};
 use protocol::announce::EffectDescriptor;
-use protocol::job::{Discretisation, Individual, Reply, SimulateSpec};
+use protocol::{
+    job::{Individual, Reply, SimulateSpec},
+    pumping_unit::Discretisation,
+};
 use search::least_squares::{Prior, Variable};
 use search::space::Space;
 

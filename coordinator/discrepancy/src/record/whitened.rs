@@ -4,7 +4,7 @@ use crate::record::metric::Metric;
 use crate::record::noise::Noise;
 use crate::record::spectrum::Orders;
 use nalgebra::DVector;
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
 
 /// A record under a metric.
 #[derive(Clone, Debug)]

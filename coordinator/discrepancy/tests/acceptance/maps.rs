@@ -17,7 +17,7 @@ use discrepancy::record::noise::Noise;
 use discrepancy::record::spectrum::Orders;
 use discrepancy::record::{Curves, Record, mean_of};
 use nalgebra::{DMatrix, DVector};
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
 use search::least_squares::{Linearized, Variable};
 
 fn simulate(point: &Point) -> Curves {

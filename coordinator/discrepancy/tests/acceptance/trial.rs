@@ -6,7 +6,7 @@ use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::record::Source;
 use discrepancy::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
-use protocol::job::Discretisation;
+use protocol::pumping_unit::Discretisation;
 use std::convert::Infallible;
 use std::pin::pin;
 use std::sync::LazyLock;

@@ -18,8 +18,11 @@ use discrepancy::{cause::low_orders, cause::signature, ground::valley};
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
 use protocol::case::{Coefficient, Gene};
-use protocol::job::{Counters, Discretisation, Observation, SimulateSpec, Verdict as Ended};
 use protocol::unit::Unit;
+use protocol::{
+    job::{Counters, Observation, SimulateSpec, Verdict as Ended},
+    pumping_unit::Discretisation,
+};
 use search::least_squares;
 use search::random::{Phase, Streams};
 use search::space::Space;

@@ -1,6 +1,6 @@
 //! The meshed head: nodes, elements of one kind, named groups, and the volume that they fill.
 use super::volume;
-use protocol::job::ElementKind;
+use protocol::pumping_unit::ElementKind;
 use std::collections::BTreeMap;
 
 /// A mesh with named groups.

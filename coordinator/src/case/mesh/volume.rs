@@ -1,5 +1,5 @@
 //! Volumes of elements, and whether they are inside out. Knows no mesh.
-use protocol::job::ElementKind;
+use protocol::pumping_unit::ElementKind;
 
 /// Volume of an element with its nodes in place, in Gmsh's order \[m3\]; none if it is inside out.
 pub(super) fn of(kind: ElementKind, nodes: &[[f64; 3]]) -> Option<f64> {

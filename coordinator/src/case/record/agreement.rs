@@ -9,7 +9,7 @@ use super::{
     samples::Samples,
     sheet::Sheet,
 };
-use protocol::case::TurnSense;
+use protocol::pumping_unit::TurnSense;
 use std::path::{Path, PathBuf};
 
 /// What a record is asked to agree with.

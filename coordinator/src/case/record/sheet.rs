@@ -5,7 +5,7 @@ use super::super::{
     note::Note,
 };
 use discrepancy::record::{Source, Stated, Tolerance};
-use protocol::case::TurnSense;
+use protocol::pumping_unit::TurnSense;
 use serde::Deserialize;
 use std::path::Path;
 

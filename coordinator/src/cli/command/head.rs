@@ -17,7 +17,7 @@ use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 use protocol::{
     case::Case,
-    job::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap},
+    pumping_unit::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap},
     wire,
 };
 use std::path::PathBuf;

@@ -7,8 +7,8 @@ use crate::{
 };
 use anyhow::Context as _;
 use protocol::{
-    case::{Case, TwinHead},
-    job::{HeadMesh, ModeFamily, ReducedHead},
+    case::Case,
+    pumping_unit::{HeadMesh, ModeFamily, ReducedHead, TwinHead},
 };
 use serde::Serialize;
 use std::{
@@ -47,7 +47,7 @@ pub(crate) fn write_tables(
     source: &HeadSource,
     head: &ReducedHead,
 ) -> anyhow::Result<Vec<PathBuf>> {
-    let place = |(number, gauge): (usize, &protocol::job::HeadGauge)| {
+    let place = |(number, gauge): (usize, &protocol::pumping_unit::HeadGauge)| {
         let [x_m, y_m, z_m] = gauge.position_m;
         let place = GaugePlace {
             x_m,

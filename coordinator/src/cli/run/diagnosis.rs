@@ -11,7 +11,7 @@ use crate::{
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
 use discrepancy::{diagnose::Inputs, thresholds::Thresholds};
-use protocol::{announce::EffectDescriptor, job::Discretisation};
+use protocol::{announce::EffectDescriptor, pumping_unit::Discretisation};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 

@@ -5,7 +5,7 @@ use crate::quantile;
 use crate::report::number::{NONE, fixed};
 use maud::{Markup, html};
 use protocol::case::Case;
-use protocol::job::{Motion, Simulation};
+use protocol::pumping_unit::{Motion, Simulation};
 use serde::Serialize;
 
 /// Millimetres per unit of the drawing, a centimetre.
@@ -185,8 +185,8 @@ impl Film {
         };
         let phase = case.crank.counterweight_phase_deg;
         let phase = match case.crank.sense {
-            protocol::case::TurnSense::Clockwise => -phase,
-            protocol::case::TurnSense::CounterClockwise => phase,
+            protocol::pumping_unit::TurnSense::Clockwise => -phase,
+            protocol::pumping_unit::TurnSense::CounterClockwise => phase,
         };
         let (back, front) = (&case.back_head, &case.front_head);
         Some(Self {

@@ -10,7 +10,7 @@ mod rope;
 use super::chart;
 use maud::{Markup, PreEscaped, html};
 use protocol::case::Case;
-use protocol::job::Simulation;
+use protocol::pumping_unit::Simulation;
 
 /// The player; reads the film, moves the parts.
 const PLAYER: &str = include_str!("player.js");

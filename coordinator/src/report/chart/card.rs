@@ -6,8 +6,8 @@ use crate::line::periodic;
 use crate::report::color::{GREY, INK, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
-use protocol::case::{Case, LoadCard};
-use protocol::job::Simulation;
+use protocol::pumping_unit::Simulation;
+use protocol::{case::Case, pumping_unit::LoadCard};
 
 const SIZE: (f64, f64) = (620.0, 330.0);
 

@@ -7,7 +7,7 @@ use crate::quantile;
 use crate::report::color::{self, GREY, INK};
 use crate::report::document::Figure;
 use protocol::case::Case;
-use protocol::job::{Motion, Simulation};
+use protocol::pumping_unit::{Motion, Simulation};
 
 const HEIGHT: f64 = 330.0;
 /// Snapshots drawn at most: more would make the file large, not the picture better.

@@ -7,7 +7,7 @@ use crate::report::color::{BLUE, GREY, GUIDE, INK, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::number::fixed;
 use crate::report::words::mode_family;
-use protocol::job::{HeadGauge, HeadMode};
+use protocol::pumping_unit::{HeadGauge, HeadMode};
 
 /// Pictures side by side.
 const COLUMNS: usize = 4;
@@ -242,7 +242,7 @@ impl Sheet<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::job::ModeFamily;
+    use protocol::pumping_unit::ModeFamily;
 
     fn mode(family: ModeFamily, frequency_hz: f64, radial: [f64; 3]) -> HeadMode {
         HeadMode {

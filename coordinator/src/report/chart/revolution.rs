@@ -5,7 +5,7 @@ use crate::report::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
 use protocol::case::Case;
-use protocol::job::Simulation;
+use protocol::pumping_unit::Simulation;
 
 /// Stress at all four gauges, with the measured mean and its spread where there is a record.
 pub(in crate::report) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> Figure {

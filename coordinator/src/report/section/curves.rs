@@ -4,7 +4,7 @@ use crate::report::data::{Calibration, SingleRun};
 use crate::report::document::{Block, Figure, Section, figures};
 use maud::html;
 use protocol::case::Case;
-use protocol::job::Simulation;
+use protocol::pumping_unit::Simulation;
 
 /// With the optimised parameters; their gauges are in the overlays.
 pub(super) fn calibration(calibration: &Calibration) -> Section {

@@ -4,7 +4,7 @@ use crate::report::document::{Block, Fact, Section};
 use crate::report::number::{NONE, count, duration};
 use crate::report::words::listed;
 use protocol::case::{Case, Offset};
-use protocol::job::Simulation;
+use protocol::pumping_unit::Simulation;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let optimum = calibration.optimised.id;

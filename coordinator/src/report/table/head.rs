@@ -5,8 +5,8 @@ use crate::{
     report::number::{NONE, fixed, percent},
     study::HeadComparison,
 };
-use protocol::case::TwinHead;
-use protocol::job::{LeftOutMode, ReducedHead};
+use protocol::pumping_unit::TwinHead;
+use protocol::pumping_unit::{LeftOutMode, ReducedHead};
 
 /// What the last column says.
 const COUPLING: &str = "Coupling: largest share of the static energy under a load pattern that the \

@@ -3,7 +3,7 @@ use crate::report::data::SingleRun;
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, unit};
 use crate::report::words::{self, condition_name};
-use protocol::job::{Energy, Simulation};
+use protocol::pumping_unit::{Energy, Simulation};
 
 /// Cells of a range: smallest, largest, half the range.
 fn range_cells(values: &[f64], factor: f64, unit: &str) -> [String; 4] {

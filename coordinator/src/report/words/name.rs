@@ -1,6 +1,6 @@
 //! Names of things as people call them, and lists of names as a sentence has them.
-use protocol::case::{Case, Integrator};
-use protocol::job::ModeFamily;
+use protocol::pumping_unit::ModeFamily;
+use protocol::{case::Case, pumping_unit::Integrator};
 
 /// A family of modes.
 pub const fn mode_family(family: ModeFamily) -> &'static str {

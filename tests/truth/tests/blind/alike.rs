@@ -134,9 +134,9 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
 fn run_library(case: &Case, effect: &EffectSetting, values: &[f64]) -> Turn {
     use simulation::integrator::tableau::TR_BDF2;
     use simulation::run::{RunSettings, simulate};
-    let finer = protocol::job::Discretisation {
+    let finer = protocol::pumping_unit::Discretisation {
         cylinder_length_m: Some(FINENESS.cylinder),
-        ..protocol::job::Discretisation::default()
+        ..protocol::pumping_unit::Discretisation::default()
     };
     let case = worker::convert::refined(case, &finer).expect("the case fits");
     let law = worker::convert::rope_law(&case, values).expect("the case fits");

@@ -2,7 +2,10 @@
 use super::stand_in::Machine;
 use crate::case::grid;
 use discrepancy::laboratory::{Laboratory, Stage};
-use protocol::job::{Discretisation, Observation, SimulateSpec};
+use protocol::{
+    job::{Observation, SimulateSpec},
+    pumping_unit::Discretisation,
+};
 use std::convert::Infallible;
 
 /// What discretisation does to the machine.

@@ -1,6 +1,6 @@
 //! The elements of a mesh file: which of Gmsh's are taken, and why others are not.
 use super::{super::super::error::CaseError, lines::Lines, sections::Sections};
-use protocol::job::ElementKind;
+use protocol::pumping_unit::ElementKind;
 use std::collections::BTreeMap;
 
 /// What a mesh may consist of.

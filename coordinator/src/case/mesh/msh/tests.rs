@@ -3,7 +3,7 @@ use super::{
     super::body::{Mesh, SYMMETRY, VOLUME},
     reader::read,
 };
-use protocol::job::ElementKind;
+use protocol::pumping_unit::ElementKind;
 use std::{fmt::Write as _, fs};
 
 /// Corners of the unit tetrahedron, then the middles of its edges as Gmsh orders them.

@@ -2,7 +2,7 @@
 use crate::study::HeadComparison;
 use protocol::{
     case::Case,
-    job::{LeftOutMode, ModeFamily, ReducedHead},
+    pumping_unit::{LeftOutMode, ModeFamily, ReducedHead},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;

@@ -3,7 +3,8 @@ use super::score::{GeneOutput, channels, genes, objective};
 use crate::study::{Curves, simulation_digest};
 use protocol::{
     case::Case,
-    job::{ChannelScore, Counters, Energy, Reached, Simulation, Verdict},
+    job::{ChannelScore, Counters, Reached, Verdict},
+    pumping_unit::{Energy, Simulation},
 };
 use serde::Serialize;
 use std::collections::BTreeMap;

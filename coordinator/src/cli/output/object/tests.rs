@@ -7,9 +7,8 @@ use super::{
 use crate::study::{Curves, simulation_digest};
 use protocol::{
     case::Case,
-    job::{
-        ChannelScore, Counters, Energy, Evaluation, PhysicsFailure, Reached, Simulation, Verdict,
-    },
+    job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
+    pumping_unit::{Energy, Simulation},
 };
 use serde_json::Value;
 use std::{collections::BTreeMap, path::Path};

@@ -1,5 +1,5 @@
 //! Everything of a simulation that can be drawn.
-use super::verdict::{Counters, Verdict};
+use crate::job::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// Curves of one revolution; every vector has one entry per crank angle reached.

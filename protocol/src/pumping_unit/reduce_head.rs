@@ -2,7 +2,7 @@
 //!
 //! Depends on nothing of the case: mesh, material, gauges and arc travel with the job (about 1 MB
 //! for 14,000 bricks, 60 bytes per 10-node tetrahedron).
-use crate::case::{Influence, TwinHead};
+use super::{Influence, TwinHead};
 use serde::{Deserialize, Serialize};
 
 /// What to reduce, and to what.

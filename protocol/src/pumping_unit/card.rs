@@ -1,0 +1,25 @@
+//! Load at the suspension point over a turn.
+use serde::{Deserialize, Serialize};
+
+/// Load at the suspension point over one turn, periodic.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadCard {
+    /// Crank angle from bottom dead centre, equally spaced from 0, without 360 \[deg\].
+    pub turn_deg: Vec<f64>,
+    /// Load, positive downwards \[N\]; same length.
+    pub load_n: Vec<f64>,
+    /// What is done to the card before it is applied.
+    pub smoothing: Smoothing,
+}
+
+/// Smoothing of a load card.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Smoothing {
+    /// None: the card as delivered.
+    None,
+    /// Only this many harmonics of the crank are kept.
+    Harmonics(u32),
+    /// Centred moving average over this many degrees.
+    MovingAverageDeg(f64),
+}

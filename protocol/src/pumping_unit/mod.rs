@@ -1,0 +1,28 @@
+//! The pumping unit with double horse heads: what its cases, jobs and answers say beside what every
+//! model's do.
+//!
+//! The words of one model, plain data with the unit in every name. Only its own folders know them:
+//! this one, that of the worker which simulates it and that of the coordinator which reads and draws
+//! it. Nothing here knows of files or of dynamics.
+mod card;
+mod discretisation;
+mod drawing;
+mod head;
+mod machine;
+mod reduce_head;
+mod run;
+mod twin;
+
+pub use card::{LoadCard, Smoothing};
+pub use discretisation::Discretisation;
+pub use drawing::{Energy, Motion, Simulation};
+pub use head::{Influence, ModalHead, StressRecovery};
+pub use machine::{
+    BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
+};
+pub use reduce_head::{
+    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily,
+    ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
+};
+pub use run::{Integrator, RunSettings};
+pub use twin::{TwinHead, TwinRopes};
