@@ -20,6 +20,9 @@ const ARROWS: &[(&str, &str)] = &[
     ("truth", "simulation"),
     ("truth", "worker"),
     ("truth", "coordinator"),
+    // a model of the suites, which no program knows
+    ("oscillator", "protocol"),
+    ("oscillator", "search"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),
@@ -36,7 +39,10 @@ const GATED: &[(&str, &[&str])] = &[
         &["worker", "coordinator", "tests", "truth", "bench"],
     ),
     ("clap", &["worker", "coordinator", "truth", "bench"]),
-    ("nalgebra", &["simulation", "search", "discrepancy"]),
+    (
+        "nalgebra",
+        &["simulation", "search", "discrepancy", "oscillator"],
+    ),
     ("faer", &["simulation"]),
     ("rusqlite", &["coordinator"]),
     ("parquet", &["coordinator"]),

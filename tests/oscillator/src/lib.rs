@@ -1,0 +1,16 @@
+//! A driven oscillator in closed form: a mass between two springs and a damper, which a shaker drives
+//! or which is drawn aside and let go. Displacement is read in mm, the force on the foundation in N.
+//!
+//! ```text
+//! m x'' + c (x' - b') + k (x - b) = F(t) - R sgn x'        reading of the force: y + lag y' = k (x - b) + c (x' - b')
+//! ```
+//!
+//! Between two standstills every motion is a [sum](sum::Sum) of exponentials; [`motion`] puts them
+//! together, so that nothing is integrated step by step. Five effects ([`effect`]) may be missing in it.
+//! [`record`] draws what a test rig would measure. Nothing here knows of searches, records or files.
+pub mod effect;
+pub mod motion;
+pub mod record;
+pub mod settings;
+pub mod simulate;
+pub mod sum;

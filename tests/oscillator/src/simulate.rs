@@ -1,0 +1,169 @@
+//! One run of the rig: the mass moves, the sensors read.
+//!
+//! It knows names of channels and numbers in the units of the case; how cases and jobs travel, it does
+//! not know.
+use crate::{
+    effect::Effects,
+    motion::{Drive, Oscillator, State},
+    settings::{Excitation, Rig},
+    sum::Sum,
+};
+use std::f64::consts::TAU;
+
+/// Values of the unknowns.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Values {
+    /// Mass of the carriage \[kg\].
+    pub mass_kg: f64,
+    /// Mass of the shaker's armature, which moves with it \[kg\].
+    pub armature_kg: f64,
+    /// Stiffness of the spring on the left [N/mm].
+    pub left_n_per_mm: f64,
+    /// Stiffness of the spring on the right [N/mm].
+    pub right_n_per_mm: f64,
+    /// Damping [N s/m].
+    pub damping_n_s_per_m: f64,
+    /// Lead of the shaker's force over the zero of its turn \[deg\].
+    pub lead_deg: f64,
+}
+
+/// A quantity that the rig measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sensor {
+    /// Displacement of the mass \[mm\].
+    Displacement,
+    /// Force on the foundation \[N\].
+    Force,
+}
+
+impl Sensor {
+    /// The sensor of a channel of this name, and its unit.
+    pub fn named(name: &str) -> Option<(Self, &'static str)> {
+        match name {
+            "displacement" => Some((Self::Displacement, "mm")),
+            "force" => Some((Self::Force, "N")),
+            _ => None,
+        }
+    }
+}
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// One curve per channel that was asked for, as far as the run got.
+    pub curves: Vec<Vec<f64>>,
+    /// What ended it early.
+    pub failed: Option<&'static str>,
+    /// Pieces of the motion.
+    pub pieces: usize,
+}
+
+/// What ends a run early.
+pub const STRIKES: &str = "strikes_the_stop";
+/// The other thing that does.
+pub const RESTLESS: &str = "no_common_rhythm";
+
+/// Runs the rig; each channel is a sensor with the places it is read at, degrees of the shaker's turn or
+/// seconds after the mass is let go.
+pub fn run(
+    rig: &Rig,
+    excitation: &Excitation,
+    values: &Values,
+    effects: &Effects,
+    channels: &[(Sensor, &[f64])],
+) -> Run {
+    let oscillator = Oscillator {
+        mass: values.mass_kg + values.armature_kg,
+        stiffness: 1e3 * (values.left_n_per_mm + values.right_n_per_mm),
+        damping: values.damping_n_s_per_m,
+        friction: effects.friction_n,
+        lag: 1e-3 * effects.lag_ms,
+    };
+    let (motion, seconds) = match excitation.drive_hz {
+        Some(hz) => {
+            let drive = drive(excitation, hz, values.lead_deg, effects);
+            (oscillator.steady(&drive, 1.0 / hz), 1.0 / hz / 360.0)
+        }
+        None => (released(&oscillator, excitation, channels), 1.0),
+    };
+    let Ok(motion) = motion else {
+        let curves = vec![Vec::new(); channels.len()];
+        return Run {
+            curves,
+            failed: Some(RESTLESS),
+            pieces: 0,
+        };
+    };
+    let mut struck = false;
+    let curve = |&(sensor, places): &(Sensor, &[f64])| {
+        let mut curve = Vec::with_capacity(places.len());
+        for place in places {
+            let Some(state) = motion.state(place * seconds) else {
+                break;
+            };
+            if 1e3 * state.x.abs() > rig.stop_mm {
+                struck = true;
+                break;
+            }
+            curve.push(reading(sensor, &state, effects));
+        }
+        curve
+    };
+    let curves = channels.iter().map(curve).collect();
+    Run {
+        curves,
+        failed: struck.then_some(STRIKES),
+        pieces: motion.pieces(),
+    }
+}
+
+/// What a sensor shows of a state.
+fn reading(sensor: Sensor, state: &State, effects: &Effects) -> f64 {
+    match sensor {
+        Sensor::Displacement => 1e3 * state.x + effects.crosstalk_mm_per_n * state.reading,
+        Sensor::Force => state.reading,
+    }
+}
+
+/// The shaker's force and the foundation's motion.
+fn drive(excitation: &Excitation, hz: f64, lead_deg: f64, effects: &Effects) -> Drive {
+    let turn = TAU * hz;
+    let lead = lead_deg.to_radians();
+    let wave = |order: u32, amplitude: f64, phase: f64| {
+        let order = f64::from(order);
+        Sum::cosine(amplitude, order * turn, phase + order * lead)
+    };
+    let both = |order: u32, [cosine, sine]: [f64; 2]| {
+        wave(order, cosine, 0.0).plus(&wave(order, sine, -0.25 * TAU))
+    };
+    let stated = excitation.drive.iter();
+    let force = stated.fold(Sum::default(), |sum, part| {
+        sum.plus(&wave(
+            part.order,
+            part.amplitude_n,
+            part.phase_deg.to_radians(),
+        ))
+    });
+    Drive {
+        force: force.plus(&both(2, effects.second_order_n)),
+        base: both(1, effects.base_mm.map(|mm| 1e-3 * mm)),
+    }
+}
+
+/// The mass drawn aside, held, and let go.
+fn released(
+    oscillator: &Oscillator,
+    excitation: &Excitation,
+    channels: &[(Sensor, &[f64])],
+) -> Result<crate::motion::Motion, crate::motion::Restless> {
+    let x = 1e-3 * excitation.release_mm;
+    let start = State {
+        x,
+        v: 0.0,
+        reading: oscillator.stiffness * x,
+    };
+    let places = channels
+        .iter()
+        .flat_map(|(_, places)| places.iter().copied());
+    oscillator.go(&Drive::default(), start, places.fold(0.0, f64::max))
+}
