@@ -3,6 +3,7 @@ use coordinator::case::{self, Loaded, Overrides, RecordFacts, mesh};
 use discrepancy::record::Tolerance;
 use protocol::{
     case::{Case, Coefficient, GaugeRecord, GaugeTrace, Gene, Offset, Quantity},
+    pumping_unit::Machine,
     unit::Unit,
 };
 use std::{
@@ -80,8 +81,9 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
             "{gene:?}"
         );
     }
-    for condition in &case.conditions {
-        assert_eq!(condition.card.load_n.len(), 720);
+    let machine = Machine::of(case).unwrap();
+    for (condition, working) in case.conditions.iter().zip(&machine.conditions) {
+        assert_eq!(working.card.load_n.len(), 720);
         let record = condition.record.as_ref().unwrap();
         assert_eq!(record.turn_deg.len(), 720);
         assert!((record.turn_deg[719] - 359.5).abs() < 1e-9);

@@ -11,7 +11,8 @@ use protocol::{
     job::{Answer, Failure, Job, Outcome, PhysicsFailure, Reached, Reply, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
     pumping_unit::{
-        ElementKind, Integrator, ModeFamily, RopeEnds, Smoothing, StressRecovery, TurnSense,
+        ElementKind, Integrator, Machine, ModeFamily, RopeEnds, Smoothing, StressRecovery,
+        TurnSense,
     },
     unit::Unit,
     wire::{self, Kind},
@@ -29,7 +30,7 @@ fn form() -> String {
             $(tracer.trace_type::<$type>(&samples).expect("a form");)*
         };
     }
-    trace!(ToWorker FromWorker ToSlot FromSlot Event Case);
+    trace!(ToWorker FromWorker ToSlot FromSlot Event Case Machine);
     trace!(Job Reply Answer Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
     trace!(Place Role Sign Unit Coefficient Quantity Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense);

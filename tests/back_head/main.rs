@@ -253,8 +253,8 @@ fn influence_lines_compliance_and_mass_are_those_of_the_other_program() {
 #[test]
 fn the_quasi_static_turn_is_the_published_one() {
     let case_folder = folder().join("..");
-    let (case, _) = case::load_head(&case_folder).unwrap();
-    let turn = case::quasi_static(&case, &case.conditions[0]).unwrap();
+    let (unit, _) = case::load_head(&case_folder).unwrap();
+    let turn = case::quasi_static(&unit.machine, &unit.machine.conditions[0]).unwrap();
     let design = fs::read_to_string(case_folder.join("machine/kinematics_720.csv")).unwrap();
     let design: Vec<Vec<f64>> = design
         .lines()
@@ -276,8 +276,8 @@ fn the_quasi_static_turn_is_the_published_one() {
             row[13]
         );
     }
-    let wrapped = study::wrapped_turn(&turn, case.back_head.rope_anchor_deg);
-    let stress = wrapped.exact(&case.modal_head.influence);
+    let wrapped = study::wrapped_turn(&turn, unit.machine.back_head.rope_anchor_deg);
+    let stress = wrapped.exact(&unit.machine.modal_head.influence);
     let published = rows("back_head_quasistatic_5rpm.csv");
     for gauge in 0..4 {
         for (ours, row) in stress[gauge].iter().zip(&published) {

@@ -4,9 +4,9 @@
     clippy::too_many_lines,
     reason = "whatever else comes back is a failed test"
 )]
-use super::{case, run};
-use protocol::case::{Case, EffectSetting};
+use super::{case, run, unit};
 use protocol::{
+    case::{Case, EffectSetting},
     job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec, Verdict},
     pumping_unit::Discretisation,
 };
@@ -18,9 +18,9 @@ use worker::handler::Prepared;
 /// worn profile comes to 1.0e-4).
 #[test]
 fn energy_ledger_closes_with_every_effect() {
-    let case = case();
-    let law = worker::convert::rope_law(&case, &case.recommended()).unwrap();
-    let mut settings = worker::convert::run_settings(&case);
+    let unit = unit();
+    let law = worker::convert::rope_law(&unit, &unit.case.recommended()).unwrap();
+    let mut settings = worker::convert::run_settings(&unit.machine);
     settings.longest_step *= 0.5;
     let acts = |d: &&Descriptor| d.place == Place::Dynamics && !d.generic;
     for d in catalogue().iter().filter(acts) {
@@ -29,9 +29,9 @@ fn energy_ledger_closes_with_every_effect() {
         let effect = EffectSetting::new(&d.id, &typical);
         let individual = Individual {
             effects: vec![effect],
-            ..Individual::new(0, case.recommended())
+            ..Individual::new(0, unit.case.recommended())
         };
-        let machine = worker::convert::machine_with(&case, &individual).unwrap();
+        let machine = worker::convert::machine_with(&unit, &individual).unwrap();
         let (result, _) = run(&machine, &law, &settings);
         let work = result.work;
         let gained = work.input - work.output - work.dissipated;

@@ -4,15 +4,15 @@
     clippy::wildcard_enum_match_arm,
     reason = "whatever else comes back is a failed test"
 )]
-use super::case;
+use super::unit;
 use coordinator::study::{
     Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
 };
-use protocol::case::{Case, EffectSetting, GaugeRecord, GaugeTrace, Gene, Quantity};
-use protocol::id::JobId;
-use protocol::message::Cost;
 use protocol::{
+    case::{Case, EffectSetting, GaugeRecord, GaugeTrace, Gene, Quantity},
+    id::JobId,
     job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec},
+    message::Cost,
     pumping_unit::Discretisation,
 };
 use search::space::Space;
@@ -44,7 +44,8 @@ fn coarse(effects: &[EffectSetting]) -> Case {
         cylinder_length_m: Some(0.15),
         ..Discretisation::default()
     };
-    let mut case = worker::convert::refined(&case(), &long).unwrap();
+    let unit = worker::convert::refined(&unit(), &long).unwrap();
+    let mut case = unit.into_case().unwrap();
     case.effects = effects.to_vec();
     case
 }

@@ -6,7 +6,7 @@ mod rounding;
 mod start;
 mod twins;
 
-use protocol::case::Case;
+use protocol::{case::Case, pumping_unit::PumpingUnit};
 use simulation::integrator::method::{CATALOGUE, Method};
 use simulation::integrator::tableau::ESDIRK4;
 use simulation::model::Machine;
@@ -23,6 +23,11 @@ fn folder() -> PathBuf {
 
 fn case() -> Case {
     coordinator::case::load(&folder(), &coordinator::case::Overrides::default()).unwrap()
+}
+
+/// The same with its machine.
+fn unit() -> PumpingUnit {
+    PumpingUnit::of(case()).unwrap()
 }
 
 /// Recommended and Table 3's optimised coefficients.
@@ -49,12 +54,12 @@ fn run(machine: &Machine, law: &RopeLaw, settings: &RunSettings) -> (RunResult, 
 /// sample the powers of a chattering contact only three times a step.
 #[test]
 fn energy_ledger_closes_over_one_revolution() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
-    for (name, genes) in individuals(&case) {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
+    for (name, genes) in individuals(&unit.case) {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
         for method in CATALOGUE {
-            let default = worker::convert::run_settings(&case);
+            let default = worker::convert::run_settings(&unit.machine);
             let settings = if method.name() == default.method.name() {
                 default
             } else {
@@ -85,14 +90,14 @@ fn energy_ledger_closes_over_one_revolution() {
 }
 
 /// A method with steps as stated, whatever the swing, and all the work it wants.
-fn stated(case: &Case, method: Method, tolerance: f64, longest_step: f64) -> RunSettings {
+fn stated(unit: &PumpingUnit, method: Method, tolerance: f64, longest_step: f64) -> RunSettings {
     RunSettings {
         method,
         tolerance,
         longest_step,
         slow_swing: f64::INFINITY,
         budget: u64::MAX,
-        ..worker::convert::run_settings(case)
+        ..worker::convert::run_settings(&unit.machine)
     }
 }
 
@@ -102,10 +107,10 @@ fn stated(case: &Case, method: Method, tolerance: f64, longest_step: f64) -> Run
 /// remainder: its 1e-5 to 3e-5 are what Simpson's rule makes of the powers, and go with the step.
 #[test]
 fn energy_ledger_tightens_with_step_and_tolerance() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
-    for (name, genes) in individuals(&case) {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
+    for (name, genes) in individuals(&unit.case) {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
         for method in CATALOGUE {
             let steps = match method {
                 Method::RungeKutta(tableau) if tableau.order > 2 => [0.02; 3],
@@ -114,7 +119,7 @@ fn energy_ledger_tightens_with_step_and_tolerance() {
                 Method::GeneralizedAlpha { .. } | Method::Bdf { .. } => [0.002; 3],
             };
             let defects = [0, 1, 2].map(|k| {
-                let settings = stated(&case, method, [1.0, 0.1, 0.01][k], steps[k]);
+                let settings = stated(&unit, method, [1.0, 0.1, 0.01][k], steps[k]);
                 let (result, _) = run(&machine, &law, &settings);
                 let work = result.work;
                 let gained = work.input - work.output - work.dissipated;
@@ -140,8 +145,8 @@ fn energy_ledger_tightens_with_step_and_tolerance() {
 /// and agrees to better than 1e-6 m: the program that made the table had the same 6.476 m.
 #[test]
 fn kinematics_agree_with_the_table_to_its_last_digit() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
     let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
     let text = std::fs::read_to_string(folder().join("machine/kinematics_720.csv")).unwrap();
     let rows: Vec<Vec<f64>> = text
@@ -205,11 +210,11 @@ fn kinematics_agree_with_the_table_to_its_last_digit() {
 /// In the symmetric unit nothing twists a rope, so torsional coefficients change no bit of a gauge.
 #[test]
 fn torsion_leaves_every_gauge_bit_alone() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
-    let settings = worker::convert::run_settings(&case);
-    for (name, genes) in individuals(&case) {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let settings = worker::convert::run_settings(&unit.machine);
+    for (name, genes) in individuals(&unit.case) {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
         let (_, plain) = run(&machine, &law, &settings);
         for factor in [0.1, 10.0] {
             let mut other = law;
@@ -228,12 +233,12 @@ fn torsion_leaves_every_gauge_bit_alone() {
 /// method of fourth order and steps of 10 ms, to 1.5 % with one of second and steps of 4 ms.
 #[test]
 fn gauges_do_not_depend_on_the_method() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
-    for (name, genes) in individuals(&case) {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
+    for (name, genes) in individuals(&unit.case) {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
         let with = |method, tolerance, longest_step| {
-            let settings = stated(&case, method, tolerance, longest_step);
+            let settings = stated(&unit, method, tolerance, longest_step);
             let (result, recorder) = run(&machine, &law, &settings);
             assert_eq!(result.verdict, Verdict::Complete);
             (result, recorder.curves)
@@ -266,11 +271,11 @@ fn difference(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// A case with twice as many cylinders of half the length.
-fn halved(case: &Case) -> Case {
-    let mut fine = case.clone();
-    fine.ropes.cylinder_length_m *= 0.5;
-    fine.ropes.back_cylinders *= 2;
-    fine.ropes.front_cylinders *= 2;
+fn halved(unit: &PumpingUnit) -> PumpingUnit {
+    let mut fine = unit.clone();
+    fine.machine.ropes.cylinder_length_m *= 0.5;
+    fine.machine.ropes.back_cylinders *= 2;
+    fine.machine.ropes.front_cylinders *= 2;
     fine
 }
 
@@ -279,17 +284,17 @@ fn halved(case: &Case) -> Case {
 /// length they stand for.
 #[test]
 fn gauges_converge_with_shorter_cylinders() {
-    let coarse = case();
+    let coarse = unit();
     let fine = halved(&coarse);
-    for (name, genes) in individuals(&coarse) {
-        let [coarse, fine] = [&coarse, &fine].map(|case| {
-            let machine = worker::convert::machine(case, 0).unwrap();
-            let law = worker::convert::rope_law(case, &genes).unwrap();
+    for (name, genes) in individuals(&coarse.case) {
+        let [coarse, fine] = [&coarse, &fine].map(|unit| {
+            let machine = worker::convert::machine(unit, 0).unwrap();
+            let law = worker::convert::rope_law(unit, &genes).unwrap();
             let settings = RunSettings {
                 method: Method::RungeKutta(&ESDIRK4),
                 longest_step: 0.03,
                 slow_swing: f64::INFINITY,
-                ..worker::convert::run_settings(case)
+                ..worker::convert::run_settings(&unit.machine)
             };
             run(&machine, &law, &settings).1
         });
@@ -305,14 +310,14 @@ fn gauges_converge_with_shorter_cylinders() {
 /// run. Cylinders of half the length change iterations by less than a tenth.
 #[test]
 fn a_default_run_costs_what_is_documented() {
-    let case = case();
-    let fine = halved(&case);
+    let unit = unit();
+    let fine = halved(&unit);
     let documented = [[319, 3_414, 165], [550, 5_961, 471]];
-    for ((name, genes), documented) in individuals(&case).into_iter().zip(documented) {
-        let [coarse, fine] = [&case, &fine].map(|case| {
-            let machine = worker::convert::machine(case, 0).unwrap();
-            let law = worker::convert::rope_law(case, &genes).unwrap();
-            let settings = worker::convert::run_settings(case);
+    for ((name, genes), documented) in individuals(&unit.case).into_iter().zip(documented) {
+        let [coarse, fine] = [&unit, &fine].map(|unit| {
+            let machine = worker::convert::machine(unit, 0).unwrap();
+            let law = worker::convert::rope_law(unit, &genes).unwrap();
+            let settings = worker::convert::run_settings(&unit.machine);
             run(&machine, &law, &settings).0.statistics
         });
         eprintln!("{name}: {coarse:?}, of half the length {fine:?}");

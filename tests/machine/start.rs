@@ -1,7 +1,7 @@
 //! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
-use super::{case, individuals};
+use super::{individuals, unit};
 use coordinator::{case::QuasiStatic, study};
-use protocol::case::{Case, Coefficient};
+use protocol::{case::Coefficient, pumping_unit};
 use simulation::{
     drive::Drive,
     model::{BackHeadLoads, Individual, Machine, description::RopeLaw},
@@ -38,11 +38,12 @@ fn at_rest<'a>(
 /// hundred times the recommended, by less than 1 %.
 #[test]
 fn gauges_at_rest_read_exact_statics() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
-    let settings = worker::convert::run_settings(&case);
-    let [(_, recommended), (_, optimised)] = individuals(&case);
-    let contact = case
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let settings = worker::convert::run_settings(&unit.machine);
+    let [(_, recommended), (_, optimised)] = individuals(&unit.case);
+    let contact = unit
+        .case
         .genes
         .iter()
         .position(|gene| gene.quantity.is(Coefficient::Kc));
@@ -53,7 +54,7 @@ fn gauges_at_rest_read_exact_statics() {
         ("recommended, stiff contact", stiff, 0.01),
         ("optimised", optimised, 0.01),
     ] {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
         for turn in TURNS {
             let (mut system, mut state) = at_rest(&machine, &law, &settings, turn);
@@ -61,7 +62,7 @@ fn gauges_at_rest_read_exact_statics() {
             state.a.fill(0.0);
             let loads = system.forces(state.motion(), &mut force);
             let read = gauge_stress(&BackHeadLoads::of(&loads), &state.a);
-            let exact = exact_statics(&case, &machine, &system, (&state, turn));
+            let exact = exact_statics(&unit.machine, &machine, &system, (&state, turn));
             for (read, exact) in read.iter().zip(exact) {
                 worst = worst.max((1e-6 * read - exact).abs());
                 largest = largest.max(exact.abs());
@@ -75,7 +76,7 @@ fn gauges_at_rest_read_exact_statics() {
 /// What gauges read of a rope under the tension that the machine at rest has, and of the head's weight
 /// \[MPa\].
 fn exact_statics(
-    case: &Case,
+    own: &pumping_unit::Machine,
     machine: &Machine,
     system: &System<Individual<'_>>,
     (state, turn): (&State, f64),
@@ -91,10 +92,10 @@ fn exact_statics(
         contact_deg: vec![at.tangent.to_degrees()],
         tension_n: vec![system.equations.base_tensions(0).sum()],
     };
-    let wrapped = study::wrapped_turn(&quasi_static, case.back_head.rope_anchor_deg);
-    let rope = wrapped.exact(&case.modal_head.influence);
+    let wrapped = study::wrapped_turn(&quasi_static, own.back_head.rope_anchor_deg);
+    let rope = wrapped.exact(&own.modal_head.influence);
     let (s, c) = state.q[machine.layout.beam()].sin_cos();
-    let [x, y, _] = case.modal_head.inertia_stress_mpa;
+    let [x, y, _] = own.modal_head.inertia_stress_mpa;
     let g = machine.description.gravity;
     std::array::from_fn(|gauge| rope[gauge][0] + g * (s * x[gauge] + c * y[gauge]))
 }
@@ -103,12 +104,12 @@ fn exact_statics(
 /// beside it does, by tens of rad/s2.
 #[test]
 fn a_run_starts_at_rest() {
-    let case = case();
-    let machine = worker::convert::machine(&case, 0).unwrap();
-    let settings = worker::convert::run_settings(&case);
+    let unit = unit();
+    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let settings = worker::convert::run_settings(&unit.machine);
     let beam = machine.layout.beam();
-    for (name, genes) in individuals(&case) {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
+    for (name, genes) in individuals(&unit.case) {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
         for turn in TURNS {
             let (mut system, mut state) = at_rest(&machine, &law, &settings, turn);
             let mut accelerated = |q: &[f64]| {

@@ -1,6 +1,6 @@
 //! Twin ropes on the real unit, with the head's tables for a pair that the case is delivered with.
 use crate::{folder, individuals};
-use protocol::case::Case;
+use protocol::pumping_unit::PumpingUnit;
 use simulation::model::description::RopeLaw;
 use simulation::observe::{Curves, Recorder};
 use simulation::run::{RunResult, simulate};
@@ -8,7 +8,7 @@ use simulation::verdict::Verdict;
 use std::{fs, os::unix::fs::symlink};
 
 /// The shipped case with twin ropes at `z = +-0.12 m`, those at -z longer by so much \[mm\].
-fn twins(back_mm: f64, front_mm: f64) -> Case {
+fn twins(back_mm: f64, front_mm: f64) -> PumpingUnit {
     let scratch = tempfile::tempdir().unwrap();
     for name in ["back_head", "measured"] {
         symlink(folder().join(name), scratch.path().join(name)).unwrap();
@@ -21,12 +21,14 @@ fn twins(back_mm: f64, front_mm: f64) -> Case {
         1e-3 * front_mm
     );
     fs::write(scratch.path().join("case.toml"), text + &entry).unwrap();
-    coordinator::case::load(scratch.path(), &coordinator::case::Overrides::default()).unwrap()
+    let case =
+        coordinator::case::load(scratch.path(), &coordinator::case::Overrides::default()).unwrap();
+    PumpingUnit::of(case).unwrap()
 }
 
-fn simulated(case: &Case, law: &RopeLaw) -> (RunResult, Curves) {
-    let machine = worker::convert::machine(case, 0).unwrap();
-    let settings = worker::convert::run_settings(case);
+fn simulated(unit: &PumpingUnit, law: &RopeLaw) -> (RunResult, Curves) {
+    let machine = worker::convert::machine(unit, 0).unwrap();
+    let settings = worker::convert::run_settings(&unit.machine);
     let mut recorder = Recorder::everything(0);
     let result = simulate(&machine, law, &settings, &mut recorder);
     assert_eq!(result.verdict, Verdict::Complete);
@@ -59,9 +61,9 @@ fn mean(curve: &[f64]) -> f64 {
 /// rope in its plane, whatever their torsion: to 1e-9 of the range (measured: 4e-11), step by step.
 #[test]
 fn equal_twins_are_the_single_rope_whatever_their_torsion() {
-    let single = crate::case();
+    let single = crate::unit();
     let pair = twins(0.0, 0.0);
-    for (name, genes) in individuals(&single) {
+    for (name, genes) in individuals(&single.case) {
         let law = worker::convert::rope_law(&single, &genes).unwrap();
         let (one, plane) = simulated(&single, &law);
         for (stiffer, damped) in [(1.0, 1.0), (1e-2, 1e2), (1e2, 1e-2)] {
@@ -78,12 +80,15 @@ fn equal_twins_are_the_single_rope_whatever_their_torsion() {
 /// that where it yields (measured: 0.98 and 0.75 of it). The energy ledger closes.
 #[test]
 fn unequal_twins_share_the_load_and_the_ledger_closes() {
-    let single = crate::case();
+    let single = crate::unit();
     let pair = twins(1.0, 0.0);
-    for ((name, genes), share) in individuals(&single).into_iter().zip([0.7..0.8, 0.95..1.0]) {
+    for ((name, genes), share) in individuals(&single.case)
+        .into_iter()
+        .zip([0.7..0.8, 0.95..1.0])
+    {
         let law = worker::convert::rope_law(&single, &genes).unwrap();
         let (result, curves) = simulated(&pair, &law);
-        let ropes = &single.ropes;
+        let ropes = &single.machine.ropes;
         let stiffness = law.bushing.stiffness[0] * ropes.reference_length_m;
         let length = ropes.back_cylinders as f64 * ropes.cylinder_length_m;
         let expected = 1e-3 * stiffness / (2.0 * length);
@@ -104,10 +109,10 @@ fn unequal_twins_share_the_load_and_the_ledger_closes() {
 #[test]
 fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
     let mirrored = |back_mm: f64| {
-        let mut case = twins(back_mm, 0.0);
+        let mut unit = twins(back_mm, 0.0);
         let both = |row: &mut [f64; 4]| row[1] = row[0];
         let opposite = |row: &mut [f64; 4]| row[1] = -row[0];
-        let head = &mut case.modal_head;
+        let head = &mut unit.machine.modal_head;
         head.gauge_stress_mpa.iter_mut().for_each(both);
         head.inertia_stress_mpa.iter_mut().for_each(both);
         head.influence.normal_mpa_per_n.iter_mut().for_each(both);
@@ -115,7 +120,7 @@ fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
             .tangential_mpa_per_n
             .iter_mut()
             .for_each(both);
-        let head = &mut case.twin_ropes.as_mut().unwrap().head;
+        let head = &mut unit.machine.twin_ropes.as_mut().unwrap().head;
         head.gauge_stress_mpa.iter_mut().for_each(opposite);
         head.influence
             .normal_mpa_per_n
@@ -126,12 +131,12 @@ fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
             .iter_mut()
             .for_each(opposite);
         head.lateral_mpa_per_n.iter_mut().for_each(opposite);
-        case
+        unit
     };
-    let case = mirrored(1.0);
-    for (name, genes) in individuals(&case) {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
-        let (_, curves) = simulated(&case, &law);
+    let unit = mirrored(1.0);
+    for (name, genes) in individuals(&unit.case) {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let (_, curves) = simulated(&unit, &law);
         let (_, equal) = simulated(&mirrored(0.0), &law);
         let change = |gauge: usize| mean(&curves.gauge[gauge]) - mean(&equal.gauge[gauge]);
         let (here, there) = (change(0), change(1));
@@ -152,16 +157,16 @@ fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
 /// ropes that sink into a soft contact, by 0.04 MPa.
 #[test]
 fn torsion_of_unequal_twins_reaches_the_gauges() {
-    let case = twins(1.0, 0.0);
+    let unit = twins(1.0, 0.0);
     let changes = [
         ("K_44", 1e4, 1.0, [1e-8..1e-6, 5e-8..2e-6]),
         ("C_44", 1.0, 1e4, [5e-4..1e-2, 1e-7..5e-6]),
     ];
-    for (k, (name, genes)) in individuals(&case).into_iter().enumerate() {
-        let law = worker::convert::rope_law(&case, &genes).unwrap();
-        let (_, plain) = simulated(&case, &law);
+    for (k, (name, genes)) in individuals(&unit.case).into_iter().enumerate() {
+        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let (_, plain) = simulated(&unit, &law);
         for (what, stiffer, damped, expected) in &changes {
-            let (_, other) = simulated(&case, &twisted(&law, *stiffer, *damped));
+            let (_, other) = simulated(&unit, &twisted(&law, *stiffer, *damped));
             let apart = apart(&other, &plain);
             eprintln!("{name}, four decades of {what}: {apart:.1e}");
             assert!(expected[k].contains(&apart), "{name} {what}: {apart}");

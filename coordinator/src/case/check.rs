@@ -1,6 +1,9 @@
 //! What `horsehead case check` tells about a case that is in order.
-use super::{CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts, load_with_notes};
-use protocol::case::{Case, Gene};
+use super::{CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts, load::load_machine};
+use protocol::{
+    case::{Case, Gene},
+    pumping_unit::Machine,
+};
 use std::{fmt, path::Path};
 
 /// A case in figures.
@@ -71,22 +74,22 @@ pub fn check(folder: &Path) -> Result<Summary, CaseError> {
 /// # Errors
 /// As [`super::load`].
 pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseError> {
-    let loaded = load_with_notes(folder, overrides)?;
+    let (loaded, machine) = load_machine(folder, overrides)?;
     let case = loaded.case;
-    let rope = |count: usize| (count as f64 * case.ropes.cylinder_length_m, count);
+    let rope = |count: usize| (count as f64 * machine.ropes.cylinder_length_m, count);
     let calibrated = case.conditions.get(case.objective.condition);
     Ok(Summary {
         envelope: loaded.envelope,
-        back_rope: rope(case.ropes.back_cylinders),
-        front_rope: rope(case.ropes.front_cylinders),
-        modes_hz: case
+        back_rope: rope(machine.ropes.back_cylinders),
+        front_rope: rope(machine.ropes.front_cylinders),
+        modes_hz: machine
             .modal_head
             .frequencies_hz
             .iter()
-            .take(case.run.modes)
+            .take(machine.run.modes)
             .copied()
             .collect(),
-        twin_ropes: case.twin_ropes.as_ref().map(|twins| {
+        twin_ropes: machine.twin_ropes.as_ref().map(|twins| {
             let longer = [
                 twins.back_length_difference_m,
                 twins.front_length_difference_m,
@@ -94,8 +97,8 @@ pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseE
             let modes = twins.head.frequencies_hz.iter().take(twins.modes);
             (twins.offset_m, longer, modes.copied().collect())
         }),
-        head_mass_kg: case.modal_head.mass_kg,
-        conditions: conditions(&case, loaded.records),
+        head_mass_kg: machine.modal_head.mass_kg,
+        conditions: conditions(&case, &machine, loaded.records),
         objective: (
             calibrated
                 .map(|condition| condition.name.clone())
@@ -110,8 +113,13 @@ pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseE
 }
 
 /// One summary per condition.
-fn conditions(case: &Case, facts: Vec<Option<RecordFacts>>) -> Vec<ConditionSummary> {
-    let summaries = case.conditions.iter().zip(facts).map(|(condition, facts)| {
+fn conditions(
+    case: &Case,
+    machine: &Machine,
+    facts: Vec<Option<RecordFacts>>,
+) -> Vec<ConditionSummary> {
+    let all = case.conditions.iter().zip(&machine.conditions).zip(facts);
+    let summaries = all.map(|((condition, working), facts)| {
         let record = condition.record.as_ref().zip(facts).map(|(record, facts)| {
             let gauges = record.gauges.iter().map(|trace| {
                 let [low, high] = range(&trace.mean_mpa);
@@ -128,8 +136,8 @@ fn conditions(case: &Case, facts: Vec<Option<RecordFacts>>) -> Vec<ConditionSumm
         });
         ConditionSummary {
             name: condition.name.clone(),
-            speed_rpm: condition.speed_rpm,
-            load_n: range(&condition.card.load_n),
+            speed_rpm: working.speed_rpm,
+            load_n: range(&working.card.load_n),
             record,
         }
     });

@@ -8,7 +8,10 @@ use super::{
     schema::{CaseFile, ConditionEntry},
 };
 use discrepancy::record::Record;
-use protocol::{case::Condition, pumping_unit::Smoothing};
+use protocol::{
+    case::Condition,
+    pumping_unit::{Smoothing, WorkingCondition},
+};
 use std::path::{Path, PathBuf};
 
 /// Where the conditions of a case come from.
@@ -26,6 +29,7 @@ pub(super) struct Source<'a> {
 #[derive(Debug)]
 pub(super) struct ReadCondition {
     pub(super) condition: Condition,
+    pub(super) working: WorkingCondition,
     pub(super) facts: Option<RecordFacts>,
     pub(super) cycles: Option<Record>,
     pub(super) notes: Vec<Note>,
@@ -99,13 +103,16 @@ impl Source<'_> {
         };
         let condition = Condition {
             name: entry.name.clone(),
+            record,
+        };
+        let working = WorkingCondition {
             speed_rpm: entry.speed_rpm,
             counterweight_moment_n_m: entry.counterweight_moment_n_m,
             card,
-            record,
         };
         Ok(ReadCondition {
             condition,
+            working,
             facts,
             cycles,
             notes,

@@ -7,10 +7,7 @@
 //! the worker know nothing of this file.
 use super::schema::CaseFile;
 use crate::line::periodic;
-use protocol::{
-    case::{Case, Condition},
-    pumping_unit::{BackHead, Crank, TurnSense},
-};
+use protocol::pumping_unit::{BackHead, Crank, Machine, TurnSense, WorkingCondition};
 
 /// Extremes over one turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,11 +131,11 @@ const SAMPLES: u32 = 720;
 
 /// The back rope's tension and place over one turn: it holds the load on the front arm, the
 /// beam's unbalance and its inertia, at the arm `h(psi)`. None where the crank cannot turn through.
-pub fn quasi_static(case: &Case, condition: &Condition) -> Option<QuasiStatic> {
-    let bodies = (&case.crank, &case.back_head);
-    let length =
-        case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m + case.rod.length_m;
-    let sense = match case.crank.sense {
+pub fn quasi_static(machine: &Machine, condition: &WorkingCondition) -> Option<QuasiStatic> {
+    let bodies = (&machine.crank, &machine.back_head);
+    let length = machine.ropes.back_cylinders as f64 * machine.ropes.cylinder_length_m
+        + machine.rod.length_m;
+    let sense = match machine.crank.sense {
         TurnSense::Clockwise => -1.0,
         TurnSense::CounterClockwise => 1.0,
     };
@@ -167,13 +164,14 @@ pub fn quasi_static(case: &Case, condition: &Condition) -> Option<QuasiStatic> {
         let acceleration = (neighbours - 2.0 * theta) / (step * step) * speed * speed;
         let turn_deg = 360.0 * k as f64 / n as f64;
         let psi = normal - theta;
-        let head = &case.back_head;
+        let head = &machine.back_head;
         let arm = head.radius_m + head.center_x_m * psi.cos() + head.center_y_m * psi.sin();
         let card = &condition.card;
         let load = periodic(&card.turn_deg, &card.load_n, turn_deg, 360.0).unwrap_or_default();
-        let moment = load * case.front_head.radius_m + case.beam.gravity_moment_n_m * theta.cos()
-            - case.beam.gravity_height_moment_n_m * theta.sin()
-            + case.beam.inertia_kg_m2 * acceleration;
+        let moment = load * machine.front_head.radius_m
+            + machine.beam.gravity_moment_n_m * theta.cos()
+            - machine.beam.gravity_height_moment_n_m * theta.sin()
+            + machine.beam.inertia_kg_m2 * acceleration;
         result.turn_deg.push(turn_deg);
         result.contact_deg.push(psi.to_degrees());
         result.tension_n.push(moment / arm);

@@ -5,7 +5,7 @@ use super::{
     load::{Overrides, Resolved, resolve},
     mesh,
 };
-use protocol::{case::Case, pumping_unit::HeadGauge};
+use protocol::pumping_unit::{HeadGauge, PumpingUnit};
 use std::path::{Path, PathBuf};
 
 /// What a reduction of the back head starts from, and where its tables are kept.
@@ -39,9 +39,10 @@ pub struct HeadSource {
 ///
 /// # Errors
 /// As [`super::load`]; a case without mesh or gauge places.
-pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
+pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> {
     let Resolved {
         loaded,
+        machine,
         head,
         flexible,
         twins,
@@ -74,5 +75,6 @@ pub fn load_head(folder: &Path) -> Result<(Case, HeadSource), CaseError> {
         twin_file: twins.map(|entry| folder.join(entry.head_file)),
         modes_file,
     };
-    Ok((loaded.case, source))
+    let case = loaded.case;
+    Ok((PumpingUnit { case, machine }, source))
 }

@@ -15,7 +15,10 @@ use super::{
     schema::{CaseFile, FlexibleHead, Records, TwinRopesEntry},
 };
 use discrepancy::record::Record;
-use protocol::case::{Case, Quantity};
+use protocol::{
+    case::{Case, Quantity},
+    pumping_unit::Machine,
+};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -78,16 +81,26 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
+    load_machine(folder, overrides).map(|(loaded, _)| loaded)
+}
+
+/// As [`load_with_notes`], with the machine.
+pub(super) fn load_machine(
+    folder: &Path,
+    overrides: &Overrides,
+) -> Result<(Loaded, Machine), CaseError> {
     let resolved = resolve(folder, overrides)?;
     match resolved.head.stale {
         Some(stale) => Err(stale),
-        None => Ok(resolved.loaded),
+        None => Ok((resolved.loaded, resolved.machine)),
     }
 }
 
 /// A case with what its file and the head's files say of the flexible head.
 pub(super) struct Resolved {
     pub(super) loaded: Loaded,
+    /// That of the case.
+    pub(super) machine: Machine,
     /// Tables of another mesh are no error yet.
     pub(super) head: ReadHead,
     pub(super) flexible: FlexibleHead,
@@ -125,17 +138,17 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         file: &file,
     };
     let (mut notes, mut records) = (Vec::new(), Vec::new());
-    let (mut cycles, mut conditions) = (Vec::new(), Vec::new());
+    let (mut cycles, mut conditions, mut working) = (Vec::new(), Vec::new(), Vec::new());
     for read in source.conditions()? {
         conditions.push(read.condition);
+        working.push(read.working);
         records.push(read.facts);
         cycles.extend(read.cycles);
         notes.extend(read.notes);
     }
     let mut genes = genes::declared(&document, &file.genes, &Bodies::of(&file))?;
     genes.extend(file.effects.iter().flat_map(CaseEffect::genes));
-    let case = Case {
-        name: file.name,
+    let machine = Machine {
         gravity_m_s2: file.gravity_m_s2,
         beam: file.beam,
         crank: file.crank,
@@ -147,12 +160,23 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         back_head: file.back_head,
         modal_head: head.head.clone(),
         twin_ropes: head.twins.clone(),
+        conditions: working,
+        run: file.run,
+    };
+    let case = Case {
+        name: file.name,
+        model: machine.settings().map_err(|error| {
+            damaged(
+                &document.path,
+                format!("the machine does not fit into a message: {error}"),
+                "reduce the head with fewer modes or stations",
+            )
+        })?,
         effects: file.effects.iter().map(CaseEffect::setting).collect(),
         effect_units: file.effects.iter().map(CaseEffect::units).collect(),
         genes,
         conditions,
         objective,
-        run: file.run,
     };
     let loaded = Loaded {
         synthetic: file.records == Records::Synthetic && measured.is_none(),
@@ -165,6 +189,7 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
     };
     Ok(Resolved {
         loaded,
+        machine,
         head,
         flexible: file.flexible_head,
         twins: file.twin_ropes,

@@ -3,8 +3,10 @@
 //! An empty field is a value that does not exist; numbers are written with all their digits.
 use super::data::{ConditionResult, Run, SingleRun};
 use super::words::condition_name;
-use protocol::case::{Case, GaugeRecord};
-use protocol::pumping_unit::Simulation;
+use protocol::{
+    case::{Case, GaugeRecord},
+    pumping_unit::{Machine, Simulation},
+};
 use std::io::Write;
 
 /// A number with all its digits, empty if it is none.
@@ -39,9 +41,14 @@ const CURVE_COLUMNS: [&str; 22] = [
     "crank_torque_n_m",
 ];
 
+/// Number of modes of the back head that a case simulates.
+fn modes(case: &Case) -> usize {
+    Machine::of(case).map_or(0, |machine| machine.run.modes)
+}
+
 /// The columns of curves: one per simulated mode of the back head at the end, mass-normalised.
-fn head(case: &Case) -> impl Iterator<Item = String> {
-    let modes = (1..=case.run.modes).map(|mode| format!("mode_{mode}_sqrt_kg_m"));
+fn head(modes: usize) -> impl Iterator<Item = String> {
+    let modes = (1..=modes).map(|mode| format!("mode_{mode}_sqrt_kg_m"));
     CURVE_COLUMNS.map(str::to_owned).into_iter().chain(modes)
 }
 
@@ -53,14 +60,21 @@ fn head(case: &Case) -> impl Iterator<Item = String> {
 /// [`csv::Error`] when the writer fails.
 pub fn curves(to: impl Write, case: &Case, results: &[ConditionResult]) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
-    writer.write_record(head(case))?;
+    let modes = modes(case);
+    writer.write_record(head(modes))?;
     for result in results {
         for (who, run) in [
             ("recommended", &result.recommended),
             ("optimised", &result.optimised),
         ] {
             let Run { simulation, .. } = run;
-            rows(&mut writer, case, result.condition, who, simulation)?;
+            rows(
+                (&mut writer, modes),
+                case,
+                result.condition,
+                who,
+                simulation,
+            )?;
         }
     }
     Ok(writer.flush()?)
@@ -72,9 +86,10 @@ pub fn curves(to: impl Write, case: &Case, results: &[ConditionResult]) -> Resul
 /// [`csv::Error`] when the writer fails.
 pub fn single_curves(to: impl Write, run: &SingleRun) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
-    writer.write_record(head(&run.case))?;
+    let modes = modes(&run.case);
+    writer.write_record(head(modes))?;
     rows(
-        &mut writer,
+        (&mut writer, modes),
         &run.case,
         run.condition,
         &run.genes_name,
@@ -84,7 +99,7 @@ pub fn single_curves(to: impl Write, run: &SingleRun) -> Result<(), csv::Error> 
 }
 
 fn rows(
-    writer: &mut csv::Writer<impl Write>,
+    (writer, modes): (&mut csv::Writer<impl Write>, usize),
     case: &Case,
     condition: usize,
     parameters: &str,
@@ -124,7 +139,7 @@ fn rows(
         ];
         fields.extend(curves.map(|curve| field(curve.get(index).copied())));
         let value = |mode: usize| simulation.modal.get(mode)?.get(index).copied();
-        fields.extend((0..case.run.modes).map(|mode| field(value(mode))));
+        fields.extend((0..modes).map(|mode| field(value(mode))));
         writer.write_record(fields)?;
     }
     Ok(())

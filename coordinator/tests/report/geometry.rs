@@ -1,7 +1,6 @@
 //! A double-horse-head unit in closed form: inextensible ropes on rigid arcs, so that the report's
 //! samples look like the machine without any simulation.
-use protocol::case::Case;
-use protocol::pumping_unit::Motion;
+use protocol::pumping_unit::{Machine, Motion};
 
 /// Length of rod and rope along the path, from the crank pin to the anchor \[m\].
 const PATH_M: f64 = 6.476;
@@ -23,8 +22,8 @@ pub(crate) struct Pose {
     pub free_m: f64,
 }
 
-fn residual(case: &Case, pin: [f64; 2], beam: f64, normal: f64) -> [f64; 2] {
-    let head = &case.back_head;
+fn residual(machine: &Machine, pin: [f64; 2], beam: f64, normal: f64) -> [f64; 2] {
+    let head = &machine.back_head;
     let psi = normal - beam;
     let (sin, cos) = psi.sin_cos();
     let support = head.radius_m + head.center_x_m * cos + head.center_y_m * sin;
@@ -38,8 +37,8 @@ fn residual(case: &Case, pin: [f64; 2], beam: f64, normal: f64) -> [f64; 2] {
 }
 
 /// Solves the loop at a crank angle, starting from the pose before it.
-fn solve(case: &Case, turn_deg: f64, start: [f64; 2]) -> Pose {
-    let crank = &case.crank;
+fn solve(machine: &Machine, turn_deg: f64, start: [f64; 2]) -> Pose {
+    let crank = &machine.crank;
     let angle = (PIN_AT_BOTTOM_DEG - turn_deg).to_radians();
     let pin = [
         crank.center_x_m + crank.radius_m * angle.cos(),
@@ -48,16 +47,16 @@ fn solve(case: &Case, turn_deg: f64, start: [f64; 2]) -> Pose {
     let [mut beam, mut normal] = start;
     for _ in 0..30 {
         const STEP: f64 = 1e-6;
-        let f = residual(case, pin, beam, normal);
-        let by_beam = residual(case, pin, beam + STEP, normal);
-        let by_normal = residual(case, pin, beam, normal + STEP);
+        let f = residual(machine, pin, beam, normal);
+        let by_beam = residual(machine, pin, beam + STEP, normal);
+        let by_normal = residual(machine, pin, beam, normal + STEP);
         let (a, c) = ((by_beam[0] - f[0]) / STEP, (by_beam[1] - f[1]) / STEP);
         let (b, d) = ((by_normal[0] - f[0]) / STEP, (by_normal[1] - f[1]) / STEP);
         let det = a * d - b * c;
         beam -= (d * f[0] - b * f[1]) / det;
         normal -= (a * f[1] - c * f[0]) / det;
     }
-    let head = &case.back_head;
+    let head = &machine.back_head;
     let (sin, cos) = beam.sin_cos();
     let center = [
         cos * head.center_x_m - sin * head.center_y_m,
@@ -75,17 +74,17 @@ fn solve(case: &Case, turn_deg: f64, start: [f64; 2]) -> Pose {
         beam_rad: beam,
         normal_rad: normal,
         arm_m: pin[0] * n[0] + pin[1] * n[1],
-        free_m: straight - case.rod.length_m,
+        free_m: straight - machine.rod.length_m,
     }
 }
 
 /// Poses over one revolution, `count` steps and the closing one left out.
-pub(crate) fn revolution(case: &Case, count: usize) -> Vec<Pose> {
+pub(crate) fn revolution(machine: &Machine, count: usize) -> Vec<Pose> {
     let mut guess = [(-31.8_f64).to_radians(), 176.8_f64.to_radians()];
     (0..count)
         .map(|index| {
             let turn = 360.0 * index as f64 / count as f64;
-            let pose = solve(case, turn, guess);
+            let pose = solve(machine, turn, guess);
             guess = [pose.beam_rad, pose.normal_rad];
             pose
         })
@@ -93,9 +92,9 @@ pub(crate) fn revolution(case: &Case, count: usize) -> Vec<Pose> {
 }
 
 /// Height of the suspension point in the ground frame \[m\].
-pub(crate) fn suspension_y_m(case: &Case, pose: &Pose) -> f64 {
-    let anchor = case.front_head.rope_anchor_deg.to_radians();
-    case.front_head.radius_m * (anchor + pose.beam_rad) - FRONT_ROPE_M
+pub(crate) fn suspension_y_m(machine: &Machine, pose: &Pose) -> f64 {
+    let anchor = machine.front_head.rope_anchor_deg.to_radians();
+    machine.front_head.radius_m * (anchor + pose.beam_rad) - FRONT_ROPE_M
 }
 
 #[expect(
@@ -111,22 +110,22 @@ fn short([x, y]: [f64; 2]) -> [f32; 2] {
     clippy::cast_possible_truncation,
     reason = "snapshots are stored short"
 )]
-pub(crate) fn snapshot(case: &Case, pose: &Pose, back_n: f64, front_n: f64) -> Motion {
-    let head = &case.back_head;
+pub(crate) fn snapshot(machine: &Machine, pose: &Pose, back_n: f64, front_n: f64) -> Motion {
+    let head = &machine.back_head;
     let (sin, cos) = pose.beam_rad.sin_cos();
     let center = [
         cos * head.center_x_m - sin * head.center_y_m,
         sin * head.center_x_m + cos * head.center_y_m,
     ];
     let t = [-pose.normal_rad.sin(), pose.normal_rad.cos()];
-    let length = case.ropes.cylinder_length_m;
+    let length = machine.ropes.cylinder_length_m;
     let on_line = |s: f64| [pose.pin[0] - t[0] * s, pose.pin[1] - t[1] * s];
     let mut motion = Motion {
         turn_deg: pose.turn_deg,
         crank_pin_m: short(pose.pin),
         beam_deg: pose.beam_rad.to_degrees() as f32,
-        crossbeam_m: short(on_line(case.rod.length_m)),
-        suspension_m: short([case.front_head.radius_m, suspension_y_m(case, pose)]),
+        crossbeam_m: short(on_line(machine.rod.length_m)),
+        suspension_m: short([machine.front_head.radius_m, suspension_y_m(machine, pose)]),
         back_rope_m: Vec::new(),
         back_tension_n: Vec::new(),
         back_contact_n: Vec::new(),
@@ -134,11 +133,11 @@ pub(crate) fn snapshot(case: &Case, pose: &Pose, back_n: f64, front_n: f64) -> M
         front_tension_n: Vec::new(),
         front_contact_n: Vec::new(),
     };
-    for index in 0..case.ropes.back_cylinders {
+    for index in 0..machine.ropes.back_cylinders {
         let s = (index as f64 + 0.5) * length;
         let wrapped = s - pose.free_m;
         let at = if wrapped < 0.0 {
-            on_line(case.rod.length_m + s)
+            on_line(machine.rod.length_m + s)
         } else {
             let angle = pose.normal_rad - wrapped / head.radius_m;
             [
@@ -155,9 +154,9 @@ pub(crate) fn snapshot(case: &Case, pose: &Pose, back_n: f64, front_n: f64) -> M
             .back_contact_n
             .push(if touching { contact as f32 } else { 0.0 });
     }
-    let radius = case.front_head.radius_m;
-    let bottom = suspension_y_m(case, pose);
-    for index in 0..case.ropes.front_cylinders {
+    let radius = machine.front_head.radius_m;
+    let bottom = suspension_y_m(machine, pose);
+    for index in 0..machine.ropes.front_cylinders {
         let s = (index as f64 + 0.5) * length;
         let wrapped = s + bottom;
         let at = if wrapped < 0.0 {

@@ -4,18 +4,16 @@ use coordinator::account::JobCost;
 use coordinator::report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
-use protocol::event::Spent;
-use protocol::unit::Unit;
 use protocol::{
     case::{Case, Coefficient, Condition, GaugeRecord, GaugeTrace, Gene, Objective, Offset},
-    pumping_unit::{
-        BackHead, Beam, Contact, Crank, FrontHead, Influence, LoadCard, ModalHead, Rod, RopeEnds,
-        Ropes, RunSettings, Smoothing, Suspension, TurnSense,
-    },
-};
-use protocol::{
+    event::Spent,
     job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
-    pumping_unit::{Energy, Simulation},
+    pumping_unit::{
+        BackHead, Beam, Contact, Crank, Energy, FrontHead, Influence, LoadCard, Machine, ModalHead,
+        Rod, RopeEnds, Ropes, RunSettings, Simulation, Smoothing, Suspension, TurnSense,
+        WorkingCondition,
+    },
+    unit::Unit,
 };
 
 /// Output points per revolution.
@@ -80,12 +78,11 @@ fn genes() -> Vec<Gene> {
     ]
 }
 
-/// A case without modes or records that anything would need here.
+/// A machine without modes.
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
-pub(crate) fn case() -> Case {
+fn machine() -> Machine {
     let turn_deg: Vec<f64> = (0..GRID).map(|i| 0.5 * i as f64).collect();
-    let condition = |name: &str, speed_rpm: f64| Condition {
-        name: name.to_owned(),
+    let working = |speed_rpm: f64| WorkingCondition {
         speed_rpm,
         counterweight_moment_n_m: 106_200.0,
         card: LoadCard {
@@ -93,10 +90,8 @@ pub(crate) fn case() -> Case {
             load_n: turn_deg.iter().map(|&turn| load_n(turn)).collect(),
             smoothing: Smoothing::None,
         },
-        record: None,
     };
-    let mut case = Case {
-        name: "CYJS10-5-37HB <test & sample>".to_owned(),
+    Machine {
         gravity_m_s2: 9.81,
         beam: Beam {
             inertia_kg_m2: 2.4e4,
@@ -159,15 +154,7 @@ pub(crate) fn case() -> Case {
                 tangential_mpa_per_n: Vec::new(),
             },
         },
-        effects: Vec::new(),
-        effect_units: Vec::new(),
-        genes: genes(),
-        conditions: vec![condition("5rpm", 5.0), condition("4rpm", 4.0)],
-        objective: Objective {
-            condition: 0,
-            gauges: vec![(1, 1.0), (3, 1.0)],
-            offset: Offset::Free,
-        },
+        conditions: vec![working(5.0), working(4.0)],
         run: RunSettings {
             output_step_deg: 0.5,
             lead_in_deg: 30.0,
@@ -179,23 +166,44 @@ pub(crate) fn case() -> Case {
             modes: 6,
             iteration_budget: 25_000,
         },
-    };
-    for index in 0..case.conditions.len() {
-        let record = record(&case, index);
-        case.conditions[index].record = Some(record);
     }
-    case
+}
+
+/// A case of that machine.
+pub(crate) fn case() -> Case {
+    let machine = machine();
+    let condition = |(index, name): (usize, &str)| Condition {
+        name: name.to_owned(),
+        record: Some(record(&machine, index)),
+    };
+    Case {
+        name: "CYJS10-5-37HB <test & sample>".to_owned(),
+        model: machine.settings().unwrap(),
+        effects: Vec::new(),
+        effect_units: Vec::new(),
+        genes: genes(),
+        conditions: ["5rpm", "4rpm"]
+            .into_iter()
+            .enumerate()
+            .map(condition)
+            .collect(),
+        objective: Objective {
+            condition: 0,
+            gauges: vec![(1, 1.0), (3, 1.0)],
+            offset: Offset::Free,
+        },
+    }
 }
 
 /// Rope tension at the crossbeam \[N\].
-fn tension_n(case: &Case, pose: &Pose) -> f64 {
-    load_n(pose.turn_deg) * case.front_head.radius_m / pose.arm_m
+fn tension_n(machine: &Machine, pose: &Pose) -> f64 {
+    load_n(pose.turn_deg) * machine.front_head.radius_m / pose.arm_m
 }
 
 /// Stress of a gauge [`MPa`]: shaped like the real head's, with rope vibration of the given size.
-fn stress_mpa(case: &Case, pose: &Pose, gauge: usize, ripple: f64, order: f64) -> f64 {
+fn stress_mpa(machine: &Machine, pose: &Pose, gauge: usize, ripple: f64, order: f64) -> f64 {
     let psi = (pose.normal_rad - pose.beam_rad).to_degrees();
-    let tension_kn = 1e-3 * tension_n(case, pose);
+    let tension_kn = 1e-3 * tension_n(machine, pose);
     let (gain, tilt, zero) = [
         (-0.30, 0.16, -28.0),
         (0.17, -0.10, 22.0),
@@ -206,9 +214,9 @@ fn stress_mpa(case: &Case, pose: &Pose, gauge: usize, ripple: f64, order: f64) -
     zero + gain * tension_kn + tilt * (psi - 170.0) + vibration
 }
 
-fn record(case: &Case, condition: usize) -> GaugeRecord {
+fn record(machine: &Machine, condition: usize) -> GaugeRecord {
     let mut noise = Noise(17 + condition as u64);
-    let poses = geometry::revolution(case, GRID);
+    let poses = geometry::revolution(machine, GRID);
     GaugeRecord {
         turn_deg: poses.iter().map(|pose| pose.turn_deg).collect(),
         cycles: 5,
@@ -218,7 +226,7 @@ fn record(case: &Case, condition: usize) -> GaugeRecord {
                 mean_mpa: poses
                     .iter()
                     .map(|pose| {
-                        let stress = stress_mpa(case, pose, usize::from(gauge), 0.5, 61.0);
+                        let stress = stress_mpa(machine, pose, usize::from(gauge), 0.5, 61.0);
                         stress + 0.3 * (noise.next() - 0.5) + 0.4 * condition as f64
                     })
                     .collect(),
@@ -234,12 +242,13 @@ fn record(case: &Case, condition: usize) -> GaugeRecord {
 /// A complete simulation whose stress differs from the record by `error` (1 is a lot).
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
 pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simulation {
-    let poses = geometry::revolution(case, GRID);
+    let machine = &Machine::of(case).unwrap();
+    let poses = geometry::revolution(machine, GRID);
     let angular = |speed_rpm: f64| speed_rpm * 6.0;
     let per_second = angular(5.0) * GRID as f64 / 360.0;
     let height: Vec<f64> = poses
         .iter()
-        .map(|pose| geometry::suspension_y_m(case, pose) + 5.4)
+        .map(|pose| geometry::suspension_y_m(machine, pose) + 5.4)
         .collect();
     let slope = |values: &[f64]| -> Vec<f64> {
         (0..GRID)
@@ -254,7 +263,8 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
     let tension: Vec<f64> = poses
         .iter()
         .map(|pose| {
-            tension_n(case, pose) * (1.0 + 0.03 * error * (55.0 * pose.turn_deg).to_radians().sin())
+            tension_n(machine, pose)
+                * (1.0 + 0.03 * error * (55.0 * pose.turn_deg).to_radians().sin())
         })
         .collect();
     let load: Vec<f64> = poses.iter().map(|pose| load_n(pose.turn_deg)).collect();
@@ -263,7 +273,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
             .iter()
             .map(|pose| {
                 let exact = stress_mpa(
-                    case,
+                    machine,
                     pose,
                     index,
                     0.5 + 5.0 * error,
@@ -325,7 +335,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
             .iter()
             .zip(tension.iter().zip(&load))
             .step_by(every)
-            .map(|(pose, (&back, &front))| geometry::snapshot(case, pose, back, front))
+            .map(|(pose, (&back, &front))| geometry::snapshot(machine, pose, back, front))
             .collect(),
     }
 }

@@ -1,5 +1,4 @@
-//! Working conditions: speed, load card and the gauge record that belongs to them.
-use crate::pumping_unit::LoadCard;
+//! Working conditions and the gauge record that belongs to them.
 use serde::{Deserialize, Serialize};
 
 /// One working condition.
@@ -7,12 +6,6 @@ use serde::{Deserialize, Serialize};
 pub struct Condition {
     /// Short name, as `5rpm`.
     pub name: String,
-    /// Crank speed [revolutions per minute].
-    pub speed_rpm: f64,
-    /// Counterweight moment at the crank [N m].
-    pub counterweight_moment_n_m: f64,
-    /// Load at the suspension point.
-    pub card: LoadCard,
     /// Measured stress; absent where a condition is only simulated.
     pub record: Option<GaugeRecord>,
 }

@@ -6,17 +6,15 @@
 mod condition;
 mod effect;
 mod gene;
+mod model;
 mod objective;
 
 pub use condition::{Condition, GaugeRecord, GaugeTrace};
 pub use effect::{EffectSetting, merged};
 pub use gene::{Coefficient, Gene, Quantity, Scale};
+pub use model::ModelSettings;
 pub use objective::{Objective, Offset};
 
-use crate::pumping_unit::{
-    BackHead, Beam, Contact, Crank, FrontHead, ModalHead, Rod, Ropes, RunSettings, Suspension,
-    TwinRopes,
-};
 use serde::{Deserialize, Serialize};
 
 /// A machine, its records and what is asked of them.
@@ -24,29 +22,9 @@ use serde::{Deserialize, Serialize};
 pub struct Case {
     /// Name of the machine.
     pub name: String,
-    /// Acceleration of gravity, downwards [m/s2].
-    pub gravity_m_s2: f64,
-    /// Walking beam with everything rigid on it.
-    pub beam: Beam,
-    /// Prescribed crank.
-    pub crank: Crank,
-    /// Connecting rods and crossbeam.
-    pub rod: Rod,
-    /// Carrier bar with clamp and load cell.
-    pub suspension: Suspension,
-    /// Both ropes.
-    pub ropes: Ropes,
-    /// Contact between rope and heads.
-    pub contact: Contact,
-    /// Front head: an arc about the beam pivot.
-    pub front_head: FrontHead,
-    /// Back head: an arc about its own centre, flexible.
-    pub back_head: BackHead,
-    /// Modes and influence lines of the back head.
-    pub modal_head: ModalHead,
-    /// Two ropes on each head in place of one, if there are.
-    pub twin_ropes: Option<TwinRopes>,
-    /// What the machine has beside the above: effects with their numbers.
+    /// Which model simulates it, and what that model alone understands.
+    pub model: ModelSettings,
+    /// What the model has beside that: effects with their numbers.
     pub effects: Vec<EffectSetting>,
     /// Units in which the case states those numbers, effect by effect in the same order; a worker
     /// refuses one that is not its own. Empty where nobody stated any.
@@ -58,8 +36,6 @@ pub struct Case {
     pub conditions: Vec<Condition>,
     /// What a calibration minimises.
     pub objective: Objective,
-    /// How a run is started, sampled and integrated.
-    pub run: RunSettings,
 }
 
 impl Case {

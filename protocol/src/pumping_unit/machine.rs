@@ -1,146 +1,110 @@
-//! Geometry and masses of a double-horse-head unit.
-//!
-//! Frame: origin at the beam pivot, x towards the well, y up, z lateral; angles counter-clockwise
-//! from +x. "Beam frame" is this frame turned with the beam; at beam angle 0 they coincide.
+//! The machine of a case: what a case of this kind says to its own model alone.
+use super::{
+    BackHead, Beam, Contact, Crank, FrontHead, LoadCard, ModalHead, Rod, Ropes, RunSettings,
+    Suspension, TwinRopes,
+};
+use crate::{
+    case::{Case, ModelSettings},
+    wire::{self, WireError},
+};
 use serde::{Deserialize, Serialize};
 
-/// Walking beam with both heads and everything rigid on it.
+/// A pumping unit under its working conditions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Beam {
-    /// Moment of inertia of the whole assembly about the pivot [kg m2].
-    pub inertia_kg_m2: f64,
-    /// Static moment of the assembly's weight at beam angle 0 [N m]; positive lowers the front.
-    pub gravity_moment_n_m: f64,
-    /// The weight times the height of its centre of mass above the pivot at beam angle 0 [N m]; 0,
-    /// on a line with the pivot, where none is stated. Positive where the beam is top-heavy.
-    #[serde(default)]
-    pub gravity_height_moment_n_m: f64,
+pub struct Machine {
+    /// Acceleration of gravity, downwards [m/s2].
+    pub gravity_m_s2: f64,
+    /// Walking beam with everything rigid on it.
+    pub beam: Beam,
+    /// Prescribed crank.
+    pub crank: Crank,
+    /// Connecting rods and crossbeam.
+    pub rod: Rod,
+    /// Carrier bar with clamp and load cell.
+    pub suspension: Suspension,
+    /// Both ropes.
+    pub ropes: Ropes,
+    /// Contact between rope and heads.
+    pub contact: Contact,
+    /// Front head: an arc about the beam pivot.
+    pub front_head: FrontHead,
+    /// Back head: an arc about its own centre, flexible.
+    pub back_head: BackHead,
+    /// Modes and influence lines of the back head.
+    pub modal_head: ModalHead,
+    /// Two ropes on each head in place of one, if there are.
+    pub twin_ropes: Option<TwinRopes>,
+    /// Speed and load under each condition of the case, in its order.
+    pub conditions: Vec<WorkingCondition>,
+    /// How a run is started, sampled and integrated.
+    pub run: RunSettings,
 }
 
-/// Sense in which the crank turns, seen with the well on the right.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TurnSense {
-    /// The crank-pin angle decreases with time.
-    Clockwise,
-    /// The crank-pin angle increases with time.
-    CounterClockwise,
+/// What a condition of a case means to the machine.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WorkingCondition {
+    /// Crank speed [revolutions per minute].
+    pub speed_rpm: f64,
+    /// Counterweight moment at the crank [N m].
+    pub counterweight_moment_n_m: f64,
+    /// Load at the suspension point.
+    pub card: LoadCard,
 }
 
-impl std::fmt::Display for TurnSense {
-    /// As case files write it.
-    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        to.write_str(match self {
-            Self::Clockwise => "clockwise",
-            Self::CounterClockwise => "counter_clockwise",
+impl Machine {
+    /// The kind of model, as cases and workers name it: double horse heads.
+    pub const KIND: &'static str = "dhh";
+
+    /// The machine of a case.
+    ///
+    /// # Errors
+    /// [`WireError::Malformed`] for a case of another kind, or settings of another version.
+    pub fn of(case: &Case) -> Result<Self, WireError> {
+        if case.model.kind != Self::KIND {
+            return Err(WireError::Malformed {
+                reason: format!("its model is `{}`, not `{}`", case.model.kind, Self::KIND),
+            });
+        }
+        wire::decode(&case.model.settings)
+    }
+
+    /// As a case carries it.
+    ///
+    /// # Errors
+    /// [`WireError::TooLong`] beyond what a message may hold.
+    pub fn settings(&self) -> Result<ModelSettings, WireError> {
+        Ok(ModelSettings {
+            kind: Self::KIND.to_owned(),
+            settings: wire::encode(self)?,
         })
     }
 }
 
-/// Prescribed crank.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Crank {
-    /// Shaft centre \[m\].
-    pub center_x_m: f64,
-    /// Shaft centre \[m\].
-    pub center_y_m: f64,
-    /// Distance from the shaft to the crank pin \[m\].
-    pub radius_m: f64,
-    /// Sense of rotation.
-    pub sense: TurnSense,
-    /// Angle by which the counterweight leads the crank pin \[deg\].
-    pub counterweight_phase_deg: f64,
+/// A case of this kind with its machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PumpingUnit {
+    /// What every model's case says.
+    pub case: Case,
+    /// What this one's says beside.
+    pub machine: Machine,
 }
 
-/// Connecting rods and crossbeam, one planar rigid body between crank pin and back rope.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Rod {
-    /// From the crank pin to the rope's revolute joint \[m\].
-    pub length_m: f64,
-    /// Mass \[kg\].
-    pub mass_kg: f64,
-    /// From the crank pin to the centre of mass \[m\].
-    pub center_of_mass_m: f64,
-    /// Moment of inertia about its own centre of mass [kg m2].
-    pub inertia_kg_m2: f64,
-}
+impl PumpingUnit {
+    /// Takes the machine out of a case.
+    ///
+    /// # Errors
+    /// As [`Machine::of`].
+    pub fn of(case: Case) -> Result<Self, WireError> {
+        let machine = Machine::of(&case)?;
+        Ok(Self { case, machine })
+    }
 
-/// Carrier bar with clamp and load cell, guided vertically.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Suspension {
-    /// Mass \[kg\].
-    pub mass_kg: f64,
-}
-
-/// Both ropes: chains of equal cylinders.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Ropes {
-    /// Diameter of a cylinder \[m\].
-    pub diameter_m: f64,
-    /// Length of a cylinder \[m\].
-    pub cylinder_length_m: f64,
-    /// Density [kg/m3].
-    pub density_kg_m3: f64,
-    /// Length of cylinder that the genes' stiffness and damping belong to \[m\]; chains of other
-    /// pitch are scaled so that the rope stays the same.
-    pub reference_length_m: f64,
-    /// Stiffness of the two end joints of a rope.
-    pub ends: RopeEnds,
-    /// Preload of every joint: its pull where nothing is stretched \[N\]; 0 where none is stated.
-    #[serde(default)]
-    pub preload_n: f64,
-    /// Cylinders between crossbeam and back head.
-    pub back_cylinders: usize,
-    /// Cylinders between front head and suspension point.
-    pub front_cylinders: usize,
-}
-
-/// Stiffness of the joints that hold a rope at its two ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RopeEnds {
-    /// Half a pitch each (twice the coefficients): the rope's compliance is exactly that of its
-    /// length, whatever the pitch.
-    HalfPitch,
-    /// A whole pitch each, like every other joint.
-    WholePitch,
-}
-
-/// IMPACT contact between rope and heads (paper, Eqs. 4-6).
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Contact {
-    /// Exponent n of the penetration.
-    pub exponent: f64,
-    /// Penetration at which the damping reaches its full value, `d_max` \[m\].
-    pub full_damping_penetration_m: f64,
-}
-
-/// Front head: a circular arc about the beam pivot.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FrontHead {
-    /// Radius of the rope's centre line on the arc: the front arm \[m\].
-    pub radius_m: f64,
-    /// Where the rope is fixed, in the beam frame \[deg\].
-    pub rope_anchor_deg: f64,
-}
-
-/// Back head: a circular arc about a centre of its own.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct BackHead {
-    /// Radius of the rope's centre line on the arc \[m\].
-    pub radius_m: f64,
-    /// Centre of the arc in the beam frame \[m\].
-    pub center_x_m: f64,
-    /// Centre of the arc in the beam frame \[m\].
-    pub center_y_m: f64,
-    /// Where the rope is fixed, as seen from the centre, in the beam frame \[deg\].
-    pub rope_anchor_deg: f64,
+    /// Puts the machine, as it is now, into its case.
+    ///
+    /// # Errors
+    /// As [`Machine::settings`].
+    pub fn into_case(mut self) -> Result<Case, WireError> {
+        self.case.model = self.machine.settings()?;
+        Ok(self.case)
+    }
 }

@@ -9,6 +9,7 @@ mod discretisation;
 mod drawing;
 mod head;
 mod machine;
+mod parts;
 mod reduce_head;
 mod run;
 mod twin;
@@ -17,7 +18,8 @@ pub use card::{LoadCard, Smoothing};
 pub use discretisation::Discretisation;
 pub use drawing::{Energy, Motion, Simulation};
 pub use head::{Influence, ModalHead, StressRecovery};
-pub use machine::{
+pub use machine::{Machine, PumpingUnit, WorkingCondition};
+pub use parts::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
 };
 pub use reduce_head::{

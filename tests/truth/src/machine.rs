@@ -4,8 +4,11 @@ use crate::draw::Draw;
 use crate::law::Hidden;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
-use protocol::case::{Case, Coefficient};
-use protocol::{job::Failure, pumping_unit::Discretisation};
+use protocol::{
+    case::{Case, Coefficient},
+    job::Failure,
+    pumping_unit::{Discretisation, PumpingUnit},
+};
 use simulation::effect::Effect;
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::TR_BDF2;
@@ -108,21 +111,21 @@ impl Effect for Variation {
 /// # Errors
 /// A case that cannot be refined so, or a machine that does not come round.
 pub fn turn(
-    case: &Case,
+    unit: &PumpingUnit,
     condition: usize,
     (genes, hidden): (&[f64], &[Hidden]),
     variation: Variation,
     fineness: &Fineness,
 ) -> anyhow::Result<Turn> {
-    let available = case.modal_head.frequencies_hz.len();
+    let available = unit.machine.modal_head.frequencies_hz.len();
     let finer = Discretisation {
         cylinder_length_m: Some(fineness.cylinder),
-        modes: Some((case.run.modes + fineness.more_modes).min(available)),
+        modes: Some((unit.machine.run.modes + fineness.more_modes).min(available)),
         ..Discretisation::default()
     };
-    let case = worker::convert::refined(case, &finer).map_err(|why| refused(&why))?;
-    let law = worker::convert::rope_law(&case, genes).map_err(|why| refused(&why))?;
-    let plain = worker::convert::machine(&case, condition).map_err(|why| refused(&why))?;
+    let unit = worker::convert::refined(unit, &finer).map_err(|why| refused(&why))?;
+    let law = worker::convert::rope_law(&unit, genes).map_err(|why| refused(&why))?;
+    let plain = worker::convert::machine(&unit, condition).map_err(|why| refused(&why))?;
     let mut description = plain.description;
     description.crank.speed *= 1.0 + variation.speed;
     let laws = hidden.iter().map(|hidden| {

@@ -1,6 +1,7 @@
 //! `truth make` and `truth open`.
 use anyhow::{Context as _, bail, ensure};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use protocol::pumping_unit::PumpingUnit;
 use std::fs;
 use std::io::{self, Write as _};
 use std::path::PathBuf;
@@ -107,6 +108,7 @@ fn main() -> anyhow::Result<()> {
 
 fn make_sets(arguments: &Make) -> anyhow::Result<()> {
     let case = coordinator::case::load(&arguments.case, &coordinator::case::Overrides::default())?;
+    let unit = PumpingUnit::of(case)?;
     ensure!(
         arguments.noise > 0.0 && arguments.noise < 1e3,
         "--noise must be a factor above 0"
@@ -131,7 +133,7 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
         let name = sealed.name();
         let folder = arguments.out.join(&name);
         fs::create_dir_all(&folder).with_context(|| format!("making {}", folder.display()))?;
-        let answer = make(&case, &order, &folder, &name)?;
+        let answer = make(&unit, &order, &folder, &name)?;
         sealed.sets.insert(name, answer);
         commitment = sealed.save(&arguments.answers)?;
         say(&format!("{}\n", folder.display()))?;

@@ -5,7 +5,7 @@ use crate::files::{Delivered, write};
 use crate::law::{CATALOGUE, Hidden, Kind, Law, OUTSIDE, by_id};
 use crate::machine::{Fineness, Variation, genes, turn};
 use anyhow::Context as _;
-use protocol::case::Case;
+use protocol::pumping_unit::PumpingUnit;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
@@ -180,15 +180,20 @@ impl AnswerEffect {
 ///
 /// # Errors
 /// A machine that never comes round; what the file system refuses.
-pub fn make(case: &Case, order: &Order, folder: &Path, name: &str) -> anyhow::Result<Answer> {
+pub fn make(
+    unit: &PumpingUnit,
+    order: &Order,
+    folder: &Path,
+    name: &str,
+) -> anyhow::Result<Answer> {
     let hidden = order.effects()?;
     let sensors = Sensors::with_noise(order.noise);
     let mut attempt = 0;
     let (values, all) = loop {
         let mut draw = Draw::new(order.seed, &format!("genes {attempt}"));
-        let values = genes(case, &mut draw)?;
-        let all: anyhow::Result<Vec<Turns>> = (0..case.conditions.len())
-            .map(|condition| turns(case, condition, (&values, &hidden), &order.fineness))
+        let values = genes(&unit.case, &mut draw)?;
+        let all: anyhow::Result<Vec<Turns>> = (0..unit.case.conditions.len())
+            .map(|condition| turns(unit, condition, (&values, &hidden), &order.fineness))
             .collect();
         match all {
             Ok(all) => break (values, all),
@@ -198,18 +203,19 @@ pub fn make(case: &Case, order: &Order, folder: &Path, name: &str) -> anyhow::Re
             Err(_) => attempt += 1,
         }
     };
-    for (condition, turns) in case.conditions.iter().zip(all) {
+    let conditions = unit.case.conditions.iter().zip(&unit.machine.conditions);
+    for ((condition, working), turns) in conditions.zip(all) {
         let mut draw = Draw::new(order.seed, &format!("sensors {}", condition.name));
-        let mut card = condition.card.load_n.clone();
+        let mut card = working.card.load_n.clone();
         let laws: Vec<Arc<dyn Law>> = hidden.iter().map(|h| Arc::clone(&h.law)).collect();
         for law in &laws {
-            law.deliver(&mut card, crate::chain::speed(condition.speed_rpm));
+            law.deliver(&mut card, crate::chain::speed(working.speed_rpm));
         }
         let (samples, lost): (Vec<Sample>, usize) =
             record(&turns, &card, &laws, (&sensors, order.cycles), &mut draw);
         let delivered = Delivered {
             condition: &condition.name,
-            rpm: condition.speed_rpm,
+            rpm: working.speed_rpm,
             cycles: order.cycles,
             card: &card,
             samples: &samples,
@@ -217,11 +223,11 @@ pub fn make(case: &Case, order: &Order, folder: &Path, name: &str) -> anyhow::Re
         };
         write(folder, name, &sensors, &delivered)?;
     }
-    let named = case.genes.iter().zip(&values);
+    let named = unit.case.genes.iter().zip(&values);
     Ok(Answer {
         seed: order.seed,
         stratum: order.stratum,
-        case: case.name.clone(),
+        case: unit.case.name.clone(),
         noise: order.noise,
         cycles: order.cycles,
         genes: named.map(|(gene, value)| (gene.label(), *value)).collect(),
@@ -231,14 +237,14 @@ pub fn make(case: &Case, order: &Order, folder: &Path, name: &str) -> anyhow::Re
 
 /// The turn of a condition, and how it changes with load and speed.
 fn turns(
-    case: &Case,
+    unit: &PumpingUnit,
     condition: usize,
     machine: (&[f64], &[Hidden]),
     fineness: &Fineness,
 ) -> anyhow::Result<Turns> {
     let with = |load: f64, speed: f64| {
         turn(
-            case,
+            unit,
             condition,
             machine,
             Variation { load, speed },

@@ -1,6 +1,9 @@
 //! What the values of an individual's genes are values of.
-use protocol::case::{Case, Coefficient, Quantity};
-use protocol::job::Failure;
+use protocol::{
+    case::{Case, Coefficient, Quantity},
+    job::Failure,
+    pumping_unit::PumpingUnit,
+};
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::model::description::RopeLaw;
 
@@ -26,8 +29,8 @@ pub(super) fn individual<'a>(
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] when a gene is missing, surplus or not a positive number.
-pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
-    let genes = individual(case, genes)?;
+pub fn rope_law(unit: &PumpingUnit, genes: &[f64]) -> Result<RopeLaw, Failure> {
+    let genes = individual(&unit.case, genes)?;
     let value = |name: Coefficient| -> Result<f64, Failure> {
         let found = genes.clone().find_map(|(quantity, value)| match quantity {
             Quantity::Coefficient { name: own, unit } if *own == name => Some((*unit, value)),
@@ -48,13 +51,13 @@ pub fn rope_law(case: &Case, genes: &[f64]) -> Result<RopeLaw, Failure> {
             damping: [value(Coefficient::Cb1)?, value(Coefficient::Cb23)?],
             rotational_stiffness: [value(Coefficient::Kb4)?, value(Coefficient::Kb56)?],
             rotational_damping: [value(Coefficient::Cb4)?, value(Coefficient::Cb56)?],
-            preload: case.ropes.preload_n,
+            preload: unit.machine.ropes.preload_n,
         },
         contact: Impact {
             stiffness: value(Coefficient::Kc)?,
-            exponent: case.contact.exponent,
+            exponent: unit.machine.contact.exponent,
             damping: value(Coefficient::Cc)?,
-            full_damping_penetration: case.contact.full_damping_penetration_m,
+            full_damping_penetration: unit.machine.contact.full_damping_penetration_m,
         },
     })
 }

@@ -1,6 +1,8 @@
 //! The back head's tables as the dynamics take them: equally spaced stations in radians, stress in pascals.
-use protocol::job::Failure;
-use protocol::{case::Case, pumping_unit::StressRecovery};
+use protocol::{
+    job::Failure,
+    pumping_unit::{Machine, StressRecovery},
+};
 use simulation::model::description::{self, Head};
 
 pub(super) const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
@@ -9,8 +11,8 @@ pub(super) const PASCAL_PER_MEGAPASCAL: f64 = 1e6;
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the table whose stations are not equally spaced.
-pub(super) fn head(case: &Case) -> Result<Head, Failure> {
-    let head = &case.modal_head;
+pub(super) fn head(machine: &Machine) -> Result<Head, Failure> {
+    let head = &machine.modal_head;
     let (start, step) = grid("modal_head.arc_deg", &head.arc_deg)?;
     let (influence_start, influence_step) = grid("influence.psi_deg", &head.influence.psi_deg)?;
     let base_stress = head

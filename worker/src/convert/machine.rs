@@ -1,9 +1,9 @@
 //! The machine of a case under one of its conditions.
 use super::{effect, head::head, twins};
-use protocol::job::{Failure, Individual};
 use protocol::{
-    case::{Case, Condition, EffectSetting, merged},
-    pumping_unit::{RopeEnds, Smoothing, TurnSense},
+    case::{EffectSetting, merged},
+    job::{Failure, Individual},
+    pumping_unit::{self, PumpingUnit, RopeEnds, Smoothing, TurnSense, WorkingCondition},
 };
 use simulation::model::Machine;
 use simulation::model::description::{Arc, Crank, Description, Rod, Rope};
@@ -12,8 +12,8 @@ use simulation::model::description::{Arc, Crank, Description, Rod, Rope};
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the field that cannot be built.
-pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
-    build(case, condition, &case.effects)
+pub fn machine(unit: &PumpingUnit, condition: usize) -> Result<Machine, Failure> {
+    build(unit, condition, &unit.case.effects)
 }
 
 /// The machine of an individual: the case's effects have the values that its genes give them, and a
@@ -21,25 +21,34 @@ pub fn machine(case: &Case, condition: usize) -> Result<Machine, Failure> {
 ///
 /// # Errors
 /// As [`machine`]; an effect that is refused is named by its place in the merged list.
-pub fn machine_with(case: &Case, individual: &Individual) -> Result<Machine, Failure> {
-    let own = effect::of_individual(case, &individual.genes)?;
+pub fn machine_with(unit: &PumpingUnit, individual: &Individual) -> Result<Machine, Failure> {
+    let own = effect::of_individual(&unit.case, &individual.genes)?;
     build(
-        case,
+        unit,
         individual.condition,
         &merged(&own, &individual.effects),
     )
 }
 
-fn build(case: &Case, condition: usize, effects: &[EffectSetting]) -> Result<Machine, Failure> {
-    effect::check_units(&case.effects, &case.effect_units)?;
+fn build(
+    unit: &PumpingUnit,
+    condition: usize,
+    effects: &[EffectSetting],
+) -> Result<Machine, Failure> {
+    effect::check_units(&unit.case.effects, &unit.case.effect_units)?;
     let selection = effect::selection(effects)?;
-    let condition = case
+    let condition = unit
+        .machine
         .conditions
         .get(condition)
         .ok_or_else(|| no_condition(condition))?;
-    let modes = case.run.modes;
-    Machine::with_effects(description(case, condition)?, modes, selection.effects())
-        .map_err(|error| Failure::misconfigured("machine", error.to_string()))
+    let modes = unit.machine.run.modes;
+    Machine::with_effects(
+        description(&unit.machine, condition)?,
+        modes,
+        selection.effects(),
+    )
+    .map_err(|error| Failure::misconfigured("machine", error.to_string()))
 }
 
 /// A condition that the case does not have.
@@ -47,47 +56,50 @@ pub(crate) fn no_condition(condition: usize) -> Failure {
     Failure::misconfigured("conditions", format!("has no entry {condition}"))
 }
 
-fn description(case: &Case, condition: &Condition) -> Result<Description, Failure> {
-    let back = &case.back_head;
+fn description(
+    machine: &pumping_unit::Machine,
+    condition: &WorkingCondition,
+) -> Result<Description, Failure> {
+    let back = &machine.back_head;
     Ok(Description {
-        gravity: case.gravity_m_s2,
-        beam_inertia: case.beam.inertia_kg_m2,
-        beam_gravity_moment: case.beam.gravity_moment_n_m,
-        beam_gravity_height: case.beam.gravity_height_moment_n_m,
+        gravity: machine.gravity_m_s2,
+        beam_inertia: machine.beam.inertia_kg_m2,
+        beam_gravity_moment: machine.beam.gravity_moment_n_m,
+        beam_gravity_height: machine.beam.gravity_height_moment_n_m,
         crank: Crank {
-            center: [case.crank.center_x_m, case.crank.center_y_m],
-            radius: case.crank.radius_m,
-            sense: match case.crank.sense {
+            center: [machine.crank.center_x_m, machine.crank.center_y_m],
+            radius: machine.crank.radius_m,
+            sense: match machine.crank.sense {
                 TurnSense::Clockwise => -1.0,
                 TurnSense::CounterClockwise => 1.0,
             },
             speed: condition.speed_rpm * std::f64::consts::TAU / 60.0,
             counterweight_moment: condition.counterweight_moment_n_m,
-            counterweight_phase: case.crank.counterweight_phase_deg.to_radians(),
+            counterweight_phase: machine.crank.counterweight_phase_deg.to_radians(),
         },
         rod: Rod {
-            length: case.rod.length_m,
-            mass: case.rod.mass_kg,
-            center_of_mass: case.rod.center_of_mass_m,
-            inertia: case.rod.inertia_kg_m2,
+            length: machine.rod.length_m,
+            mass: machine.rod.mass_kg,
+            center_of_mass: machine.rod.center_of_mass_m,
+            inertia: machine.rod.inertia_kg_m2,
         },
-        suspension_mass: case.suspension.mass_kg,
+        suspension_mass: machine.suspension.mass_kg,
         rope: Rope {
-            diameter: case.ropes.diameter_m,
-            pitch: case.ropes.cylinder_length_m,
-            density: case.ropes.density_kg_m3,
-            reference_pitch: case.ropes.reference_length_m,
-            end_pitches: match case.ropes.ends {
+            diameter: machine.ropes.diameter_m,
+            pitch: machine.ropes.cylinder_length_m,
+            density: machine.ropes.density_kg_m3,
+            reference_pitch: machine.ropes.reference_length_m,
+            end_pitches: match machine.ropes.ends {
                 RopeEnds::HalfPitch => 0.5,
                 RopeEnds::WholePitch => 1.0,
             },
-            back: case.ropes.back_cylinders,
-            front: case.ropes.front_cylinders,
+            back: machine.ropes.back_cylinders,
+            front: machine.ropes.front_cylinders,
         },
         front_arc: Arc {
             center: [0.0, 0.0],
-            radius: case.front_head.radius_m,
-            anchor: case.front_head.rope_anchor_deg.to_radians(),
+            radius: machine.front_head.radius_m,
+            anchor: machine.front_head.rope_anchor_deg.to_radians(),
             sense: 1.0,
         },
         back_arc: Arc {
@@ -96,14 +108,14 @@ fn description(case: &Case, condition: &Condition) -> Result<Description, Failur
             anchor: back.rope_anchor_deg.to_radians(),
             sense: -1.0,
         },
-        head: head(case)?,
-        twins: twins::twins(case)?,
+        head: head(machine)?,
+        twins: twins::twins(machine)?,
         card: card(condition),
     })
 }
 
 /// The load card after smoothing \[N\].
-fn card(condition: &Condition) -> Vec<f64> {
+fn card(condition: &WorkingCondition) -> Vec<f64> {
     let load = &condition.card.load_n;
     let n = load.len();
     match condition.card.smoothing {

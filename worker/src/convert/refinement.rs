@@ -1,19 +1,25 @@
 //! The same machine, discretised otherwise.
-use protocol::case::Case;
-use protocol::{job::Failure, pumping_unit::Discretisation};
+use protocol::{
+    job::Failure,
+    pumping_unit::{Discretisation, PumpingUnit},
+};
 
 /// A case with another discretisation.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] when cylinders do not fill the ropes.
-pub fn refined(case: &Case, discretisation: &Discretisation) -> Result<Case, Failure> {
-    let mut case = case.clone();
+pub fn refined(
+    unit: &PumpingUnit,
+    discretisation: &Discretisation,
+) -> Result<PumpingUnit, Failure> {
+    let mut unit = unit.clone();
+    let machine = &mut unit.machine;
     if let Some(length) = discretisation.cylinder_length_m {
         for count in [
-            &mut case.ropes.back_cylinders,
-            &mut case.ropes.front_cylinders,
+            &mut machine.ropes.back_cylinders,
+            &mut machine.ropes.front_cylinders,
         ] {
-            let rope = *count as f64 * case.ropes.cylinder_length_m;
+            let rope = *count as f64 * machine.ropes.cylinder_length_m;
             let fitting = (rope / length).round();
             let fits = (3.0..=MOST_CYLINDERS).contains(&fitting)
                 && (fitting * length - rope).abs() < 1e-6 * rope;
@@ -31,22 +37,22 @@ pub fn refined(case: &Case, discretisation: &Discretisation) -> Result<Case, Fai
             let fitting = fitting as usize;
             *count = fitting;
         }
-        case.ropes.cylinder_length_m = length;
+        machine.ropes.cylinder_length_m = length;
     }
     if let Some(modes) = discretisation.modes {
-        if modes > case.modal_head.frequencies_hz.len() {
+        if modes > machine.modal_head.frequencies_hz.len() {
             return Err(Failure::misconfigured(
                 "discretisation.modes",
                 format!(
                     "is {modes}; the head has {}",
-                    case.modal_head.frequencies_hz.len()
+                    machine.modal_head.frequencies_hz.len()
                 ),
             ));
         }
-        case.run.modes = modes;
+        machine.run.modes = modes;
     }
     if let Some(integrator) = discretisation.integrator {
-        case.run.integrator = integrator;
+        machine.run.integrator = integrator;
     }
     let positive = |field: &str, value: f64| {
         if value > 0.0 && value.is_finite() {
@@ -58,7 +64,7 @@ pub fn refined(case: &Case, discretisation: &Discretisation) -> Result<Case, Fai
         ))
     };
     if let Some(step) = discretisation.longest_step_s {
-        case.run.longest_step_s = positive("discretisation.longest_step_s", step)?;
+        machine.run.longest_step_s = positive("discretisation.longest_step_s", step)?;
     }
     if let Some(lead_in) = discretisation.lead_in_deg {
         if !(0.0..=3600.0).contains(&lead_in) {
@@ -67,12 +73,12 @@ pub fn refined(case: &Case, discretisation: &Discretisation) -> Result<Case, Fai
                 format!("is {lead_in}; it must lie between 0 and 3600"),
             ));
         }
-        case.run.lead_in_deg = lead_in;
+        machine.run.lead_in_deg = lead_in;
     }
     if let Some(tolerance) = discretisation.tolerance {
-        case.run.tolerance = positive("discretisation.tolerance", tolerance)?;
+        machine.run.tolerance = positive("discretisation.tolerance", tolerance)?;
     }
-    Ok(case)
+    Ok(unit)
 }
 
 /// Most cylinders that a rope may have.

@@ -1,33 +1,32 @@
 //! How a run is started, sampled and integrated.
-use protocol::pumping_unit::Discretisation;
-use protocol::{case::Case, pumping_unit::Integrator};
+use protocol::pumping_unit::{Discretisation, Integrator, Machine};
 use simulation::integrator::method::Method;
 use simulation::integrator::tableau::{ESDIRK4, TR_BDF2};
 use simulation::run::RunSettings;
 
 /// How a case wants its runs.
-pub fn run_settings(case: &Case) -> RunSettings {
+pub fn run_settings(machine: &Machine) -> RunSettings {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "the case check lets only steps through that divide 360"
     )]
-    let samples = (360.0 / case.run.output_step_deg).round() as usize;
+    let samples = (360.0 / machine.run.output_step_deg).round() as usize;
     RunSettings {
-        lead_in: case.run.lead_in_deg.to_radians(),
-        ramp: case.run.ramp_s,
+        lead_in: machine.run.lead_in_deg.to_radians(),
+        ramp: machine.run.ramp_s,
         samples,
-        tolerance: case.run.tolerance,
-        method: method(case.run.integrator, case.run.spectral_radius),
-        longest_step: case.run.longest_step_s,
-        budget: case.run.iteration_budget,
+        tolerance: machine.run.tolerance,
+        method: method(machine.run.integrator, machine.run.spectral_radius),
+        longest_step: machine.run.longest_step_s,
+        budget: machine.run.iteration_budget,
         ..RunSettings::default()
     }
 }
 
-/// How a case wants its runs where a job discretises it otherwise; the case is the [`super::refined`] one.
-pub fn discretised_settings(case: &Case, discretisation: &Discretisation) -> RunSettings {
-    let mut settings = run_settings(case);
+/// How a case wants its runs where a job discretises it otherwise; the machine is the [`super::refined`] one.
+pub fn discretised_settings(machine: &Machine, discretisation: &Discretisation) -> RunSettings {
+    let mut settings = run_settings(machine);
     if discretisation.step_as_stated {
         settings.slow_swing = f64::INFINITY;
     }

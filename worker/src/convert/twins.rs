@@ -1,9 +1,8 @@
 //! Twin ropes of a case as the dynamics take them.
 use super::head::{PASCAL_PER_MEGAPASCAL, curves};
-use protocol::job::Failure;
 use protocol::{
-    case::Case,
-    pumping_unit::{TwinHead, TwinRopes},
+    job::Failure,
+    pumping_unit::{Machine, TwinHead, TwinRopes},
 };
 use simulation::model::description::{Sway, Twins};
 
@@ -12,11 +11,11 @@ use simulation::model::description::{Sway, Twins};
 /// # Errors
 /// [`Failure::Misconfigured`] if the head's tables for it do not lie over those of the modes, or hold
 /// too few modes.
-pub(super) fn twins(case: &Case) -> Result<Option<Twins>, Failure> {
-    let Some(twins) = &case.twin_ropes else {
+pub(super) fn twins(machine: &Machine) -> Result<Option<Twins>, Failure> {
+    let Some(twins) = &machine.twin_ropes else {
         return Ok(None);
     };
-    check(case, twins)?;
+    check(machine, twins)?;
     Ok(Some(Twins {
         offset: twins.offset_m,
         longer: [
@@ -27,7 +26,7 @@ pub(super) fn twins(case: &Case) -> Result<Option<Twins>, Failure> {
     }))
 }
 
-fn check(case: &Case, twins: &TwinRopes) -> Result<(), Failure> {
+fn check(machine: &Machine, twins: &TwinRopes) -> Result<(), Failure> {
     let (head, modes) = (&twins.head, twins.modes);
     let available = [
         head.frequencies_hz.len(),
@@ -43,7 +42,7 @@ fn check(case: &Case, twins: &TwinRopes) -> Result<(), Failure> {
             format!("is {modes}; the head has {least} out of its plane"),
         ));
     }
-    if head.influence.psi_deg != case.modal_head.influence.psi_deg {
+    if head.influence.psi_deg != machine.modal_head.influence.psi_deg {
         return Err(Failure::misconfigured(
             "twin_ropes.head.influence.psi_deg",
             "has other stations than the influence lines of the plane".to_owned(),

@@ -17,7 +17,7 @@ pub(super) fn run(
     spec: &SimulateSpec,
     motion_step_deg: f64,
 ) -> Result<Simulation, Failure> {
-    let step_deg = machines.case.run.output_step_deg;
+    let step_deg = machines.unit.machine.run.output_step_deg;
     let recorder = Recorder::everything(samples_apart(motion_step_deg, step_deg));
     let ran = Ran::new(machines, spec, recorder)?;
     let (gauge_mpa, suspension_m) = (ran.gauge_mpa(), ran.suspension_m());

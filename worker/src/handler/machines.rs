@@ -3,7 +3,7 @@ use crate::convert;
 use protocol::{
     case::Case,
     job::{Failure, Individual},
-    pumping_unit::Discretisation,
+    pumping_unit::{Discretisation, PumpingUnit},
 };
 use simulation::model::Machine;
 use std::borrow::Cow;
@@ -11,7 +11,7 @@ use std::borrow::Cow;
 /// A case with one machine per condition.
 #[derive(Debug)]
 pub(super) struct Machines {
-    pub(super) case: Case,
+    pub(super) unit: PumpingUnit,
     /// With the case's effects as they are stated, discretised as the case says.
     plain: Vec<Machine>,
 }
@@ -22,14 +22,13 @@ impl Machines {
     /// # Errors
     /// [`Failure::Misconfigured`] if the case cannot be built.
     pub(super) fn new(case: &Case) -> Result<Self, Failure> {
+        let unit = PumpingUnit::of(case.clone())
+            .map_err(|error| Failure::misconfigured("model.settings", error.to_string()))?;
         let plain = (0..case.conditions.len())
-            .map(|condition| convert::machine(case, condition))
+            .map(|condition| convert::machine(&unit, condition))
             .collect::<Result<_, _>>()?;
         convert::effect::check_genes(case)?;
-        Ok(Self {
-            case: case.clone(),
-            plain,
-        })
+        Ok(Self { unit, plain })
     }
 
     /// The case, discretised as a job says.
@@ -39,13 +38,13 @@ impl Machines {
     pub(super) fn discretised(
         &self,
         discretisation: &Discretisation,
-    ) -> Result<Cow<'_, Case>, Failure> {
+    ) -> Result<Cow<'_, PumpingUnit>, Failure> {
         if *discretisation == Discretisation::OF_THE_CASE {
-            return Ok(Cow::Borrowed(&self.case));
+            return Ok(Cow::Borrowed(&self.unit));
         }
-        let refined = convert::refined(&self.case, discretisation)?;
-        Ok(if refined == self.case {
-            Cow::Borrowed(&self.case)
+        let refined = convert::refined(&self.unit, discretisation)?;
+        Ok(if refined == self.unit {
+            Cow::Borrowed(&self.unit)
         } else {
             Cow::Owned(refined)
         })
@@ -59,14 +58,14 @@ impl Machines {
     /// [`Failure::Misconfigured`] if it cannot be built.
     pub(super) fn machine(
         &self,
-        case: &Case,
+        unit: &PumpingUnit,
         individual: &Individual,
     ) -> Result<Cow<'_, Machine>, Failure> {
-        let stated = std::ptr::eq(case, &raw const self.case)
+        let stated = std::ptr::eq(unit, &raw const self.unit)
             && individual.effects.is_empty()
-            && !case.has_effect_genes();
+            && !unit.case.has_effect_genes();
         if !stated {
-            return convert::machine_with(case, individual).map(Cow::Owned);
+            return convert::machine_with(unit, individual).map(Cow::Owned);
         }
         let machine = self.plain.get(individual.condition).map(Cow::Borrowed);
         machine.ok_or_else(|| convert::no_condition(individual.condition))

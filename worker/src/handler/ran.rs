@@ -28,10 +28,10 @@ impl Ran {
         spec: &SimulateSpec,
         mut recorder: Recorder,
     ) -> Result<Self, Failure> {
-        let case = machines.discretised(&spec.discretisation)?;
-        let law = convert::rope_law(&case, &spec.individual.genes)?;
-        let settings = convert::discretised_settings(&case, &spec.discretisation);
-        let machine = machines.machine(&case, &spec.individual)?;
+        let unit = machines.discretised(&spec.discretisation)?;
+        let law = convert::rope_law(&unit, &spec.individual.genes)?;
+        let settings = convert::discretised_settings(&unit.machine, &spec.discretisation);
+        let machine = machines.machine(&unit, &spec.individual)?;
         let started = Instant::now();
         let result = simulate(&machine, &law, &settings, &mut recorder);
         Ok(Self {

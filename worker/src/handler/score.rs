@@ -4,8 +4,10 @@
 //! better), which beats a failure under static load (the more load carried the better).
 use super::machines::Machines;
 use super::ran::Ran;
-use protocol::case::{GaugeTrace, Objective, Offset};
-use protocol::job::{ChannelScore, Evaluation, Failure, Reached, SimulateSpec, Verdict};
+use protocol::{
+    case::{GaugeTrace, Objective, Offset},
+    job::{ChannelScore, Evaluation, Failure, Reached, SimulateSpec, Verdict},
+};
 use simulation::observe::Recorder;
 
 /// Fitness of a failure in motion just before the end, and under load just before full load
@@ -35,7 +37,7 @@ pub(super) fn run(
             counters,
         });
     }
-    let case = &machines.case;
+    let case = &machines.unit.case;
     let condition = case.conditions.get(spec.individual.condition);
     let record = condition
         .and_then(|condition| condition.record.as_ref())

@@ -16,8 +16,9 @@ use crate::{
 use anyhow::Context as _;
 use clap::{Args, ValueEnum};
 use protocol::{
-    case::Case,
-    pumping_unit::{HeadMesh, ModeFamily, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap},
+    pumping_unit::{
+        HeadMesh, Machine, ModeFamily, PumpingUnit, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
+    },
     wire,
 };
 use std::path::PathBuf;
@@ -87,11 +88,12 @@ const MOST_MODES: usize = 40;
 
 /// Reduces, compares, writes.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let (case, source) = case::load_head(&arguments.case)?;
+    let (unit, source) = case::load_head(&arguments.case)?;
+    let PumpingUnit { case, machine } = &unit;
     if source.stale {
         terminal::tell("note: tables of the case are missing or were computed for something else");
     }
-    let modes = arguments.modes.unwrap_or(case.run.modes);
+    let modes = arguments.modes.unwrap_or(machine.run.modes);
     if !(1..=MOST_MODES).contains(&modes) {
         return Err(Usage {
             message: format!("{modes} modes cannot be computed"),
@@ -99,48 +101,48 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
         .into());
     }
-    if arguments.write && modes < case.run.modes {
+    if arguments.write && modes < machine.run.modes {
         return Err(Usage {
-            message: format!("the case simulates {} modes", case.run.modes),
+            message: format!("the case simulates {} modes", machine.run.modes),
             help: "write at least as many, or lower run.modes in case.toml first".to_owned(),
         }
         .into());
     }
-    let chosen = condition(&case, arguments.condition.as_deref())?;
+    let chosen = condition(case, arguments.condition.as_deref())?;
     let name = case.conditions[chosen].name.clone();
-    let turn = case::quasi_static(&case, &case.conditions[chosen])
+    let turn = case::quasi_static(machine, &machine.conditions[chosen])
         .context("the crank of this case cannot turn through")?;
-    let mut spec = spec(&case, &source, modes, arguments.family.families());
+    let mut spec = spec(machine, &source, modes, arguments.family.families());
     if arguments.family == FamilyChoice::Coupled {
-        spec.patterns = patterns(&case, &turn);
+        spec.patterns = patterns(machine, &turn);
     }
     if arguments.vtu.is_some() {
-        spec.fields = Some(hardest(&case, &turn));
+        spec.fields = Some(hardest(machine, &turn));
     }
     check_size(&spec)?;
-    let head = reduce_once(&case, spec.clone())?;
-    let wrapped = study::wrapped_turn(&turn, case.back_head.rope_anchor_deg);
-    let comparison = study::compare_head(&head, &case.modal_head, &wrapped, case.run.modes);
+    let head = reduce_once(unit.clone(), spec.clone())?;
+    let wrapped = study::wrapped_turn(&turn, machine.back_head.rope_anchor_deg);
+    let comparison = study::compare_head(&head, &machine.modal_head, &wrapped, machine.run.modes);
     let mut written = Vec::new();
     if let Some(folder) = &arguments.vtu {
         written.push(head_files::write_vtu(folder, &spec.mesh, &head)?);
     }
     if let Some(folder) = &arguments.out {
-        let picture = picture(&case, &source, &head);
+        let picture = picture(machine, &source, &head);
         written.push(report::write_head_modes(folder, &picture)?);
     }
     if arguments.write {
-        written.extend(head_files::write_tables(&case, &source, &head)?);
+        written.extend(head_files::write_tables(machine, &source, &head)?);
     }
     for path in &written {
         terminal::tell(&format!("wrote {}", path.display()));
     }
-    let object = object::head::head((&case, &name), &source.mesh_blake3, &head, &comparison);
+    let object = object::head::head((case, &name), &source.mesh_blake3, &head, &comparison);
     let tables = || {
         let styled = terminal::styled();
         let modes = table::text(&table::head_modes(&head, &comparison), styled);
-        let statics = table::head_statics(&comparison, &name, case.run.modes);
-        let pair = head.twin.iter().zip(&case.twin_ropes);
+        let statics = table::head_statics(&comparison, &name, machine.run.modes);
+        let pair = head.twin.iter().zip(&machine.twin_ropes);
         let pair = pair.map(|(twin, ropes)| table::head_pair(twin, ropes.offset_m));
         let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
         let pair: String = pair.collect();
@@ -150,10 +152,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// What is drawn of a reduced head.
-fn picture<'a>(case: &Case, source: &'a HeadSource, head: &'a ReducedHead) -> HeadPicture<'a> {
+fn picture<'a>(
+    machine: &Machine,
+    source: &'a HeadSource,
+    head: &'a ReducedHead,
+) -> HeadPicture<'a> {
     HeadPicture {
-        center_m: [case.back_head.center_x_m, case.back_head.center_y_m],
-        radius_m: case.back_head.radius_m,
+        center_m: [machine.back_head.center_x_m, machine.back_head.center_y_m],
+        radius_m: machine.back_head.radius_m,
         nodes_m: &source.mesh.nodes_m,
         pins: ["pin_a", "pin_b"].map(|pin| surface(&source.mesh, pin)),
         gauges: &source.gauges,
@@ -168,19 +174,19 @@ fn surface<'a>(read: &'a case::mesh::Mesh, name: &str) -> &'a [usize] {
 }
 
 /// The rope at its largest tension.
-fn hardest(case: &Case, turn: &QuasiStatic) -> RopeWrap {
-    let wraps = wraps(case, turn);
+fn hardest(machine: &Machine, turn: &QuasiStatic) -> RopeWrap {
+    let wraps = wraps(machine, turn);
     let most = wraps.max_by(|a, b| a.tension_n.total_cmp(&b.tension_n));
     most.unwrap_or(RopeWrap {
         tension_n: 0.0,
-        anchor_deg: case.back_head.rope_anchor_deg,
-        leaves_deg: case.back_head.rope_anchor_deg,
+        anchor_deg: machine.back_head.rope_anchor_deg,
+        leaves_deg: machine.back_head.rope_anchor_deg,
     })
 }
 
 /// The rope where it covers least, half and most of the arc that it ever covers.
-fn patterns(case: &Case, turn: &QuasiStatic) -> Vec<RopeWrap> {
-    let mut wraps: Vec<RopeWrap> = wraps(case, turn).collect();
+fn patterns(machine: &Machine, turn: &QuasiStatic) -> Vec<RopeWrap> {
+    let mut wraps: Vec<RopeWrap> = wraps(machine, turn).collect();
     wraps.sort_by(|a, b| a.leaves_deg.total_cmp(&b.leaves_deg));
     let last = wraps.len().saturating_sub(1);
     let places = [0, last / 2, last];
@@ -192,8 +198,8 @@ fn patterns(case: &Case, turn: &QuasiStatic) -> Vec<RopeWrap> {
 }
 
 /// The rope at every crank angle.
-fn wraps(case: &Case, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
-    let anchor_deg = case.back_head.rope_anchor_deg;
+fn wraps(machine: &Machine, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
+    let anchor_deg = machine.back_head.rope_anchor_deg;
     let places = turn.tension_n.iter().zip(&turn.contact_deg);
     places.map(move |(&tension_n, &leaves_deg)| RopeWrap {
         tension_n,
@@ -204,7 +210,7 @@ fn wraps(case: &Case, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
 
 /// The job that reduces a case's head at the stations of its present tables.
 fn spec(
-    case: &Case,
+    machine: &Machine,
     source: &HeadSource,
     modes: usize,
     families: Vec<ModeFamily>,
@@ -215,13 +221,13 @@ fn spec(
         poisson: source.poisson,
         density_kg_m3: source.density_kg_m3,
         gauges: source.gauges,
-        center_m: [case.back_head.center_x_m, case.back_head.center_y_m],
-        arc_deg: case.modal_head.arc_deg.clone(),
+        center_m: [machine.back_head.center_x_m, machine.back_head.center_y_m],
+        arc_deg: machine.modal_head.arc_deg.clone(),
         probes_deg: Vec::new(),
         modes,
         families,
         patterns: Vec::new(),
-        pair: case.twin_ropes.as_ref().map(|twins| RopePair {
+        pair: machine.twin_ropes.as_ref().map(|twins| RopePair {
             offset_m: twins.offset_m,
             modes: twins.modes,
         }),
@@ -285,13 +291,10 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Usage> {
 }
 
 /// Reduces on one local worker, without a run folder that outlives the command.
-fn reduce_once(case: &Case, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
+fn reduce_once(mut unit: PumpingUnit, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
     // a worker builds the machine first: not with tables that are yet to come
-    let case = &Case {
-        twin_ropes: None,
-        ..case.clone()
-    };
-    in_scratch(case, "head", 1, async |bus, stop| {
+    unit.machine.twin_ropes = None;
+    in_scratch(&unit.into_case()?, "head", 1, async |bus, stop| {
         study::reduce_head(bus, spec, stop).await
     })
 }

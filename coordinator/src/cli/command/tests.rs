@@ -18,7 +18,10 @@ use crate::{
     },
     journal,
 };
-use protocol::case::Case;
+use protocol::{
+    case::Case,
+    pumping_unit::{Machine, PumpingUnit},
+};
 use search::{
     space::Space,
     strategy::{Plan, preset},
@@ -181,8 +184,12 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
         .join(RunFolder::default_path(&case, "quick", &[], None, 3).unwrap());
     assert!(path.ends_with("runs/cyjs10-5-37hb-quick-seed3"));
     // other records in a folder of the same name are another run
-    let mut other = case.clone();
-    other.conditions[0].speed_rpm += 1.0;
+    let changed = |change: fn(&mut Machine)| {
+        let mut unit = PumpingUnit::of(case.clone()).unwrap();
+        change(&mut unit.machine);
+        unit.into_case().unwrap()
+    };
+    let other = changed(|machine| machine.conditions[0].speed_rpm += 1.0);
     let beside = |case| {
         let records = Path::new("tests/of/march");
         RunFolder::default_path(case, "diagnose", &[], Some(records), 3).unwrap()
@@ -211,8 +218,7 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
             .ends_with("holds another run: its seed is 3, not 4"),
         "{other}"
     );
-    let mut changed = case.clone();
-    changed.ropes.diameter_m *= 1.0 + f64::EPSILON;
+    let changed = changed(|machine| machine.ropes.diameter_m *= 1.0 + f64::EPSILON);
     let other = begin(3, &changed).unwrap_err();
     assert!(
         other

@@ -6,10 +6,7 @@ use crate::{
     report::vtu::{self, Field},
 };
 use anyhow::Context as _;
-use protocol::{
-    case::Case,
-    pumping_unit::{HeadMesh, ModeFamily, ReducedHead, TwinHead},
-};
+use protocol::pumping_unit::{HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};
 use serde::Serialize;
 use std::{
     collections::BTreeMap,
@@ -43,7 +40,7 @@ struct ModesFile<'a> {
 /// Replaces the tables of a case: modes file, influence file, and that for a pair of ropes where there
 /// is one; returns their paths.
 pub(crate) fn write_tables(
-    case: &Case,
+    machine: &Machine,
     source: &HeadSource,
     head: &ReducedHead,
 ) -> anyhow::Result<Vec<PathBuf>> {
@@ -63,7 +60,7 @@ pub(crate) fn write_tables(
         made_by: PROGRAM,
         frequencies_hz: head.modes.iter().map(|m| m.frequency_hz).collect(),
         family: head.modes.iter().map(|m| m.family).collect(),
-        damping_ratio: case.modal_head.damping_ratio,
+        damping_ratio: machine.modal_head.damping_ratio,
         arc_deg: &head.influence.psi_deg,
         radial: head.modes.iter().map(|m| &m.radial[..]).collect(),
         tangential: head.modes.iter().map(|m| &m.tangential[..]).collect(),
@@ -81,7 +78,7 @@ pub(crate) fn write_tables(
         (&source.modes_file, modes),
         (&source.influence_file, influence(head)),
     ];
-    let pair = source.twin_file.as_ref().zip(case.twin_ropes.as_ref());
+    let pair = source.twin_file.as_ref().zip(machine.twin_ropes.as_ref());
     if let (Some((path, ropes)), Some(tables)) = (pair, &head.twin) {
         let file = twin_file(source, ropes.offset_m, tables);
         all.push((path, serde_json::to_string(&file)? + "\n"));

@@ -11,7 +11,10 @@ use crate::{
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
 use discrepancy::{diagnose::Inputs, thresholds::Thresholds};
-use protocol::{announce::EffectDescriptor, pumping_unit::Discretisation};
+use protocol::{
+    announce::EffectDescriptor,
+    pumping_unit::{Discretisation, Machine},
+};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -127,7 +130,8 @@ fn inputs(
         .into_iter()
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
-    let available = case.modal_head.frequencies_hz.len();
+    let machine = Machine::of(case)?;
+    let available = machine.modal_head.frequencies_hz.len();
     let thresholds = &manifest.settings.thresholds;
     Ok(Inputs {
         start: manifest.start_genes().map(|genes| space.point(genes)),
@@ -135,14 +139,14 @@ fn inputs(
         records,
         library,
         usual: Discretisation {
-            longest_step_s: Some(thresholds.step * case.run.longest_step_s),
+            longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
             ..Discretisation::default()
         },
         finer: Discretisation {
-            cylinder_length_m: Some(case.ropes.cylinder_length_m * thresholds.refinement),
-            lead_in_deg: Some(case.run.lead_in_deg + 180.0),
-            modes: Some((case.run.modes + 2).min(available)),
-            longest_step_s: Some(0.5 * thresholds.step * case.run.longest_step_s),
+            cylinder_length_m: Some(machine.ropes.cylinder_length_m * thresholds.refinement),
+            lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
+            modes: Some((machine.run.modes + 2).min(available)),
+            longest_step_s: Some(0.5 * thresholds.step * machine.run.longest_step_s),
             ..Discretisation::OF_THE_CASE
         },
         seed: manifest.seed,

@@ -85,7 +85,7 @@ impl RunFolder {
             if let Some(name) = folder.file_name() {
                 records = format!("-{}", name.to_string_lossy());
             }
-            let hash = content_hash(&case.conditions)?.to_string();
+            let hash = content_hash(&(&case.model, &case.conditions))?.to_string();
             records.extend(["-", hash.get(..8).unwrap_or_default()]);
         }
         Ok(Path::new("runs").join(format!("{word}-{what}{set}{records}-seed{seed}")))

@@ -5,7 +5,7 @@
 use super::film::{Film, MM};
 use super::rope;
 use maud::{Markup, html};
-use protocol::case::Case;
+use protocol::pumping_unit::Machine;
 
 /// A point of the drawing from metres in a frame with y upwards.
 fn xy(x_m: f64, y_m: f64) -> String {
@@ -48,10 +48,10 @@ struct Frame {
 }
 
 impl Frame {
-    fn new(case: &Case, film: &Film) -> Self {
+    fn new(machine: &Machine, film: &Film) -> Self {
         let most = film.beam.iter().copied().fold(0.0_f64, f64::max);
         let least = film.beam.iter().copied().fold(0.0_f64, f64::min);
-        let crank = &case.crank;
+        let crank = &machine.crank;
         let lowest = film
             .suspension
             .iter()
@@ -63,16 +63,16 @@ impl Frame {
         } else {
             sweep
         };
-        let raised = case.front_head.radius_m
-            * (case.front_head.rope_anchor_deg + most)
+        let raised = machine.front_head.radius_m
+            * (machine.front_head.rope_anchor_deg + most)
                 .to_radians()
                 .sin()
                 .abs();
-        let back = &case.back_head;
+        let back = &machine.back_head;
         let back_reach = back.center_x_m.hypot(back.center_y_m) + back.radius_m;
         Self {
             left: (crank.center_x_m - 1.62 * crank.radius_m).min(-back_reach) - 0.35,
-            right: case.front_head.radius_m + 0.75,
+            right: machine.front_head.radius_m + 0.75,
             top: raised.max(0.8 * back_reach) + 0.35,
             ground,
             // the lowest place where the rope leaves the arc, and some plate below it
@@ -83,8 +83,8 @@ impl Frame {
 }
 
 /// The machine at the first frame; every moving part carries an id for the player.
-pub(super) fn drawing(case: &Case, film: &Film) -> Markup {
-    let frame = Frame::new(case, film);
+pub(super) fn drawing(machine: &Machine, film: &Film) -> Markup {
+    let frame = Frame::new(machine, film);
     let view = format!(
         "{:.0} {:.0} {:.0} {:.0}",
         100.0 * frame.left,
@@ -98,12 +98,12 @@ pub(super) fn drawing(case: &Case, film: &Film) -> Markup {
             stroke-linejoin="round" stroke-linecap="round" {
             title { "Side view of the pumping unit, in scale" }
             (hatch())
-            (ground(case, &frame))
+            (ground(machine, &frame))
             (post(&frame))
-            (crank(case, film))
-            (rod(case, film))
+            (crank(machine, film))
+            (rod(machine, film))
             g id="machine-beam" transform=(format!("rotate({:.3})", -beam)) {
-                (beam_and_heads(case, &frame))
+                (beam_and_heads(machine, &frame))
             }
             (rope::pressure(film))
             (rope::ropes(film))
@@ -126,11 +126,11 @@ fn hatch() -> Markup {
 }
 
 /// Ground, foundation of the gearbox, well head: schematic.
-fn ground(case: &Case, frame: &Frame) -> Markup {
-    let crank = &case.crank;
+fn ground(machine: &Machine, frame: &Frame) -> Markup {
+    let crank = &machine.crank;
     let (x, y) = (crank.center_x_m, crank.center_y_m);
     let r = crank.radius_m;
-    let well = case.front_head.radius_m;
+    let well = machine.front_head.radius_m;
     let level = -100.0 * frame.ground;
     html! {
         rect x=(format!("{:.1}", 100.0 * frame.left)) y=(format!("{level:.1}"))
@@ -176,9 +176,9 @@ fn post(frame: &Frame) -> Markup {
     }
 }
 
-fn crank(case: &Case, film: &Film) -> Markup {
-    let r = case.crank.radius_m;
-    let (cx, cy) = (case.crank.center_x_m, case.crank.center_y_m);
+fn crank(machine: &Machine, film: &Film) -> Markup {
+    let r = machine.crank.radius_m;
+    let (cx, cy) = (machine.crank.center_x_m, machine.crank.center_y_m);
     let pin = film.pin[0];
     let pin_deg = (f64::from(pin[1]) / 1e3 - cy)
         .atan2(f64::from(pin[0]) / 1e3 - cx)
@@ -211,7 +211,7 @@ fn crank(case: &Case, film: &Film) -> Markup {
     }
 }
 
-fn rod(case: &Case, film: &Film) -> Markup {
+fn rod(machine: &Machine, film: &Film) -> Markup {
     let (pin, end) = (film.pin[0], film.crossbeam[0]);
     let (dx, dy) = (f64::from(end[0] - pin[0]), f64::from(end[1] - pin[1]));
     let place = format!(
@@ -220,7 +220,7 @@ fn rod(case: &Case, film: &Film) -> Markup {
         -f64::from(pin[1]) / MM,
         -dy.atan2(dx).to_degrees()
     );
-    let length = case.rod.length_m;
+    let length = machine.rod.length_m;
     html! {
         g id="machine-rod" transform=(place) {
             path.part d=(closed(&[
@@ -236,10 +236,10 @@ fn rod(case: &Case, film: &Film) -> Markup {
 }
 
 /// Beam and both heads, in the beam frame.
-fn beam_and_heads(case: &Case, frame: &Frame) -> Markup {
-    let half_rope = 0.5 * case.ropes.diameter_m;
-    let front = &case.front_head;
-    let back = &case.back_head;
+fn beam_and_heads(machine: &Machine, frame: &Frame) -> Markup {
+    let half_rope = 0.5 * machine.ropes.diameter_m;
+    let front = &machine.front_head;
+    let back = &machine.back_head;
     let radius = front.radius_m - half_rope;
     let (lower, upper) = (frame.lower_arc_deg, front.rope_anchor_deg + 1.0);
     let waist = 0.6 * front.radius_m;
@@ -249,7 +249,7 @@ fn beam_and_heads(case: &Case, frame: &Frame) -> Markup {
     front_rib.extend([(waist + 0.14, 0.2), (waist + 0.14, -0.17)]);
     let center = (back.center_x_m, back.center_y_m);
     let radius = back.radius_m - half_rope;
-    let arcs = &case.modal_head.arc_deg;
+    let arcs = &machine.modal_head.arc_deg;
     let first = arcs.first().copied().unwrap_or(back.rope_anchor_deg);
     let last = arcs.last().copied().unwrap_or(back.rope_anchor_deg + 90.0);
     let root = 0.3 * (back.center_x_m - back.radius_m);
@@ -354,7 +354,7 @@ pub(super) fn legend(film: &Film) -> Markup {
                 (format!("{quarter:.0}")) " kN/m is 0.25 m on the scale of the machine"
             }
             p.note {
-                "Arcs, anchors, crank, rod and ropes are in scale from the case, ropes drawn \
+                "Arcs, anchors, crank, rod and ropes are in scale from the machine, ropes drawn \
                  thicker. Post, gearbox, well head and the outlines of beam and heads away from \
                  the arcs are schematic."
             }

@@ -4,8 +4,10 @@
 use crate::quantile;
 use crate::report::number::{NONE, fixed};
 use maud::{Markup, html};
-use protocol::case::Case;
-use protocol::pumping_unit::{Motion, Simulation};
+use protocol::{
+    case::Case,
+    pumping_unit::{Machine, Motion, Simulation},
+};
 use serde::Serialize;
 
 /// Millimetres per unit of the drawing, a centimetre.
@@ -146,7 +148,12 @@ impl RopeFrame {
 
 impl Film {
     /// Packs the snapshots of a simulation; none if it has none.
-    pub(super) fn new(case: &Case, condition: usize, simulation: &Simulation) -> Option<Self> {
+    pub(super) fn new(
+        case: &Case,
+        machine: &Machine,
+        condition: usize,
+        simulation: &Simulation,
+    ) -> Option<Self> {
         let usable: Vec<&Motion> = simulation
             .motion
             .iter()
@@ -155,7 +162,7 @@ impl Film {
         let every = usable.len().div_ceil(FRAMES).max(1);
         let frames: Vec<&Motion> = usable.iter().copied().step_by(every).collect();
         frames.first()?;
-        let speed_rpm = case.conditions.get(condition)?.speed_rpm;
+        let speed_rpm = machine.conditions.get(condition)?.speed_rpm;
         let sorted = |values: &mut dyn Iterator<Item = f32>| {
             let mut values: Vec<f64> = values.map(f64::from).filter(|v| v.is_finite()).collect();
             values.sort_by(f64::total_cmp);
@@ -183,12 +190,12 @@ impl Film {
         let rope = |points: &[[f32; 2]], tension: &[f32], contact: &[f32]| {
             RopeFrame::new(points, tension, contact, mm_per_newton)
         };
-        let phase = case.crank.counterweight_phase_deg;
-        let phase = match case.crank.sense {
+        let phase = machine.crank.counterweight_phase_deg;
+        let phase = match machine.crank.sense {
             protocol::pumping_unit::TurnSense::Clockwise => -phase,
             protocol::pumping_unit::TurnSense::CounterClockwise => phase,
         };
-        let (back, front) = (&case.back_head, &case.front_head);
+        let (back, front) = (&machine.back_head, &machine.front_head);
         Some(Self {
             turn: frames.iter().map(|m| m.turn_deg).collect(),
             seconds_per_deg: 60.0 / (360.0 * speed_rpm.abs().max(0.1)),
@@ -214,13 +221,13 @@ impl Film {
             ),
             front_head: head((0.0, 0.0), front.radius_m, front.rope_anchor_deg),
             crank: [
-                f64::from(mm(case.crank.center_x_m)),
-                f64::from(mm(case.crank.center_y_m)),
+                f64::from(mm(machine.crank.center_x_m)),
+                f64::from(mm(machine.crank.center_y_m)),
                 phase,
             ],
             tension_range: [low, if high > low { high } else { low + 50.0 }],
             stops: crate::report::color::tension_stops(),
-            pressure_kn_per_m: 1e-3 * strong_n / case.ropes.cylinder_length_m / 0.35,
+            pressure_kn_per_m: 1e-3 * strong_n / machine.ropes.cylinder_length_m / 0.35,
             readouts: readouts(case, simulation, &frames),
         })
     }

@@ -9,15 +9,18 @@ mod rope;
 
 use super::chart;
 use maud::{Markup, PreEscaped, html};
-use protocol::case::Case;
-use protocol::pumping_unit::Simulation;
+use protocol::{
+    case::Case,
+    pumping_unit::{Machine, Simulation},
+};
 
 /// The player; reads the film, moves the parts.
 const PLAYER: &str = include_str!("player.js");
 
 /// Draws the machine with its player; none without snapshots.
 pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Option<Markup> {
-    let film = film::Film::new(case, condition, simulation)?;
+    let machine = Machine::of(case).ok()?;
+    let film = film::Film::new(case, &machine, condition, simulation)?;
     let (curves, span) = chart::player(case, simulation);
     let [left, right, top, bottom] = span.map(|share| 100.0 * share);
     let span = format!(
@@ -28,7 +31,7 @@ pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) ->
     Some(html! {
         div.machine id="machine" {
             div.stage {
-                (drawing::drawing(case, &film))
+                (drawing::drawing(&machine, &film))
                 div.desk {
                     div.controls {
                         button type="button" id="machine-play" { "Play" }

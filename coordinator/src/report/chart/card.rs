@@ -6,8 +6,10 @@ use crate::line::periodic;
 use crate::report::color::{GREY, INK, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
-use protocol::pumping_unit::Simulation;
-use protocol::{case::Case, pumping_unit::LoadCard};
+use protocol::{
+    case::Case,
+    pumping_unit::{LoadCard, Machine, Simulation},
+};
 
 const SIZE: (f64, f64) = (620.0, 330.0);
 
@@ -18,11 +20,11 @@ fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
 
 /// Draws the card; none if the simulation has no position.
 pub(in crate::report) fn card(
-    case: &Case,
+    (case, machine): (&Case, &Machine),
     condition: usize,
     simulation: &Simulation,
 ) -> Option<Figure> {
-    let found = case.conditions.get(condition)?;
+    let found = machine.conditions.get(condition)?;
     let rows: Vec<_> = simulation
         .turn_deg
         .iter()

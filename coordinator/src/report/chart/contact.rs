@@ -6,8 +6,7 @@ use super::scale::Scale;
 use crate::quantile;
 use crate::report::color::{self, GREY, INK};
 use crate::report::document::Figure;
-use protocol::case::Case;
-use protocol::pumping_unit::{Motion, Simulation};
+use protocol::pumping_unit::{Machine, Motion, Simulation};
 
 const HEIGHT: f64 = 330.0;
 /// Snapshots drawn at most: more would make the file large, not the picture better.
@@ -17,14 +16,14 @@ const COLUMNS: usize = 91;
 const OVERLAP: f64 = 0.5;
 
 /// Angle of a point on the back head's arc, in the beam frame \[deg\].
-fn arc_deg(case: &Case, motion: &Motion, point: [f32; 2]) -> f64 {
+fn arc_deg(machine: &Machine, motion: &Motion, point: [f32; 2]) -> f64 {
     let beam = f64::from(motion.beam_deg).to_radians();
     let (sin, cos) = beam.sin_cos();
     let (x, y) = (f64::from(point[0]), f64::from(point[1]));
     // ground frame to beam frame, then as seen from the arc's centre
     let in_beam = (cos * x + sin * y, -sin * x + cos * y);
-    let dx = in_beam.0 - case.back_head.center_x_m;
-    let dy = in_beam.1 - case.back_head.center_y_m;
+    let dx = in_beam.0 - machine.back_head.center_x_m;
+    let dy = in_beam.1 - machine.back_head.center_y_m;
     dy.atan2(dx).to_degrees().rem_euclid(360.0)
 }
 
@@ -39,7 +38,7 @@ struct Cell {
 }
 
 /// Every cylinder in contact, snapshot by snapshot.
-fn cells(case: &Case, simulation: &Simulation) -> Vec<Cell> {
+fn cells(machine: &Machine, simulation: &Simulation) -> Vec<Cell> {
     let snapshots: Vec<&Motion> = simulation.motion.iter().collect();
     let snapshots = thinned(&snapshots, COLUMNS);
     let mut cells = Vec::new();
@@ -57,12 +56,12 @@ fn cells(case: &Case, simulation: &Simulation) -> Vec<Cell> {
         }
         for (&point, &force) in motion.back_rope_m.iter().zip(&motion.back_contact_n) {
             let force = f64::from(force);
-            let psi_deg = arc_deg(case, motion, point);
+            let psi_deg = arc_deg(machine, motion, point);
             if psi_deg.is_finite() && force.is_finite() && force > 0.0 {
                 cells.push(Cell {
                     turn_deg: (from, to),
                     psi_deg,
-                    force: 1e-3 * force / case.ropes.cylinder_length_m,
+                    force: 1e-3 * force / machine.ropes.cylinder_length_m,
                 });
             }
         }
@@ -71,9 +70,10 @@ fn cells(case: &Case, simulation: &Simulation) -> Vec<Cell> {
 }
 
 /// Draws the map; none without snapshots or without any contact.
-pub(in crate::report) fn contact(case: &Case, simulation: &Simulation) -> Option<Figure> {
-    let half_deg = 0.5 * (case.ropes.cylinder_length_m / case.back_head.radius_m).to_degrees();
-    let cells = cells(case, simulation);
+pub(in crate::report) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figure> {
+    let half_deg =
+        0.5 * (machine.ropes.cylinder_length_m / machine.back_head.radius_m).to_degrees();
+    let cells = cells(machine, simulation);
     let mut sorted: Vec<f64> = cells.iter().map(|cell| cell.force).collect();
     sorted.sort_by(f64::total_cmp);
     // a few cylinders may carry many times the rest: saturate, and say so

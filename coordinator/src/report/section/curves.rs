@@ -3,8 +3,10 @@ use crate::report::chart;
 use crate::report::data::{Calibration, SingleRun};
 use crate::report::document::{Block, Figure, Section, figures};
 use maud::html;
-use protocol::case::Case;
-use protocol::pumping_unit::Simulation;
+use protocol::{
+    case::Case,
+    pumping_unit::{Machine, Simulation},
+};
 
 /// With the optimised parameters; their gauges are in the overlays.
 pub(super) fn calibration(calibration: &Calibration) -> Section {
@@ -39,10 +41,13 @@ const fn section(blocks: Vec<Block>) -> Section {
 
 /// Everything but the gauges.
 fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Vec<Figure> {
+    let Ok(unit) = Machine::of(case) else {
+        return Vec::new();
+    };
     let mut figures = vec![chart::tension(simulation)];
-    figures.extend(chart::contact(case, simulation));
+    figures.extend(chart::contact(&unit, simulation));
     figures.push(chart::motion(simulation));
-    figures.extend(chart::card(case, condition, simulation));
+    figures.extend(chart::card((case, &unit), condition, simulation));
     figures.push(chart::torque(simulation));
     figures
 }

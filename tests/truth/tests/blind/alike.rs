@@ -1,6 +1,6 @@
 //! Own laws, same effects: what the truth hides under a name changes the gauges about as the library's
 //! effect of that name does, in shape, sign and size.
-use protocol::case::{Case, EffectSetting};
+use protocol::{case::EffectSetting, pumping_unit::PumpingUnit};
 use std::path::Path;
 use truth::draw::Draw;
 use truth::law::{CATALOGUE, Hidden};
@@ -14,9 +14,11 @@ const FINENESS: Fineness = Fineness {
     samples: 360,
 };
 
-fn case() -> Case {
+fn unit() -> PumpingUnit {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
-    coordinator::case::load(&folder, &coordinator::case::Overrides::default()).expect("the case")
+    let case = coordinator::case::load(&folder, &coordinator::case::Overrides::default())
+        .expect("the case");
+    PumpingUnit::of(case).expect("the case")
 }
 
 /// The library's parameters that a drawn size and its shares stand for.
@@ -86,16 +88,16 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
-    let case = case();
-    let values = genes(&case, &mut Draw::new(1, "genes")).unwrap();
-    let run = |case: &Case, hidden: &[Hidden]| {
-        turn(case, 0, (&values, hidden), Variation::default(), &FINENESS).unwrap()
+    let unit = unit();
+    let values = genes(&unit.case, &mut Draw::new(1, "genes")).unwrap();
+    let run = |unit: &PumpingUnit, hidden: &[Hidden]| {
+        turn(unit, 0, (&values, hidden), Variation::default(), &FINENESS).unwrap()
     };
-    let plain = run(&case, &[]);
+    let plain = run(&unit, &[]);
     for kind in CATALOGUE {
         let hidden = [kind.hide(1.0, &mut Draw::new(4, kind.id))];
-        let mut truth = run(&case, &hidden);
-        let speed = truth::chain::speed(case.conditions[0].speed_rpm);
+        let mut truth = run(&unit, &hidden);
+        let speed = truth::chain::speed(unit.machine.conditions[0].speed_rpm);
         let shares: Vec<[f64; 4]> = (0..truth.len())
             .map(|i| hidden[0].law.drift(i as f64 / truth.len() as f64))
             .collect();
@@ -105,10 +107,10 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
             }
         }
         // the program would simulate with the card that was delivered
-        let mut judged = case.clone();
-        let card = &mut judged.conditions[0].card.load_n;
+        let mut judged = unit.clone();
+        let card = &mut judged.machine.conditions[0].card.load_n;
         hidden[0].law.deliver(card, speed);
-        let believed = if *card == case.conditions[0].card.load_n {
+        let believed = if *card == unit.machine.conditions[0].card.load_n {
             plain.clone()
         } else {
             run(&judged, &[])
@@ -131,20 +133,20 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
 }
 
 /// The same machine with an effect of the library.
-fn run_library(case: &Case, effect: &EffectSetting, values: &[f64]) -> Turn {
+fn run_library(unit: &PumpingUnit, effect: &EffectSetting, values: &[f64]) -> Turn {
     use simulation::integrator::tableau::TR_BDF2;
     use simulation::run::{RunSettings, simulate};
     let finer = protocol::pumping_unit::Discretisation {
         cylinder_length_m: Some(FINENESS.cylinder),
         ..protocol::pumping_unit::Discretisation::default()
     };
-    let case = worker::convert::refined(case, &finer).expect("the case fits");
-    let law = worker::convert::rope_law(&case, values).expect("the case fits");
+    let unit = worker::convert::refined(unit, &finer).expect("the case fits");
+    let law = worker::convert::rope_law(&unit, values).expect("the case fits");
     let individual = protocol::job::Individual {
         effects: vec![effect.clone()],
         ..protocol::job::Individual::new(0, values.to_vec())
     };
-    let machine = worker::convert::machine_with(&case, &individual).expect("the case fits");
+    let machine = worker::convert::machine_with(&unit, &individual).expect("the case fits");
     let settings = RunSettings {
         method: (&TR_BDF2).into(),
         lead_in: 240_f64.to_radians(),

@@ -7,6 +7,7 @@ use crate::report::words::listed;
 use discrepancy::place::angle::Window;
 use discrepancy::place::whereabouts::Where;
 use discrepancy::record::Record;
+use protocol::pumping_unit::Machine;
 
 /// Windows and entries that are named in words.
 const NAMED: usize = 6;
@@ -35,7 +36,10 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
 
 fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
     let names = channels(record);
-    let condition = subject.case.conditions.get(record.condition);
+    let machine = Machine::of(subject.case);
+    let condition = machine
+        .iter()
+        .find_map(|it| it.conditions.get(record.condition));
     let speed_rpm = condition.map_or(f64::NAN, |condition| condition.speed_rpm);
     let all = [
         chart::angle_map(&seen.angle, &names),

@@ -1,0 +1,39 @@
+//! Which model a case is of, and what that model alone understands of it.
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+
+/// A model's own part of a case. Everybody else carries it as it is.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ModelSettings {
+    /// Name of the kind of model; workers announce which kinds they simulate.
+    pub kind: String,
+    /// What the model alone understands; hexadecimal digits in files of text.
+    #[serde(serialize_with = "write", deserialize_with = "read")]
+    pub settings: Vec<u8>,
+}
+
+fn write<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
+    if !to.is_human_readable() {
+        return to.serialize_bytes(bytes);
+    }
+    to.serialize_str(
+        &bytes
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect::<String>(),
+    )
+}
+
+fn read<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {
+    if !from.is_human_readable() {
+        return serde_bytes::deserialize(from);
+    }
+    let text = String::deserialize(from)?;
+    let digits = |pair: &[u8]| {
+        let pair = std::str::from_utf8(pair)
+            .ok()
+            .filter(|pair| pair.len() == 2);
+        pair.and_then(|pair| u8::from_str_radix(pair, 16).ok())
+    };
+    let bytes = text.as_bytes().chunks(2).map(digits).collect::<Option<_>>();
+    bytes.ok_or_else(|| D::Error::custom("settings of a model are not pairs of hexadecimal digits"))
+}
