@@ -6,13 +6,15 @@
 //!
 //! A [`session`] owns the connection, the queue and the outbox; [`pool`] keeps the slots; each
 //! slot computes in a process of its own ([`slot`]), so that a job that never returns or crashes
-//! takes nothing with it. A worker keeps no files and decides nothing.
+//! takes nothing with it. A worker keeps no files and decides nothing. [`program`] is all of that
+//! behind a command line.
 pub mod cli;
 pub mod convert;
 pub mod digest;
 pub mod handler;
 pub mod outbox;
 pub mod pool;
+pub mod program;
 pub mod session;
 pub mod slot;
 mod stream;

@@ -1,0 +1,205 @@
+//! The program of a worker: one worker of the bus, or one of its slots, as its command line says.
+use crate::{
+    cli::{Cli, Role as CliRole},
+    digest,
+    session::{self, Ending, SessionOptions},
+    slot,
+};
+use anyhow::Context;
+use clap::Parser;
+use link::{
+    LinkError,
+    keys::{Keys, Role},
+    locator::{Locator, Protocol},
+    zenoh::ZenohWorker,
+};
+use protocol::id::{WorkerId, draw};
+use rustix::process::{Signal, set_parent_process_death_signal};
+use std::{
+    env,
+    future::Future,
+    io::{self, IsTerminal, Read},
+    process::ExitCode,
+    thread,
+    time::{Duration, Instant, SystemTime, UNIX_EPOCH},
+};
+use tokio::{
+    signal::unix::{SignalKind, signal},
+    sync::mpsc,
+};
+use tracing_subscriber::EnvFilter;
+
+/// How often a coordinator that does not answer is complained about.
+const COMPLAINT: Duration = Duration::from_mins(5);
+
+/// Runs it to its end.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    // a worker of somebody's own says when it is connected; a local one leaves that to its coordinator
+    let own = if cli.embedded || cli.role.is_some() {
+        "warn"
+    } else {
+        "info"
+    };
+    let filter = EnvFilter::try_from_env("HORSEHEAD_LOG").unwrap_or_else(|_| {
+        EnvFilter::new(format!(
+            "warn,worker::program={own},zenoh=off,zenoh_link=off,zenoh_transport=off"
+        ))
+    });
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(io::stderr)
+        .with_ansi(io::stderr().is_terminal())
+        .init();
+    let ended = match cli.role {
+        Some(CliRole::Slot { memory }) => slot::serve(memory)
+            .map(|()| ExitCode::SUCCESS)
+            .context("the slot ended"),
+        None => serve(&cli),
+    };
+    ended.unwrap_or_else(|error| {
+        tracing::error!("{error:#}");
+        ExitCode::FAILURE
+    })
+}
+
+fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
+    let locator = cli.connect.as_ref().context("no coordinator was named")?;
+    if cli.embedded {
+        set_parent_process_death_signal(Some(Signal::KILL))?;
+    }
+    // is ready when the coordinator answers; should there be no thread for it, it is computed then
+    drop(
+        thread::Builder::new()
+            .name("digest".to_owned())
+            .spawn(digest::model_digest),
+    );
+    let cores = || thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let options = SessionOptions {
+        id: draw_id(),
+        slots: cli.slots.map_or_else(cores, usize::from),
+        program: env::current_exe().context("where this program lies is unknown")?,
+        slot_memory_mib: cli.slot_memory,
+        idle_timeout: cli.idle_timeout.map(Duration::from_secs),
+        embedded: cli.embedded,
+    };
+    let keys = match (&cli.tls, locator.protocol) {
+        (Some(folder), Protocol::Quic) => match Keys::read(folder, Role::Worker) {
+            Ok(keys) => Some(keys),
+            Err(error) => return Ok(refused(&error)),
+        },
+        (None, _) | (_, Protocol::Tcp) => None,
+    };
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .context("the runtime did not start")?;
+    let ending = runtime.block_on(work(locator, keys, options));
+    runtime.shutdown_timeout(Duration::from_millis(200));
+    Ok(match ending? {
+        Ending::Refused(reason) => refused(&reason),
+        Ending::Unlinked => ExitCode::FAILURE,
+        ending @ (Ending::Asked | Ending::RunOver | Ending::Idle) => {
+            tracing::info!("ended in good order: {ending:?}");
+            ExitCode::SUCCESS
+        }
+    })
+}
+
+/// Says why this worker cannot take part until somebody changes something.
+fn refused(reason: &dyn std::fmt::Display) -> ExitCode {
+    tracing::error!("refused: {reason}");
+    ExitCode::from(3)
+}
+
+async fn work(
+    locator: &Locator,
+    keys: Option<Keys>,
+    options: SessionOptions,
+) -> anyhow::Result<Ending> {
+    let mut asked = asked_to_end(options.embedded)?;
+    let began = Instant::now();
+    let patience = options.idle_timeout;
+    let mut said: Option<Instant> = None;
+    let link = loop {
+        // in a task of its own: opening may hold its thread for seconds, and a signal must not wait
+        let (to, keys, process) = (locator.clone(), keys.clone(), options.id.0);
+        let opening =
+            tokio::spawn(async move { ZenohWorker::open(&to, keys.as_ref(), process).await });
+        tokio::select! {
+            opened = opening => match opened.context("the connection's task ended")? {
+                Ok(link) => break link,
+                Err(error) if error.may_pass() => {
+                    if said.is_none_or(|said| said.elapsed() > COMPLAINT) {
+                        tracing::warn!("{error}; trying again until it answers");
+                        said = Some(Instant::now());
+                    }
+                    tokio::time::sleep(Duration::from_millis(500)).await;
+                }
+                Err(
+                    error @ (LinkError::NoKeys { .. }
+                    | LinkError::Keys(_)
+                    | LinkError::Distrusted { .. }
+                    | LinkError::Refused { .. }),
+                ) => return Ok(Ending::Refused(error.to_string())),
+                Err(error) => return Err(error.into()),
+            },
+            () = &mut asked => return Ok(Ending::Asked),
+            () = out_of_patience(began, patience) => return Ok(Ending::Idle),
+        }
+    };
+    tracing::info!(
+        "connected to {locator}; {} simulations at a time",
+        options.slots
+    );
+    Ok(session::run(link, options, asked).await?)
+}
+
+/// Completes when a worker that may idle for so long has waited for it since `began`.
+async fn out_of_patience(began: Instant, patience: Option<Duration>) {
+    match patience {
+        Some(patience) => tokio::time::sleep(patience.saturating_sub(began.elapsed())).await,
+        None => std::future::pending().await,
+    }
+}
+
+/// Completes when the worker is to end: by SIGTERM, SIGINT or, embedded, the end of its input.
+fn asked_to_end(embedded: bool) -> io::Result<impl Future<Output = ()> + Send + Unpin> {
+    let mut terminate = signal(SignalKind::terminate())?;
+    let mut interrupt = signal(SignalKind::interrupt())?;
+    let (parent_here, mut parent_gone) = mpsc::channel::<()>(1);
+    if embedded {
+        thread::Builder::new()
+            .name("parent".to_owned())
+            .spawn(move || {
+                let _here = parent_here;
+                let mut byte = [0];
+                while matches!(io::stdin().read(&mut byte), Ok(1)) {}
+            })?;
+    } else {
+        // held for ever: nobody's end is ours
+        tokio::spawn(async move {
+            let _here = parent_here;
+            std::future::pending::<()>().await;
+        });
+    }
+    Ok(Box::pin(async move {
+        tokio::select! {
+            _ = terminate.recv() => {}
+            _ = interrupt.recv() => {}
+            _ = parent_gone.recv() => {}
+        }
+    }))
+}
+
+fn draw_id() -> WorkerId {
+    let host = rustix::system::uname()
+        .nodename()
+        .to_string_lossy()
+        .into_owned();
+    let nanos = SystemTime::now()
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |since| since.as_nanos());
+    WorkerId(draw(&format!("{host}:{}", std::process::id()), nanos))
+}
