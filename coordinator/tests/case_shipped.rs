@@ -2,8 +2,8 @@
 use coordinator::case::{self, Loaded, Overrides, RecordFacts, mesh};
 use discrepancy::record::Tolerance;
 use protocol::{
-    case::{Case, Coefficient, GaugeRecord, GaugeTrace, Gene, Offset, Quantity},
-    pumping_unit::Machine,
+    case::{Case, ChannelRecord, Coefficient, Gene, Offset, Quantity, Term},
+    pumping_unit::{Machine, Sensor},
     unit::Unit,
 };
 use std::{
@@ -21,34 +21,34 @@ fn half_range(values: &[f64]) -> f64 {
     (high - low) / 2.0
 }
 
-fn root_mean_square(trace: &GaugeTrace) -> f64 {
-    let squares: f64 = trace.spread_mpa.iter().map(|s| s * s).sum();
-    (squares / trace.spread_mpa.len() as f64).sqrt()
+fn root_mean_square(record: &ChannelRecord) -> f64 {
+    let squares: f64 = record.spread.iter().map(|s| s * s).sum();
+    (squares / record.spread.len() as f64).sqrt()
+}
+
+/// The records of a condition's gauges.
+fn gauges(case: &Case, condition: usize) -> Vec<&ChannelRecord> {
+    case.measured(condition)
+        .map(|(_, _, record)| record)
+        .collect()
 }
 
 /// The rows of the README's table of figures, as the records have them.
 fn figures(loaded: &Loaded) -> [String; 3] {
-    let records = loaded.case.conditions.iter();
-    let records: Vec<&GaugeRecord> = records.filter_map(|c| c.record.as_ref()).collect();
+    let conditions = 0..loaded.case.conditions.len();
+    let records = conditions.map(|condition| gauges(&loaded.case, condition));
+    let records: Vec<Vec<&ChannelRecord>> = records.filter(|it| !it.is_empty()).collect();
     let facts: Vec<&RecordFacts> = loaded.records.iter().flatten().collect();
-    let ranges = records.iter().map(|record| {
-        let half = record
-            .gauges
-            .iter()
-            .map(|trace| half_range(&trace.mean_mpa));
+    let ranges = records.iter().map(|gauges| {
+        let half = gauges.iter().map(|record| half_range(&record.mean));
         half.map(|half| format!("{half:.2}"))
             .collect::<Vec<_>>()
             .join(", ")
     });
-    let spreads = records.iter().map(|record| {
-        let squares = record
-            .gauges
-            .iter()
-            .map(|trace| root_mean_square(trace).powi(2));
-        format!(
-            "{:.2}",
-            (squares.sum::<f64>() / record.gauges.len() as f64).sqrt()
-        )
+    let spreads = records.iter().map(|gauges| {
+        let squares = gauges.iter().map(|record| root_mean_square(record).powi(2));
+        let mean = squares.sum::<f64>() / gauges.len() as f64;
+        format!("{:.2}", mean.sqrt())
     });
     let samples = facts.iter().map(|f| format!("{}, {}", f.samples, f.lost));
     let row = |name: &str, cells: Vec<String>| format!("| {name} | {} |", cells.join(" | "));
@@ -69,7 +69,11 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
         Coefficient::ALL.map(Coefficient::as_str)
     );
     assert_eq!(case.objective.condition, case.condition("5rpm").unwrap());
-    assert_eq!(case.objective.gauges, [(1, 1.0), (3, 1.0)]);
+    let term = |gauge| Term {
+        channel: Sensor::Gauge(gauge).name(),
+        weight: 1.0,
+    };
+    assert_eq!(case.objective.terms, [1, 3].map(term));
     assert_eq!(case.objective.offset, Offset::Free);
     for gene in &case.genes {
         assert!(
@@ -82,22 +86,30 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
         );
     }
     let machine = Machine::of(case).unwrap();
-    for (condition, working) in case.conditions.iter().zip(&machine.conditions) {
+    for (index, working) in machine.conditions.iter().enumerate() {
         assert_eq!(working.card.load_n.len(), 720);
-        let record = condition.record.as_ref().unwrap();
-        assert_eq!(record.turn_deg.len(), 720);
-        assert!((record.turn_deg[719] - 359.5).abs() < 1e-9);
-        assert_eq!(record.cycles, 5);
-        for trace in &record.gauges {
-            assert!(
-                (0.1..0.3).contains(&root_mean_square(trace)),
-                "{}",
-                root_mean_square(trace)
-            );
+        let named: Vec<_> = case
+            .channels_of(index)
+            .map(|(_, c)| c.name.as_str())
+            .collect();
+        let names = [
+            "gauge_1", "gauge_2", "gauge_3", "gauge_4", "position", "torque",
+        ];
+        assert_eq!(named, names);
+        for (_, channel) in case.channels_of(index) {
+            assert_eq!(channel.abscissa.points.len(), 720);
+            assert!((channel.abscissa.points[719] - 359.5).abs() < 1e-9);
+        }
+        let gauges = gauges(case, index);
+        assert_eq!(gauges.len(), 4);
+        for record in &gauges {
+            assert_eq!(record.cycles, 5);
+            let spread = root_mean_square(record);
+            assert!((0.1..0.3).contains(&spread), "{spread}");
         }
         // the quasi-static half-ranges, less than 10 % of ripple above them
         for (gauge, expected) in [(1, 12.76), (3, 17.71)] {
-            let ratio = half_range(&record.gauges[gauge - 1].mean_mpa) / expected;
+            let ratio = half_range(&gauges[gauge - 1].mean) / expected;
             assert!((1.0..1.1).contains(&ratio), "gauge {gauge}: {ratio}");
         }
     }
@@ -194,7 +206,7 @@ fn the_averaged_record_is_the_record() {
         bin.0 += stress;
         bin.1 += 1.0;
     }
-    let mean = &case.conditions[1].record.as_ref().unwrap().gauges[2].mean_mpa;
+    let mean = &gauges(&case, 1)[2].mean;
     let squares: f64 = (0..360)
         .map(|at| {
             let around: [f64; 3] = [(2 * at + 719) % 720, 2 * at, 2 * at + 1].map(|i| mean[i]);

@@ -27,10 +27,10 @@ const MORE_MIB: u64 = 12;
 
 fn finished(job: u64) -> Finished {
     let score = ChannelScore {
-        gauge: 1,
-        mse_mpa2: job as f64,
-        mse_fixed_offset_mpa2: 0.5,
-        offset_mpa: 0.25,
+        channel: 1,
+        mse: job as f64,
+        mse_fixed_offset: 0.5,
+        offset: 0.25,
         rmse_over_half_range: 0.1,
         relative_error: 0.1,
         peak_to_peak_error: 0.1,
@@ -50,7 +50,7 @@ fn finished(job: u64) -> Finished {
             verdict: Verdict::Complete,
             fitness: 1.0 / (job + 1) as f64,
             channels: vec![score; 4],
-            residual_mpa: vec![0.5; RESIDUALS],
+            residual: vec![0.5; RESIDUALS],
             counters: Counters::default(),
         })),
     }

@@ -62,9 +62,10 @@ fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisatio
 }
 
 fn bits(observation: &Observation) -> Vec<u64> {
-    let gauges = observation.gauge_mpa.iter().flatten();
-    let all = gauges.chain(&observation.suspension_m);
-    all.chain(&observation.crank_torque_n_m)
+    observation
+        .curves
+        .iter()
+        .flatten()
         .map(|x| x.to_bits())
         .collect()
 }
@@ -76,7 +77,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     let case = case();
     let plain = observe(&case, &[], Discretisation::default());
     assert_eq!(plain.verdict, Verdict::Complete);
-    assert_eq!(plain.gauge_mpa[0].len(), 720);
+    assert_eq!(plain.curves[0].len(), 720);
     let individual = Individual {
         effects: vec![EffectSetting::new("gauge_gain", &[("gain_1", 0.0)])],
         ..Individual::new(0, case.recommended())
@@ -89,11 +90,9 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     let of_whole = Observation {
         verdict: whole.verdict,
         counters: whole.counters,
-        gauge_mpa: whole.gauge_mpa,
-        suspension_m: whole.suspension_m,
-        crank_torque_n_m: whole.crank_torque_n_m,
+        curves: super::channels(&whole),
     };
-    assert_eq!(of_whole.rounded(), plain);
+    assert_eq!(of_whole.rounded(&case, 0), plain);
 
     let effects = [
         EffectSetting::new("pivot_friction", &[("moment", 1500.0)]),
@@ -135,7 +134,7 @@ fn a_refined_observation_is_of_the_same_machine() {
     );
     assert_eq!(fine.verdict, Verdict::Complete);
     assert_ne!(bits(&fine), bits(&plain));
-    for (fine, plain) in fine.gauge_mpa.iter().zip(&plain.gauge_mpa) {
+    for (fine, plain) in fine.curves.iter().zip(&plain.curves).take(4) {
         assert!(super::difference(fine, plain) < 0.01);
     }
 }

@@ -9,7 +9,7 @@ use coordinator::study::{
     Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
 };
 use protocol::{
-    case::{Case, EffectSetting, GaugeRecord, GaugeTrace, Gene, Quantity},
+    case::{Case, ChannelRecord, EffectSetting, Gene, Quantity},
     id::JobId,
     job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec},
     message::Cost,
@@ -98,7 +98,7 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let [low, high] = fixed
         .each_ref()
         .map(|prepared| observed(prepared, &genes, &[]));
-    assert_ne!(low.gauge_mpa, high.gauge_mpa);
+    assert_ne!(low.curves, high.curves);
     for (moment, expected) in [(1800.0, &high), (1000.0, &low), (1800.0, &high)] {
         assert_eq!(&observed(&with_gene, &at(moment), &[]), expected);
     }
@@ -254,16 +254,13 @@ fn a_calibration_finds_the_sizes_of_effects() {
     let mut case = searched(&coarse(&[friction(1000.0), late(0.0)]));
     let time = gene(("card_time_shift", "time"), "s", [-0.04, 0.04], 0.0);
     case.genes.push(time);
-    let traces = (1..).zip(&seen.gauge_mpa).map(|(gauge, curve)| GaugeTrace {
-        gauge,
-        mean_mpa: curve.clone(),
-        spread_mpa: vec![0.0; curve.len()],
-    });
-    case.conditions[0].record = Some(GaugeRecord {
-        turn_deg: (0..720).map(|i| 0.5 * f64::from(i)).collect(),
-        cycles: 1,
-        gauges: traces.collect(),
-    });
+    for (channel, curve) in case.channels.iter_mut().zip(&seen.curves).take(4) {
+        channel.record = Some(ChannelRecord {
+            cycles: 1,
+            mean: curve.clone(),
+            spread: vec![0.0; curve.len()],
+        });
+    }
     let found = calibrated(
         &case,
         vec![

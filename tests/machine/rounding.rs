@@ -33,9 +33,7 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     let exact = Observation {
         verdict: whole.verdict,
         counters: whole.counters,
-        gauge_mpa: whole.gauge_mpa,
-        suspension_m: whole.suspension_m,
-        crank_torque_n_m: whole.crank_torque_n_m,
+        curves: super::channels(&whole),
     };
     [rounded.into_channels().unwrap(), exact]
 }
@@ -56,7 +54,7 @@ fn rounded_channels_are_short_and_far_below_the_noise() {
     let prepared = Prepared::new(case).unwrap();
     let whitened = |individual: &Individual| {
         let seen = both(&prepared, individual);
-        seen.map(|seen| metric.whiten(&channels(&seen, &record.channels).unwrap()))
+        seen.map(|seen| metric.whiten(&channels(&seen, record).unwrap()))
     };
     let plain = Individual::new(condition, case.recommended());
     let at = whitened(&plain);

@@ -1,5 +1,5 @@
 //! Where experiments are done: whoever simulates batches of points.
-use crate::record::measured::{Curves, Record, Source};
+use crate::record::measured::{Curves, Record, Recorded};
 use protocol::job::{Observation, SimulateSpec, Verdict};
 
 /// A part of the diagnosis, for progress and for accounts of time.
@@ -64,23 +64,13 @@ pub trait Laboratory {
     ) -> impl Future<Output = Result<Vec<Option<Observation>>, Self::Error>>;
 }
 
-/// The channels of an observation, in the order of a record; nothing unless it is complete.
-pub fn channels(observation: &Observation, sources: &[Source]) -> Option<Curves> {
+/// The curves of an observation that a record has, in its order; nothing unless it is complete.
+pub fn channels(observation: &Observation, record: &Record) -> Option<Curves> {
     if observation.verdict != Verdict::Complete {
         return None;
     }
-    let curve = |source: &Source| match source {
-        Source::Gauge(number) => {
-            let place = usize::from(*number).checked_sub(1)?;
-            observation.gauge_mpa.get(place)
-        }
-        Source::Position => Some(&observation.suspension_m),
-        Source::Torque => Some(&observation.crank_torque_n_m),
-    };
-    sources
-        .iter()
-        .map(|source| curve(source).cloned())
-        .collect()
+    let curve = |recorded: &Recorded| observation.curves.get(recorded.curve).cloned();
+    record.channels.iter().map(curve).collect()
 }
 
 /// Does a batch of experiments on a record; the curves of its channels, nothing for an experiment that
@@ -95,6 +85,6 @@ pub async fn curves<L: Laboratory>(
     batch: Vec<SimulateSpec>,
 ) -> Result<Vec<Option<Curves>>, L::Error> {
     let observed = lab.observe(stage, batch).await?;
-    let own = |seen: Option<Observation>| channels(&seen?, &record.channels);
+    let own = |seen: Option<Observation>| channels(&seen?, record);
     Ok(observed.into_iter().map(own).collect())
 }

@@ -1,7 +1,7 @@
 //! What `horsehead case check` tells about a case that is in order.
 use super::{CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts, load::load_machine};
 use protocol::{
-    case::{Case, Gene},
+    case::{Case, Gene, Term},
     pumping_unit::Machine,
 };
 use std::{fmt, path::Path};
@@ -30,8 +30,8 @@ pub struct Summary {
     pub effects: Vec<CaseEffect>,
     /// One entry per condition.
     pub conditions: Vec<ConditionSummary>,
-    /// Name of the calibrated condition, and its gauges with weights.
-    pub objective: (String, Vec<(u8, f64)>),
+    /// Name of the calibrated condition, and what is summed under it.
+    pub objective: (String, Vec<Term>),
     /// Remarks.
     pub notes: Vec<Note>,
 }
@@ -49,16 +49,16 @@ pub struct ConditionSummary {
     pub record: Option<RecordSummary>,
 }
 
-/// A gauge record in figures.
+/// A record in figures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordSummary {
     /// File, samples, losses, speed.
     pub facts: RecordFacts,
     /// Whole cycles that were averaged.
     pub cycles: usize,
-    /// Per gauge: number, half of the measured range \[MPa\], noise of the mean curve \[MPa\] (root
+    /// Per channel: its title and unit, half of the measured range, noise of the mean curve (root
     /// mean square of spread / sqrt(cycles)).
-    pub gauges: Vec<(u8, f64, f64)>,
+    pub channels: Vec<(String, String, f64, f64)>,
 }
 
 /// Loads a case and tells what is in it.
@@ -103,7 +103,7 @@ pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseE
             calibrated
                 .map(|condition| condition.name.clone())
                 .unwrap_or_default(),
-            case.objective.gauges.clone(),
+            case.objective.terms.clone(),
         ),
         notes: loaded.notes,
         effects: loaded.effects,
@@ -119,28 +119,32 @@ fn conditions(
     facts: Vec<Option<RecordFacts>>,
 ) -> Vec<ConditionSummary> {
     let all = case.conditions.iter().zip(&machine.conditions).zip(facts);
-    let summaries = all.map(|((condition, working), facts)| {
-        let record = condition.record.as_ref().zip(facts).map(|(record, facts)| {
-            let gauges = record.gauges.iter().map(|trace| {
-                let [low, high] = range(&trace.mean_mpa);
-                let count = trace.spread_mpa.len().max(1) as f64;
-                let square: f64 = trace.spread_mpa.iter().map(|s| s * s).sum::<f64>() / count;
-                let noise = (square / record.cycles.max(1) as f64).sqrt();
-                (trace.gauge, (high - low) / 2.0, noise)
+    let summaries = all
+        .enumerate()
+        .map(|(index, ((condition, working), facts))| {
+            let record = facts.map(|facts| {
+                let channels = case.measured(index).map(|(_, channel, record)| {
+                    let [low, high] = range(&record.mean);
+                    let count = record.spread.len().max(1) as f64;
+                    let square: f64 = record.spread.iter().map(|s| s * s).sum::<f64>() / count;
+                    let noise = (square / record.cycles.max(1) as f64).sqrt();
+                    let (title, unit) = (channel.title.clone(), channel.unit.clone());
+                    (title, unit, (high - low) / 2.0, noise)
+                });
+                let cycles = case.measured(index).map(|(_, _, record)| record.cycles);
+                RecordSummary {
+                    facts,
+                    cycles: cycles.max().unwrap_or_default(),
+                    channels: channels.collect(),
+                }
             });
-            RecordSummary {
-                facts,
-                cycles: record.cycles,
-                gauges: gauges.collect(),
+            ConditionSummary {
+                name: condition.name.clone(),
+                speed_rpm: working.speed_rpm,
+                load_n: range(&working.card.load_n),
+                record,
             }
         });
-        ConditionSummary {
-            name: condition.name.clone(),
-            speed_rpm: working.speed_rpm,
-            load_n: range(&working.card.load_n),
-            record,
-        }
-    });
     summaries.collect()
 }
 
@@ -158,12 +162,11 @@ impl fmt::Display for Summary {
         for condition in &self.conditions {
             write!(to, "{condition}")?;
         }
-        let (condition, gauges) = &self.objective;
-        let gauges = gauges
-            .iter()
-            .map(|(gauge, weight)| format!("{gauge} (weight {weight})"));
-        let gauges: Vec<String> = gauges.collect();
-        write!(to, "objective   {condition}: gauges {}", gauges.join(", "))?;
+        let (condition, terms) = &self.objective;
+        let terms = terms.iter();
+        let terms = terms.map(|term| format!("{} (weight {})", term.channel, term.weight));
+        let terms: Vec<String> = terms.collect();
+        write!(to, "objective   {condition}: {}", terms.join(", "))?;
         for note in &self.notes {
             write!(to, "\nnote: {note}")?;
         }
@@ -270,10 +273,10 @@ impl fmt::Display for ConditionSummary {
             record.facts.lost,
             record.facts.speed_rpm
         )?;
-        for (gauge, half_range, noise) in &record.gauges {
+        for (title, unit, half_range, noise) in &record.channels {
             writeln!(
                 to,
-                "  gauge {gauge}: half-range {half_range:.2} MPa, noise of the mean {noise:.3} MPa"
+                "  {title}: half-range {half_range:.2} {unit}, noise of the mean {noise:.3} {unit}"
             )?;
         }
         Ok(())

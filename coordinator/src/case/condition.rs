@@ -9,7 +9,7 @@ use super::{
 };
 use discrepancy::record::Record;
 use protocol::{
-    case::Condition,
+    case::{Channel, Condition},
     pumping_unit::{Smoothing, WorkingCondition},
 };
 use std::path::{Path, PathBuf};
@@ -30,6 +30,7 @@ pub(super) struct Source<'a> {
 pub(super) struct ReadCondition {
     pub(super) condition: Condition,
     pub(super) working: WorkingCondition,
+    pub(super) channels: Vec<Channel>,
     pub(super) facts: Option<RecordFacts>,
     pub(super) cycles: Option<Record>,
     pub(super) notes: Vec<Note>,
@@ -92,30 +93,31 @@ impl Source<'_> {
             .filter(|_| not_repeated.is_none())
             .map(|name| record::read(&self.place(name), &expected))
             .transpose()?;
-        let (record, facts, cycles, notes) = match read {
-            Some(read) => (
-                Some(read.record),
-                Some(read.facts),
-                Some(read.cycles),
-                read.notes,
-            ),
-            None => (None, None, None, not_repeated.into_iter().collect()),
-        };
         let condition = Condition {
             name: entry.name.clone(),
-            record,
         };
         let working = WorkingCondition {
             speed_rpm: entry.speed_rpm,
             counterweight_moment_n_m: entry.counterweight_moment_n_m,
             card,
         };
-        Ok(ReadCondition {
-            condition,
-            working,
-            facts,
-            cycles,
-            notes,
+        Ok(match read {
+            Some(read) => ReadCondition {
+                condition,
+                working,
+                channels: read.channels,
+                facts: Some(read.facts),
+                cycles: Some(read.cycles),
+                notes: read.notes,
+            },
+            None => ReadCondition {
+                condition,
+                working,
+                channels: record::channels(index, self.file.run.output_step_deg),
+                facts: None,
+                cycles: None,
+                notes: not_repeated.into_iter().collect(),
+            },
         })
     }
 

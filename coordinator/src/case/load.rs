@@ -138,10 +138,12 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         file: &file,
     };
     let (mut notes, mut records) = (Vec::new(), Vec::new());
-    let (mut cycles, mut conditions, mut working) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut cycles, mut channels) = (Vec::new(), Vec::new());
+    let (mut conditions, mut working) = (Vec::new(), Vec::new());
     for read in source.conditions()? {
         conditions.push(read.condition);
         working.push(read.working);
+        channels.extend(read.channels);
         records.push(read.facts);
         cycles.extend(read.cycles);
         notes.extend(read.notes);
@@ -176,6 +178,7 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         effect_units: file.effects.iter().map(CaseEffect::units).collect(),
         genes,
         conditions,
+        channels,
         objective,
     };
     let loaded = Loaded {

@@ -5,7 +5,8 @@ use super::{
     error::CaseError,
     schema::{ConditionEntry, GaugeWeight, ObjectiveEntry},
 };
-use protocol::case::{Case, Objective, Offset};
+use protocol::case::{Case, Objective, Offset, Term};
+use protocol::pumping_unit::Sensor;
 use std::path::Path;
 
 /// The objective, with its condition by index. A case without gauge records needs none: it has nothing
@@ -23,7 +24,7 @@ pub(super) fn read(
         return match recorded {
             None => Ok(Objective {
                 condition: 0,
-                gauges: (1..=4).map(|gauge| (gauge, 1.0)).collect(),
+                terms: (1..=4).map(|gauge| term(gauge, 1.0)).collect(),
                 offset: Offset::Free,
             }),
             Some(recorded) => Err(document.field(
@@ -63,13 +64,20 @@ pub(super) fn read(
     check_gauges(document, &entry.gauges)?;
     Ok(Objective {
         condition,
-        gauges: entry
+        terms: entry
             .gauges
             .iter()
-            .map(|part| (part.gauge, part.weight))
+            .map(|part| term(part.gauge, part.weight))
             .collect(),
         offset: entry.offset,
     })
+}
+
+fn term(gauge: u8, weight: f64) -> Term {
+    Term {
+        channel: Sensor::Gauge(gauge).name(),
+        weight,
+    }
 }
 
 /// Gauges that there are, each once, with weights above 0.
@@ -120,10 +128,10 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
 /// # Errors
 /// Names the case file, the field that is missing and what to do.
 pub fn require_record(folder: &Path, case: &Case, condition: usize) -> Result<(), CaseError> {
-    let found = case.conditions.get(condition);
-    if found.is_some_and(|condition| condition.record.is_some()) {
+    if case.is_measured(condition) {
         return Ok(());
     }
+    let found = case.conditions.get(condition);
     let name = found.map_or("?", |condition| condition.name.as_str());
     Err(CaseError::Field {
         path: folder.join("case.toml").into(),

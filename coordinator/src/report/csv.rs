@@ -4,8 +4,8 @@
 use super::data::{ConditionResult, Run, SingleRun};
 use super::words::condition_name;
 use protocol::{
-    case::{Case, GaugeRecord},
-    pumping_unit::{Machine, Simulation},
+    case::{Case, Channel},
+    pumping_unit::{Machine, Sensor, Simulation},
 };
 use std::io::Write;
 
@@ -106,23 +106,19 @@ fn rows(
     simulation: &Simulation,
 ) -> Result<(), csv::Error> {
     let name = condition_name(case, condition);
-    let found = case.conditions.get(condition);
-    let record = found.and_then(|condition| condition.record.as_ref());
+    let measured: Vec<_> = case.measured(condition).collect();
     for (index, &turn) in simulation.turn_deg.iter().enumerate() {
-        let measured = record.and_then(|record| Some((record, on_grid(record, turn)?)));
-        let trace = |gauge: u8, spread: bool| {
-            let (record, row) = measured?;
-            let trace = record.gauges.iter().find(|trace| trace.gauge == gauge)?;
-            let values = if spread {
-                &trace.spread_mpa
-            } else {
-                &trace.mean_mpa
-            };
-            values.get(row).copied()
+        let value = |sensor: Sensor, spread: bool| {
+            let name = sensor.name();
+            let mut measured = measured.iter();
+            let (_, channel, record) = measured.find(|(_, channel, _)| channel.name == name)?;
+            let values = if spread { &record.spread } else { &record.mean };
+            values.get(on_grid(channel, turn)?).copied()
         };
+        let gauges = || (1..=4).map(Sensor::Gauge);
         let mut fields = vec![name.clone(), parameters.to_owned(), field(Some(turn))];
-        fields.extend((1..=4).map(|gauge| field(trace(gauge, false))));
-        fields.extend((1..=4).map(|gauge| field(trace(gauge, true))));
+        fields.extend(gauges().map(|gauge| field(value(gauge, false))));
+        fields.extend(gauges().map(|gauge| field(value(gauge, true))));
         let [first, second, third, fourth] = &simulation.gauge_mpa;
         let curves = [
             first,
@@ -183,12 +179,10 @@ pub fn ropes(to: impl Write, simulation: &Simulation) -> Result<(), csv::Error> 
     Ok(writer.flush()?)
 }
 
-/// Row of the record at a crank angle, if it has one there.
-fn on_grid(record: &GaugeRecord, turn_deg: f64) -> Option<usize> {
+/// Place of a value of a channel at a crank angle, if it has one there.
+fn on_grid(channel: &Channel, turn_deg: f64) -> Option<usize> {
     const SAME_DEG: f64 = 1e-6;
-    let row = record
-        .turn_deg
-        .partition_point(|&known| known < turn_deg - SAME_DEG);
-    let known = *record.turn_deg.get(row)?;
-    ((known - turn_deg).abs() <= SAME_DEG).then_some(row)
+    let grid = &channel.abscissa.points;
+    let row = grid.partition_point(|&known| known < turn_deg - SAME_DEG);
+    ((grid.get(row)? - turn_deg).abs() <= SAME_DEG).then_some(row)
 }

@@ -118,6 +118,15 @@ pub(super) fn unit(symbol: &str) -> String {
     set
 }
 
+/// The square of a unit as print sets it; nothing where there is no unit.
+pub(super) fn squared(symbol: Option<&str>) -> String {
+    match symbol {
+        None | Some("" | "1") => String::new(),
+        Some(compound) if compound.contains(['.', '/']) => unit(&format!("({compound})^2")),
+        Some(single) => unit(&format!("{single}^2")),
+    }
+}
+
 /// A value with its unit; the unit `1` is not written.
 pub(super) fn quantity(value: f64, symbol: &str) -> String {
     match symbol {

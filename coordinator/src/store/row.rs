@@ -17,7 +17,7 @@ pub(super) struct Brief {
     pub(super) worker: Option<WorkerId>,
     pub(super) cost: Cost,
     pub(super) simulated: Option<(Verdict, Counters)>,
-    pub(super) fitness_mpa2: Option<f64>,
+    pub(super) fitness: Option<f64>,
     pub(super) scores: Vec<ChannelScore>,
     pub(super) failure: Option<Failure>,
 }
@@ -36,7 +36,7 @@ impl Brief {
             worker: finished.worker,
             cost: finished.cost,
             simulated: finished.outcome.simulation(),
-            fitness_mpa2: evaluation.map(|evaluation| evaluation.fitness),
+            fitness: evaluation.map(|evaluation| evaluation.fitness),
             scores: evaluation.map_or_else(Vec::new, |evaluation| evaluation.channels.clone()),
             failure,
         }
@@ -46,10 +46,11 @@ impl Brief {
         self.simulated.map(|(_, counters)| counters)
     }
 
-    /// Mean squared error of a gauge, if it was scored.
-    pub(super) fn mse_mpa2(&self, gauge: u8) -> Option<f64> {
-        let score = self.scores.iter().find(|score| score.gauge == gauge)?;
-        Some(score.mse_mpa2)
+    /// Mean squared error of the one of some channels that was scored.
+    pub(super) fn mse(&self, channels: &[usize]) -> Option<f64> {
+        let mut scores = self.scores.iter();
+        let score = scores.find(|score| channels.contains(&score.channel))?;
+        Some(score.mse)
     }
 }
 
@@ -64,7 +65,7 @@ pub(super) struct Evaluated {
     pub(super) result: Brief,
 }
 
-/// Agreement of one gauge.
+/// Agreement of one channel.
 pub(super) struct Scored {
     pub(super) job: JobId,
     pub(super) score: ChannelScore,

@@ -64,9 +64,9 @@ pub async fn calibrate<E: Evaluator>(
             continue;
         };
         if let Some(evaluation) = completed.outcome.answer().and_then(Answer::evaluation)
-            && !evaluation.residual_mpa.is_empty()
+            && !evaluation.residual.is_empty()
         {
-            strategy.tell_residual(proposal.id, evaluation.residual_mpa.clone());
+            strategy.tell_residual(proposal.id, evaluation.residual.clone());
         }
         let entry = entry(proposal, completed.outcome)?;
         strategy.tell(entry.id, entry.told());

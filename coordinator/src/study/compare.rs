@@ -69,10 +69,7 @@ pub async fn compare<E: Evaluator>(
 ) -> Result<Vec<Compared>, StudyError> {
     let mut open: BTreeMap<u64, (usize, usize)> = BTreeMap::new();
     for (group, one) in wanted.iter().enumerate() {
-        let recorded = case
-            .conditions
-            .get(one.condition)
-            .is_some_and(|c| c.record.is_some());
+        let recorded = case.is_measured(one.condition);
         for (position, (_, genes)) in one.individuals.iter().enumerate() {
             let first = first_id(one.condition, position);
             let simulate = |reply| {

@@ -137,10 +137,10 @@ fn curves(first_gene: f64) -> Simulation {
 
 fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
     let channel = ChannelScore {
-        gauge: 1,
-        mse_mpa2: fitness,
-        mse_fixed_offset_mpa2: fitness,
-        offset_mpa: 0.0,
+        channel: 0,
+        mse: fitness,
+        mse_fixed_offset: fitness,
+        offset: 0.0,
         rmse_over_half_range: 0.1,
         relative_error: 0.1,
         peak_to_peak_error: 0.1,
@@ -149,7 +149,7 @@ fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
         verdict,
         fitness,
         channels: vec![channel],
-        residual_mpa: Vec::new(),
+        residual: Vec::new(),
         counters: Counters::default(),
     }
 }

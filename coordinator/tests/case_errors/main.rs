@@ -51,13 +51,13 @@ fn another_test_need_not_repeat_every_condition() {
     }
     let load = |measured| case::load_with_notes(copy.folder.path(), &Overrides { measured });
     let (own, part) = (load(None).unwrap(), load(Some(other.clone())).unwrap());
-    let [calibrated, held] = &part.case.conditions[..] else {
+    let [calibrated, _] = &part.case.conditions[..] else {
         panic!("two conditions");
     };
     assert_eq!(*calibrated, own.case.conditions[0]);
     let card = |case| Machine::of(case).unwrap().conditions.swap_remove(1).card;
     assert_eq!(card(&part.case), card(&own.case));
-    assert_eq!((held.record.as_ref(), part.cycles.len()), (None, 1));
+    assert_eq!((part.case.is_measured(1), part.cycles.len()), (false, 1));
     let said = "test_4rpm.csv.gz is not there: condition `4rpm` was not measured";
     assert!(
         part.notes
@@ -110,9 +110,7 @@ fn another_test_of_the_same_machine_replaces_the_records() {
     copy.lines(RECORD, |at, line| scaled(at, line, &[2], 2.0));
     let plain = case::load(copy.folder.path(), &Overrides::default()).unwrap();
     let replaced = load().unwrap();
-    let first = |case: &protocol::case::Case| {
-        case.conditions[0].record.as_ref().unwrap().gauges[0].mean_mpa[7]
-    };
+    let first = |case: &protocol::case::Case| case.channels[0].record.as_ref().unwrap().mean[7];
     assert!((first(&plain) - 2.0 * first(&replaced)).abs() < 1e-9);
     assert_eq!(replaced.conditions[1], plain.conditions[1]);
 }
@@ -139,11 +137,7 @@ fn a_case_may_have_load_cards_alone() {
             copy.cut(TOML, "[objective]", "[run]");
         }
         let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
-        assert!(
-            case.conditions
-                .iter()
-                .all(|condition| condition.record.is_none())
-        );
+        assert!(case.channels.iter().all(|channel| channel.record.is_none()));
         assert_eq!(case.objective.condition, 0);
         let summary = case::check(copy.folder.path()).unwrap().to_string();
         assert_eq!(
@@ -180,7 +174,7 @@ fn what_is_doubtful_is_a_note() {
         (at < 2640 && !(700..730).contains(&at)).then(|| line.to_owned())
     });
     let loaded = case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap();
-    let record = loaded.case.conditions[0].record.as_ref().unwrap();
+    let record = loaded.case.channels[0].record.as_ref().unwrap();
     assert_eq!(record.cycles, 2);
     let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
     let notes = notes.join("\n");
@@ -209,14 +203,9 @@ fn one_cycle_has_no_spread() {
             .then(|| line.to_owned())
     });
     let loaded = case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap();
-    let record = loaded.case.conditions[0].record.as_ref().unwrap();
-    assert_eq!(record.cycles, 1);
-    assert!(
-        record
-            .gauges
-            .iter()
-            .all(|trace| trace.spread_mpa == vec![0.0; 720])
-    );
+    for (_, _, record) in loaded.case.measured(0) {
+        assert_eq!((record.cycles, &record.spread), (1, &vec![0.0; 720]));
+    }
     let text = format!("{:?}", loaded.notes);
     assert!(text.contains("one whole cycle only"), "{text}");
 }

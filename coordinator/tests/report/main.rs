@@ -156,8 +156,8 @@ fn a_calibration_is_written_with_its_data() {
         "report.html",
         "curves.csv",
         "tables.txt",
-        "figures/stress_5rpm_gauge_1.svg",
-        "figures/stress_4rpm_gauge_3.svg",
+        "figures/overlay_5rpm_gauge_1.svg",
+        "figures/overlay_4rpm_gauge_3.svg",
         "figures/convergence.svg",
         "figures/genes.svg",
         "figures/contact.svg",
@@ -190,7 +190,7 @@ fn a_calibration_is_written_with_its_data() {
     }
     for gauge in 1..=4 {
         assert!(text.contains(&format!("Gauge {gauge}")));
-        assert!(text.contains(&format!("Point {gauge}")));
+        assert!(text.contains(&format!("Gauge {gauge}")));
     }
     for part in [
         "4rpm",
@@ -251,7 +251,7 @@ fn every_figure_of_a_calibration_is_well_formed() {
 #[test]
 fn both_columns_of_an_overlay_share_their_scales() {
     let calibration = sample::calibration(0);
-    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 1);
+    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 0);
     let svg = overlay.expect("the record has gauge 1").svg;
     // the measured mean is drawn in both columns with the same pen: same heights, shifted sideways
     let mean = curves(&svg, "#222222", "13");
@@ -285,12 +285,12 @@ fn curves(svg: &str, stroke: &str, width: &str) -> Vec<Vec<(i64, i64)>> {
 #[test]
 fn a_simulation_that_differs_by_its_zero_only_lies_on_the_measured_curve() {
     let mut calibration = sample::calibration(0);
-    let record = calibration.case.conditions[0].record.clone();
-    let measured = record.expect("a record").gauges[0].mean_mpa.clone();
+    let record = calibration.case.channels[0].record.clone();
+    let measured = record.expect("a record").mean;
     let run = &mut calibration.conditions[0].optimised;
     run.simulation.gauge_mpa[0] = measured.iter().map(|stress| stress - 5.0).collect();
     run.evaluation = sample::score(&calibration.case, 0, &run.simulation);
-    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 1);
+    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 0);
     let svg = overlay.expect("the record has gauge 1").svg;
     let (mean, simulated) = (curves(&svg, "#222222", "13"), curves(&svg, "#c84b11", "11"));
     assert_eq!((mean.len(), simulated.len()), (2, 2));
@@ -319,10 +319,10 @@ fn a_gauge_that_got_worse_is_said_to_be_worse() {
     let page = page_of(&sample::calibration(100));
     let text = words(&page);
     assert!(
-        text.contains("Point 4: worse: mean squared error rose"),
+        text.contains("Gauge 4: worse: mean squared error rose"),
         "{text}"
     );
-    assert!(text.contains("Point 4 is worse with the optimised parameters under condition 4rpm."));
+    assert!(text.contains("Gauge 4 is worse with the optimised parameters under condition 4rpm."));
     assert!(text.contains("The sum of the mean squared errors at points 1 and 3 fell from"));
 }
 
@@ -349,7 +349,7 @@ fn a_failed_recommended_run_draws_what_exists_and_says_so() {
         "{text}"
     );
     assert!(text.contains("no error to compare with"));
-    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 3);
+    let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 2);
     let svg = overlay.expect("the record has gauge 3").svg;
     let simulated = |svg: &str| {
         let document = Document::parse(svg).unwrap();
@@ -404,7 +404,9 @@ fn nothing_at_all_still_makes_a_page() {
         reached: Reached::LoadFraction(0.5),
     };
     run.evaluation = None;
-    run.case.conditions[0].record = None;
+    for channel in &mut run.case.channels {
+        channel.record = None;
+    }
     let page = report::page(&report::simulation(&run));
     check_page(&page);
     assert!(words(&page).contains(
@@ -439,7 +441,7 @@ fn numbers_that_are_none_are_left_out() {
         "a snapshot without places is left out"
     );
     let case = &calibration.case;
-    let overlay = chart::overlay(case, &calibration.conditions[0], 1);
+    let overlay = chart::overlay(case, &calibration.conditions[0], 0);
     let simulated = curves(&overlay.unwrap().svg, "#c84b11", "11");
     let lengths: Vec<_> = simulated.iter().map(Vec::len).collect();
     // recommended, then optimised on both sides of its gap (a stretch of 100 is not listed)
@@ -467,7 +469,7 @@ fn terminal_tables_are_styled_only_on_demand() {
         "kb56",
         "N·m/deg",
         "401\u{a0}×",
-        "point 3",
+        "gauge 3",
         "mean absolute error over",
     ] {
         assert!(plain.contains(part), "{part} is not in\n{plain}");
@@ -541,15 +543,15 @@ fn an_absolute_error_that_rose_behind_a_free_offset_is_said() {
     let mut calibration = sample::calibration(10);
     let before = calibration.conditions[0].recommended.evaluation.channels[0];
     let after = &mut calibration.conditions[0].optimised.evaluation.channels[0];
-    assert!(after.mse_mpa2 < before.mse_mpa2);
-    after.mse_fixed_offset_mpa2 = 3.0 * before.mse_fixed_offset_mpa2 + 1.0;
+    assert!(after.mse < before.mse);
+    after.mse_fixed_offset = 3.0 * before.mse_fixed_offset + 1.0;
     let said = "the absolute mean squared error (offset not removed) got worse";
     let text = words(&page_of(&calibration));
     assert!(text.contains(said), "{text}");
     let printed = table::text(&table::table_3(&calibration), false);
     assert!(printed.contains(said) && printed.contains("MSE, absolute (offset not removed)"));
     let after = &mut calibration.conditions[0].optimised.evaluation.channels[0];
-    after.mse_fixed_offset_mpa2 = 0.5 * before.mse_fixed_offset_mpa2;
+    after.mse_fixed_offset = 0.5 * before.mse_fixed_offset;
     let printed = table::text(&table::table_3(&calibration), false);
     assert!(!printed.contains(said));
 }

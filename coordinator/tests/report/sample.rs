@@ -5,12 +5,12 @@ use coordinator::report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
 use protocol::{
-    case::{Case, Coefficient, Condition, GaugeRecord, GaugeTrace, Gene, Objective, Offset},
+    case::{Case, Channel, ChannelRecord, Coefficient, Condition, Gene, Objective, Offset, Term},
     event::Spent,
     job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
     pumping_unit::{
         BackHead, Beam, Contact, Crank, Energy, FrontHead, Influence, LoadCard, Machine, ModalHead,
-        Rod, RopeEnds, Ropes, RunSettings, Simulation, Smoothing, Suspension, TurnSense,
+        Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation, Smoothing, Suspension, TurnSense,
         WorkingCondition,
     },
     unit::Unit,
@@ -172,10 +172,6 @@ fn machine() -> Machine {
 /// A case of that machine.
 pub(crate) fn case() -> Case {
     let machine = machine();
-    let condition = |(index, name): (usize, &str)| Condition {
-        name: name.to_owned(),
-        record: Some(record(&machine, index)),
-    };
     Case {
         name: "CYJS10-5-37HB <test & sample>".to_owned(),
         model: machine.settings().unwrap(),
@@ -183,13 +179,16 @@ pub(crate) fn case() -> Case {
         effect_units: Vec::new(),
         genes: genes(),
         conditions: ["5rpm", "4rpm"]
-            .into_iter()
-            .enumerate()
-            .map(condition)
+            .map(|name| Condition {
+                name: name.to_owned(),
+            })
+            .into(),
+        channels: (0..2)
+            .flat_map(|condition| channels(&machine, condition))
             .collect(),
         objective: Objective {
             condition: 0,
-            gauges: vec![(1, 1.0), (3, 1.0)],
+            terms: [1, 3].map(term).into(),
             offset: Offset::Free,
         },
     }
@@ -214,29 +213,36 @@ fn stress_mpa(machine: &Machine, pose: &Pose, gauge: usize, ripple: f64, order: 
     zero + gain * tension_kn + tilt * (psi - 170.0) + vibration
 }
 
-fn record(machine: &Machine, condition: usize) -> GaugeRecord {
+fn term(gauge: u8) -> Term {
+    Term {
+        channel: Sensor::Gauge(gauge).name(),
+        weight: 1.0,
+    }
+}
+
+/// The channels of a condition, its gauges measured.
+fn channels(machine: &Machine, condition: usize) -> Vec<Channel> {
     let mut noise = Noise(17 + condition as u64);
     let poses = geometry::revolution(machine, GRID);
-    GaugeRecord {
-        turn_deg: poses.iter().map(|pose| pose.turn_deg).collect(),
-        cycles: 5,
-        gauges: (0..4_u8)
-            .map(|gauge| GaugeTrace {
-                gauge: gauge + 1,
-                mean_mpa: poses
-                    .iter()
-                    .map(|pose| {
-                        let stress = stress_mpa(machine, pose, usize::from(gauge), 0.5, 61.0);
-                        stress + 0.3 * (noise.next() - 0.5) + 0.4 * condition as f64
-                    })
-                    .collect(),
-                spread_mpa: poses
-                    .iter()
-                    .map(|pose| 0.35 + 0.25 * pose.turn_deg.to_radians().sin().powi(2))
-                    .collect(),
-            })
-            .collect(),
+    let turn_deg: Vec<f64> = poses.iter().map(|pose| pose.turn_deg).collect();
+    let mut channels: Vec<Channel> = Sensor::ALL
+        .map(|sensor| sensor.channel(condition, turn_deg.clone()))
+        .into();
+    for (gauge, channel) in channels.iter_mut().take(4).enumerate() {
+        let mean = poses.iter().map(|pose| {
+            let stress = stress_mpa(machine, pose, gauge, 0.5, 61.0);
+            stress + 0.3 * (noise.next() - 0.5) + 0.4 * condition as f64
+        });
+        let spread = poses
+            .iter()
+            .map(|pose| 0.35 + 0.25 * pose.turn_deg.to_radians().sin().powi(2));
+        channel.record = Some(ChannelRecord {
+            cycles: 5,
+            mean: mean.collect(),
+            spread: spread.collect(),
+        });
     }
+    channels
 }
 
 /// A complete simulation whose stress differs from the record by `error` (1 is a lot).
@@ -366,40 +372,30 @@ pub(crate) fn failed(mut simulation: Simulation, points: usize) -> Simulation {
 /// Scores a simulation against the record of a condition, plainly.
 pub(crate) fn score(case: &Case, condition: usize, simulation: &Simulation) -> Evaluation {
     let complete = simulation.verdict == Verdict::Complete;
-    let record = case.conditions[condition]
-        .record
-        .as_ref()
-        .filter(|_| complete);
-    let channels: Vec<ChannelScore> = record.map_or_else(Vec::new, |record| {
-        let traces = record.gauges.iter();
-        traces
-            .map(|trace| {
-                let simulated = &simulation.gauge_mpa[usize::from(trace.gauge - 1)];
-                channel(trace, simulated)
-            })
-            .collect()
-    });
-    let weighted = case.objective.gauges.iter().map(|&(gauge, weight)| {
-        let found = channels.iter().find(|channel| channel.gauge == gauge);
-        found.map_or(0.0, |channel| weight * channel.mse_mpa2)
+    let measured = case.measured(condition).filter(|_| complete);
+    let channels: Vec<ChannelScore> = measured
+        .map(|(at, channel, record)| {
+            channel_score(at, &record.mean, simulation.channel(&channel.name))
+        })
+        .collect();
+    let weighted = case.objective.terms.iter().map(|term| {
+        let mut channels = channels.iter();
+        let found = channels.find(|score| case.channels[score.channel].name == term.channel);
+        found.map_or(0.0, |score| term.weight * score.mse)
     });
     Evaluation {
         verdict: simulation.verdict,
         fitness: if complete { weighted.sum() } else { 1.66e6 },
         channels,
-        residual_mpa: Vec::new(),
+        residual: Vec::new(),
         counters: simulation.counters,
     }
 }
 
-fn channel(trace: &GaugeTrace, simulated: &[f64]) -> ChannelScore {
+fn channel_score(channel: usize, measured: &[f64], simulated: &[f64]) -> ChannelScore {
     let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-    let difference: Vec<f64> = trace
-        .mean_mpa
-        .iter()
-        .zip(simulated)
-        .map(|(m, s)| m - s)
-        .collect();
+    let pairs = measured.iter().zip(simulated);
+    let difference: Vec<f64> = pairs.map(|(m, s)| m - s).collect();
     let offset = mean(&difference);
     let square = |shift: f64| {
         let squares: Vec<f64> = difference.iter().map(|d| (d - shift).powi(2)).collect();
@@ -409,17 +405,17 @@ fn channel(trace: &GaugeTrace, simulated: &[f64]) -> ChannelScore {
         let high = values.iter().copied().fold(f64::MIN, f64::max);
         high - values.iter().copied().fold(f64::MAX, f64::min)
     };
-    let middle = mean(&trace.mean_mpa);
-    let deviation: Vec<f64> = trace.mean_mpa.iter().map(|m| (m - middle).abs()).collect();
+    let middle = mean(measured);
+    let deviation: Vec<f64> = measured.iter().map(|m| (m - middle).abs()).collect();
     let error: Vec<f64> = difference.iter().map(|d| (d - offset).abs()).collect();
     ChannelScore {
-        gauge: trace.gauge,
-        mse_mpa2: square(offset),
-        mse_fixed_offset_mpa2: square(0.0),
-        offset_mpa: offset,
-        rmse_over_half_range: square(offset).sqrt() / (0.5 * span(&trace.mean_mpa)),
+        channel,
+        mse: square(offset),
+        mse_fixed_offset: square(0.0),
+        offset,
+        rmse_over_half_range: square(offset).sqrt() / (0.5 * span(measured)),
         relative_error: mean(&error) / mean(&deviation),
-        peak_to_peak_error: span(simulated) / span(&trace.mean_mpa) - 1.0,
+        peak_to_peak_error: span(simulated) / span(measured) - 1.0,
     }
 }
 
@@ -522,8 +518,8 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
         last.complete = true;
     }
     // one gauge that the fit made worse, so that the report has something to admit
-    conditions[1].optimised.evaluation.channels[3].mse_mpa2 =
-        1.2 * conditions[1].recommended.evaluation.channels[3].mse_mpa2;
+    conditions[1].optimised.evaluation.channels[3].mse =
+        1.2 * conditions[1].recommended.evaluation.channels[3].mse;
     Calibration {
         origin: origin(),
         recommended: Individual {

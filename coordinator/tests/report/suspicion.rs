@@ -18,11 +18,12 @@ use discrepancy::place::whereabouts::Where;
 use discrepancy::place::{angle, joint, order};
 use discrepancy::proof::closed::closed;
 use discrepancy::proof::compare::Row;
-use discrepancy::record::{Curves, Record, Source, Stated};
+use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Case;
+use protocol::pumping_unit::Sensor;
 use search::least_squares::{LeastSquares, Settings};
 use search::space::Space;
 use std::time::Duration;
@@ -162,11 +163,11 @@ fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> F
     }
 }
 
-const CHANNELS: [Source; 4] = [
-    Source::Gauge(1),
-    Source::Gauge(3),
-    Source::Position,
-    Source::Torque,
+const CHANNELS: [Sensor; 4] = [
+    Sensor::Gauge(1),
+    Sensor::Gauge(3),
+    Sensor::Position,
+    Sensor::Torque,
 ];
 
 /// A curve of a channel, off the truth by `error`.
@@ -196,9 +197,14 @@ fn record(condition: usize, cycles: usize) -> Record {
         }
         all
     });
+    let recorded = |(curve, sensor): (usize, Sensor)| Recorded {
+        curve,
+        scored: matches!(sensor, Sensor::Gauge(_)),
+        channel: sensor.channel(condition, Vec::new()),
+    };
     Record {
         condition,
-        channels: CHANNELS.to_vec(),
+        channels: CHANNELS.into_iter().enumerate().map(recorded).collect(),
         cycles: cycles.collect(),
         stated: Stated::default(),
     }

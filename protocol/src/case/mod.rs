@@ -3,17 +3,19 @@
 //!
 //! The coordinator reads and validates case *files* and builds this; its encoded bytes travel as
 //! one blob, named by their content hash. Nothing here knows of files, of TOML or of dynamics.
+mod channel;
 mod condition;
 mod effect;
 mod gene;
 mod model;
 mod objective;
 
-pub use condition::{Condition, GaugeRecord, GaugeTrace};
+pub use channel::{Abscissa, Channel, ChannelRecord};
+pub use condition::Condition;
 pub use effect::{EffectSetting, merged};
 pub use gene::{Coefficient, Gene, Quantity, Scale};
 pub use model::ModelSettings;
-pub use objective::{Objective, Offset};
+pub use objective::{Objective, Offset, Term};
 
 use serde::{Deserialize, Serialize};
 
@@ -32,8 +34,10 @@ pub struct Case {
     /// The unknown numbers, in the order of every gene vector: coefficients, then parameters of
     /// [`Self::effects`], whose values there are the recommended ones.
     pub genes: Vec<Gene>,
-    /// Working conditions with their records.
+    /// Working conditions.
     pub conditions: Vec<Condition>,
+    /// What a simulation shows under each condition, with what was measured of it.
+    pub channels: Vec<Channel>,
     /// What a calibration minimises.
     pub objective: Objective,
 }
@@ -44,6 +48,37 @@ impl Case {
         self.conditions
             .iter()
             .position(|condition| condition.name == name)
+    }
+
+    /// The channels of a condition with their places in [`Self::channels`], in the order in which
+    /// replies give their curves.
+    pub fn channels_of(&self, condition: usize) -> impl Iterator<Item = (usize, &Channel)> {
+        let channels = self.channels.iter().enumerate();
+        channels.filter(move |(_, channel)| channel.condition == condition)
+    }
+
+    /// The channels of a condition that were measured, with their places and records.
+    pub fn measured(
+        &self,
+        condition: usize,
+    ) -> impl Iterator<Item = (usize, &Channel, &ChannelRecord)> {
+        self.channels_of(condition)
+            .filter_map(|(at, channel)| Some((at, channel, channel.record.as_ref()?)))
+    }
+
+    /// Whether anything was measured under a condition.
+    pub fn is_measured(&self, condition: usize) -> bool {
+        self.measured(condition).next().is_some()
+    }
+
+    /// The unit of the channels that the objective sums; none where they have not one in common.
+    pub fn objective_unit(&self) -> Option<&str> {
+        let mut units = self.objective.terms.iter().filter_map(|term| {
+            let channel = self.channels.iter().find(|it| it.name == term.channel)?;
+            Some(channel.unit.as_str())
+        });
+        let first = units.next()?;
+        units.all(|unit| unit == first).then_some(first)
     }
 
     /// The recommended gene vector, in declared units.

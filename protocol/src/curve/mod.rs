@@ -16,7 +16,7 @@
 //! what is above stands as so many ones and a zero, then come the lowest bits. Of 24 ones the whole
 //! difference follows.
 //!
-//! A field is given this form by `#[serde(with = "crate::curve")]`, an array of curves by
+//! A field is given this form by `#[serde(with = "crate::curve")]`, several curves by
 //! `#[serde(with = "crate::curve::each")]`.
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
@@ -50,27 +50,31 @@ pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Er
     form::decode(&bytes).map_err(de::Error::custom)
 }
 
-/// The same for an array of curves.
+/// The same for several curves.
 pub mod each {
     use super::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[derive(Deserialize, Serialize)]
-    struct Curve(#[serde(with = "super")] Vec<f64>);
+    #[derive(Deserialize)]
+    #[serde(rename = "Curve")]
+    struct Read(#[serde(with = "super")] Vec<f64>);
+
+    #[derive(Serialize)]
+    struct Written<'a>(#[serde(with = "super")] &'a [f64]);
 
     /// Writes curves.
     ///
     /// # Errors
     /// Of the serializer.
-    pub fn serialize<S: Serializer>(curves: &[Vec<f64>; 4], to: S) -> Result<S::Ok, S::Error> {
-        curves.clone().map(Curve).serialize(to)
+    pub fn serialize<S: Serializer>(curves: &[Vec<f64>], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(curves.iter().map(|curve| Written(curve)))
     }
 
     /// Reads curves.
     ///
     /// # Errors
     /// Of the deserializer, and for bytes that are no curve.
-    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<[Vec<f64>; 4], D::Error> {
-        let curves = <[Curve; 4]>::deserialize(from)?;
-        Ok(curves.map(|Curve(curve)| curve))
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Vec<f64>>, D::Error> {
+        let curves = Vec::<Read>::deserialize(from)?;
+        Ok(curves.into_iter().map(|Read(curve)| curve).collect())
     }
 }

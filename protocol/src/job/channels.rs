@@ -1,49 +1,39 @@
-//! The measured channels of a simulation: what a diagnosis needs of a run.
+//! The channels of a simulation: what a diagnosis needs of a run.
 use super::verdict::{Counters, Verdict};
-use crate::curve::rounded;
+use crate::{
+    case::{Case, Channel},
+    curve::rounded,
+};
 use serde::{Deserialize, Serialize};
 
-/// The channels of one revolution; every vector has one entry per crank angle reached.
+/// The channels of one run.
 ///
-/// The worker rounds them before anybody uses them, to about a thousandth of the noise that a cycle
-/// of a record has: what a run computes with, what its journal holds and what a report reads again
-/// are the same numbers, and a diagnosis' journal has a fifth of the bytes (`crate::curve`).
+/// The worker rounds them before anybody uses them, to the channels' own steps: what a run computes
+/// with, what its journal holds and what a report reads again are the same numbers
+/// (`crate::curve`).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// How it ended.
     pub verdict: Verdict,
     /// What it cost.
     pub counters: Counters,
-    /// Stress at gauges 1 to 4, in steps of 2 to the [`Self::GAUGE_EXPONENT`] \[MPa\].
+    /// One curve per channel of the condition, in the case's order and the channel's unit, as far as
+    /// the run got.
     #[serde(with = "crate::curve::each")]
-    pub gauge_mpa: [Vec<f64>; 4],
-    /// Suspension height above its lowest design position, in steps of 2 to the
-    /// [`Self::SUSPENSION_EXPONENT`] \[m\].
-    #[serde(with = "crate::curve")]
-    pub suspension_m: Vec<f64>,
-    /// Net torque at the crank shaft, counterweight included, in steps of 2 to the
-    /// [`Self::TORQUE_EXPONENT`] [N m].
-    #[serde(with = "crate::curve")]
-    pub crank_torque_n_m: Vec<f64>,
+    pub curves: Vec<Vec<f64>>,
 }
 
 impl Observation {
-    /// Steps of stress: 0.12 kPa.
-    pub const GAUGE_EXPONENT: i32 = -13;
-    /// Steps of height: a micrometre.
-    pub const SUSPENSION_EXPONENT: i32 = -20;
-    /// Steps of torque: 0.12 N m.
-    pub const TORQUE_EXPONENT: i32 = -3;
-
-    /// With its curves in whole steps.
+    /// With its curves in whole steps of their channels, those of a condition.
     #[must_use]
-    pub fn rounded(self) -> Self {
+    pub fn rounded(self, case: &Case, condition: usize) -> Self {
+        let curves = self.curves.into_iter().zip(case.channels_of(condition));
+        let round = |(curve, (_, channel)): (Vec<f64>, (usize, &Channel))| match channel.step {
+            Some(exponent) => rounded(&curve, exponent),
+            None => curve,
+        };
         Self {
-            gauge_mpa: self
-                .gauge_mpa
-                .map(|gauge| rounded(&gauge, Self::GAUGE_EXPONENT)),
-            suspension_m: rounded(&self.suspension_m, Self::SUSPENSION_EXPONENT),
-            crank_torque_n_m: rounded(&self.crank_torque_n_m, Self::TORQUE_EXPONENT),
+            curves: curves.map(round).collect(),
             ..self
         }
     }

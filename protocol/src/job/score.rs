@@ -1,4 +1,4 @@
-//! A simulation compared with its gauge record.
+//! A simulation compared with what was measured.
 use super::verdict::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -7,35 +7,34 @@ use serde::{Deserialize, Serialize};
 pub struct Evaluation {
     /// How the simulation ended.
     pub verdict: Verdict,
-    /// The objective [MPa^2] for a complete run; a graded value above every complete run's
-    /// otherwise.
+    /// The objective for a complete run; a graded value above every complete run's otherwise.
     pub fitness: f64,
-    /// One entry per gauge of the record; empty unless complete.
+    /// One entry per measured channel of the condition; empty unless complete.
     pub channels: Vec<ChannelScore>,
-    /// Measured minus simulated stress after offset removal \[MPa\], gauges of the objective one
-    /// after the other on the output grid, each scaled such that the squared length of the whole is
-    /// the objective; empty unless asked for and complete.
-    pub residual_mpa: Vec<f64>,
+    /// Measured minus simulated curves after offset removal, channels of the objective one after the
+    /// other, each scaled such that the squared length of the whole is the objective; empty unless
+    /// asked for and complete.
+    pub residual: Vec<f64>,
     /// What it cost.
     pub counters: Counters,
 }
 
-/// Agreement of one gauge.
+/// Agreement of one channel, in the channel's unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ChannelScore {
-    /// Gauge number.
-    pub gauge: u8,
-    /// Mean squared error as the objective treats the offset [MPa^2].
-    pub mse_mpa2: f64,
-    /// Mean squared error of absolute values [MPa^2].
-    pub mse_fixed_offset_mpa2: f64,
-    /// Measured minus simulated mean \[MPa\].
-    pub offset_mpa: f64,
+    /// Index of the channel in the case.
+    pub channel: usize,
+    /// Mean squared error as the objective treats the offset \[unit^2\].
+    pub mse: f64,
+    /// Mean squared error of absolute values \[unit^2\].
+    pub mse_fixed_offset: f64,
+    /// Measured minus simulated mean \[unit\].
+    pub offset: f64,
     /// Root mean squared error over half the measured range \[1\].
     pub rmse_over_half_range: f64,
     /// Mean absolute error over the mean absolute deviation of the measured curve from its mean
     /// \[1\].
     pub relative_error: f64,
-    /// Simulated minus measured peak-to-peak stress, over the measured one \[1\].
+    /// Simulated minus measured range from lowest to highest, over the measured one \[1\].
     pub peak_to_peak_error: f64,
 }

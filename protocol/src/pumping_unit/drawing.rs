@@ -1,4 +1,5 @@
 //! Everything of a simulation that can be drawn.
+use super::Sensor;
 use crate::job::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,18 @@ pub struct Simulation {
     pub energy: Energy,
     /// Shapes for the moving machine; empty unless asked for.
     pub motion: Vec<Motion>,
+}
+
+impl Simulation {
+    /// The curve of a channel by its name; empty where a pumping unit has none of that name.
+    pub fn channel(&self, name: &str) -> &[f64] {
+        match Sensor::named(name) {
+            Some(Sensor::Gauge(number)) => &self.gauge_mpa[usize::from(number) - 1],
+            Some(Sensor::Position) => &self.suspension_m,
+            Some(Sensor::Torque) => &self.crank_torque_n_m,
+            None => &[],
+        }
+    }
 }
 
 /// Where the energy of the recorded revolution went \[J\].

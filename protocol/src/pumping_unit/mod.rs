@@ -12,6 +12,7 @@ mod machine;
 mod parts;
 mod reduce_head;
 mod run;
+mod sensor;
 mod twin;
 
 pub use card::{LoadCard, Smoothing};
@@ -27,4 +28,5 @@ pub use reduce_head::{
     ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
 };
 pub use run::{Integrator, RunSettings};
+pub use sensor::Sensor;
 pub use twin::{TwinHead, TwinRopes};

@@ -20,7 +20,7 @@ pub(super) fn run(
     let step_deg = machines.unit.machine.run.output_step_deg;
     let recorder = Recorder::everything(samples_apart(motion_step_deg, step_deg));
     let ran = Ran::new(machines, spec, recorder)?;
-    let (gauge_mpa, suspension_m) = (ran.gauge_mpa(), ran.suspension_m());
+    let (gauge_mpa, suspension_m) = (ran.gauges_mpa(), ran.suspension_m());
     let curves = ran.curves;
     let degrees = |values: &[f64]| values.iter().map(|x| x.to_degrees()).collect();
     let [_, velocity, acceleration] = curves.suspension;

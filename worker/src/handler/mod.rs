@@ -1,7 +1,6 @@
 //! From a job to its outcome: one file for each kind of job and each reply of a simulation.
 //!
 //! A pure function of the case and the job, which knows nothing of slots or links.
-mod channels;
 mod curves;
 mod machines;
 mod nothing;
@@ -15,8 +14,10 @@ use crate::convert;
 use machines::Machines;
 use protocol::{
     case::Case,
-    job::{Answer, Failure, Job, Outcome, Reply, SimulateSpec},
+    job::{Answer, Failure, Job, Observation, Outcome, Reply, SimulateSpec},
 };
+use ran::Ran;
+use simulation::observe::Recorder;
 
 /// A case that jobs are done on.
 #[derive(Debug)]
@@ -44,11 +45,25 @@ impl Prepared {
     }
 
     fn simulate(&self, spec: &SimulateSpec) -> Result<Answer, Failure> {
+        let case = &self.0.unit.case;
+        let condition = spec.individual.condition;
         Ok(match spec.reply {
             Reply::Score { with_residual } => {
-                Answer::Scored(score::run(&self.0, spec, with_residual)?)
+                let ran = Ran::new(&self.0, spec, Recorder::gauges_only())?;
+                let ended = (ran.verdict, ran.counters);
+                let curves = ran.channels(case, condition)?;
+                let evaluation = score::evaluation(case, condition, ended, &curves, with_residual)?;
+                Answer::Scored(evaluation)
             }
-            Reply::Channels => Answer::Channels(channels::run(&self.0, spec)?),
+            Reply::Channels => {
+                let ran = Ran::new(&self.0, spec, Recorder::everything(0))?;
+                let exact = Observation {
+                    verdict: ran.verdict,
+                    counters: ran.counters,
+                    curves: ran.channels(case, condition)?,
+                };
+                Answer::Channels(exact.rounded(case, condition))
+            }
             Reply::Curves { motion_step_deg } => {
                 Answer::Curves(Box::new(curves::run(&self.0, spec, motion_step_deg)?))
             }

@@ -1,7 +1,9 @@
 //! A simulation that was run, before anything is said of it.
 use super::machines::Machines;
 use crate::convert;
+use protocol::case::{Case, Channel};
 use protocol::job::{Counters, Failure, SimulateSpec, Verdict};
+use protocol::pumping_unit::Sensor;
 use simulation::observe::{Curves, Recorder};
 use simulation::run::{RunResult, simulate};
 use std::time::Instant;
@@ -44,10 +46,28 @@ impl Ran {
         })
     }
 
+    /// The curves of a condition's channels, each in its channel's unit, in the case's order.
+    ///
+    /// # Errors
+    /// [`Failure::Misconfigured`] for a channel that a pumping unit has not.
+    pub(super) fn channels(&self, case: &Case, condition: usize) -> Result<Vec<Vec<f64>>, Failure> {
+        let curve = |(_, channel): (usize, &Channel)| {
+            let sensor = Sensor::named(&channel.name).ok_or_else(|| {
+                let problem = format!("a pumping unit has no channel `{}`", channel.name);
+                Failure::misconfigured("channels", problem)
+            })?;
+            Ok(match sensor {
+                Sensor::Gauge(number) => megapascals(&self.curves.gauge[usize::from(number) - 1]),
+                Sensor::Position => self.suspension_m(),
+                Sensor::Torque => self.curves.torque.clone(),
+            })
+        };
+        case.channels_of(condition).map(curve).collect()
+    }
+
     /// Stress at gauges 1 to 4 \[MPa\].
-    pub(super) fn gauge_mpa(&self) -> [Vec<f64>; 4] {
-        let megapascals = |curve: &Vec<f64>| curve.iter().map(|s| s * 1e-6).collect();
-        self.curves.gauge.each_ref().map(megapascals)
+    pub(super) fn gauges_mpa(&self) -> [Vec<f64>; 4] {
+        self.curves.gauge.each_ref().map(|gauge| megapascals(gauge))
     }
 
     /// Suspension height above its lowest design position \[m\].
@@ -56,4 +76,8 @@ impl Ran {
         let above = |y: &f64| y - self.lowest_suspension_m;
         position.iter().map(above).collect()
     }
+}
+
+fn megapascals(stress_pa: &[f64]) -> Vec<f64> {
+    stress_pa.iter().map(|s| s * 1e-6).collect()
 }

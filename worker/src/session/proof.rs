@@ -68,8 +68,7 @@ pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
     let condition = decoded.objective.condition;
-    let measured = decoded.conditions.get(condition);
-    let reply = if measured.is_some_and(|condition| condition.record.is_some()) {
+    let reply = if decoded.is_measured(condition) {
         Reply::Score {
             with_residual: true,
         }

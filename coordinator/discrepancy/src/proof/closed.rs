@@ -5,7 +5,7 @@
 //! `closed = 1 - g_after / g_before`; intervals by resampling the cycles, before and after on the
 //! same resample. A gap that closes does not prove a name: a wrong effect often closes most of it,
 //! which is why the best rejected rival is always shown beside.
-use crate::record::measured::{Curves, Record, Source, mean_of, variance};
+use crate::record::measured::{Curves, Record, mean_of, variance};
 use search::random::{Phase, Stream, Streams};
 use serde::Serialize;
 
@@ -82,13 +82,13 @@ fn drawn(record: &Record, mean: &Curves, stream: &mut Stream) -> Curves {
     drawn
 }
 
-/// What curves are held against: the mean of a record's gauges, in units of their variance.
+/// What curves are held against: the mean of a record's channels, in units of their variance.
 struct Ruler {
     /// Number of cycles.
     cycles: f64,
     mean: Curves,
-    /// Gauges of the record, every channel where it has none; and their variances.
-    gauges: Vec<(usize, f64)>,
+    /// Channels on which the gap is counted, and their variances.
+    channels: Vec<(usize, f64)>,
     /// What the scatter between cycles explains of a squared residual.
     noise: f64,
 }
@@ -96,15 +96,10 @@ struct Ruler {
 impl Ruler {
     fn new(record: &Record) -> Self {
         let mean = record.mean();
-        let is_gauge = |c: &usize| matches!(record.channels[*c], Source::Gauge(_));
-        let mut channels: Vec<usize> = (0..record.channels.len()).filter(is_gauge).collect();
-        if channels.is_empty() {
-            channels = (0..record.channels.len()).collect();
-        }
-        let gauge = |c: usize| (c, variance(&mean[c]).max(f64::MIN_POSITIVE));
+        let channel = |c: usize| (c, variance(&mean[c]).max(f64::MIN_POSITIVE));
         let mut ruler = Self {
             cycles: record.cycles.len().max(1) as f64,
-            gauges: channels.into_iter().map(gauge).collect(),
+            channels: record.scored().into_iter().map(channel).collect(),
             mean,
             noise: 0.0,
         };
@@ -116,28 +111,28 @@ impl Ruler {
         (self.mse(&self.mean, simulated) - self.noise).max(0.0)
     }
 
-    /// Mean over the gauges of a mean's squared residual over the record's variance.
+    /// Mean over the channels of a mean's squared residual over the record's variance.
     fn mse(&self, mean: &Curves, simulated: &Curves) -> f64 {
-        let each = self.gauges.iter().map(|&(c, whole)| {
+        let each = self.channels.iter().map(|&(c, whole)| {
             let pairs = mean[c].iter().zip(&simulated[c]);
             let residual: Vec<f64> = pairs.map(|(y, s)| y - s).collect();
             variance(&residual) / whole
         });
-        each.sum::<f64>() / self.gauges.len().max(1) as f64
+        each.sum::<f64>() / self.channels.len().max(1) as f64
     }
 
     /// What a variance of single cycles, by channel, explains of it.
     fn explained_by(&self, scatter: &[f64]) -> f64 {
-        let each = self.gauges.iter();
+        let each = self.channels.iter();
         let each = each.map(|&(c, whole)| scatter[c] / self.cycles / whole);
-        each.sum::<f64>() / self.gauges.len().max(1) as f64
+        each.sum::<f64>() / self.channels.len().max(1) as f64
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::Stated;
+    use crate::record::measured::{Stated, tests::recorded};
 
     fn wave(amplitude: f64, phase: f64) -> Vec<f64> {
         (0..720)
@@ -153,7 +148,7 @@ mod tests {
         });
         Record {
             condition: 0,
-            channels: vec![Source::Gauge(1)],
+            channels: vec![recorded(0)],
             cycles: cycles.collect(),
             stated: Stated::default(),
         }
@@ -202,7 +197,7 @@ mod tests {
         };
         Record {
             condition: 0,
-            channels: vec![Source::Gauge(1)],
+            channels: vec![recorded(0)],
             cycles: (0..cycles).map(cycle).collect(),
             stated: Stated::default(),
         }

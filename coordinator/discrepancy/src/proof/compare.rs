@@ -50,7 +50,7 @@ pub(crate) async fn compare<L: Laboratory>(
         .iter()
         .zip(observed.chunks(2))
         .filter_map(|(shown, pair)| {
-            let curves = |k: usize| channels(pair.get(k)?.as_ref()?, &shown.record.channels);
+            let curves = |k: usize| channels(pair.get(k)?.as_ref()?, shown.record);
             let (before, after) = (curves(0)?, curves(1)?);
             Some(Row {
                 condition: shown.record.condition,

@@ -1,4 +1,4 @@
-//! The gap between a record and a simulation at one gauge, less what the record's own scatter
+//! The gap between a record and a simulation at one channel, less what the record's own scatter
 //! explains, and where on the revolution and in which orders of the crank it lies.
 //!
 //! With the mean over N cycles `y`, its standard error `se` from the scatter between cycles, and the
@@ -8,7 +8,7 @@
 //! it is.
 use crate::record::measured::variance;
 use crate::record::spectrum::Orders;
-use protocol::case::GaugeTrace;
+use protocol::case::ChannelRecord;
 use std::ops::RangeInclusive;
 
 /// Width of a sector of the revolution (deg).
@@ -22,18 +22,15 @@ pub const BANDS: [(&str, RangeInclusive<usize>); 4] = [
     ("noise and head modes", 121..=usize::MAX),
 ];
 
-/// The remaining disagreement at one gauge.
+/// The remaining disagreement at one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
-    /// Gauge number.
-    pub gauge: u8,
-    /// Mean squared residual (MPa^2).
-    pub mse_mpa2: f64,
-    /// What the scatter between cycles explains of it (MPa^2); 0 with one cycle, where it is
-    /// unknown.
-    pub noise_mpa2: f64,
-    /// Mean square of the measured curve about its mean (MPa^2).
-    pub variance_mpa2: f64,
+    /// Mean squared residual, in the channel's unit squared, as the two that follow.
+    pub mse: f64,
+    /// What the scatter between cycles explains of it; 0 with one cycle, where it is unknown.
+    pub noise: f64,
+    /// Mean square of the measured curve about its mean.
+    pub variance: f64,
     /// Share of the squared residual per sector of [`SECTOR_DEG`], from bottom dead centre on.
     pub sectors: Vec<f64>,
     /// Share of the squared residual per band of [`BANDS`].
@@ -41,14 +38,14 @@ pub struct Gap {
 }
 
 impl Gap {
-    /// Compares a record with a simulated curve (MPa) on the same grid; nothing if the grids
-    /// differ or are empty.
-    pub fn between(trace: &GaugeTrace, cycles: usize, simulated_mpa: &[f64]) -> Option<Self> {
-        let n = trace.mean_mpa.len();
-        if n == 0 || simulated_mpa.len() != n {
+    /// Compares a record with a simulated curve on the same abscissa; nothing if they have not as
+    /// many values or none.
+    pub fn between(record: &ChannelRecord, simulated: &[f64]) -> Option<Self> {
+        let n = record.mean.len();
+        if n == 0 || simulated.len() != n {
             return None;
         }
-        let pairs = trace.mean_mpa.iter().zip(simulated_mpa);
+        let pairs = record.mean.iter().zip(simulated);
         let mut residual: Vec<f64> = pairs
             .map(|(measured, simulated)| measured - simulated)
             .collect();
@@ -56,16 +53,15 @@ impl Gap {
         for x in &mut residual {
             *x -= mean;
         }
-        let spread = trace.spread_mpa.iter().map(|x| x * x).sum::<f64>() / n as f64;
+        let spread = record.spread.iter().map(|x| x * x).sum::<f64>() / n as f64;
         Some(Self {
-            gauge: trace.gauge,
-            mse_mpa2: variance(&residual),
-            noise_mpa2: if cycles > 1 {
-                spread / cycles as f64
+            mse: variance(&residual),
+            noise: if record.cycles > 1 {
+                spread / record.cycles as f64
             } else {
                 0.0
             },
-            variance_mpa2: variance(&trace.mean_mpa),
+            variance: variance(&record.mean),
             sectors: sectors(&residual),
             bands: bands(&residual),
         })
@@ -74,12 +70,12 @@ impl Gap {
     /// The gap: residual above the noise over the measured variance; 0 where the noise explains
     /// all.
     pub fn share(&self) -> f64 {
-        (self.mse_mpa2 - self.noise_mpa2).max(0.0) / self.variance_mpa2
+        (self.mse - self.noise).max(0.0) / self.variance
     }
 
     /// How many times the noise of the record the residual is; nothing where the noise is unknown.
     pub fn over_noise(&self) -> Option<f64> {
-        (self.noise_mpa2 > 0.0).then(|| (self.mse_mpa2 / self.noise_mpa2).sqrt())
+        (self.noise > 0.0).then(|| (self.mse / self.noise).sqrt())
     }
 
     /// The sector with the largest share: where it begins (deg), and the share.
@@ -152,20 +148,20 @@ mod tests {
             .collect()
     }
 
-    fn trace(mean_mpa: Vec<f64>, spread: f64) -> GaugeTrace {
-        GaugeTrace {
-            gauge: 3,
-            spread_mpa: vec![spread; mean_mpa.len()],
-            mean_mpa,
+    fn record(mean: Vec<f64>, spread: f64, cycles: usize) -> ChannelRecord {
+        ChannelRecord {
+            cycles,
+            spread: vec![spread; mean.len()],
+            mean,
         }
     }
 
     #[test]
     fn a_perfect_simulation_leaves_no_gap_and_an_offset_is_none() {
         let measured: Vec<f64> = wave(1, 10.0).iter().map(|x| x + 40.0).collect();
-        let gap = Gap::between(&trace(measured, 0.2), 5, &wave(1, 10.0)).unwrap();
-        assert!(gap.share() < 1e-20 && gap.mse_mpa2 < 1e-20);
-        assert!((gap.variance_mpa2 - 50.0).abs() < 1e-9);
+        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
+        assert!(gap.share() < 1e-20 && gap.mse < 1e-20);
+        assert!((gap.variance - 50.0).abs() < 1e-9);
     }
 
     #[test]
@@ -176,7 +172,7 @@ mod tests {
             .enumerate()
             .map(|(i, x)| x + if i % 2 == 0 { 0.1 } else { -0.1 })
             .collect();
-        let gap = Gap::between(&trace(measured, 0.2), 4, &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 4), &wave(1, 10.0)).unwrap();
         assert!(gap.share() < 1e-12, "{}", gap.share());
         assert!((gap.over_noise().unwrap() - 1.0).abs() < 1e-9);
         assert!((gap.bands[3] - 1.0).abs() < 1e-9, "{:?}", gap.bands);
@@ -190,7 +186,7 @@ mod tests {
                 *x += 3.0;
             }
         }
-        let gap = Gap::between(&trace(measured, 0.2), 5, &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
         let (begin, share) = gap.worst_sector();
         assert!(
             (begin - 90.0).abs() < 1e-12 && share > 0.9,
@@ -203,7 +199,7 @@ mod tests {
             .zip(wave(60, 0.5))
             .map(|(a, b)| a + b)
             .collect();
-        let gap = Gap::between(&trace(measured, 0.2), 5, &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
         assert_eq!(gap.worst_band().0, "rope's own modes");
         assert!(gap.worst_band().1 > 0.999);
         assert!((gap.share() - (0.125 - 0.008) / 50.0).abs() < 1e-3 * gap.share() + 1e-5);
@@ -211,8 +207,8 @@ mod tests {
 
     #[test]
     fn different_grids_and_one_cycle_are_said() {
-        assert!(Gap::between(&trace(wave(1, 1.0), 0.0), 5, &[1.0]).is_none());
-        let gap = Gap::between(&trace(wave(1, 1.0), 0.0), 1, &wave(2, 1.0)).unwrap();
+        assert!(Gap::between(&record(wave(1, 1.0), 0.0, 5), &[1.0]).is_none());
+        let gap = Gap::between(&record(wave(1, 1.0), 0.0, 1), &wave(2, 1.0)).unwrap();
         assert!(gap.over_noise().is_none() && gap.share() > 1.0);
     }
 }

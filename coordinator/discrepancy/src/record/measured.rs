@@ -1,37 +1,35 @@
 //! What was measured, cycle by cycle, as the diagnosis takes it.
 use crate::record::tolerance::Tolerance;
+use protocol::case::Channel;
 use std::ops::Range;
 
-/// Curves of one turn: channel by channel, on the crank-angle grid, in the record's units.
+/// Curves of one cycle: channel by channel, in the channel's unit, on its abscissa.
 pub type Curves = Vec<Vec<f64>>;
 
-/// Which quantity of a simulation a channel is compared with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Source {
-    /// Stress at a gauge, by its number (MPa).
-    Gauge(u8),
-    /// Height of the polished rod (m).
-    Position,
-    /// Net torque at the crank shaft (N m).
-    Torque,
+/// A channel of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recorded {
+    /// Which curve of an observation it is compared with: its place among the channels of its
+    /// condition.
+    pub curve: usize,
+    /// Whether the gap is counted on it. The others help to tell causes apart; where none is
+    /// counted on, all are.
+    pub scored: bool,
+    /// Its names, unit, abscissa and noise; what was measured of it are the record's cycles.
+    pub channel: Channel,
 }
 
-impl Source {
-    /// In words.
-    pub fn name(self) -> String {
-        match self {
-            Self::Gauge(number) => format!("gauge {number}"),
-            Self::Position => "rod position".to_owned(),
-            Self::Torque => "crank torque".to_owned(),
-        }
-    }
-
-    /// Unit of its values.
-    pub const fn unit(self) -> &'static str {
-        match self {
-            Self::Gauge(_) => "MPa",
-            Self::Position => "m",
-            Self::Torque => "N m",
+impl Recorded {
+    /// A channel of a case, by its place among those of its condition; the gap is counted on what
+    /// scores compare.
+    pub fn new(curve: usize, channel: &Channel) -> Self {
+        Self {
+            curve,
+            scored: channel.record.is_some(),
+            channel: Channel {
+                record: None,
+                ..channel.clone()
+            },
         }
     }
 }
@@ -42,7 +40,7 @@ pub struct Record {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Its channels, in the order of all curves.
-    pub channels: Vec<Source>,
+    pub channels: Vec<Recorded>,
     /// Whole cycles; cycle, channel, grid.
     pub cycles: Vec<Curves>,
     /// What the data sheet says of the measurement.
@@ -56,8 +54,6 @@ pub struct Stated {
     pub load_scatter: f64,
     /// Tolerance of the crank angle (deg).
     pub angle_tolerance_deg: f64,
-    /// Noise of one sample by channel, in the channel's unit; none where nothing is said.
-    pub noise: Vec<Option<f64>>,
     /// Correlation of the noise from sample to sample, over the grid.
     pub noise_correlation: f64,
     /// Variance of one cycle about the mean by channel, where more cycles than these tell it.
@@ -71,6 +67,17 @@ impl Record {
     pub fn samples(&self) -> usize {
         let first = self.cycles.first().and_then(|cycle| cycle.first());
         first.map_or(0, Vec::len)
+    }
+
+    /// Places of the channels on which the gap is counted: all where none is marked.
+    pub fn scored(&self) -> Vec<usize> {
+        let all = 0..self.channels.len();
+        let marked: Vec<usize> = all.clone().filter(|&c| self.channels[c].scored).collect();
+        if marked.is_empty() {
+            all.collect()
+        } else {
+            marked
+        }
     }
 
     /// Some of the cycles.
@@ -161,4 +168,50 @@ pub fn mean_of(cycles: &[&Curves]) -> Curves {
     };
     let shapes = first.iter().map(Vec::len).enumerate();
     shapes.map(|(c, length)| channel(c, length)).collect()
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use protocol::case::Abscissa;
+
+    /// A channel on which the gap is counted, by its place among the curves of an observation.
+    pub(crate) fn recorded(curve: usize) -> Recorded {
+        let channel = Channel {
+            name: format!("channel_{curve}"),
+            title: format!("channel {curve}"),
+            unit: "N".to_owned(),
+            condition: 0,
+            abscissa: Abscissa {
+                name: "turn".to_owned(),
+                unit: "deg".to_owned(),
+                points: Vec::new(),
+                period: Some(360.0),
+            },
+            noise: None,
+            step: None,
+            record: None,
+        };
+        Recorded {
+            curve,
+            scored: true,
+            channel,
+        }
+    }
+
+    #[test]
+    fn the_gap_is_counted_on_what_is_marked_and_else_on_everything() {
+        let mut record = Record {
+            condition: 0,
+            channels: vec![recorded(4), recorded(0), recorded(2)],
+            cycles: Vec::new(),
+            stated: Stated::default(),
+        };
+        record.channels[1].scored = false;
+        assert_eq!(record.scored(), [0, 2]);
+        for channel in &mut record.channels {
+            channel.scored = false;
+        }
+        assert_eq!(record.scored(), [0, 1, 2]);
+    }
 }

@@ -7,5 +7,5 @@ pub mod spectrum;
 pub(crate) mod tolerance;
 pub mod whitened;
 
-pub use measured::{Curves, Record, Source, Stated, mean_of};
+pub use measured::{Curves, Record, Recorded, Stated, mean_of};
 pub use tolerance::Tolerance;

@@ -81,13 +81,7 @@ impl Noise {
             let above = orders.highest() + 1..=n / 2;
             let count = above.clone().count().max(1) as f64;
             let seen: f64 = above.map(|k| all.coefficient(curve, k).norm_sqr()).sum();
-            let stated = record
-                .stated
-                .noise
-                .get(channel)
-                .copied()
-                .flatten()
-                .unwrap_or(0.0);
+            let stated = record.channels[channel].channel.noise.unwrap_or(0.0);
             (seen / count).max(stated * stated / n as f64)
         };
         let variances: Vec<f64> = (0..record.channels.len()).map(variance).collect();

@@ -4,7 +4,6 @@ use crate::healthy::healthy;
 use crate::strata::{named, planted};
 use crate::trial::{MACHINE, diagnose_usual, say, trials};
 use crate::truth::{ALL, Truth, record};
-use discrepancy::laboratory::channels;
 use discrepancy::linear::score::score;
 use discrepancy::linear::tangent::Tangent;
 use discrepancy::model::{Model, Point, probe};
@@ -22,7 +21,7 @@ use search::least_squares::{Linearized, Variable};
 
 fn simulate(point: &Point) -> Curves {
     let spec = point.experiment(0, Discretisation::default());
-    channels(&MACHINE.observe(&spec), &ALL).expect("complete")
+    MACHINE.observe(&spec).curves
 }
 
 /// The machine without effects.

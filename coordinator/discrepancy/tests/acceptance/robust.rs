@@ -5,7 +5,6 @@ use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::model::Fit;
-use discrepancy::record::Source;
 use discrepancy::verdict::Verdict;
 
 /// A few truths of every sort.
@@ -186,7 +185,7 @@ fn withheld(answer: &Diagnosis) {
 /// Any one channel is enough to say something, and none makes a healthy machine ill.
 #[test]
 fn missing_channels_are_no_disagreement() {
-    let some: [&[Source]; 4] = [&ALL[..1], &ALL[..2], &ALL[4..5], &ALL[4..]];
+    let some: [&[usize]; 4] = [&ALL[..1], &ALL[..2], &ALL[4..5], &ALL[4..]];
     for (k, channels) in some.into_iter().enumerate() {
         let setup = Setup {
             channels: channels.to_vec(),

@@ -3,7 +3,6 @@ use crate::case::{ORDERS, space};
 use crate::machine::{AtOnce, Machine, Numerics, ripple};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::record::Source;
 use discrepancy::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
 use protocol::pumping_unit::Discretisation;
@@ -19,7 +18,7 @@ pub(crate) static MACHINE: LazyLock<Machine> = LazyLock::new(Machine::new);
 #[derive(Clone, Debug)]
 pub(crate) struct Setup {
     /// Channels of the record.
-    pub(crate) channels: Vec<Source>,
+    pub(crate) channels: Vec<usize>,
     /// Cycles of the record.
     pub(crate) cycles: usize,
     /// Thresholds.
@@ -70,8 +69,8 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
             let gauges = setup.channels.len().min(4);
             ripple(&mut cycle[..gauges], setup.ripple_mpa);
         }
-        for noise in record.stated.noise.iter_mut().flatten() {
-            *noise *= setup.stated;
+        for recorded in &mut record.channels {
+            recorded.channel.noise = recorded.channel.noise.map(|noise| noise * setup.stated);
         }
     }
     let inputs = Inputs {

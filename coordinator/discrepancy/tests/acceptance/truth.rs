@@ -1,7 +1,8 @@
 //! The machine as it really is: marched through time, with other laws than the tool knows, and the
 //! sensors that read it. Shares the data sheet with the tool's machine and not one line of code.
 use crate::case::{RECOMMENDED, SAMPLES, SPEED, card};
-use discrepancy::record::{Curves, Record, Source, Stated};
+use discrepancy::record::{Curves, Record, Recorded, Stated};
+use protocol::case::{Abscissa, Channel};
 use search::random::{Phase, Stream, Streams};
 use std::f64::consts::TAU;
 
@@ -358,23 +359,36 @@ const CORRELATION: f64 = 0.5;
 const LOAD_SCATTER: f64 = 0.003;
 const ANGLE_TOLERANCE_DEG: f64 = 0.1;
 
-/// Channels of a full record.
-pub(crate) const ALL: [Source; 6] = [
-    Source::Gauge(1),
-    Source::Gauge(2),
-    Source::Gauge(3),
-    Source::Gauge(4),
-    Source::Position,
-    Source::Torque,
-];
+/// Channels of a full record, as places among the curves of an observation: four gauges, position,
+/// torque.
+pub(crate) const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
+
+/// A channel of a record, with its noise; the gap is counted on gauges.
+pub(crate) fn recorded(curve: usize, noise: Option<f64>) -> Recorded {
+    let channel = Channel {
+        name: format!("channel_{curve}"),
+        title: format!("channel {curve}"),
+        unit: "1".to_owned(),
+        condition: 0,
+        abscissa: Abscissa {
+            name: "crank".to_owned(),
+            unit: "deg".to_owned(),
+            points: crate::case::grid().map(f64::to_degrees).collect(),
+            period: Some(360.0),
+        },
+        noise,
+        step: None,
+        record: None,
+    };
+    Recorded {
+        curve,
+        scored: curve < 4,
+        channel,
+    }
+}
 
 /// A record of some cycles.
-pub(crate) fn record(
-    truth: &Truth,
-    condition: usize,
-    channels: &[Source],
-    cycles: usize,
-) -> Record {
+pub(crate) fn record(truth: &Truth, condition: usize, channels: &[usize], cycles: usize) -> Record {
     let streams = Streams::new(truth.seed, 11);
     let mut stream = streams.at(condition as u32, Phase::Initial, 0);
     let zeros: [f64; 6] = std::array::from_fn(|c| if c < 4 { 5.0 * stream.normal() } else { 0.0 });
@@ -384,26 +398,17 @@ pub(crate) fn record(
             cycle(truth, condition, &mut stream, &zeros, channels)
         })
         .collect();
-    let wanted = channels.iter().map(|c| NOISE[place(*c)] * truth.noise);
+    let wanted = |&c: &usize| recorded(c, Some(NOISE[c] * truth.noise));
     Record {
         condition,
-        channels: channels.to_vec(),
+        channels: channels.iter().map(wanted).collect(),
         cycles,
         stated: Stated {
             load_scatter: LOAD_SCATTER,
             angle_tolerance_deg: ANGLE_TOLERANCE_DEG,
-            noise: wanted.map(Some).collect(),
             noise_correlation: CORRELATION,
             ..Stated::default()
         },
-    }
-}
-
-fn place(source: Source) -> usize {
-    match source {
-        Source::Gauge(number) => usize::from(number) - 1,
-        Source::Position => 4,
-        Source::Torque => 5,
     }
 }
 
@@ -412,7 +417,7 @@ fn cycle(
     condition: usize,
     stream: &mut Stream,
     zeros: &[f64; 6],
-    channels: &[Source],
+    channels: &[usize],
 ) -> Curves {
     let scale = 1.0 + LOAD_SCATTER * stream.normal();
     let readings = March {
@@ -442,7 +447,7 @@ fn cycle(
     }
     channels
         .iter()
-        .map(|c| std::mem::take(&mut all[place(*c)]))
+        .map(|&c| std::mem::take(&mut all[c]))
         .collect()
 }
 

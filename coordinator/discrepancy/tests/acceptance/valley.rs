@@ -5,13 +5,14 @@
 //! Each test also goes without the look: what it asserts is that the look is needed, and enough.
 use crate::case;
 use crate::trial::now;
+use crate::truth::recorded;
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::{Laboratory, Stage};
 use discrepancy::model::experiments::Experiments;
 use discrepancy::model::{Fit, Model, Point};
 use discrepancy::record::spectrum::Orders;
 use discrepancy::record::whitened::WhitenedRecord;
-use discrepancy::record::{Curves, Record, Source, Stated};
+use discrepancy::record::{Curves, Record, Stated};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use discrepancy::{cause::low_orders, cause::signature, ground::valley};
@@ -141,13 +142,10 @@ fn observed(spec: &SimulateSpec) -> Observation {
     let genes = &spec.individual.genes;
     let genes = [genes[0], genes[1], genes[2]];
     let (clock, lag) = (amount("card_time_shift"), amount("load_cell_lag"));
-    let mut curves = gauges(genes, clock, lag, amount("load_cell_gain")).into_iter();
     Observation {
         verdict: Ended::Complete,
         counters: Counters::default(),
-        gauge_mpa: std::array::from_fn(|_| curves.next().unwrap_or_default()),
-        suspension_m: Vec::new(),
-        crank_torque_n_m: Vec::new(),
+        curves: gauges(genes, clock, lag, amount("load_cell_gain")),
     }
 }
 
@@ -165,7 +163,7 @@ fn record(truth: Ringing) -> Record {
     };
     Record {
         condition: 0,
-        channels: (1..=4).map(Source::Gauge).collect(),
+        channels: (0..4).map(|c| recorded(c, None)).collect(),
         cycles: (0..8).map(|_| noisy()).collect(),
         stated: Stated::default(),
     }

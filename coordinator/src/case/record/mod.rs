@@ -13,4 +13,4 @@ mod tests;
 pub(super) use agreement::Expected;
 pub use agreement::RecordFacts;
 pub use read::count_samples;
-pub(super) use read::read;
+pub(super) use read::{channels, read};

@@ -10,8 +10,9 @@ use super::{
     samples::Samples,
     sheet::Sheet,
 };
-use discrepancy::record::Record;
-use protocol::case::{GaugeRecord, GaugeTrace};
+use discrepancy::record::{Record, Recorded};
+use protocol::case::{Channel, ChannelRecord};
+use protocol::pumping_unit::Sensor;
 use std::path::{Path, PathBuf};
 
 /// Reads the samples of a record alone, without its sheet and without a case; how many there are.
@@ -25,7 +26,8 @@ pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
 /// A record that was read.
 #[derive(Debug)]
 pub(in super::super) struct Read {
-    pub(in super::super) record: GaugeRecord,
+    /// What every sensor of the condition shows, with what was measured of the gauges.
+    pub(in super::super) channels: Vec<Channel>,
     /// Every cycle by itself, with what was recorded beside the gauges.
     pub(in super::super) cycles: Record,
     pub(in super::super) facts: RecordFacts,
@@ -72,20 +74,34 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
             "record at least one revolution from index pulse to index pulse, better five or more",
         ));
     }
-    let record = average(path, &cycles, expected.step_deg)?;
+    let mut channels = channels(expected.index, expected.step_deg);
+    for (channel, sensor) in channels.iter_mut().zip(Sensor::ALL) {
+        channel.noise = sheet.noise(sensor);
+    }
+    average(path, &cycles, &mut channels, expected.step_deg)?;
     remark(path, &cycles, &samples, &facts, expected, &mut notes);
-    let stated = sheet.stated(&cycles.channels, samples.step_deg / expected.step_deg);
+    let places = Sensor::ALL.iter().zip(&channels).enumerate();
+    let recorded = places
+        .filter(|(_, (sensor, _))| cycles.channels.contains(sensor))
+        .map(|(curve, (_, channel))| Recorded::new(curve, channel));
     Ok(Read {
-        record,
         cycles: Record {
             condition: expected.index,
-            channels: cycles.channels,
+            channels: recorded.collect(),
             cycles: cycles.single,
-            stated,
+            stated: sheet.stated(samples.step_deg / expected.step_deg),
         },
+        channels,
         facts,
         notes,
     })
+}
+
+/// What every sensor shows under a condition on the output grid; nothing of it measured.
+pub(in super::super) fn channels(condition: usize, step_deg: f64) -> Vec<Channel> {
+    let turn_deg = resample::grid(step_deg);
+    let channel = |sensor: Sensor| sensor.channel(condition, turn_deg.clone());
+    Sensor::ALL.map(channel).into()
 }
 
 /// The data sheet of a record: the same name with the ending `.toml`.
@@ -95,43 +111,39 @@ fn sheet_path(record: &Path) -> PathBuf {
     record.with_file_name(format!("{stem}.toml"))
 }
 
-/// The averaged record; every grid angle must have a value.
+/// Gives the gauges, which come first, their averaged records; every grid angle must have a value.
 fn average(
     path: &Path,
     cycles: &resample::Cycles,
+    channels: &mut [Channel],
     step_deg: f64,
-) -> Result<GaugeRecord, CaseError> {
-    let turn_deg = resample::grid(step_deg);
-    let mut gauges = Vec::new();
-    for (number, (mean, spread)) in (1..).zip(cycles.mean.iter().zip(&cycles.spread)) {
+) -> Result<(), CaseError> {
+    for (channel, (mean, spread)) in channels
+        .iter_mut()
+        .zip(cycles.mean.iter().zip(&cycles.spread))
+    {
         if let Some(first) = mean.iter().position(Option::is_none) {
-            let length = mean
-                .iter()
-                .skip(first)
-                .take_while(|value| value.is_none())
-                .count();
-            let from = turn_deg.get(first).copied().unwrap_or_default();
+            let gap = mean.iter().skip(first);
+            let length = gap.take_while(|value| value.is_none()).count();
+            let from = channel.abscissa.points.get(first).copied();
             return Err(damaged(
                 path,
                 format!(
-                    "no cycle has samples of `crank_deg` near {from} deg: a gap of about {:.1} deg \
-                     on every cycle; allowed: no angle that is missing in all cycles",
+                    "no cycle has samples of `crank_deg` near {} deg: a gap of about {:.1} deg on \
+                     every cycle; allowed: no angle that is missing in all cycles",
+                    from.unwrap_or_default(),
                     length as f64 * step_deg
                 ),
                 "repeat the measurement, or add a cycle that covers the gap",
             ));
         }
-        gauges.push(GaugeTrace {
-            gauge: number,
-            mean_mpa: mean.iter().map(|value| value.unwrap_or_default()).collect(),
-            spread_mpa: spread.clone(),
+        channel.record = Some(ChannelRecord {
+            cycles: cycles.whole.len(),
+            mean: mean.iter().map(|value| value.unwrap_or_default()).collect(),
+            spread: spread.clone(),
         });
     }
-    Ok(GaugeRecord {
-        turn_deg,
-        cycles: cycles.whole.len(),
-        gauges,
-    })
+    Ok(())
 }
 
 /// From the first to the last angle.

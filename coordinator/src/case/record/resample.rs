@@ -9,7 +9,8 @@
 //! amplifier leaves nothing there: nothing aliases that matters. Where a cycle has samples on one
 //! side only, or fewer than three, it has no value, and the other cycles stand for it.
 use super::samples::Samples;
-use discrepancy::record::{Curves, Source};
+use discrepancy::record::Curves;
+use protocol::pumping_unit::Sensor;
 
 /// Resampled cycles.
 #[derive(Debug)]
@@ -23,7 +24,7 @@ pub(super) struct Cycles {
     /// Grid angles that some whole cycle lacks.
     pub(super) gaps: usize,
     /// Which channel each curve of a cycle is.
-    pub(super) channels: Vec<Source>,
+    pub(super) channels: Vec<Sensor>,
     /// Every whole cycle; where it has a gap, the mean of the others stands. Empty where every cycle
     /// lacks an angle.
     pub(super) single: Vec<Curves>,
@@ -64,8 +65,8 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
     }
     let gauges = (1..)
         .zip(&samples.stress_mpa)
-        .map(|(number, _)| Source::Gauge(number));
-    let others = samples.others.iter().map(|(source, _)| *source);
+        .map(|(number, _)| Sensor::Gauge(number));
+    let others = samples.others.iter().map(|(sensor, _)| *sensor);
     let mut cycles = Cycles {
         gaps: 0,
         mean: Vec::new(),

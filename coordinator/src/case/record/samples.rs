@@ -3,7 +3,7 @@ use super::super::{
     error::{CaseError, damaged},
     table::Table,
 };
-use discrepancy::record::Source;
+use protocol::pumping_unit::Sensor;
 use std::path::Path;
 
 /// Columns that a record must have.
@@ -17,9 +17,9 @@ pub(super) const COLUMNS: [&str; 6] = [
 ];
 
 /// Columns that a diagnosis uses where there are any.
-const OPTIONAL: [(&str, Source); 2] = [
-    ("polished_rod_position_m", Source::Position),
-    ("crank_torque_nm", Source::Torque),
+const OPTIONAL: [(&str, Sensor); 2] = [
+    ("polished_rod_position_m", Sensor::Position),
+    ("crank_torque_nm", Sensor::Torque),
 ];
 
 /// A record as it was sampled.
@@ -30,7 +30,7 @@ pub(super) struct Samples {
     /// Stress of gauges 1 to 4 \[MPa\].
     pub(super) stress_mpa: Vec<Vec<f64>>,
     /// What was recorded beside the gauges (m, N m).
-    pub(super) others: Vec<(Source, Vec<f64>)>,
+    pub(super) others: Vec<(Sensor, Vec<f64>)>,
     /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
     /// Usual time between samples \[s\].
@@ -85,8 +85,8 @@ impl Samples {
                 .skip(COLUMNS.len())
                 .zip(others)
                 .filter_map(|(name, values)| {
-                    let source = OPTIONAL.iter().find(|(known, _)| known == name)?.1;
-                    Some((source, values.clone()))
+                    let sensor = OPTIONAL.iter().find(|(known, _)| known == name)?.1;
+                    Some((sensor, values.clone()))
                 })
                 .collect(),
             angle_deg,

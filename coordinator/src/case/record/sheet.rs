@@ -4,8 +4,8 @@ use super::super::{
     error::CaseError,
     note::Note,
 };
-use discrepancy::record::{Source, Stated, Tolerance};
-use protocol::pumping_unit::TurnSense;
+use discrepancy::record::{Stated, Tolerance};
+use protocol::pumping_unit::{Sensor, TurnSense};
 use serde::Deserialize;
 use std::path::Path;
 
@@ -106,18 +106,21 @@ impl Sheet {
         })
     }
 
+    /// The noise of one sample, in the unit of the sensor's channel, if the sheet states it.
+    pub(super) const fn noise(&self, sensor: Sensor) -> Option<f64> {
+        match sensor {
+            Sensor::Gauge(_) => self.gauges.noise_rms_mpa,
+            Sensor::Position => self.position.noise_rms_m,
+            Sensor::Torque => self.torque.noise_rms_nm,
+        }
+    }
+
     /// What the sheet says of the measurement, for channels that are sampled `grid` times as densely
     /// on the output grid as in the record.
-    pub(super) fn stated(&self, channels: &[Source], grid: f64) -> Stated {
-        let noise = |source: &Source| match source {
-            Source::Gauge(_) => self.gauges.noise_rms_mpa,
-            Source::Position => self.position.noise_rms_m,
-            Source::Torque => self.torque.noise_rms_nm,
-        };
+    pub(super) fn stated(&self, grid: f64) -> Stated {
         Stated {
             load_scatter: self.load.cycle_to_cycle_variation.unwrap_or(0.0),
             angle_tolerance_deg: self.crank.index_tolerance_deg.unwrap_or(0.0),
-            noise: channels.iter().map(noise).collect(),
             noise_correlation: self
                 .gauges
                 .noise_correlation_per_sample

@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         case: &case.name,
         condition: &arguments.condition,
         wall_s: started.elapsed().as_secs_f64(),
-        scores: score::condition(recommended, optimised),
+        scores: score::condition(&case, recommended, optimised),
     };
     let tables = || table::text(&table::table_4(&case, &result), terminal::styled());
     terminal::print(arguments.output.output, tables, &object)

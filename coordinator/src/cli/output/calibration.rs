@@ -46,7 +46,7 @@ fn report_run(curves: &Curves) -> report::Run {
         verdict: curves.simulation.verdict,
         fitness: f64::NAN,
         channels: Vec::new(),
-        residual_mpa: Vec::new(),
+        residual: Vec::new(),
         counters: Counters::default(),
     };
     report::Run {
@@ -103,7 +103,7 @@ fn result_object<'a>(
         let [recommended, optimised] = compared.individuals.as_slice() else {
             continue;
         };
-        let scores = condition(recommended, optimised);
+        let scores = condition(case, recommended, optimised);
         if compared.condition == case.objective.condition {
             calibrated = scores;
         } else {

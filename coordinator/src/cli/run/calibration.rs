@@ -45,10 +45,9 @@ pub(crate) async fn calibrate<E: Evaluator>(
 /// and with the moving machine.
 fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
     let calibrated = case.objective.condition;
-    let recorded = |index: &usize| case.conditions[*index].record.is_some();
     let others = (0..case.conditions.len())
         .filter(|index| *index != calibrated)
-        .filter(recorded);
+        .filter(|index| case.is_measured(*index));
     std::iter::once(calibrated)
         .chain(others)
         .map(|condition| Wanted {

@@ -6,7 +6,7 @@ use crate::report::number::{NONE, fixed};
 use maud::{Markup, html};
 use protocol::{
     case::Case,
-    pumping_unit::{Machine, Motion, Simulation},
+    pumping_unit::{Machine, Motion, Sensor, Simulation},
 };
 use serde::Serialize;
 
@@ -328,17 +328,19 @@ fn readouts(case: &Case, simulation: &Simulation, frames: &[&Motion]) -> Vec<Rea
     for (label, unit, decimals, factor, values) in curves {
         readouts.push(sampled(label.to_owned(), unit, decimals, factor, values));
     }
-    for &(gauge, _) in &case.objective.gauges {
-        let index = usize::from(gauge).wrapping_sub(1);
-        if let Some(values) = simulation.gauge_mpa.get(index) {
-            readouts.push(sampled(
-                format!("stress at gauge {gauge}"),
-                "MPa",
-                1,
-                1.0,
-                values,
-            ));
-        }
+    for gauge in case
+        .objective
+        .terms
+        .iter()
+        .filter_map(|term| Sensor::gauge(&term.channel))
+    {
+        readouts.push(sampled(
+            format!("stress at gauge {gauge}"),
+            "MPa",
+            1,
+            1.0,
+            &simulation.gauge_mpa[usize::from(gauge) - 1],
+        ));
     }
     readouts
 }

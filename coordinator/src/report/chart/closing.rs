@@ -134,7 +134,7 @@ const fn axis(unit: &str) -> &'static str {
     match unit.as_bytes() {
         b"MPa" => "stress [MPa]",
         b"m" => "position [m]",
-        b"N m" => "torque [N·m]",
+        b"N.m" => "torque [N·m]",
         _ => "",
     }
 }

@@ -1,4 +1,4 @@
-//! Measured against simulated stress at one gauge, recommended beside optimised on shared scales,
+//! Measured against simulated curves of one channel, recommended beside optimised on shared scales,
 //! with the residual below (paper, Figs. 7, 9 and 10).
 use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::{CRANK_TITLE, Panel};
@@ -8,10 +8,10 @@ use crate::line::interpolated;
 use crate::report::color::{BAND, GREY, INK, VERMILLION};
 use crate::report::data::{ConditionResult, Run};
 use crate::report::document::Figure;
-use crate::report::number::{fixed, percent};
+use crate::report::number::{fixed, percent, unit};
 use crate::report::words;
-use protocol::case::{Case, GaugeRecord, GaugeTrace, Offset};
-use protocol::job::Verdict;
+use protocol::case::{Case, Channel, ChannelRecord, Offset};
+use protocol::job::{ChannelScore, Verdict};
 
 const LEFT: f64 = 58.0;
 const BETWEEN: f64 = 26.0;
@@ -29,62 +29,53 @@ struct Side {
     residual: Vec<(f64, f64)>,
 }
 
-/// Shift that the objective gives the simulated curve before it is compared [`MPa`].
-fn shift_mpa(case: &Case, run: &Run, gauge: u8) -> f64 {
-    let channel = run.evaluation.channels.iter().find(|c| c.gauge == gauge);
-    match (case.objective.offset, channel) {
-        (Offset::Free, Some(channel)) if channel.offset_mpa.is_finite() => channel.offset_mpa,
+/// Shift that the objective gives a simulated curve before it is compared.
+const fn shift(offset: Offset, score: Option<&ChannelScore>) -> f64 {
+    match (offset, score) {
+        (Offset::Free, Some(score)) if score.offset.is_finite() => score.offset,
         (Offset::Free | Offset::Fixed, _) => 0.0,
     }
-}
-
-/// Simulated stress of a gauge by its number, 1 to 4.
-fn stress(run: &Run, gauge: u8) -> &[f64] {
-    usize::from(gauge)
-        .checked_sub(1)
-        .and_then(|index| run.simulation.gauge_mpa.get(index))
-        .map_or(&[], Vec::as_slice)
 }
 
 impl Side {
     fn new(
         heading: &'static str,
-        case: &Case,
+        offset: Offset,
         run: &Run,
-        record: &GaugeRecord,
-        trace: &GaugeTrace,
+        (at, channel): (usize, &Channel),
+        record: &ChannelRecord,
     ) -> Self {
         let turn = &run.simulation.turn_deg;
-        let values = stress(run, trace.gauge);
-        let shift = shift_mpa(case, run, trace.gauge);
+        let values = run.simulation.channel(&channel.name);
+        let mut scores = run.evaluation.channels.iter();
+        let score = scores.find(|score| score.channel == at);
+        let shift = shift(offset, score);
         let simulated = points(turn, values)
             .into_iter()
             .map(|(x, y)| (x, y + shift))
             .collect();
-        let residual = record
-            .turn_deg
+        let grid = &channel.abscissa.points;
+        let residual = grid
             .iter()
-            .zip(&trace.mean_mpa)
+            .zip(&record.mean)
             .map(|(&x, &measured)| {
                 let simulated = interpolated(turn, values, x).unwrap_or(f64::NAN);
                 (x, measured - simulated - shift)
             })
             .collect();
-        let channel = run
-            .evaluation
-            .channels
-            .iter()
-            .find(|channel| channel.gauge == trace.gauge);
-        let remark = match (run.simulation.verdict, channel) {
+        let remark = match (run.simulation.verdict, score) {
             (verdict @ Verdict::Failed { .. }, _) => {
                 format!("{}; not shifted", words::verdict(&verdict))
             }
-            (Verdict::Complete, Some(channel)) => format!(
-                "rms error {} MPa, {} of half the range; shifted by {} MPa",
-                fixed(channel.rmse_over_half_range * half_range(trace), 2),
-                percent(channel.rmse_over_half_range),
-                fixed(shift, 2),
-            ),
+            (Verdict::Complete, Some(score)) => {
+                let unit = unit(&channel.unit);
+                format!(
+                    "rms error {} {unit}, {} of half the range; shifted by {} {unit}",
+                    fixed(score.mse.sqrt(), 2),
+                    percent(score.rmse_over_half_range),
+                    fixed(shift, 2),
+                )
+            }
             (Verdict::Complete, None) => String::new(),
         };
         Self {
@@ -96,32 +87,27 @@ impl Side {
     }
 }
 
-/// Half the range of the measured mean [`MPa`].
-fn half_range(trace: &GaugeTrace) -> f64 {
-    crate::report::number::range(trace.mean_mpa.iter().copied())
-        .map_or(f64::NAN, |(low, high)| 0.5 * (high - low))
-}
-
-/// Draws the overlay of one gauge under one condition; none if the condition or its record does
-/// not have it.
-pub fn overlay(case: &Case, result: &ConditionResult, gauge: u8) -> Option<Figure> {
+/// Draws the overlay of one channel, by its place in the case, under its condition; none if it was
+/// not measured.
+pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figure> {
     let condition = case.conditions.get(result.condition)?;
-    let record = condition.record.as_ref()?;
-    let trace = record.gauges.iter().find(|trace| trace.gauge == gauge)?;
+    let channel = case.channels.get(at)?;
+    let record = channel.record.as_ref()?;
+    let offset = case.objective.offset;
     let sides = [
         ("Recommended parameters", &result.recommended),
         ("Optimised parameters", &result.optimised),
     ]
-    .map(|(heading, run)| Side::new(heading, case, run, record, trace));
+    .map(|(heading, run)| Side::new(heading, offset, run, (at, channel), record));
     let cycles = record.cycles;
-    let band: Vec<_> = record
-        .turn_deg
+    let grid = &channel.abscissa.points;
+    let band: Vec<_> = grid
         .iter()
-        .zip(trace.mean_mpa.iter().zip(&trace.spread_mpa))
+        .zip(record.mean.iter().zip(&record.spread))
         .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
         .collect();
     let curves = sides.iter().flat_map(|side| &side.simulated);
-    let stresses = Scale::linear(
+    let values = Scale::linear(
         curves
             .map(|&(_, y)| y)
             .chain(band.iter().flat_map(|&(_, low, high)| [low, high])),
@@ -129,28 +115,30 @@ pub fn overlay(case: &Case, result: &ConditionResult, gauge: u8) -> Option<Figur
     );
     let residuals = sides.iter().flat_map(|side| &side.residual);
     let residuals = Scale::symmetric(residuals.map(|&(_, y)| y));
-    let title = format!("Stress at gauge {gauge}, condition {}", condition.name);
-    let record = Measured {
-        mean: points(&record.turn_deg, &trace.mean_mpa),
+    let heading = words::capitalised(&channel.title);
+    let title = format!("{heading}, condition {}", condition.name);
+    let measured = Measured {
+        mean: points(grid, &record.mean),
         band,
-        stresses,
+        values,
         residuals,
+        unit: unit(&channel.unit),
     };
     let svg = render((WIDTH, HEIGHT), &title, |canvas| {
-        key(canvas, gauge, cycles);
+        key(canvas, &heading, cycles);
         let [recommended, optimised] = &sides;
-        column(canvas, &record, recommended, true);
-        column(canvas, &record, optimised, false);
+        column(canvas, &measured, recommended, true);
+        column(canvas, &measured, optimised, false);
     });
-    let free = match case.objective.offset {
+    let free = match offset {
         Offset::Free => {
-            " Complete simulated curves are shifted to the measured mean, because a strain bridge \
-             has no absolute zero."
+            " Complete simulated curves are shifted to the measured mean, because the sensor has no \
+             absolute zero."
         }
         Offset::Fixed => "",
     };
     Some(Figure {
-        name: format!("stress_{}_gauge_{gauge}", condition.name),
+        name: format!("overlay_{}_{}", condition.name, channel.name),
         caption: format!(
             "{title}: measured and simulated over one crank revolution, on shared scales; below, \
              measured minus simulated.{free}"
@@ -164,11 +152,12 @@ struct Measured {
     mean: Vec<(f64, f64)>,
     /// Rows of (crank angle, low, high).
     band: Vec<(f64, f64, f64)>,
-    stresses: Scale,
+    values: Scale,
     residuals: Scale,
+    unit: String,
 }
 
-/// One parameter set: stress above, residual below. Only the first column labels its scales.
+/// One parameter set: curves above, residual below. Only the first column labels its scales.
 fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     let width = 0.5 * (WIDTH - LEFT - BETWEEN - 10.0);
     let left = if first { LEFT } else { LEFT + width + BETWEEN };
@@ -178,14 +167,17 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
         width,
         height: STRESS_HEIGHT,
         x: Scale::crank(),
-        y: measured.stresses,
+        y: measured.values,
     };
-    let title = |title| if first { title } else { "" };
+    let title = |what: &str| match first {
+        true => format!("{what} [{}]", measured.unit),
+        false => String::new(),
+    };
     panel.guides(canvas);
     panel.band(canvas, &measured.band, BAND);
     panel.curve(canvas, &measured.mean, MEASURED);
     panel.curve(canvas, &side.simulated, SIMULATED);
-    panel.left_axis(canvas, first, title("stress [MPa]"));
+    panel.left_axis(canvas, first, &title("value"));
     panel.lower_axis(canvas, false, "");
     if side.simulated.len() < 2 {
         panel.remark(canvas, "no simulated curve: the run failed before it");
@@ -201,7 +193,7 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     };
     strip.guides(canvas);
     strip.curve(canvas, &side.residual, RESIDUAL);
-    strip.left_axis(canvas, first, title("residual [MPa]"));
+    strip.left_axis(canvas, first, &title("residual"));
     strip.lower_axis(canvas, true, CRANK_TITLE);
 }
 
@@ -211,12 +203,12 @@ const RESIDUAL: Pen = Pen::new(INK, 0.8);
 
 /// The key above both panels: each mark before its words, with room for the widest typeface, since the
 /// width of a text is not known here.
-fn key(canvas: &mut Canvas, gauge: u8, cycles: usize) {
+fn key(canvas: &mut Canvas, title: &str, cycles: usize) {
     const LETTER: f64 = 6.4;
     const MARK: f64 = 22.0;
     let y = 12.0;
     let heading = Lettering::new(13.0, INK).bold();
-    canvas.text((LEFT, y), &format!("Gauge {gauge}"), heading);
+    canvas.text((LEFT, y), title, heading);
     let measured = match cycles {
         0 | 1 => "measured, one cycle".to_owned(),
         _ => format!("measured, mean of {cycles} cycles ± one standard deviation"),
@@ -232,17 +224,12 @@ fn key(canvas: &mut Canvas, gauge: u8, cycles: usize) {
     canvas.line(&[(x - 6.0 - MARK, y), (x - 6.0, y)], MEASURED);
 }
 
-/// Every overlay of a condition: the objective's gauges first, then the others of the record.
+/// Every overlay of a condition: the objective's channels first, then the others that were measured.
 pub fn overlays(case: &Case, result: &ConditionResult) -> Vec<Figure> {
-    let condition = case.conditions.get(result.condition);
-    let record = condition.and_then(|condition| condition.record.as_ref());
-    let fitted: Vec<u8> = case.objective.gauges.iter().map(|&(g, _)| g).collect();
-    let mut gauges: Vec<u8> = record.map_or_else(Vec::new, |record| {
-        record.gauges.iter().map(|trace| trace.gauge).collect()
-    });
-    gauges.sort_by_key(|gauge| (!fitted.contains(gauge), *gauge));
-    let figures = gauges.into_iter();
+    let mut measured: Vec<_> = case.measured(result.condition).collect();
+    measured.sort_by_key(|(_, channel, _)| !case.objective.names(&channel.name));
+    let figures = measured.into_iter();
     figures
-        .filter_map(|gauge| overlay(case, result, gauge))
+        .filter_map(|(at, ..)| overlay(case, result, at))
         .collect()
 }

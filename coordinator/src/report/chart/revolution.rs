@@ -5,37 +5,32 @@ use crate::report::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
 use protocol::case::Case;
-use protocol::pumping_unit::Simulation;
+use protocol::pumping_unit::{Sensor, Simulation};
 
 /// Stress at all four gauges, with the measured mean and its spread where there is a record.
 pub(in crate::report) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> Figure {
     let name = condition_name(case, condition);
-    let record = case
-        .conditions
-        .get(condition)
-        .and_then(|condition| condition.record.as_ref());
+    let measured: Vec<_> = case.measured(condition).collect();
     let strips: Vec<_> = (1_u8..)
         .zip(&simulation.gauge_mpa)
         .map(|(gauge, stress)| {
-            let trace = record.and_then(|record| {
-                let trace = record.gauges.iter().find(|trace| trace.gauge == gauge)?;
-                Some((record, trace))
-            });
-            let label = if trace.is_some() {
+            let named = Sensor::Gauge(gauge).name();
+            let found = measured
+                .iter()
+                .find(|(_, channel, _)| channel.name == named);
+            let label = if found.is_some() {
                 "simulated".to_owned()
             } else {
                 format!("gauge {gauge}")
             };
             let mut curves = vec![curve(label, VERMILLION, &simulation.turn_deg, stress, 1.0)];
             let mut band = Vec::new();
-            if let Some((record, trace)) = trace {
-                let measured = curve("measured", INK, &record.turn_deg, &trace.mean_mpa, 1.0);
-                curves.insert(0, measured);
-                let rows = trace.mean_mpa.iter().zip(&trace.spread_mpa);
-                band = record
-                    .turn_deg
-                    .iter()
-                    .zip(rows)
+            if let Some((_, channel, record)) = found {
+                let grid = &channel.abscissa.points;
+                curves.insert(0, curve("measured", INK, grid, &record.mean, 1.0));
+                let rows = record.mean.iter().zip(&record.spread);
+                let rows = grid.iter().zip(rows);
+                band = rows
                     .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
                     .collect();
             }
@@ -161,13 +156,14 @@ pub(in crate::report) fn player(case: &Case, simulation: &Simulation) -> (Figure
     let colors = [VERMILLION, INK, GREEN, PURPLE];
     let stress = case
         .objective
-        .gauges
+        .terms
         .iter()
-        .filter_map(|&(gauge, _)| {
-            let index = usize::from(gauge).checked_sub(1)?;
-            let values = simulation.gauge_mpa.get(index)?;
+        .filter_map(|term| {
+            let gauge = Sensor::gauge(&term.channel)?;
+            let index = usize::from(gauge) - 1;
+            let values = &simulation.gauge_mpa[index];
             let label = format!("gauge {gauge}");
-            Some(curve(label, colors[index % 4], turn, values, 1.0))
+            Some(curve(label, colors[index], turn, values, 1.0))
         })
         .collect();
     let strips = [

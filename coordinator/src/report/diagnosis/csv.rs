@@ -29,15 +29,14 @@ pub(super) fn curves(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::E
     writer.write_record(CURVES)?;
     for shown in shown(subject) {
         for c in 0..shown.record.channels.len() {
-            let name = shown.record.channels[c].name();
-            let Some(of) = shown.channel(c, &name) else {
+            let Some(of) = shown.channel(c) else {
                 continue;
             };
             for (i, &turn) in of.turn_deg.iter().enumerate() {
                 let at = |values: Option<&[f64]>| field(values.and_then(|v| v.get(i).copied()));
                 writer.write_record([
                     of.condition.to_owned(),
-                    name.clone(),
+                    of.channel.to_owned(),
                     of.unit.to_owned(),
                     field(Some(turn)),
                     at(Some(of.measured)),

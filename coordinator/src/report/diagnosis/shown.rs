@@ -2,7 +2,7 @@
 use super::subject::Subject;
 use crate::report::chart::Closing;
 use crate::report::words::condition_name;
-use discrepancy::record::{Curves, Record, Source};
+use discrepancy::record::{Curves, Record};
 use protocol::case::Offset;
 
 /// Everything about one condition, on its record's grid.
@@ -30,11 +30,12 @@ pub(super) struct Shown<'a> {
 
 impl Shown<'_> {
     /// One channel of it.
-    pub(super) fn channel<'b>(&'b self, c: usize, name: &'b str) -> Option<Closing<'b>> {
+    pub(super) fn channel(&self, c: usize) -> Option<Closing<'_>> {
+        let channel = &self.record.channels.get(c)?.channel;
         Some(Closing {
             condition: &self.condition,
-            channel: name,
-            unit: self.record.channels.get(c)?.unit(),
+            channel: &channel.title,
+            unit: &channel.unit,
             turn_deg: &self.turn_deg,
             measured: self.mean.get(c)?,
             spread: self.spread.get(c).map_or(&[], Vec::as_slice),
@@ -48,10 +49,10 @@ impl Shown<'_> {
         })
     }
 
-    /// Indices of the channels, gauges first.
+    /// Indices of the channels, those that are scored first.
     pub(super) fn order(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.record.channels.len()).collect();
-        order.sort_by_key(|&c| !matches!(self.record.channels[c], Source::Gauge(_)));
+        order.sort_by_key(|&c| !self.record.channels[c].scored);
         order
     }
 }

@@ -66,5 +66,6 @@ impl<'a> Subject<'a> {
 
 /// Names of the channels of a record.
 pub(super) fn channels(record: &Record) -> Vec<String> {
-    record.channels.iter().map(|source| source.name()).collect()
+    let titles = record.channels.iter().map(|own| own.channel.title.clone());
+    titles.collect()
 }

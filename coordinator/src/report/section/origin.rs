@@ -58,12 +58,12 @@ pub(in crate::report) fn facts(origin: &Origin, case: &Case) -> Vec<Fact> {
 
 /// What is minimised.
 fn objective(case: &Case) -> String {
-    let gauges = case.objective.gauges.iter();
-    let terms: Vec<_> = gauges
-        .map(|(gauge, weight)| format!("{weight} × MSE at point {gauge}"))
+    let terms = case.objective.terms.iter();
+    let terms: Vec<_> = terms
+        .map(|term| format!("{} × MSE of {}", term.weight, term.channel))
         .collect();
     let offset = match case.objective.offset {
-        Offset::Free => "free: the mean difference of each gauge is removed first",
+        Offset::Free => "free: the mean difference of each channel is removed first",
         Offset::Fixed => "fixed: absolute values are compared",
     };
     format!("{}; offset {offset}", terms.join(" + "))

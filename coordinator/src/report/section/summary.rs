@@ -38,7 +38,7 @@ fn conditions(calibration: &Calibration) -> Vec<Block> {
             "took no part in the fit"
         };
         blocks.push(Block::Heading(format!("Condition {name}"), role));
-        let sentences = words::gauges(case, result);
+        let sentences = words::channels(case, result);
         blocks.push(if sentences.is_empty() {
             let none = "There are no scores under this condition: no record, or no complete run.";
             Block::Text(none.to_owned())

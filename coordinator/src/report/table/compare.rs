@@ -1,7 +1,7 @@
 //! Recommended against optimised parameters (paper, Tables 3 and 4).
 use crate::report::data::{Calibration, ConditionResult};
 use crate::report::document::{Row, Table};
-use crate::report::number::{NONE, figure, fixed, percent, ratio, unit};
+use crate::report::number::{NONE, figure, fixed, percent, ratio, squared, unit};
 use crate::report::words::{self, condition_name};
 use protocol::case::{Case, Coefficient, Quantity};
 use protocol::job::{ChannelScore, Verdict};
@@ -11,26 +11,21 @@ const DEFINITIONS: [&str; 3] = [
     "Relative error: mean absolute error over the mean absolute deviation of the measured curve from \
      its own mean.",
     "RMSE / half-range: root of the mean squared error over half the measured range.",
-    "Offset: measured minus simulated mean; a strain bridge has no absolute zero.",
+    "Offset: measured minus simulated mean; sensors have no absolute zero.",
 ];
 
-/// Gauges of a result: those of the objective first, then the others of the record.
-fn gauges(case: &Case, result: &ConditionResult) -> Vec<u8> {
-    let mut gauges: Vec<u8> = case.objective.gauges.iter().map(|&(g, _)| g).collect();
-    for run in [&result.recommended, &result.optimised] {
-        for channel in &run.evaluation.channels {
-            if !gauges.contains(&channel.gauge) {
-                gauges.push(channel.gauge);
-            }
-        }
-    }
-    gauges
+/// The channels that were scored, by their places in the case: those of the objective first.
+fn scored(case: &Case, result: &ConditionResult) -> Vec<usize> {
+    let measured = case.measured(result.condition);
+    let mut scored: Vec<usize> = measured.map(|(at, ..)| at).collect();
+    scored.sort_by_key(|&at| !words::is_fitted(case, at));
+    scored
 }
 
-/// A measure of agreement, gauge by gauge.
+/// A measure of agreement, channel by channel.
 struct Measure {
     title: &'static str,
-    unit: &'static str,
+    unit: fn(&str) -> String,
     of: fn(&ChannelScore) -> f64,
     write: fn(f64) -> String,
     /// Whether the ratio of two of them says something: one of signed errors or of offsets does not.
@@ -40,54 +35,54 @@ struct Measure {
 const MEASURES: [Measure; 6] = [
     Measure {
         title: "Mean squared error",
-        unit: "MPa²",
-        of: |score| score.mse_mpa2,
+        unit: |unit| squared(Some(unit)),
+        of: |score| score.mse,
         write: figure,
         has_ratio: true,
     },
     Measure {
         title: "MSE, absolute (offset not removed)",
-        unit: "MPa²",
-        of: |score| score.mse_fixed_offset_mpa2,
+        unit: |unit| squared(Some(unit)),
+        of: |score| score.mse_fixed_offset,
         write: figure,
         has_ratio: true,
     },
     Measure {
         title: "Relative error",
-        unit: "",
+        unit: |_| String::new(),
         of: |score| score.relative_error,
         write: percent,
         has_ratio: true,
     },
     Measure {
         title: "RMSE / half-range",
-        unit: "",
+        unit: |_| String::new(),
         of: |score| score.rmse_over_half_range,
         write: percent,
         has_ratio: true,
     },
     Measure {
-        title: "Error of the peak-to-peak stress",
-        unit: "",
+        title: "Error of the peak-to-peak value",
+        unit: |_| String::new(),
         of: |score| score.peak_to_peak_error,
         write: percent,
         has_ratio: false,
     },
     Measure {
         title: "Offset",
-        unit: "MPa",
-        of: |score| score.offset_mpa,
+        unit,
+        of: |score| score.offset,
         write: |value| fixed(value, 2),
         has_ratio: false,
     },
 ];
 
 impl Measure {
-    /// Both parameter sets at one gauge.
-    fn row(&self, label: String, result: &ConditionResult, gauge: u8) -> Row {
+    /// Both parameter sets at one channel.
+    fn row(&self, case: &Case, result: &ConditionResult, channel: usize) -> Row {
         let [before, after] = [&result.recommended, &result.optimised].map(|run| {
             let mut channels = run.evaluation.channels.iter();
-            channels.find(|score| score.gauge == gauge).map(self.of)
+            channels.find(|score| score.channel == channel).map(self.of)
         });
         let share = match (before, after) {
             _ if !self.has_ratio => String::new(),
@@ -95,25 +90,25 @@ impl Measure {
             _ => NONE.to_owned(),
         };
         let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), self.write);
+        let calibrated = result.condition == case.objective.condition;
+        let role = if words::is_fitted(case, channel) || !calibrated {
+            ""
+        } else {
+            " (not fitted)"
+        };
+        let found = case.channels.get(channel);
+        let unit = found.map(|channel| (self.unit)(&channel.unit));
+        let cells = [unit.unwrap_or_default(), write(before), write(after), share];
         Row::new(
-            label,
-            [self.unit.to_owned(), write(before), write(after), share],
+            format!("{}{role}", words::channel_title(case, channel)),
+            cells,
         )
     }
 }
 
-/// Objective and agreement at every gauge of a condition.
+/// Objective and agreement of every channel of a condition.
 fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
-    let gauges = gauges(case, result);
-    let calibrated = result.condition == case.objective.condition;
-    let label = |gauge: u8| {
-        let weighted = case.objective.gauges.iter().any(|&(g, _)| g == gauge);
-        if weighted || !calibrated {
-            format!("point {gauge}")
-        } else {
-            format!("point {gauge} (not fitted)")
-        }
-    };
+    let scored = scored(case, result);
     let [before, after] = [&result.recommended, &result.optimised].map(|run| {
         let complete = run.evaluation.verdict == Verdict::Complete;
         complete.then_some(run.evaluation.fitness)
@@ -123,7 +118,7 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
         .zip(after)
         .map(|(before, after)| ratio(after, before));
     let cells = [
-        "MPa²".to_owned(),
+        squared(case.objective_unit()),
         write(before),
         write(after),
         share.unwrap_or_else(|| NONE.to_owned()),
@@ -134,7 +129,7 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
     ];
     for measure in MEASURES {
         rows.push(Row::group(measure.title));
-        rows.extend(gauges.iter().map(|&g| measure.row(label(g), result, g)));
+        rows.extend(scored.iter().map(|&at| measure.row(case, result, at)));
     }
     rows
 }

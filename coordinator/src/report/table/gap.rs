@@ -1,30 +1,30 @@
-//! What the parameters leave unexplained, gauge by gauge.
+//! What the parameters leave unexplained, channel by channel.
 use crate::report::data::{ConditionResult, Run};
 use crate::report::document::{Row, Table};
 use crate::report::number::{fixed, percent};
 use crate::report::words::condition_name;
 use discrepancy::proof::gap::{Gap, SECTOR_DEG};
-use protocol::case::{Case, GaugeRecord};
+use protocol::case::{Case, Channel, ChannelRecord};
 
 /// The gap of both parameter sets under one condition, and where the optimised ones leave it;
 /// nothing without a record or without a complete run.
 pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
-    let record = case.conditions.get(result.condition)?.record.as_ref()?;
-    let before = gaps(record, &result.recommended);
-    let after = gaps(record, &result.optimised);
+    let [before, after] =
+        [&result.recommended, &result.optimised].map(|run| gaps(case, result.condition, run));
     if after.is_empty() {
         return None;
     }
     let rows = after
         .iter()
-        .map(|gap| {
-            let earlier = before.iter().find(|before| before.gauge == gap.gauge);
+        .map(|(channel, gap)| {
+            let mut before = before.iter();
+            let earlier = before.find(|(before, _)| before.name == channel.name);
             let (begin, of_sector) = gap.worst_sector();
             let (band, of_band) = gap.worst_band();
             Row::new(
-                format!("gauge {}", gap.gauge),
+                channel.title.as_str(),
                 [
-                    earlier.map_or_else(|| "–".to_owned(), |gap| percent(gap.share())),
+                    earlier.map_or_else(|| "–".to_owned(), |(_, gap)| percent(gap.share())),
                     percent(gap.share()),
                     gap.over_noise().map_or_else(
                         || "unknown".to_owned(),
@@ -57,13 +57,11 @@ pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Ta
         ]))
 }
 
-fn gaps(record: &GaugeRecord, run: &Run) -> Vec<Gap> {
-    record
-        .gauges
-        .iter()
-        .filter_map(|trace| {
-            let simulated = run.simulation.gauge_mpa.get(usize::from(trace.gauge) - 1)?;
-            Gap::between(trace, record.cycles, simulated)
-        })
-        .collect()
+/// Gaps of the measured channels.
+fn gaps<'a>(case: &'a Case, condition: usize, run: &Run) -> Vec<(&'a Channel, Gap)> {
+    let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
+        let gap = Gap::between(record, run.simulation.channel(&channel.name))?;
+        Some((channel, gap))
+    };
+    case.measured(condition).filter_map(gap).collect()
 }

@@ -1,8 +1,8 @@
 //! One simulation in numbers.
 use crate::report::data::SingleRun;
 use crate::report::document::{Row, Table};
-use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, unit};
-use crate::report::words::{self, condition_name};
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, squared, unit};
+use crate::report::words::{self, channel_title, condition_name};
 use protocol::pumping_unit::{Energy, Simulation};
 
 /// Cells of a range: smallest, largest, half the range.
@@ -91,17 +91,20 @@ pub fn balance(run: &SingleRun) -> Table {
         && !evaluation.channels.is_empty()
     {
         rows.push(Row::group("Against the record"));
-        rows.push(one("objective", "MPa²", figure(evaluation.fitness)));
-        for channel in &evaluation.channels {
+        let unit = squared(run.case.objective_unit());
+        rows.push(one("objective", &unit, figure(evaluation.fitness)));
+        for score in &evaluation.channels {
+            let channel = run.case.channels.get(score.channel);
+            let title = channel_title(&run.case, score.channel);
             rows.push(one(
-                &format!("point {}: mean squared error", channel.gauge),
-                "MPa²",
-                figure(channel.mse_mpa2),
+                &format!("{title}: mean squared error"),
+                &squared(channel.map(|channel| channel.unit.as_str())),
+                figure(score.mse),
             ));
             rows.push(one(
-                &format!("point {}: relative error", channel.gauge),
+                &format!("{title}: relative error"),
                 "",
-                percent(channel.relative_error),
+                percent(score.relative_error),
             ));
         }
     }

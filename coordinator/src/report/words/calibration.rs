@@ -2,13 +2,13 @@
 use super::change::change;
 use super::ending::verdict;
 use super::gene::{at_bound, bound};
-use super::name::{capitalised, condition_name};
+use super::name::{capitalised, channel_title, condition_name, is_fitted};
 use crate::report::data::{Calibration, ConditionResult};
-use crate::report::number::{figure, percent, quantity};
-use protocol::case::Case;
+use crate::report::number::{figure, percent, quantity, squared};
+use protocol::case::{Case, Term};
 use protocol::job::{ChannelScore, Verdict};
 
-/// The objective with the recommended parameters, if their run was complete [MPa^2].
+/// The objective with the recommended parameters, if their run was complete.
 pub(in crate::report) fn complete_objective(result: &ConditionResult) -> Option<f64> {
     let evaluation = &result.recommended.evaluation;
     matches!(evaluation.verdict, Verdict::Complete).then_some(evaluation.fitness)
@@ -22,13 +22,14 @@ pub(in crate::report) fn headline(calibration: &Calibration) -> String {
     let name = condition_name(&calibration.case, result.condition);
     let (before, after) = (&result.recommended.evaluation, &result.optimised.evaluation);
     let what = objective(&calibration.case);
+    let unit = square_after(calibration.case.objective_unit());
     match (before.verdict, after.verdict) {
         (_, failed @ Verdict::Failed { .. }) => format!(
             "No usable parameters were found: under condition {name} the best individual {}.",
             verdict(&failed)
         ),
         (failed @ Verdict::Failed { .. }, Verdict::Complete) => format!(
-            "With the optimised parameters, {what} is {} MPa² under condition {name}. With the \
+            "With the optimised parameters, {what} is {}{unit} under condition {name}. With the \
              recommended ones the simulation {}, so there is no error to compare with.",
             figure(after.fitness),
             verdict(&failed)
@@ -36,81 +37,89 @@ pub(in crate::report) fn headline(calibration: &Calibration) -> String {
         (Verdict::Complete, Verdict::Complete) if after.fitness < before.fitness => format!(
             "{} {} under condition {name}.",
             capitalised(&what),
-            change(before.fitness, after.fitness, " MPa²")
+            change(before.fitness, after.fitness, &unit)
         ),
         (Verdict::Complete, Verdict::Complete) => format!(
             "The search found nothing better than the recommended parameters: {what} {} under \
              condition {name}.",
-            change(before.fitness, after.fitness, " MPa²")
+            change(before.fitness, after.fitness, &unit)
         ),
     }
+}
+
+/// The square of a unit behind a number, with the space between them.
+fn square_after(unit: Option<&str>) -> String {
+    match squared(unit).as_str() {
+        "" => String::new(),
+        square => format!(" {square}"),
+    }
+}
+
+/// The same for the unit of a channel.
+fn square_of(case: &Case, channel: usize) -> String {
+    square_after(
+        case.channels
+            .get(channel)
+            .map(|channel| channel.unit.as_str()),
+    )
 }
 
 /// What is minimised, in words.
 fn objective(case: &Case) -> String {
-    let gauges: Vec<_> = case
-        .objective
-        .gauges
-        .iter()
-        .map(|(gauge, _)| gauge.to_string())
-        .collect();
-    let weighted = case
-        .objective
-        .gauges
-        .iter()
-        .any(|&(_, weight)| (weight - 1.0).abs() > 1e-12);
+    let terms = &case.objective.terms;
+    let title = |term: &Term| {
+        let mut channels = case.channels.iter();
+        let found = channels.find(|channel| channel.name == term.channel);
+        found.map_or_else(|| term.channel.clone(), |channel| channel.title.clone())
+    };
+    let titles: Vec<_> = terms.iter().map(title).collect();
+    let weighted = terms.iter().any(|term| (term.weight - 1.0).abs() > 1e-12);
     let sum = if weighted { "weighted sum" } else { "sum" };
-    match gauges.as_slice() {
-        [one] => format!("the mean squared error at point {one}"),
+    match titles.as_slice() {
+        [one] => format!("the mean squared error of {one}"),
         _ => format!(
-            "the {sum} of the mean squared errors at points {}",
-            gauges.join(" and ")
+            "the {sum} of the mean squared errors of {}",
+            titles.join(" and ")
         ),
     }
 }
 
-/// One sentence per gauge of a condition; gauges that got worse are said to be worse.
-pub(in crate::report) fn gauges(case: &Case, result: &ConditionResult) -> Vec<String> {
+/// One sentence per channel of a condition; channels that got worse are said to be worse.
+pub(in crate::report) fn channels(case: &Case, result: &ConditionResult) -> Vec<String> {
     let before = &result.recommended.evaluation.channels;
     let after = &result.optimised.evaluation.channels;
     let calibrated = result.condition == case.objective.condition;
-    after
-        .iter()
-        .map(|new| {
-            let weighted = case.objective.gauges.iter().any(|&(g, _)| g == new.gauge);
-            let role = if calibrated && !weighted {
-                " (took no part in the fit)"
-            } else {
-                ""
-            };
-            let gauge = new.gauge;
-            match channel(before, gauge) {
-                Some(old) => {
-                    let worse = if new.mse_mpa2 > old.mse_mpa2 {
-                        "worse: "
-                    } else {
-                        ""
-                    };
-                    format!(
-                        "Point {gauge}{role}: {worse}mean squared error {}; relative error {} → {}.",
-                        change(old.mse_mpa2, new.mse_mpa2, " MPa²"),
-                        percent(old.relative_error),
-                        percent(new.relative_error),
-                    )
-                }
-                None => format!(
-                    "Point {gauge}{role}: mean squared error {} MPa², relative error {}; no \
-                     complete run with the recommended parameters to compare with.",
-                    figure(new.mse_mpa2),
+    let sentence = |new: &ChannelScore| {
+        let role = if calibrated && !is_fitted(case, new.channel) {
+            " (took no part in the fit)"
+        } else {
+            ""
+        };
+        let title = capitalised(&channel_title(case, new.channel));
+        let unit = square_of(case, new.channel);
+        match score(before, new.channel) {
+            Some(old) => {
+                let worse = if new.mse > old.mse { "worse: " } else { "" };
+                format!(
+                    "{title}{role}: {worse}mean squared error {}; relative error {} → {}.",
+                    change(old.mse, new.mse, &unit),
+                    percent(old.relative_error),
                     percent(new.relative_error),
-                ),
+                )
             }
-        })
-        .collect()
+            None => format!(
+                "{title}{role}: mean squared error {}{unit}, relative error {}; no complete run \
+                 with the recommended parameters to compare with.",
+                figure(new.mse),
+                percent(new.relative_error),
+            ),
+        }
+    };
+    after.iter().map(sentence).collect()
 }
 
-/// One sentence about the points whose absolute error rose although the error without offset
-/// fell: a free offset would hide it. None where there is no such point.
+/// One sentence about the channels whose absolute error rose although the error without offset
+/// fell: a free offset would hide it. None where there is no such channel.
 pub(in crate::report) fn absolute_worse(case: &Case, result: &ConditionResult) -> Option<String> {
     let before = &result.recommended.evaluation.channels;
     let changes: Vec<String> = result
@@ -119,11 +128,12 @@ pub(in crate::report) fn absolute_worse(case: &Case, result: &ConditionResult) -
         .channels
         .iter()
         .filter_map(|new| {
-            let old = channel(before, new.gauge)?;
-            let hidden = new.mse_mpa2 < old.mse_mpa2
-                && new.mse_fixed_offset_mpa2 > old.mse_fixed_offset_mpa2;
-            let (from, to) = (old.mse_fixed_offset_mpa2, new.mse_fixed_offset_mpa2);
-            hidden.then(|| format!("at point {} it {}", new.gauge, change(from, to, " MPa²")))
+            let old = score(before, new.channel)?;
+            let (from, to) = (old.mse_fixed_offset, new.mse_fixed_offset);
+            let hidden = new.mse < old.mse && to > from;
+            let title = channel_title(case, new.channel);
+            let unit = square_of(case, new.channel);
+            hidden.then(|| format!("that of {title} {}", change(from, to, &unit)))
         })
         .collect();
     (!changes.is_empty()).then(|| {
@@ -155,10 +165,10 @@ pub(in crate::report) fn warnings(calibration: &Calibration) -> Vec<String> {
         }
         let before = &result.recommended.evaluation.channels;
         for new in &result.optimised.evaluation.channels {
-            if channel(before, new.gauge).is_some_and(|old| new.mse_mpa2 > old.mse_mpa2) {
+            if score(before, new.channel).is_some_and(|old| new.mse > old.mse) {
                 warnings.push(format!(
-                    "Point {} is worse with the optimised parameters under condition {name}.",
-                    new.gauge
+                    "{} is worse with the optimised parameters under condition {name}.",
+                    capitalised(&channel_title(case, new.channel))
                 ));
             }
         }
@@ -176,7 +186,7 @@ pub(in crate::report) fn warnings(calibration: &Calibration) -> Vec<String> {
     warnings
 }
 
-/// Score of a gauge, if the run was complete and has it.
-fn channel(channels: &[ChannelScore], gauge: u8) -> Option<&ChannelScore> {
-    channels.iter().find(|channel| channel.gauge == gauge)
+/// Score of a channel, if the run was complete and has it.
+fn score(scores: &[ChannelScore], channel: usize) -> Option<&ChannelScore> {
+    scores.iter().find(|score| score.channel == channel)
 }

@@ -8,10 +8,10 @@ mod ending;
 mod gene;
 mod name;
 
-pub(super) use calibration::{absolute_worse, complete_objective, gauges, headline, warnings};
+pub(super) use calibration::{absolute_worse, channels, complete_objective, headline, warnings};
 pub use ending::{failure, verdict};
 pub(super) use gene::{at_bound, bound, meaning, symbol};
-pub(super) use name::{capitalised, condition_name, listed, lower};
+pub(super) use name::{capitalised, channel_title, condition_name, is_fitted, listed, lower};
 pub use name::{integrator_name, mode_family};
 
 /// What to know of records that come from no test.

@@ -29,6 +29,19 @@ pub(in crate::report) fn condition_name(case: &Case, condition: usize) -> String
         .map_or_else(|| format!("#{condition}"), |found| found.name.clone())
 }
 
+/// Title of a channel; its number where the case does not have it.
+pub(in crate::report) fn channel_title(case: &Case, channel: usize) -> String {
+    case.channels
+        .get(channel)
+        .map_or_else(|| format!("#{channel}"), |found| found.title.clone())
+}
+
+/// Whether the objective sums a channel.
+pub(in crate::report) fn is_fitted(case: &Case, channel: usize) -> bool {
+    let found = case.channels.get(channel);
+    found.is_some_and(|channel| case.objective.names(&channel.name))
+}
+
 /// Items as a sentence lists them, as `a, b and c`.
 pub(in crate::report) fn listed(items: &[String], last: &str) -> String {
     match items {

@@ -18,9 +18,13 @@ pub(super) fn run() -> Columns<Fact> {
 
 /// Name of the column of a gene, with its unit: `kb1_n_per_m`.
 pub(super) fn gene_column(gene: &Gene) -> String {
-    let unit = gene.unit().to_lowercase();
+    column(&gene.label().replace('.', "_"), gene.unit())
+}
+
+/// Name of a column of values in a unit: `mse_force_n2` in `N2`.
+pub(super) fn column(name: &str, unit: &str) -> String {
+    let unit = unit.to_lowercase();
     let unit = unit.replace('/', "_per_").replace(['.', '^'], "_");
-    let name = gene.label().replace('.', "_");
     format!("{name}_{unit}")
 }
 

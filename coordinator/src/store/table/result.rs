@@ -1,13 +1,13 @@
 //! Tables of results: what was asked, how it ended, what it cost, how well it agrees.
-use super::about::gene_column;
+use super::about::{column, gene_column};
 use crate::store::{
     column::{Columns, JOB},
     row::{Added, Brief, Evaluated, Scored},
 };
-use protocol::{case::Case, job::Counters};
-
-/// Gauges of the machine.
-const GAUGES: u8 = 4;
+use protocol::{
+    case::{Case, Channel},
+    job::Counters,
+};
 
 pub(super) fn evaluations(case: &Case) -> Columns<Evaluated> {
     let job = |row: &Evaluated| Some(row.result.job.0);
@@ -37,19 +37,22 @@ pub(super) fn evaluations(case: &Case) -> Columns<Evaluated> {
             row.genes.get(place).copied()
         });
     }
-    columns.with(outcome(), |row| &row.result)
+    columns.with(outcome(case), |row| &row.result)
 }
 
-pub(super) fn results() -> Columns<Brief> {
+pub(super) fn results(case: &Case) -> Columns<Brief> {
     Columns::new()
         .integer(JOB, "the job that it answers", |row: &Brief| {
             Some(row.job.0)
         })
-        .with(outcome(), |row| row)
+        .with(outcome(case), |row| row)
 }
 
 /// How a job ended, who did it and what it cost.
-fn outcome() -> Columns<Brief> {
+fn outcome(case: &Case) -> Columns<Brief> {
+    let unit = case.objective_unit();
+    let fitness = unit.map_or_else(|| "fitness".to_owned(), |unit| squared("fitness", unit));
+    let of = unit.map_or_else(String::new, |unit| format!(" [{unit}^2]"));
     let mut columns = Columns::new()
         .text(
             "kind",
@@ -72,16 +75,29 @@ fn outcome() -> Columns<Brief> {
             |row| row.simulated?.0.time_fraction(),
         )
         .real(
-            "fitness_mpa2",
-            "objective if complete, a grade above every complete one's otherwise [MPa^2]",
-            |row| row.fitness_mpa2,
+            &fitness,
+            &format!("objective if complete, a grade above every complete one's otherwise{of}"),
+            |row| row.fitness,
         );
-    for gauge in 1..=GAUGES {
-        let (name, about) = (
-            format!("mse_gauge_{gauge}_mpa2"),
-            format!("mean squared error at gauge {gauge} [MPa^2]"),
+    // a channel has one column, whatever the condition
+    let mut named: Vec<(&Channel, Vec<usize>)> = Vec::new();
+    let measured = (0..case.conditions.len()).flat_map(|condition| case.measured(condition));
+    for (at, channel, _) in measured {
+        match named
+            .iter_mut()
+            .find(|(known, _)| known.name == channel.name)
+        {
+            Some((_, places)) => places.push(at),
+            None => named.push((channel, vec![at])),
+        }
+    }
+    for (channel, places) in named {
+        let name = squared(&format!("mse_{}", channel.name), &channel.unit);
+        let about = format!(
+            "mean squared error of {} [{}^2]",
+            channel.title, channel.unit
         );
-        columns = columns.real(&name, &about, move |row| row.mse_mpa2(gauge));
+        columns = columns.real(&name, &about, move |row| row.mse(&places));
     }
     columns = columns
         .text(
@@ -122,26 +138,38 @@ fn outcome() -> Columns<Brief> {
     columns
 }
 
-pub(super) fn scores() -> Columns<Scored> {
+/// Name of a column of squares of a unit.
+fn squared(name: &str, unit: &str) -> String {
+    column(name, &format!("{unit}2"))
+}
+
+pub(super) fn scores(case: &Case) -> Columns<Scored> {
+    let of = |text: fn(&Channel) -> &String| {
+        let texts: Vec<String> = case.channels.iter().map(text).cloned().collect();
+        move |row: &Scored| texts.get(row.score.channel).cloned()
+    };
     Columns::new()
         .integer(JOB, "the job that was scored", |row: &Scored| {
             Some(row.job.0)
         })
-        .integer("gauge", "gauge number", |row| {
-            Some(u64::from(row.score.gauge))
-        })
+        .text(
+            "channel",
+            "name of the channel",
+            of(|channel| &channel.name),
+        )
+        .text("unit", "unit of the channel", of(|channel| &channel.unit))
         .real(
-            "mse_mpa2",
-            "mean squared error as the objective treats the offset [MPa^2]",
-            |row| Some(row.score.mse_mpa2),
+            "mse",
+            "mean squared error as the objective treats the offset [unit^2]",
+            |row| Some(row.score.mse),
         )
         .real(
-            "mse_fixed_offset_mpa2",
-            "mean squared error of absolute values [MPa^2]",
-            |row| Some(row.score.mse_fixed_offset_mpa2),
+            "mse_fixed_offset",
+            "mean squared error of absolute values [unit^2]",
+            |row| Some(row.score.mse_fixed_offset),
         )
-        .real("offset_mpa", "measured minus simulated mean [MPa]", |row| {
-            Some(row.score.offset_mpa)
+        .real("offset", "measured minus simulated mean [unit]", |row| {
+            Some(row.score.offset)
         })
         .real(
             "rmse_over_half_range",
@@ -155,7 +183,7 @@ pub(super) fn scores() -> Columns<Scored> {
         )
         .real(
             "peak_to_peak_error",
-            "simulated minus measured peak-to-peak stress, over the measured one [1]",
+            "simulated minus measured range from lowest to highest, over the measured one [1]",
             |row| Some(row.score.peak_to_peak_error),
         )
 }

@@ -1,7 +1,7 @@
 //! A strong friction that is named by a diagnosis that is killed on the way, gone on with, judged, added
 //! to the case, told again and simulated: always the same numbers. One diagnosis, for it takes minutes.
 use crate::coarse::{FRICTION, Trial, run};
-use protocol::{curve::rounded, job::Observation};
+use protocol::{curve::rounded, pumping_unit::Sensor};
 use serde_json::Value;
 use std::{fs, path::Path, process::Stdio, thread::sleep, time::Duration};
 
@@ -96,7 +96,8 @@ fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbe
         let stress = &simulated["gauge_mpa"][gauge.to_string()];
         let stress = stress.as_array().expect("a curve");
         let stress: Vec<f64> = stress.iter().filter_map(Value::as_f64).collect();
-        let stress = rounded(&stress, Observation::GAUGE_EXPONENT);
+        let exponent = Sensor::Gauge(1).channel(0, Vec::new()).step;
+        let stress = rounded(&stress, exponent.expect("a step"));
         let bits = |curve: &[f64]| {
             curve
                 .iter()

@@ -191,7 +191,7 @@ fn tail(value: f64, squared_error: f64, cycles: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::measured::{Curves, Record, Source, Stated};
+    use crate::record::measured::{Curves, Record, Stated, tests::recorded};
     use search::random::{Phase, Streams};
 
     const GRID: usize = 120;
@@ -231,7 +231,7 @@ mod tests {
         };
         Record {
             condition,
-            channels: vec![Source::Gauge(1), Source::Gauge(3)],
+            channels: vec![recorded(0), recorded(2)],
             cycles: (0..8).map(cycle).collect(),
             stated: Stated::default(),
         }

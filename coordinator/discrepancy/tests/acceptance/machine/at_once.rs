@@ -97,7 +97,7 @@ impl<'a> AtOnce<'a> {
             | Numerics::NoShorterCylinders => 0.0,
         };
         let mut seen = self.machine.observe(&spec);
-        ripple(&mut seen.gauge_mpa, ripples);
+        ripple(&mut seen.curves, ripples);
         Some(seen)
     }
 }

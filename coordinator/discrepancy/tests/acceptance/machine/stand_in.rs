@@ -293,12 +293,13 @@ impl Machine {
                 + 1e-4 * g.torsion * drive.speed[i]
                 + extra[i]
         });
+        let suspension = drive.height.iter().zip(&rod).map(|(s, y)| s - y);
+        let mut curves = vec![gauge(0), gauge(1), gauge(2), gauge(3)];
+        curves.extend([suspension.collect(), torque.collect()]);
         Observation {
             verdict: Verdict::Complete,
             counters: Counters::default(),
-            gauge_mpa: [gauge(0), gauge(1), gauge(2), gauge(3)],
-            crank_torque_n_m: torque.collect(),
-            suspension_m: drive.height.iter().zip(&rod).map(|(s, y)| s - y).collect(),
+            curves,
         }
     }
 }
@@ -310,8 +311,6 @@ fn failed() -> Observation {
             reached: Reached::LoadFraction(0.1),
         },
         counters: Counters::default(),
-        gauge_mpa: [Vec::new(), Vec::new(), Vec::new(), Vec::new()],
-        suspension_m: Vec::new(),
-        crank_torque_n_m: Vec::new(),
+        curves: vec![Vec::new(); 6],
     }
 }

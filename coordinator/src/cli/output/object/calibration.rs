@@ -1,6 +1,5 @@
 //! The objects of `horsehead calibrate` and `horsehead verify`.
-use super::score::{Both, ConditionOutput, GeneOutput};
-use protocol::job::ChannelScore;
+use super::score::{Both, ConditionOutput, GeneOutput, ScoreOutput};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -23,10 +22,10 @@ pub(crate) struct CalibrateOutput<'a> {
     pub(crate) wall_s: f64,
     /// The identified parameters by name.
     pub(crate) genes: BTreeMap<String, GeneOutput>,
-    /// Objective of both parameter sets `MPa^2`.
+    /// Objective of both parameter sets, in the square of the unit that its channels share.
     pub(crate) objective: Both<Option<f64>>,
-    /// Agreement by gauge number, of both parameter sets, at the calibrated condition.
-    pub(crate) channels: BTreeMap<String, Both<Option<ChannelScore>>>,
+    /// Agreement by channel, of both parameter sets, at the calibrated condition.
+    pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
     /// Other conditions with a record, by name.
     pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
     /// Hash of the evaluation log in index order.

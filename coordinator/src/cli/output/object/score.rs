@@ -3,9 +3,10 @@ use crate::study::Curves;
 use protocol::{
     case::Case,
     job::{ChannelScore, Evaluation, Verdict},
+    pumping_unit::Sensor,
 };
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A gene with its interval, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -20,10 +21,10 @@ pub(crate) struct GeneOutput {
 /// Scores of both parameter sets under one condition.
 #[derive(Debug, Serialize)]
 pub(crate) struct ConditionOutput {
-    /// Objective of both parameter sets `MPa^2`.
+    /// Objective of both parameter sets, in the square of the unit that its channels share.
     pub(crate) objective: Both<Option<f64>>,
-    /// Agreement by gauge number, of both parameter sets.
-    pub(crate) channels: BTreeMap<String, Both<Option<ChannelScore>>>,
+    /// Agreement by channel, of both parameter sets.
+    pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
 }
 
 /// One thing for each parameter set.
@@ -52,11 +53,57 @@ pub(crate) fn genes(case: &Case, values: &[f64]) -> BTreeMap<String, GeneOutput>
         .collect()
 }
 
-/// Agreement by gauge number.
-pub(crate) fn channels(evaluation: Option<&Evaluation>) -> BTreeMap<String, ChannelScore> {
+/// Agreement of one channel, in its unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct ScoreOutput {
+    unit: String,
+    mse: f64,
+    mse_fixed_offset: f64,
+    offset: f64,
+    rmse_over_half_range: f64,
+    relative_error: f64,
+    peak_to_peak_error: f64,
+    #[serde(flatten)]
+    gauge: Option<GaugeOutput>,
+}
+
+/// The same of a gauge by its number, with the unit in the names.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct GaugeOutput {
+    gauge: u8,
+    mse_mpa2: f64,
+    mse_fixed_offset_mpa2: f64,
+    offset_mpa: f64,
+}
+
+/// Agreement by channel: gauges by their numbers, others by their names.
+pub(crate) fn channels(
+    case: &Case,
+    evaluation: Option<&Evaluation>,
+) -> BTreeMap<String, ScoreOutput> {
     let scores = evaluation.map_or(&[][..], |evaluation| &evaluation.channels);
-    let numbered = scores.iter().map(|score| (score.gauge.to_string(), *score));
-    numbered.collect()
+    let output = |score: &ChannelScore| {
+        let channel = case.channels.get(score.channel)?;
+        let gauge = Sensor::gauge(&channel.name);
+        let output = ScoreOutput {
+            unit: channel.unit.clone(),
+            mse: score.mse,
+            mse_fixed_offset: score.mse_fixed_offset,
+            offset: score.offset,
+            rmse_over_half_range: score.rmse_over_half_range,
+            relative_error: score.relative_error,
+            peak_to_peak_error: score.peak_to_peak_error,
+            gauge: gauge.map(|gauge| GaugeOutput {
+                gauge,
+                mse_mpa2: score.mse,
+                mse_fixed_offset_mpa2: score.mse_fixed_offset,
+                offset_mpa: score.offset,
+            }),
+        };
+        let key = gauge.map_or_else(|| channel.name.clone(), |gauge| gauge.to_string());
+        Some((key, output))
+    };
+    scores.iter().filter_map(output).collect()
 }
 
 /// The objective of a complete run.
@@ -66,23 +113,18 @@ pub(crate) fn objective(evaluation: Option<&Evaluation>) -> Option<f64> {
 }
 
 /// Scores of both parameter sets, recommended first.
-pub(crate) fn condition(recommended: &Curves, optimised: &Curves) -> ConditionOutput {
-    let (mut before, mut after) = (
-        channels(recommended.evaluation.as_ref()),
-        channels(optimised.evaluation.as_ref()),
-    );
-    let gauges: Vec<String> = before.keys().chain(after.keys()).cloned().collect();
-    let both = gauges.into_iter().map(|gauge| {
+pub(crate) fn condition(case: &Case, recommended: &Curves, optimised: &Curves) -> ConditionOutput {
+    let [before, after] =
+        [recommended, optimised].map(|one| channels(case, one.evaluation.as_ref()));
+    let names: BTreeSet<&String> = before.keys().chain(after.keys()).collect();
+    let both = names.into_iter().map(|name| {
         let scores = Both {
-            recommended: before.remove(&gauge),
-            optimised: after.remove(&gauge),
+            recommended: before.get(name).cloned(),
+            optimised: after.get(name).cloned(),
         };
-        (gauge, scores)
+        (name.clone(), scores)
     });
-    let mut channels = BTreeMap::new();
-    for (gauge, scores) in both {
-        channels.entry(gauge).or_insert(scores);
-    }
+    let channels = both.collect();
     ConditionOutput {
         objective: Both {
             recommended: objective(recommended.evaluation.as_ref()),

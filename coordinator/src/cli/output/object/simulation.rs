@@ -1,9 +1,9 @@
 //! The object of `horsehead simulate`.
-use super::score::{GeneOutput, channels, genes, objective};
+use super::score::{GeneOutput, ScoreOutput, channels, genes, objective};
 use crate::study::{Curves, simulation_digest};
 use protocol::{
     case::Case,
-    job::{ChannelScore, Counters, Reached, Verdict},
+    job::{Counters, Reached, Verdict},
     pumping_unit::{Energy, Simulation},
 };
 use serde::Serialize;
@@ -24,10 +24,10 @@ pub(crate) struct SimulateOutput<'a> {
     pub(crate) counters: Counters,
     /// Gene values by name.
     pub(crate) genes: BTreeMap<String, GeneOutput>,
-    /// Objective `MPa^2`; null without a record or a complete run.
+    /// Objective, in the square of the unit that its channels share; null without a record or a complete run.
     pub(crate) objective: Option<f64>,
     /// Agreement by gauge number; empty without a record.
-    pub(crate) channels: BTreeMap<String, ChannelScore>,
+    pub(crate) channels: BTreeMap<String, ScoreOutput>,
     /// Crank angle from bottom dead centre (deg).
     pub(crate) crank_deg: &'a [f64],
     /// Stress by gauge number `MPa`.
@@ -121,7 +121,7 @@ pub(crate) fn simulation<'a>(
         counters: simulation.counters,
         genes: genes(case, &curves.genes),
         objective: objective(curves.evaluation.as_ref()),
-        channels: channels(curves.evaluation.as_ref()),
+        channels: channels(case, curves.evaluation.as_ref()),
         crank_deg: &simulation.turn_deg,
         gauge_mpa: gauges
             .map(|(gauge, curve)| (gauge.to_string(), &curve[..]))

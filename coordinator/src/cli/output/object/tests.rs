@@ -19,11 +19,11 @@ fn case() -> Case {
 }
 
 fn curves(verdict: Verdict) -> Curves {
-    let score = |gauge| ChannelScore {
-        gauge,
-        mse_mpa2: 0.25,
-        mse_fixed_offset_mpa2: 0.5,
-        offset_mpa: 0.5,
+    let score = |channel| ChannelScore {
+        channel,
+        mse: 0.25,
+        mse_fixed_offset: 0.5,
+        offset: 0.5,
         rmse_over_half_range: 0.125,
         relative_error: 0.0625,
         peak_to_peak_error: -0.03125,
@@ -36,11 +36,11 @@ fn curves(verdict: Verdict) -> Curves {
             verdict,
             fitness: 0.5,
             channels: if complete {
-                vec![score(1), score(3)]
+                vec![score(0), score(2)]
             } else {
                 Vec::new()
             },
-            residual_mpa: Vec::new(),
+            residual: Vec::new(),
             counters: Counters::default(),
         }),
         simulation: Simulation {
@@ -158,7 +158,7 @@ fn a_failed_simulation_says_what_happened_and_how_far_it_got() {
 fn a_calibration_has_the_fields_that_programs_rely_on() {
     let case = case();
     let (before, after) = (curves(Verdict::Complete), curves(Verdict::Complete));
-    let scores = condition(&before, &after);
+    let scores = condition(&case, &before, &after);
     let object = CalibrateOutput {
         run: "runs/x".to_owned(),
         case: &case.name,
@@ -170,7 +170,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
         genes: genes(&case, &case.recommended()),
         objective: scores.objective,
         channels: scores.channels,
-        other_conditions: BTreeMap::from([("4rpm".to_owned(), condition(&before, &after))]),
+        other_conditions: BTreeMap::from([("4rpm".to_owned(), condition(&case, &before, &after))]),
         log_digest: "00".to_owned(),
         files: Vec::new(),
     };
@@ -209,7 +209,13 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
         ["optimised", "recommended"]
     );
     let channel = &value["channels"]["3"]["optimised"];
-    assert_eq!(channel["mse_mpa2"], 0.25);
+    for key in ["mse_mpa2", "mse"] {
+        assert_eq!(channel[key], 0.25);
+    }
+    assert_eq!(
+        (&channel["unit"], &channel["gauge"]),
+        (&"MPa".into(), &3.into())
+    );
     assert_eq!(channel["relative_error"], 0.0625);
     assert_eq!(channel["rmse_over_half_range"], 0.125);
     assert_eq!(

@@ -5,7 +5,6 @@ use crate::report::diagnosis::shown::{Shown, shown};
 use crate::report::diagnosis::subject::Subject;
 use crate::report::diagnosis::table as tables;
 use crate::report::document::{Block, Section, figures};
-use discrepancy::record::Source;
 use maud::html;
 
 pub(super) fn section(subject: &Subject<'_>) -> Section {
@@ -27,22 +26,19 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
 }
 
-/// The curves of one condition: its gauges, and behind a fold its other channels.
+/// The curves of one condition: what is scored, and behind a fold its other channels.
 fn curves(shown: &Shown<'_>) -> Vec<Block> {
     let heading = html! { h3 { "Condition " (shown.condition) } };
     let mut blocks = vec![Block::Markup(heading)];
-    let (gauges, others): (Vec<usize>, Vec<usize>) = shown
+    let (scored, others): (Vec<usize>, Vec<usize>) = shown
         .order()
         .into_iter()
-        .partition(|&c| matches!(shown.record.channels[c], Source::Gauge(_)));
+        .partition(|&c| shown.record.channels[c].scored);
     let draw = |channels: Vec<usize>| {
-        let drawn = channels.into_iter().filter_map(|c| {
-            let name = shown.record.channels[c].name();
-            chart::closing(&shown.channel(c, &name)?)
-        });
-        figures(drawn)
+        let drawn = channels.into_iter();
+        figures(drawn.filter_map(|c| chart::closing(&shown.channel(c)?)))
     };
-    blocks.extend(draw(gauges));
+    blocks.extend(draw(scored));
     let others = draw(others);
     if !others.is_empty() {
         blocks.push(Block::Folded("Other channels", others));

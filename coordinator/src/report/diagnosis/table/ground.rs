@@ -3,7 +3,7 @@ use crate::report::diagnosis::subject::Subject;
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, count, duration, fixed, quantity};
 use discrepancy::ground::preflight::Preflight;
-use discrepancy::record::Source;
+use protocol::case::Channel;
 
 /// How far the discretisation moves each channel, at the recalibrated model and at the answer.
 pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Table> {
@@ -19,7 +19,7 @@ pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Ta
         let Some(check) = check else { continue };
         rows.push(Row::group(name));
         let each = record.channels.iter().enumerate();
-        rows.extend(each.map(|(c, source)| channel(check, c, *source)));
+        rows.extend(each.map(|(c, own)| row(check, c, &own.channel)));
         notes.push(format!(
             "{name}: at most {} of the standard error is left{}.",
             if check.ratio().is_finite() {
@@ -54,14 +54,14 @@ pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Ta
 }
 
 /// One channel of a check.
-fn channel(check: &Preflight, c: usize, source: Source) -> Row {
+fn row(check: &Preflight, c: usize, channel: &Channel) -> Row {
     let of = |values: &[f64]| {
         values
             .get(c)
-            .map_or_else(|| NONE.to_owned(), |value| quantity(*value, source.unit()))
+            .map_or_else(|| NONE.to_owned(), |value| quantity(*value, &channel.unit))
     };
     Row::new(
-        source.name(),
+        channel.title.as_str(),
         [
             of(&check.rms),
             of(&check.rms_left),

@@ -6,7 +6,6 @@ use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, percent};
 use crate::report::words::condition_name;
 use discrepancy::proof::compare;
-use discrepancy::record::Source;
 
 /// The gap before and after, of the answer and of the best rejected rival.
 pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table> {
@@ -91,15 +90,11 @@ fn gap(subject: &Subject<'_>, of: &compare::Row, changed: bool) -> Row {
     )
 }
 
-/// The paper's two error measures, gauge by gauge.
+/// The paper's two error measures, channel by channel.
 pub(in crate::report::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table> {
     let mut rows = Vec::new();
     for shown in shown(subject) {
-        let gauges = |c: &usize| matches!(shown.record.channels[*c], Source::Gauge(_));
-        let order: Vec<usize> = shown.order().into_iter().filter(gauges).collect();
-        if order.is_empty() {
-            continue;
-        }
+        let order: Vec<usize> = shown.record.scored();
         rows.push(Row::group(format!("condition {}", shown.condition)));
         rows.extend(order.into_iter().filter_map(|c| errors(&shown, c)));
     }
@@ -122,8 +117,7 @@ pub(in crate::report::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table
 }
 
 fn errors(shown: &Shown<'_>, c: usize) -> Option<Row> {
-    let name = shown.record.channels[c].name();
-    let of = shown.channel(c, &name)?;
+    let of = shown.channel(c)?;
     let n = of.measured.len() as f64;
     let mean = of.measured.iter().sum::<f64>() / n;
     let deviation = of.measured.iter().map(|m| (m - mean).abs()).sum::<f64>();
@@ -140,5 +134,5 @@ fn errors(shown: &Shown<'_>, c: usize) -> Option<Row> {
         .map(|s| s.map_or_else(|| NONE.to_owned(), square))
         .into_iter()
         .chain(all.map(|s| s.map_or_else(|| NONE.to_owned(), relative)));
-    Some(Row::new(&name, cells.collect::<Vec<_>>()))
+    Some(Row::new(of.channel, cells.collect::<Vec<_>>()))
 }

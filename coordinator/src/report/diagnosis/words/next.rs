@@ -2,7 +2,6 @@
 use crate::report::diagnosis::subject::Subject;
 use crate::report::words::{command, listed};
 use discrepancy::diagnose::Diagnosis;
-use discrepancy::record::Source;
 use discrepancy::verdict::Verdict;
 
 /// What to do next.
@@ -79,9 +78,9 @@ fn missing_channels(subject: &Subject<'_>) -> Vec<String> {
     let Some(record) = subject.calibrated() else {
         return Vec::new();
     };
-    let wanted = (1..=4).map(Source::Gauge).chain([Source::Torque]);
-    wanted
-        .filter(|source| !record.channels.contains(source))
-        .map(Source::name)
+    let has = |name: &str| record.channels.iter().any(|own| own.channel.name == name);
+    let all = subject.case.channels_of(record.condition);
+    all.filter(|(_, channel)| !has(&channel.name))
+        .map(|(_, channel)| channel.title.clone())
         .collect()
 }

@@ -46,7 +46,12 @@ pub(super) fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
         .records
         .iter()
         .find(|r| r.condition == subject.case.objective.condition)?;
-    let channel = |c: usize| record.channels.get(c).map(|s| s.name()).unwrap_or_default();
+    let channel = |c: usize| {
+        let found = record.channels.get(c);
+        found
+            .map(|own| own.channel.title.clone())
+            .unwrap_or_default()
+    };
     Some(WhereOutput {
         windows: seen
             .angle

@@ -14,7 +14,7 @@ use discrepancy::{
         whereabouts::Where,
     },
     proof::{closed::Closed, compare::Row},
-    record::{Record, Source, Stated},
+    record::{Record, Recorded, Stated},
     verdict::Verdict,
 };
 use protocol::case::Case;
@@ -132,7 +132,9 @@ fn printed(diagnosis: Diagnosis) -> Value {
     let case = case();
     let records = [Record {
         condition: case.objective.condition,
-        channels: vec![Source::Gauge(1), Source::Gauge(3)],
+        channels: [0, 2]
+            .map(|at| Recorded::new(at, &case.channels[at]))
+            .into(),
         cycles: Vec::new(),
         stated: Stated::default(),
     }];

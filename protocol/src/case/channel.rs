@@ -1,0 +1,53 @@
+//! What a simulation shows and a record measures: curves, each with a name, a unit and the places
+//! where its values stand. It knows nothing of the machine that they belong to.
+use serde::{Deserialize, Serialize};
+
+/// One curve of a simulation under one condition, and what was measured of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Channel {
+    /// Short name that no other channel of its condition has, as `force`.
+    pub name: String,
+    /// The name in words, as `force at the support`.
+    pub title: String,
+    /// Unit of its values, as written; nothing converts it.
+    pub unit: String,
+    /// Index of its condition in the case.
+    pub condition: usize,
+    /// Where its values stand.
+    pub abscissa: Abscissa,
+    /// Standard deviation of the noise of one value, in [`Self::unit`]; none where nobody states it.
+    pub noise: Option<f64>,
+    /// The worker rounds the curve to whole multiples of two to this power, far below the noise, so
+    /// that it travels and is kept in a fifth of the bytes (`crate::curve`); none leaves it exact.
+    pub step: Option<i32>,
+    /// What was measured, as scores compare it; none where nothing is compared.
+    pub record: Option<ChannelRecord>,
+}
+
+/// The axis along which a curve is given.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Abscissa {
+    /// What is counted along it, as `time`.
+    pub name: String,
+    /// Its unit, as written.
+    pub unit: String,
+    /// Where the values stand, ascending.
+    #[serde(with = "crate::curve")]
+    pub points: Vec<f64>,
+    /// After how much the curve begins anew; none where it does not.
+    pub period: Option<f64>,
+}
+
+/// What was measured of a channel, averaged over repeated cycles, on its abscissa.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ChannelRecord {
+    /// Number of cycles that were averaged.
+    pub cycles: usize,
+    /// Mean over the cycles, in the channel's unit.
+    #[serde(with = "crate::curve")]
+    pub mean: Vec<f64>,
+    /// Standard deviation between the cycles, in the channel's unit; zeros where there is one cycle
+    /// only.
+    #[serde(with = "crate::curve")]
+    pub spread: Vec<f64>,
+}
