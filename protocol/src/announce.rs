@@ -8,8 +8,6 @@ pub struct Announcement {
     pub protocol: u8,
     /// Package version and profile of its binary.
     pub build: String,
-    /// Names the numerics: equal digests promise equal bits.
-    pub model_digest: String,
     /// Name of its machine.
     pub host: String,
     /// Its process on that machine.
@@ -20,7 +18,18 @@ pub struct Announcement {
     pub cores: u32,
     /// Kinds of job it can do, by [`crate::job::Job::kind`].
     pub job_kinds: Vec<String>,
-    /// Effects its model can add to the machine.
+    /// What it can simulate.
+    pub models: Vec<ModelDescriptor>,
+}
+
+/// A kind of model as one build of a worker simulates it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModelDescriptor {
+    /// Name of the kind, as cases state it ([`crate::case::ModelSettings::kind`]).
+    pub kind: String,
+    /// Names the numerics: equal digests promise equal bits.
+    pub digest: String,
+    /// Effects that it can add to what a case describes.
     pub effects: Vec<EffectDescriptor>,
 }
 

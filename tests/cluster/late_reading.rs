@@ -2,7 +2,7 @@
 use coordinator::runtime::Dispatch;
 use link::{CoordinatorEnd, Heard};
 use protocol::{
-    announce::Announcement,
+    announce::{Announcement, ModelDescriptor},
     id::{ContentHash, RunId, WorkerId},
     key::Lane,
     message::{Beat, FromWorker},
@@ -50,13 +50,16 @@ fn announcement() -> FromWorker {
     FromWorker::Announce(Box::new(Announcement {
         protocol: wire::VERSION,
         build: format!("{} test", env!("CARGO_PKG_VERSION")),
-        model_digest: "m".to_owned(),
         host: "here".to_owned(),
         pid: 1,
         slots: 1,
         cores: 1,
         job_kinds: Vec::new(),
-        effects: Vec::new(),
+        models: vec![ModelDescriptor {
+            kind: empty_case().model.kind,
+            digest: "m".to_owned(),
+            effects: Vec::new(),
+        }],
     }))
 }
 

@@ -19,6 +19,7 @@ use tests::{
 };
 use tokio::sync::mpsc::unbounded_channel;
 use worker::{
+    SIMULATORS,
     pool::{Freed, Pool, SlotOptions, Task},
     session::{self, Ending, SessionOptions},
 };
@@ -136,6 +137,7 @@ async fn over_memory(faults: Faults) -> (String, coordinator::runtime::Summary) 
     let mut workers = Vec::new();
     for id in 1..=3 {
         let options = SessionOptions {
+            simulators: SIMULATORS,
             id: WorkerId(id),
             slots: 2,
             program: worker_program(),

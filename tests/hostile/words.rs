@@ -1,8 +1,9 @@
 //! Peers that speak: rubbish, old versions, wrong models, and results that are not theirs to give.
 use super::{LIMIT, MEASURING, rate};
 use coordinator::runtime::{Dispatch, Snapshot};
+use protocol::pumping_unit::Machine;
 use protocol::{
-    announce::Announcement,
+    announce::{Announcement, ModelDescriptor},
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Outcome},
     key::{self, Lane},
@@ -25,6 +26,7 @@ use tests::{
     options,
     process::{Process, free_locator, wait_until},
 };
+use worker::SIMULATORS;
 use zenoh::{Session, Wait};
 
 /// A peer with the bus's own software and no manners.
@@ -93,17 +95,20 @@ impl Peer {
     }
 }
 
-fn announcement(model_digest: &str) -> Announcement {
+fn announcement(digest: &str) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
         build: format!("{} test", env!("CARGO_PKG_VERSION")),
-        model_digest: model_digest.to_owned(),
         host: "elsewhere".to_owned(),
         pid: 1,
         slots: 1,
         cores: 1,
         job_kinds: Vec::new(),
-        effects: worker::convert::effect::descriptors(),
+        models: vec![ModelDescriptor {
+            kind: Machine::KIND.to_owned(),
+            digest: digest.to_owned(),
+            effects: SIMULATORS[0].effects(),
+        }],
     }
 }
 
@@ -133,7 +138,7 @@ async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
     let begun = std::time::Instant::now();
     peer.announce_until(
         &announcement("another model"),
-        refusal_of("model_digest is another model"),
+        refusal_of("model digest is another model"),
     );
     let old = Announcement {
         protocol: 9,
@@ -308,7 +313,7 @@ async fn forged_and_repeated_results_are_not_believed() {
     let (mut dispatch, _honest, locator) = stage(folder.path()).await;
     let peer = Peer::join(&locator, 1).await;
     // the name of the model is no secret: it stands in every refusal
-    peer.announce_until(&announcement("?"), refusal_of("model_digest"));
+    peer.announce_until(&announcement("?"), refusal_of("model digest"));
     let digest = {
         let heard = peer.heard.lock().unwrap();
         let reason = heard.iter().find_map(|(_, message)| {

@@ -19,8 +19,8 @@ use worker::handler::Prepared;
 #[test]
 fn energy_ledger_closes_with_every_effect() {
     let unit = unit();
-    let law = worker::convert::rope_law(&unit, &unit.case.recommended()).unwrap();
-    let mut settings = worker::convert::run_settings(&unit.machine);
+    let law = worker::pumping_unit::rope_law(&unit, &unit.case.recommended()).unwrap();
+    let mut settings = worker::pumping_unit::run_settings(&unit.machine);
     settings.longest_step *= 0.5;
     let acts = |d: &&Descriptor| d.place == Place::Dynamics && !d.generic;
     for d in catalogue().iter().filter(acts) {
@@ -31,7 +31,7 @@ fn energy_ledger_closes_with_every_effect() {
             effects: vec![effect],
             ..Individual::new(0, unit.case.recommended())
         };
-        let machine = worker::convert::machine_with(&unit, &individual).unwrap();
+        let machine = worker::pumping_unit::machine_with(&unit, &individual).unwrap();
         let (result, _) = run(&machine, &law, &settings);
         let work = result.work;
         let gained = work.input - work.output - work.dissipated;
@@ -55,7 +55,10 @@ fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisatio
         discretisation,
         reply: Reply::Channels,
     };
-    match Prepared::new(case).unwrap().evaluate(&Job::Simulate(spec)) {
+    match Prepared::new(worker::SIMULATORS, case)
+        .unwrap()
+        .evaluate(&Job::Simulate(spec))
+    {
         Outcome::Done(Answer::Channels(observation)) => observation,
         other => unreachable!("{other:?}"),
     }
@@ -83,7 +86,9 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
         ..Individual::new(0, case.recommended())
     };
     let simulate = Job::Simulate(SimulateSpec::new(individual, CURVES));
-    let Outcome::Done(Answer::Curves(whole)) = Prepared::new(&case).unwrap().evaluate(&simulate)
+    let Outcome::Done(Answer::Curves(whole)) = Prepared::new(worker::SIMULATORS, &case)
+        .unwrap()
+        .evaluate(&simulate)
     else {
         unreachable!("a simulation")
     };
@@ -143,7 +148,7 @@ fn a_refined_observation_is_of_the_same_machine() {
 #[test]
 fn what_the_model_does_not_have_is_refused_by_field() {
     let case = case();
-    let prepared = Prepared::new(&case).unwrap();
+    let prepared = Prepared::new(worker::SIMULATORS, &case).unwrap();
     let effects = vec![EffectSetting::new("pivot_friction", &[("mu", 0.1)])];
     let refused = |spec: SimulateSpec| match prepared.evaluate(&Job::Simulate(spec)) {
         Outcome::Failed(Failure::Misconfigured { field, problem }) => (field, problem),
@@ -215,7 +220,9 @@ fn what_the_model_does_not_have_is_refused_by_field() {
     }
     let mut misnamed = case;
     misnamed.effects = vec![EffectSetting::new("pivot_frictoin", &[])];
-    let Err(Failure::Misconfigured { field, problem }) = Prepared::new(&misnamed) else {
+    let Err(Failure::Misconfigured { field, problem }) =
+        Prepared::new(worker::SIMULATORS, &misnamed)
+    else {
         unreachable!("accepted")
     };
     assert_eq!(field, "effects[0].id");

@@ -44,7 +44,7 @@ fn coarse(effects: &[EffectSetting]) -> Case {
         cylinder_length_m: Some(0.15),
         ..Discretisation::default()
     };
-    let unit = worker::convert::refined(&unit(), &long).unwrap();
+    let unit = worker::pumping_unit::refined(&unit(), &long).unwrap();
     let mut case = unit.into_case().unwrap();
     case.effects = effects.to_vec();
     case
@@ -91,9 +91,9 @@ fn observed(prepared: &Prepared, genes: &[f64], effects: &[EffectSetting]) -> Ob
 #[test]
 fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let (stated, other) = (coarse(&[friction(1000.0)]), coarse(&[friction(1800.0)]));
-    let with_gene = Prepared::new(&searched(&stated)).unwrap();
+    let with_gene = Prepared::new(worker::SIMULATORS, &searched(&stated)).unwrap();
     let at = |moment: f64| individual(&searched(&stated), moment);
-    let fixed = [&stated, &other].map(|case| Prepared::new(case).unwrap());
+    let fixed = [&stated, &other].map(|case| Prepared::new(worker::SIMULATORS, case).unwrap());
     let genes = stated.recommended();
     let [low, high] = fixed
         .each_ref()
@@ -170,12 +170,12 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     for (gene, (field, problem)) in faults {
         let mut case = stated.clone();
         case.genes.push(gene);
-        let (found, why) = refused(Prepared::new(&case).unwrap_err());
+        let (found, why) = refused(Prepared::new(worker::SIMULATORS, &case).unwrap_err());
         assert_eq!(found, field);
         assert!(why.contains(problem), "{why}");
     }
     let case = searched(&stated);
-    let prepared = Prepared::new(&case).unwrap();
+    let prepared = Prepared::new(worker::SIMULATORS, &case).unwrap();
     for (genes, field) in [
         (individual(&case, -1.0), "effects[0].parameters.moment"),
         (individual(&case, f64::NAN), "effects[0].parameters.moment"),
@@ -233,7 +233,7 @@ fn calibrated(case: &Case, parts: Vec<Part>) -> Calibrated {
     let settings = Settings::of(&QuickSettings { trust, parts });
     let mut strategy = build(&settings, &space, 1).unwrap();
     let mut here = Here {
-        prepared: Prepared::new(case).unwrap(),
+        prepared: Prepared::new(worker::SIMULATORS, case).unwrap(),
         waiting: VecDeque::new(),
     };
     let (_keep, mut stop) = tokio::sync::watch::channel(false);
@@ -250,7 +250,11 @@ fn a_calibration_finds_the_sizes_of_effects() {
     let late = |time: f64| EffectSetting::new("card_time_shift", &[("time", time)]);
     let (hidden_moment, hidden_time) = (2500.0, -0.012);
     let truth = coarse(&[friction(hidden_moment), late(hidden_time)]);
-    let seen = observed(&Prepared::new(&truth).unwrap(), &truth.recommended(), &[]);
+    let seen = observed(
+        &Prepared::new(worker::SIMULATORS, &truth).unwrap(),
+        &truth.recommended(),
+        &[],
+    );
     let mut case = searched(&coarse(&[friction(1000.0), late(0.0)]));
     let time = gene(("card_time_shift", "time"), "s", [-0.04, 0.04], 0.0);
     case.genes.push(time);

@@ -64,11 +64,11 @@ fn run(machine: &Machine, law: &RopeLaw, settings: &RunSettings) -> (RunResult, 
 #[test]
 fn energy_ledger_closes_over_one_revolution() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
     for (name, genes) in individuals(&unit.case) {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         for method in CATALOGUE {
-            let default = worker::convert::run_settings(&unit.machine);
+            let default = worker::pumping_unit::run_settings(&unit.machine);
             let settings = if method.name() == default.method.name() {
                 default
             } else {
@@ -106,7 +106,7 @@ fn stated(unit: &PumpingUnit, method: Method, tolerance: f64, longest_step: f64)
         longest_step,
         slow_swing: f64::INFINITY,
         budget: u64::MAX,
-        ..worker::convert::run_settings(&unit.machine)
+        ..worker::pumping_unit::run_settings(&unit.machine)
     }
 }
 
@@ -117,9 +117,9 @@ fn stated(unit: &PumpingUnit, method: Method, tolerance: f64, longest_step: f64)
 #[test]
 fn energy_ledger_tightens_with_step_and_tolerance() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
     for (name, genes) in individuals(&unit.case) {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         for method in CATALOGUE {
             let steps = match method {
                 Method::RungeKutta(tableau) if tableau.order > 2 => [0.02; 3],
@@ -155,7 +155,7 @@ fn energy_ledger_tightens_with_step_and_tolerance() {
 #[test]
 fn kinematics_agree_with_the_table_to_its_last_digit() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
     let mechanism = machine.mechanism(machine.description.back_arc.radius, machine.back_length());
     let text = std::fs::read_to_string(folder().join("machine/kinematics_720.csv")).unwrap();
     let rows: Vec<Vec<f64>> = text
@@ -220,10 +220,10 @@ fn kinematics_agree_with_the_table_to_its_last_digit() {
 #[test]
 fn torsion_leaves_every_gauge_bit_alone() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
-    let settings = worker::convert::run_settings(&unit.machine);
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
+    let settings = worker::pumping_unit::run_settings(&unit.machine);
     for (name, genes) in individuals(&unit.case) {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         let (_, plain) = run(&machine, &law, &settings);
         for factor in [0.1, 10.0] {
             let mut other = law;
@@ -243,9 +243,9 @@ fn torsion_leaves_every_gauge_bit_alone() {
 #[test]
 fn gauges_do_not_depend_on_the_method() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
     for (name, genes) in individuals(&unit.case) {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         let with = |method, tolerance, longest_step| {
             let settings = stated(&unit, method, tolerance, longest_step);
             let (result, recorder) = run(&machine, &law, &settings);
@@ -297,13 +297,13 @@ fn gauges_converge_with_shorter_cylinders() {
     let fine = halved(&coarse);
     for (name, genes) in individuals(&coarse.case) {
         let [coarse, fine] = [&coarse, &fine].map(|unit| {
-            let machine = worker::convert::machine(unit, 0).unwrap();
-            let law = worker::convert::rope_law(unit, &genes).unwrap();
+            let machine = worker::pumping_unit::machine(unit, 0).unwrap();
+            let law = worker::pumping_unit::rope_law(unit, &genes).unwrap();
             let settings = RunSettings {
                 method: Method::RungeKutta(&ESDIRK4),
                 longest_step: 0.03,
                 slow_swing: f64::INFINITY,
-                ..worker::convert::run_settings(&unit.machine)
+                ..worker::pumping_unit::run_settings(&unit.machine)
             };
             run(&machine, &law, &settings).1
         });
@@ -324,9 +324,9 @@ fn a_default_run_costs_what_is_documented() {
     let documented = [[319, 3_414, 165], [550, 5_961, 471]];
     for ((name, genes), documented) in individuals(&unit.case).into_iter().zip(documented) {
         let [coarse, fine] = [&unit, &fine].map(|unit| {
-            let machine = worker::convert::machine(unit, 0).unwrap();
-            let law = worker::convert::rope_law(unit, &genes).unwrap();
-            let settings = worker::convert::run_settings(&unit.machine);
+            let machine = worker::pumping_unit::machine(unit, 0).unwrap();
+            let law = worker::pumping_unit::rope_law(unit, &genes).unwrap();
+            let settings = worker::pumping_unit::run_settings(&unit.machine);
             run(&machine, &law, &settings).0.statistics
         });
         eprintln!("{name}: {coarse:?}, of half the length {fine:?}");

@@ -51,7 +51,7 @@ fn rounded_channels_are_short_and_far_below_the_noise() {
     let orders = Orders::new(record.samples(), ORDERS);
     let noise = Noise::estimate(record, &orders, &[]);
     let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
-    let prepared = Prepared::new(case).unwrap();
+    let prepared = Prepared::new(worker::SIMULATORS, case).unwrap();
     let whitened = |individual: &Individual| {
         let seen = both(&prepared, individual);
         seen.map(|seen| metric.whiten(&channels(&seen, record).unwrap()))

@@ -39,8 +39,8 @@ fn at_rest<'a>(
 #[test]
 fn gauges_at_rest_read_exact_statics() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
-    let settings = worker::convert::run_settings(&unit.machine);
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
+    let settings = worker::pumping_unit::run_settings(&unit.machine);
     let [(_, recommended), (_, optimised)] = individuals(&unit.case);
     let contact = unit
         .case
@@ -54,7 +54,7 @@ fn gauges_at_rest_read_exact_statics() {
         ("recommended, stiff contact", stiff, 0.01),
         ("optimised", optimised, 0.01),
     ] {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
         for turn in TURNS {
             let (mut system, mut state) = at_rest(&machine, &law, &settings, turn);
@@ -105,11 +105,11 @@ fn exact_statics(
 #[test]
 fn a_run_starts_at_rest() {
     let unit = unit();
-    let machine = worker::convert::machine(&unit, 0).unwrap();
-    let settings = worker::convert::run_settings(&unit.machine);
+    let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
+    let settings = worker::pumping_unit::run_settings(&unit.machine);
     let beam = machine.layout.beam();
     for (name, genes) in individuals(&unit.case) {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         for turn in TURNS {
             let (mut system, mut state) = at_rest(&machine, &law, &settings, turn);
             let mut accelerated = |q: &[f64]| {

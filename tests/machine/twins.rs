@@ -27,8 +27,8 @@ fn twins(back_mm: f64, front_mm: f64) -> PumpingUnit {
 }
 
 fn simulated(unit: &PumpingUnit, law: &RopeLaw) -> (RunResult, Curves) {
-    let machine = worker::convert::machine(unit, 0).unwrap();
-    let settings = worker::convert::run_settings(&unit.machine);
+    let machine = worker::pumping_unit::machine(unit, 0).unwrap();
+    let settings = worker::pumping_unit::run_settings(&unit.machine);
     let mut recorder = Recorder::everything(0);
     let result = simulate(&machine, law, &settings, &mut recorder);
     assert_eq!(result.verdict, Verdict::Complete);
@@ -64,7 +64,7 @@ fn equal_twins_are_the_single_rope_whatever_their_torsion() {
     let single = crate::unit();
     let pair = twins(0.0, 0.0);
     for (name, genes) in individuals(&single.case) {
-        let law = worker::convert::rope_law(&single, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&single, &genes).unwrap();
         let (one, plane) = simulated(&single, &law);
         for (stiffer, damped) in [(1.0, 1.0), (1e-2, 1e2), (1e2, 1e-2)] {
             let (two, space) = simulated(&pair, &twisted(&law, stiffer, damped));
@@ -86,7 +86,7 @@ fn unequal_twins_share_the_load_and_the_ledger_closes() {
         .into_iter()
         .zip([0.7..0.8, 0.95..1.0])
     {
-        let law = worker::convert::rope_law(&single, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&single, &genes).unwrap();
         let (result, curves) = simulated(&pair, &law);
         let ropes = &single.machine.ropes;
         let stiffness = law.bushing.stiffness[0] * ropes.reference_length_m;
@@ -135,7 +135,7 @@ fn gauges_on_the_two_cheeks_part_with_opposite_signs() {
     };
     let unit = mirrored(1.0);
     for (name, genes) in individuals(&unit.case) {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         let (_, curves) = simulated(&unit, &law);
         let (_, equal) = simulated(&mirrored(0.0), &law);
         let change = |gauge: usize| mean(&curves.gauge[gauge]) - mean(&equal.gauge[gauge]);
@@ -163,7 +163,7 @@ fn torsion_of_unequal_twins_reaches_the_gauges() {
         ("C_44", 1.0, 1e4, [5e-4..1e-2, 1e-7..5e-6]),
     ];
     for (k, (name, genes)) in individuals(&unit.case).into_iter().enumerate() {
-        let law = worker::convert::rope_law(&unit, &genes).unwrap();
+        let law = worker::pumping_unit::rope_law(&unit, &genes).unwrap();
         let (_, plain) = simulated(&unit, &law);
         for (what, stiffer, damped, expected) in &changes {
             let (_, other) = simulated(&unit, &twisted(&law, *stiffer, *damped));

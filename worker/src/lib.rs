@@ -9,13 +9,16 @@
 //! takes nothing with it. A worker keeps no files and decides nothing. [`program`] is all of that
 //! behind a command line.
 pub mod cli;
-pub mod convert;
-pub mod digest;
 pub mod handler;
 pub mod outbox;
 pub mod pool;
 pub mod program;
+pub mod pumping_unit;
 pub mod session;
+pub mod simulator;
 pub mod slot;
 mod stream;
 mod test_hook;
+
+/// The models that `horsehead-worker` simulates.
+pub const SIMULATORS: simulator::Simulators = &[&pumping_unit::PumpingUnits];

@@ -2,5 +2,5 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    worker::program::run()
+    worker::program::run(worker::SIMULATORS)
 }

@@ -1,8 +1,8 @@
 //! The program of a worker: one worker of the bus, or one of its slots, as its command line says.
 use crate::{
     cli::{Cli, Role as CliRole},
-    digest,
     session::{self, Ending, SessionOptions},
+    simulator::{Simulators, described},
     slot,
 };
 use anyhow::Context;
@@ -32,8 +32,8 @@ use tracing_subscriber::EnvFilter;
 /// How often a coordinator that does not answer is complained about.
 const COMPLAINT: Duration = Duration::from_mins(5);
 
-/// Runs it to its end.
-pub fn run() -> ExitCode {
+/// Runs it to its end; these are the models that it simulates.
+pub fn run(simulators: Simulators) -> ExitCode {
     let cli = Cli::parse();
     // a worker of somebody's own says when it is connected; a local one leaves that to its coordinator
     let own = if cli.embedded || cli.role.is_some() {
@@ -52,10 +52,10 @@ pub fn run() -> ExitCode {
         .with_ansi(io::stderr().is_terminal())
         .init();
     let ended = match cli.role {
-        Some(CliRole::Slot { memory }) => slot::serve(memory)
+        Some(CliRole::Slot { memory }) => slot::serve(simulators, memory)
             .map(|()| ExitCode::SUCCESS)
             .context("the slot ended"),
-        None => serve(&cli),
+        None => serve(&cli, simulators),
     };
     ended.unwrap_or_else(|error| {
         tracing::error!("{error:#}");
@@ -63,7 +63,7 @@ pub fn run() -> ExitCode {
     })
 }
 
-fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
+fn serve(cli: &Cli, simulators: Simulators) -> anyhow::Result<ExitCode> {
     let locator = cli.connect.as_ref().context("no coordinator was named")?;
     if cli.embedded {
         set_parent_process_death_signal(Some(Signal::KILL))?;
@@ -72,10 +72,11 @@ fn serve(cli: &Cli) -> anyhow::Result<ExitCode> {
     drop(
         thread::Builder::new()
             .name("digest".to_owned())
-            .spawn(digest::model_digest),
+            .spawn(move || described(simulators)),
     );
     let cores = || thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let options = SessionOptions {
+        simulators,
         id: draw_id(),
         slots: cli.slots.map_or_else(cores, usize::from),
         program: env::current_exe().context("where this program lies is unknown")?,

@@ -7,8 +7,8 @@ mod state;
 pub use options::{Ending, SessionOptions};
 
 use crate::{
-    convert, digest,
     pool::{Pool, SlotOptions},
+    simulator::described,
 };
 use link::WorkerEnd;
 use protocol::{announce::Announcement, job::kind, wire};
@@ -42,6 +42,7 @@ pub async fn run<L: WorkerEnd>(
     };
     let pool = Pool::start(options.slots, &slot, &to)?;
     let begun = Instant::now();
+    let announcement = announcement(&options);
     let mut state = State::new(options, announcement, pool);
     let mut ticks = tokio::time::interval(TICK);
     ticks.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
@@ -72,7 +73,7 @@ pub async fn run<L: WorkerEnd>(
     Ok(ending)
 }
 
-fn announcement(slots: usize) -> Announcement {
+fn announcement(options: &SessionOptions) -> Announcement {
     let profile = if cfg!(debug_assertions) {
         "debug"
     } else {
@@ -81,16 +82,15 @@ fn announcement(slots: usize) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
         build: format!("{} {profile}", env!("CARGO_PKG_VERSION")),
-        model_digest: digest::model_digest().to_owned(),
         host: rustix::system::uname()
             .nodename()
             .to_string_lossy()
             .into_owned(),
         pid: std::process::id(),
-        slots: u32::try_from(slots).unwrap_or(u32::MAX),
+        slots: u32::try_from(options.slots).unwrap_or(u32::MAX),
         cores: thread::available_parallelism()
             .map_or(0, |cores| u32::try_from(cores.get()).unwrap_or(u32::MAX)),
         job_kinds: kind::ALL.map(str::to_owned).to_vec(),
-        effects: convert::effect::descriptors(),
+        models: described(options.simulators),
     }
 }

@@ -4,6 +4,7 @@
 //! parent-death signal should the worker be killed while this process does not read.
 use crate::{
     handler::{self, Prepared},
+    simulator::Simulators,
     stream, test_hook,
 };
 use protocol::{
@@ -31,7 +32,7 @@ pub(crate) const INPUT: &str = "slot-input";
 ///
 /// # Errors
 /// If the limit cannot be set, standard output is closed or a message cannot be read.
-pub fn serve(memory_mib: u64) -> io::Result<()> {
+pub fn serve(simulators: Simulators, memory_mib: u64) -> io::Result<()> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     if memory_mib > 0 {
         let limit = Some(memory_mib.saturating_mul(1 << 20));
@@ -50,7 +51,7 @@ pub fn serve(memory_mib: u64) -> io::Result<()> {
     let mut prepared = None;
     for message in messages {
         match message {
-            ToSlot::Case(bytes) => prepared = Some(prepare(&bytes)),
+            ToSlot::Case(bytes) => prepared = Some(prepare(simulators, &bytes)),
             ToSlot::Run(job) => {
                 let before = processor_time();
                 test_hook::before(&job);
@@ -103,10 +104,10 @@ fn listen(to: &mpsc::Sender<ToSlot>) {
     }
 }
 
-fn prepare(bytes: &[u8]) -> Result<Prepared, Failure> {
+fn prepare(simulators: Simulators, bytes: &[u8]) -> Result<Prepared, Failure> {
     let case: Case =
         wire::decode(bytes).map_err(|error| Failure::misconfigured("case", error.to_string()))?;
-    Prepared::new(&case)
+    Prepared::new(simulators, &case)
 }
 
 fn evaluate(prepared: Option<&Result<Prepared, Failure>>, job: &Job) -> Outcome {

@@ -8,7 +8,7 @@ use super::{
     notice::Notice,
     roster::dismiss,
     state::Core,
-    terms::{absurdity, objection},
+    terms::{absurdity, model, objection, shown},
 };
 use protocol::{
     announce::Announcement,
@@ -20,9 +20,6 @@ use std::time::Duration;
 
 /// Refused workers that are remembered, so that each is spoken of once.
 const MOST_REFUSED: usize = 4096;
-
-/// How much of a text that cannot be trusted people are shown (characters).
-const MOST_SHOWN: usize = 200;
 
 /// A worker introduces itself.
 pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announcement, now: Duration) {
@@ -64,22 +61,17 @@ pub(super) fn other_version(core: &mut Core, worker: WorkerId, version: u8) {
     core.send(worker, ToWorker::Identify);
 }
 
-/// The beginning of a text of somebody else, without what a terminal would obey.
-pub(super) fn shown(text: &str) -> String {
-    let plain = text.chars().filter(|letter| !letter.is_control());
-    plain.take(MOST_SHOWN).collect()
-}
-
 fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Duration) {
     let (host, slots) = (announcement.host.clone(), announcement.slots);
-    let model_digest = announcement.model_digest.clone();
-    core.options
-        .model_digest
-        .get_or_insert_with(|| model_digest.clone());
-    core.effects.get_or_insert_with(|| {
-        let effects = announcement.effects.iter();
-        effects.map(|effect| effect.id.clone()).collect()
-    });
+    let model = model(core, &announcement);
+    let model_digest = model.map(|model| model.digest.clone()).unwrap_or_default();
+    if let Some(model) = model {
+        let expected = &mut core.options.model_digest;
+        expected.get_or_insert_with(|| model_digest.clone());
+        let effects = model.effects.iter();
+        core.effects
+            .get_or_insert_with(|| effects.map(|effect| effect.id.clone()).collect());
+    }
     core.refused.remove(&worker);
     let member = Member::new(announcement, &core.clocks, now);
     core.members.insert(worker, member);

@@ -26,7 +26,9 @@ pub struct CoreOptions {
     pub case: ContentHash,
     /// Its length (bytes).
     pub case_bytes: u64,
-    /// Numerics that all workers of this run must have; none before the first.
+    /// Kind of the case's model, which workers must simulate; empty where nothing is simulated.
+    pub model: String,
+    /// Numerics of it that all workers of this run must have; none before the first.
     pub model_digest: Option<String>,
     /// What the case's reference individual must come to; none before the first worker.
     pub proof: Option<ContentHash>,

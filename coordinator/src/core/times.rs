@@ -1,7 +1,7 @@
 //! How long jobs of each kind take, and what follows from it: deadlines, orders ahead, copies.
 use super::policy::Policy;
 use crate::quantile;
-use protocol::job::kind::REDUCE_HEAD;
+use protocol::job::kind::OWN;
 use std::{
     collections::{BTreeMap, VecDeque},
     time::Duration,
@@ -53,7 +53,7 @@ impl Times {
         let known = self.0.get(kind);
         let usual = known.and_then(|kind| kind.usual.map(|usual| (usual, kind.longest)));
         let first = match kind {
-            REDUCE_HEAD => policy.reduction_deadline,
+            OWN => policy.reduction_deadline,
             _ => policy.first_deadline,
         };
         let once = usual.map_or(first, |(usual, longest)| {
@@ -118,7 +118,7 @@ mod tests {
             "nothing is known of that kind"
         );
         assert_eq!(
-            times.deadline(REDUCE_HEAD, 0, &policy),
+            times.deadline(OWN, 0, &policy),
             Duration::from_mins(30),
             "a fine mesh takes long on a busy node"
         );

@@ -54,6 +54,7 @@ impl Parts {
             epoch: begun.epoch,
             case: blob.hash,
             case_bytes: blob.bytes.len() as u64,
+            model: options.case.model.kind.clone(),
             model_digest: begun.model_digest,
             proof: begun.proof,
             finished: journal.finished().collect(),

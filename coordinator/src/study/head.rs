@@ -12,7 +12,8 @@ use crate::{case::QuasiStatic, line::held};
 use protocol::{
     id::JobId,
     job::{Answer, Job},
-    pumping_unit::{Influence, ModalHead, ReduceHeadSpec, ReducedHead},
+    pumping_unit::{Influence, ModalHead, REDUCE_HEAD, ReduceHeadSpec, ReducedHead},
+    wire::{self, WireError},
 };
 
 /// Shapes smaller than this share of the table's largest move nothing.
@@ -24,15 +25,22 @@ const INERT: f64 = 1e-6;
 /// [`StudyError`] if the job could not be done, or the user stops.
 pub async fn reduce_head(
     evaluator: &mut impl Evaluator,
-    spec: ReduceHeadSpec,
+    spec: &ReduceHeadSpec,
     stop: &mut Stop,
 ) -> Result<ReducedHead, StudyError> {
-    evaluator.submit(JobId(0), Job::ReduceHead(Box::new(spec)))?;
+    let damaged = |error: WireError| StudyError::Misconfigured {
+        field: REDUCE_HEAD.to_owned(),
+        problem: error.to_string(),
+    };
+    let job = Job::Own {
+        name: REDUCE_HEAD.to_owned(),
+        body: wire::encode(spec).map_err(damaged)?,
+    };
+    evaluator.submit(JobId(0), job)?;
     let completed = or_stop(evaluator.next(), stop).await??;
     let what = || "the reduction of the back head".to_owned();
-    completed
-        .take(Answer::into_head_reduced, what)
-        .map(|head| *head)
+    let answer = completed.take(Answer::into_own, what)?;
+    wire::decode(&answer).map_err(damaged)
 }
 
 /// A new head beside the case's tables.

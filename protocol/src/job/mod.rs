@@ -22,12 +22,7 @@ pub use score::{ChannelScore, Evaluation};
 pub use simulate::{Individual, Reply, SimulateSpec};
 pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
 
-use crate::{
-    announce::EffectDescriptor,
-    id::ContentHash,
-    pumping_unit::{ReduceHeadSpec, ReducedHead, Simulation},
-    wire,
-};
+use crate::{announce::EffectDescriptor, id::ContentHash, pumping_unit::Simulation, wire};
 use serde::{Deserialize, Serialize};
 
 /// Names of the kinds of jobs, simulations by their reply: what workers announce, what tables show,
@@ -39,15 +34,15 @@ pub mod kind {
     pub const CHANNELS: &str = "channels";
     /// Simulate and return everything that can be drawn.
     pub const CURVES: &str = "curves";
-    /// Reduce the flexible back head.
-    pub const REDUCE_HEAD: &str = "reduce_head";
+    /// What one kind of model alone knows.
+    pub const OWN: &str = "own";
     /// Say which effects there are.
     pub const DESCRIBE: &str = "describe";
     /// Do nothing.
     pub const NOTHING: &str = "nothing";
 
     /// All that a worker of this build does, in the order in which it says so.
-    pub const ALL: [&str; 6] = [SCORE, CHANNELS, CURVES, REDUCE_HEAD, DESCRIBE, NOTHING];
+    pub const ALL: [&str; 6] = [SCORE, CHANNELS, CURVES, OWN, DESCRIBE, NOTHING];
 }
 
 /// One unit of work; a pure function of itself and the case it names.
@@ -55,8 +50,14 @@ pub mod kind {
 pub enum Job {
     /// Simulate a revolution.
     Simulate(SimulateSpec),
-    /// Reduce the flexible back head from its mesh to modes and influence lines.
-    ReduceHead(Box<ReduceHeadSpec>),
+    /// Do what only the kind of model knows that the case is of; the model's data play no part.
+    Own {
+        /// Which of its own jobs.
+        name: String,
+        /// What is asked, as that kind writes it.
+        #[serde(with = "serde_bytes")]
+        body: Vec<u8>,
+    },
     /// Say which effects the model can add to a machine.
     Describe,
     /// Do nothing, return at once: measures the bus.
@@ -80,7 +81,7 @@ impl Job {
                 Reply::Channels => kind::CHANNELS,
                 Reply::Curves { .. } => kind::CURVES,
             },
-            Self::ReduceHead(_) => kind::REDUCE_HEAD,
+            Self::Own { .. } => kind::OWN,
             Self::Describe => kind::DESCRIBE,
             Self::Nothing { .. } => kind::NOTHING,
         }
@@ -90,7 +91,7 @@ impl Job {
     pub const fn individual(&self) -> Option<&Individual> {
         match self {
             Self::Simulate(spec) => Some(&spec.individual),
-            Self::ReduceHead(_) | Self::Describe | Self::Nothing { .. } => None,
+            Self::Own { .. } | Self::Describe | Self::Nothing { .. } => None,
         }
     }
 
@@ -110,8 +111,8 @@ pub enum Answer {
     Channels(Observation),
     /// Of [`Reply::Curves`].
     Curves(Box<Simulation>),
-    /// Of [`Job::ReduceHead`].
-    HeadReduced(Box<ReducedHead>),
+    /// Of [`Job::Own`], as that kind writes it.
+    Own(#[serde(with = "serde_bytes")] Vec<u8>),
     /// Of [`Job::Describe`].
     Described(Vec<EffectDescriptor>),
     /// Of [`Job::Nothing`].
@@ -139,7 +140,7 @@ impl Answer {
         into_scored: Scored -> Evaluation, "The answer to [`Reply::Score`].";
         into_channels: Channels -> Observation, "The answer to [`Reply::Channels`].";
         into_curves: Curves -> Box<Simulation>, "The answer to [`Reply::Curves`].";
-        into_head_reduced: HeadReduced -> Box<ReducedHead>, "The answer to [`Job::ReduceHead`].";
+        into_own: Own -> Vec<u8>, "The answer to [`Job::Own`].";
         into_described: Described -> Vec<EffectDescriptor>, "The answer to [`Job::Describe`].";
         into_nothing: Nothing -> Vec<u8>, "The answer to [`Job::Nothing`].";
     }
@@ -150,7 +151,7 @@ impl Answer {
             Self::Scored(_) => kind::SCORE,
             Self::Channels(_) => kind::CHANNELS,
             Self::Curves(_) => kind::CURVES,
-            Self::HeadReduced(_) => kind::REDUCE_HEAD,
+            Self::Own(_) => kind::OWN,
             Self::Described(_) => kind::DESCRIBE,
             Self::Nothing(_) => kind::NOTHING,
         }
@@ -162,7 +163,7 @@ impl Answer {
             Self::Scored(evaluation) => Some(evaluation),
             Self::Channels(_)
             | Self::Curves(_)
-            | Self::HeadReduced(_)
+            | Self::Own(_)
             | Self::Described(_)
             | Self::Nothing(_) => None,
         }
@@ -174,7 +175,7 @@ impl Answer {
             Self::Scored(evaluation) => Some((evaluation.verdict, evaluation.counters)),
             Self::Channels(seen) => Some((seen.verdict, seen.counters)),
             Self::Curves(simulation) => Some((simulation.verdict, simulation.counters)),
-            Self::HeadReduced(_) | Self::Described(_) | Self::Nothing(_) => None,
+            Self::Own(_) | Self::Described(_) | Self::Nothing(_) => None,
         }
     }
 }

@@ -24,7 +24,7 @@ pub use parts::{
     BackHead, Beam, Contact, Crank, FrontHead, Rod, RopeEnds, Ropes, Suspension, TurnSense,
 };
 pub use reduce_head::{
-    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily,
+    ElementKind, HeadFields, HeadGauge, HeadMesh, HeadMode, LeftOutMode, ModeFamily, REDUCE_HEAD,
     ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
 };
 pub use run::{Integrator, RunSettings};

@@ -1,9 +1,13 @@
 //! Reduce the flexible back head: from its mesh to modes along the rope arc and influence lines.
 //!
-//! Depends on nothing of the case: mesh, material, gauges and arc travel with the job (about 1 MB
+//! It travels as a job of the pumping unit's own ([`crate::job::Job::Own`]), which this asks and
+//! [`ReducedHead`] answers. Depends on nothing of the case: mesh, material, gauges and arc travel with the job (about 1 MB
 //! for 14,000 bricks, 60 bytes per 10-node tetrahedron).
 use super::{Influence, TwinHead};
 use serde::{Deserialize, Serialize};
+
+/// Name of the job that takes a [`ReduceHeadSpec`] and gives a [`ReducedHead`].
+pub const REDUCE_HEAD: &str = "reduce_head";
 
 /// What to reduce, and to what.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

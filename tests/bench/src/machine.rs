@@ -40,7 +40,7 @@ impl MachineChoice {
                 format!("no condition `{name}`; there are: {}", known.join(", "))
             })?,
         };
-        let prepared = match Prepared::new(&case) {
+        let prepared = match Prepared::new(worker::SIMULATORS, &case) {
             Ok(prepared) => prepared,
             Err(failure) => bail!("the case cannot be built: {failure:?}"),
         };

@@ -123,9 +123,9 @@ pub fn turn(
         modes: Some((unit.machine.run.modes + fineness.more_modes).min(available)),
         ..Discretisation::default()
     };
-    let unit = worker::convert::refined(unit, &finer).map_err(|why| refused(&why))?;
-    let law = worker::convert::rope_law(&unit, genes).map_err(|why| refused(&why))?;
-    let plain = worker::convert::machine(&unit, condition).map_err(|why| refused(&why))?;
+    let unit = worker::pumping_unit::refined(unit, &finer).map_err(|why| refused(&why))?;
+    let law = worker::pumping_unit::rope_law(&unit, genes).map_err(|why| refused(&why))?;
+    let plain = worker::pumping_unit::machine(&unit, condition).map_err(|why| refused(&why))?;
     let mut description = plain.description;
     description.crank.speed *= 1.0 + variation.speed;
     let laws = hidden.iter().map(|hidden| {

@@ -3,7 +3,7 @@
 //! A run that fails is graded: every complete run beats a failure in motion (the later the
 //! better), which beats a failure under static load (the more load carried the better).
 use protocol::case::{Case, ChannelRecord, Objective, Offset, Term};
-use protocol::job::{ChannelScore, Counters, Evaluation, Failure, Reached, Verdict};
+use protocol::job::{ChannelScore, Evaluation, Failure, Observation, Reached, Verdict};
 
 /// Fitness of a failure in motion just before the end, and under load just before full load; far
 /// above the error of any run that completes.
@@ -17,12 +17,11 @@ const FAILED_UNDER_LOAD: f64 = 1e7;
 /// [`Failure::Misconfigured`] if nothing was measured under the condition, or not what the objective
 /// asks for.
 pub(super) fn evaluation(
-    case: &Case,
-    condition: usize,
-    (verdict, counters): (Verdict, Counters),
-    curves: &[Vec<f64>],
+    (case, condition): (&Case, usize),
+    seen: &Observation,
     with_residual: bool,
 ) -> Result<Evaluation, Failure> {
+    let (verdict, counters) = (seen.verdict, seen.counters);
     if let Verdict::Failed { reached, .. } = verdict {
         return Ok(Evaluation {
             verdict,
@@ -32,7 +31,7 @@ pub(super) fn evaluation(
             counters,
         });
     }
-    let curves = case.channels_of(condition).zip(curves);
+    let curves = case.channels_of(condition).zip(&seen.curves);
     let compared: Vec<Compared<'_>> = curves
         .filter_map(|((at, channel), simulated)| {
             let record = channel.record.as_ref()?;

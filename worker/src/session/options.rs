@@ -1,10 +1,13 @@
 //! How a session is set up, and how it may end.
+use crate::simulator::Simulators;
 use protocol::id::WorkerId;
 use std::{path::PathBuf, time::Duration};
 
 /// How a session is set up.
 #[derive(Clone, Debug)]
 pub struct SessionOptions {
+    /// The models that it simulates.
+    pub simulators: Simulators,
     /// The worker's name.
     pub id: WorkerId,
     /// Jobs computed at a time.

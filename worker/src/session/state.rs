@@ -54,13 +54,9 @@ pub(super) struct State {
 }
 
 impl State {
-    pub(super) fn new(
-        options: SessionOptions,
-        announcement: fn(usize) -> Announcement,
-        pool: Pool,
-    ) -> Self {
+    pub(super) fn new(options: SessionOptions, announcement: Announcement, pool: Pool) -> Self {
         Self {
-            announcement: announcement(options.slots),
+            announcement,
             options,
             pool,
             run: RunId::default(),

@@ -120,7 +120,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         spec.fields = Some(hardest(machine, &turn));
     }
     check_size(&spec)?;
-    let head = reduce_once(unit.clone(), spec.clone())?;
+    let head = reduce_once(unit.clone(), &spec)?;
     let wrapped = study::wrapped_turn(&turn, machine.back_head.rope_anchor_deg);
     let comparison = study::compare_head(&head, &machine.modal_head, &wrapped, machine.run.modes);
     let mut written = Vec::new();
@@ -291,7 +291,7 @@ fn check_size(spec: &ReduceHeadSpec) -> Result<(), Usage> {
 }
 
 /// Reduces on one local worker, without a run folder that outlives the command.
-fn reduce_once(mut unit: PumpingUnit, spec: ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
+fn reduce_once(mut unit: PumpingUnit, spec: &ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
     // a worker builds the machine first: not with tables that are yet to come
     unit.machine.twin_ropes = None;
     in_scratch(&unit.into_case()?, "head", 1, async |bus, stop| {

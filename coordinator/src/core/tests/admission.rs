@@ -43,6 +43,15 @@ fn effect(id: &str) -> protocol::announce::EffectDescriptor {
     }
 }
 
+/// The same worker, whose model can add these effects.
+fn with(
+    mut announcement: Announcement,
+    effects: Vec<protocol::announce::EffectDescriptor>,
+) -> Announcement {
+    announcement.models[0].effects = effects;
+    announcement
+}
+
 /// What nobody of ours would say is kept by nobody: it would fill the memory, or a terminal.
 #[test]
 fn absurd_announcements_are_refused_by_the_name_of_the_field() {
@@ -69,13 +78,7 @@ fn absurd_announcements_are_refused_by_the_name_of_the_field() {
                 ..announcement("m")
             },
         ),
-        (
-            "model_digest has 256 bytes",
-            Announcement {
-                model_digest: long(),
-                ..announcement("m")
-            },
-        ),
+        ("models.digest has 256 bytes", announcement(&long())),
         (
             "job_kinds has 8008 bytes, allowed are 4096",
             Announcement {
@@ -84,11 +87,8 @@ fn absurd_announcements_are_refused_by_the_name_of_the_field() {
             },
         ),
         (
-            "effects has",
-            Announcement {
-                effects: vec![effect(&"x".repeat(300_000)); 2],
-                ..announcement("m")
-            },
+            "models has",
+            with(announcement("m"), vec![effect(&"x".repeat(300_000)); 2]),
         ),
     ];
     let mut scene = Scene::new();
@@ -104,10 +104,8 @@ fn absurd_announcements_are_refused_by_the_name_of_the_field() {
 
 #[test]
 fn whoever_differs_is_refused_by_the_name_of_the_field() {
-    let first = || Announcement {
-        effects: vec![effect("pivot_friction"), effect("rope_toe")],
-        ..announcement("m")
-    };
+    let both = || vec![effect("pivot_friction"), effect("rope_toe")];
+    let first = || with(announcement("m"), both());
     let others = [
         (
             "protocol is 99, this coordinator speaks",
@@ -124,9 +122,13 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
             },
         ),
         (
-            "model_digest is another, this run's is m",
+            "model digest is another, this run's is m",
+            with(announcement("another"), both()),
+        ),
+        (
+            "models has no `model`, which the case of this run is of; it has ",
             Announcement {
-                model_digest: "another".to_owned(),
+                models: Vec::new(),
                 ..first()
             },
         ),
@@ -139,17 +141,11 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
         ),
         (
             "effects has no rope_toe",
-            Announcement {
-                effects: vec![effect("pivot_friction")],
-                ..first()
-            },
+            with(first(), vec![effect("pivot_friction")]),
         ),
         (
             "effects has fluid_pound that",
-            Announcement {
-                effects: [first().effects, vec![effect("fluid_pound")]].concat(),
-                ..first()
-            },
+            with(first(), [both(), vec![effect("fluid_pound")]].concat()),
         ),
     ];
     let mut scene = Scene::new();

@@ -1,7 +1,7 @@
 //! Scenarios: whole clusters without a socket, a file or a clock.
 use super::*;
 use protocol::{
-    announce::Announcement,
+    announce::{Announcement, ModelDescriptor},
     event::{Event, Spent},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Answer, Failure, Job, Outcome},
@@ -23,6 +23,8 @@ mod simulated;
 mod tail;
 mod window;
 
+/// Kind of the case's model.
+const MODEL: &str = "model";
 const CASE: ContentHash = ContentHash([7; 32]);
 const PROOF: ContentHash = ContentHash([8; 32]);
 
@@ -59,6 +61,7 @@ impl Scene {
             epoch,
             case: CASE,
             case_bytes: 10,
+            model: MODEL.to_owned(),
             model_digest: None,
             proof: None,
             finished,
@@ -256,12 +259,15 @@ fn announcement(digest: &str) -> Announcement {
     Announcement {
         protocol: wire::VERSION,
         build: concat!(env!("CARGO_PKG_VERSION"), " test").to_owned(),
-        model_digest: digest.to_owned(),
         host: "host".to_owned(),
         pid: 3,
         slots: 1,
         cores: 8,
         job_kinds: Vec::new(),
-        effects: Vec::new(),
+        models: vec![ModelDescriptor {
+            kind: MODEL.to_owned(),
+            digest: digest.to_owned(),
+            effects: Vec::new(),
+        }],
     }
 }

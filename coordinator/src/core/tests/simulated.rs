@@ -75,6 +75,7 @@ impl Cluster {
             epoch: 1,
             case: CASE,
             case_bytes: 1,
+            model: MODEL.to_owned(),
             model_digest: None,
             proof: None,
             finished: JobSet::default(),

@@ -192,13 +192,12 @@ fn announce(id: WorkerId) -> FromWorker {
     FromWorker::Announce(Box::new(Announcement {
         protocol: wire::VERSION,
         build: format!("{} session", env!("CARGO_PKG_VERSION")),
-        model_digest: "none".to_owned(),
         host: id.to_string(),
         pid: std::process::id(),
         slots: 1,
         cores: 1,
         job_kinds: vec![kind::NOTHING.to_owned()],
-        effects: Vec::new(),
+        models: Vec::new(),
     }))
 }
 
@@ -219,11 +218,9 @@ fn answer(Order { attempt, job, .. }: Order) -> Done {
         Job::Nothing { reply_bytes, .. } => {
             Outcome::Done(Answer::Nothing(vec![0; reply_bytes as usize]))
         }
-        Job::Simulate(_) | Job::ReduceHead(_) | Job::Describe => {
-            Outcome::Failed(Failure::Refused {
-                reason: "a session without slots computes nothing".to_owned(),
-            })
-        }
+        Job::Simulate(_) | Job::Own { .. } | Job::Describe => Outcome::Failed(Failure::Refused {
+            reason: "a session without slots computes nothing".to_owned(),
+        }),
     };
     Done {
         attempt,

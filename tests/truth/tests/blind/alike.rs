@@ -140,13 +140,13 @@ fn run_library(unit: &PumpingUnit, effect: &EffectSetting, values: &[f64]) -> Tu
         cylinder_length_m: Some(FINENESS.cylinder),
         ..protocol::pumping_unit::Discretisation::default()
     };
-    let unit = worker::convert::refined(unit, &finer).expect("the case fits");
-    let law = worker::convert::rope_law(&unit, values).expect("the case fits");
+    let unit = worker::pumping_unit::refined(unit, &finer).expect("the case fits");
+    let law = worker::pumping_unit::rope_law(&unit, values).expect("the case fits");
     let individual = protocol::job::Individual {
         effects: vec![effect.clone()],
         ..protocol::job::Individual::new(0, values.to_vec())
     };
-    let machine = worker::convert::machine_with(&unit, &individual).expect("the case fits");
+    let machine = worker::pumping_unit::machine_with(&unit, &individual).expect("the case fits");
     let settings = RunSettings {
         method: (&TR_BDF2).into(),
         lead_in: 240_f64.to_radians(),

@@ -81,7 +81,7 @@ const CONSIDERED: [&str; 6] = [
 
 /// All other effects of the library, as `--without` takes them.
 fn without() -> String {
-    let library = worker::convert::effect::descriptors().into_iter();
+    let library = worker::SIMULATORS[0].effects().into_iter();
     let named = library
         .filter(|effect| !effect.generic)
         .map(|effect| effect.id);

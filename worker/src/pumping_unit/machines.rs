@@ -1,5 +1,9 @@
 //! The machines of a case, built once for all jobs on it.
-use crate::convert;
+use super::{
+    effect,
+    machine::{machine, machine_with, no_condition},
+    refinement::refined,
+};
 use protocol::{
     case::Case,
     job::{Failure, Individual},
@@ -25,9 +29,9 @@ impl Machines {
         let unit = PumpingUnit::of(case.clone())
             .map_err(|error| Failure::misconfigured("model.settings", error.to_string()))?;
         let plain = (0..case.conditions.len())
-            .map(|condition| convert::machine(&unit, condition))
+            .map(|condition| machine(&unit, condition))
             .collect::<Result<_, _>>()?;
-        convert::effect::check_genes(case)?;
+        effect::check_genes(case)?;
         Ok(Self { unit, plain })
     }
 
@@ -42,7 +46,7 @@ impl Machines {
         if *discretisation == Discretisation::OF_THE_CASE {
             return Ok(Cow::Borrowed(&self.unit));
         }
-        let refined = convert::refined(&self.unit, discretisation)?;
+        let refined = refined(&self.unit, discretisation)?;
         Ok(if refined == self.unit {
             Cow::Borrowed(&self.unit)
         } else {
@@ -65,9 +69,9 @@ impl Machines {
             && individual.effects.is_empty()
             && !unit.case.has_effect_genes();
         if !stated {
-            return convert::machine_with(unit, individual).map(Cow::Owned);
+            return machine_with(unit, individual).map(Cow::Owned);
         }
         let machine = self.plain.get(individual.condition).map(Cow::Borrowed);
-        machine.ok_or_else(|| convert::no_condition(individual.condition))
+        machine.ok_or_else(|| no_condition(individual.condition))
     }
 }

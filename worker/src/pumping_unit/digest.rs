@@ -1,12 +1,12 @@
 //! The name of this build's numerics.
-use crate::convert;
+use super::effect;
 use protocol::id::ContentHash;
 use std::sync::OnceLock;
 
 /// Names the numerics of this build by the bits of two reference runs, without effects and with all of
 /// them, and by the catalogue's units and bounds: equal digests promise equal results. Takes as long
 /// as those runs, some tenths of a second, the first time in a process.
-pub fn model_digest() -> &'static str {
+pub(super) fn of_numerics() -> &'static str {
     static DIGEST: OnceLock<String> = OnceLock::new();
     DIGEST.get_or_init(computed)
 }
@@ -18,6 +18,6 @@ fn computed() -> String {
         bytes.extend(bits.iter().flat_map(|bits| bits.to_le_bytes()));
         bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
     }
-    bytes.extend_from_slice(format!("{:?}", convert::effect::descriptors()).as_bytes());
+    bytes.extend_from_slice(format!("{:?}", effect::descriptors()).as_bytes());
     ContentHash::of(&bytes).to_string()
 }

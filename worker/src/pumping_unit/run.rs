@@ -25,7 +25,10 @@ pub fn run_settings(machine: &Machine) -> RunSettings {
 }
 
 /// How a case wants its runs where a job discretises it otherwise; the machine is the [`super::refined`] one.
-pub fn discretised_settings(machine: &Machine, discretisation: &Discretisation) -> RunSettings {
+pub(super) fn discretised_settings(
+    machine: &Machine,
+    discretisation: &Discretisation,
+) -> RunSettings {
     let mut settings = run_settings(machine);
     if discretisation.step_as_stated {
         settings.slow_swing = f64::INFINITY;

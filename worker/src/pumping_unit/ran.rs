@@ -1,6 +1,6 @@
 //! A simulation that was run, before anything is said of it.
 use super::machines::Machines;
-use crate::convert;
+use super::{genes::rope_law, reply, run::discretised_settings};
 use protocol::case::{Case, Channel};
 use protocol::job::{Counters, Failure, SimulateSpec, Verdict};
 use protocol::pumping_unit::Sensor;
@@ -31,14 +31,14 @@ impl Ran {
         mut recorder: Recorder,
     ) -> Result<Self, Failure> {
         let unit = machines.discretised(&spec.discretisation)?;
-        let law = convert::rope_law(&unit, &spec.individual.genes)?;
-        let settings = convert::discretised_settings(&unit.machine, &spec.discretisation);
+        let law = rope_law(&unit, &spec.individual.genes)?;
+        let settings = discretised_settings(&unit.machine, &spec.discretisation);
         let machine = machines.machine(&unit, &spec.individual)?;
         let started = Instant::now();
         let result = simulate(&machine, &law, &settings, &mut recorder);
         Ok(Self {
-            verdict: convert::verdict(&result.verdict),
-            counters: convert::counters(&result.statistics),
+            verdict: reply::verdict(&result.verdict),
+            counters: reply::counters(&result.statistics),
             curves: recorder.curves,
             result,
             lowest_suspension_m: machine.lowest_suspension,

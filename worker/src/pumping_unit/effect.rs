@@ -6,7 +6,7 @@ use protocol::job::Failure;
 use simulation::effect::{self, Asked, Refused, Selection, catalogue};
 
 /// Every effect of the catalogue, as a worker announces it.
-pub fn descriptors() -> Vec<EffectDescriptor> {
+pub(super) fn descriptors() -> Vec<EffectDescriptor> {
     let described = catalogue().iter().map(|d| EffectDescriptor {
         id: d.id.to_string(),
         title: d.title.to_string(),
@@ -49,7 +49,7 @@ fn parameter(p: &effect::Parameter) -> ParameterDescriptor {
 /// # Errors
 /// [`Failure::Misconfigured`] naming the effect or its parameter by its place in the list, and the
 /// nearest known name.
-pub fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
+pub(super) fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
     let asked: Vec<Asked<'_>> = settings
         .iter()
         .map(|setting| Asked {
@@ -76,7 +76,10 @@ pub fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the first that differs.
-pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<(), Failure> {
+pub(super) fn check_units(
+    settings: &[EffectSetting],
+    units: &[Vec<String>],
+) -> Result<(), Failure> {
     for (k, (setting, units)) in settings.iter().zip(units).enumerate() {
         let Some(descriptor) = catalogue().iter().find(|d| d.id == setting.id) else {
             continue;
@@ -99,7 +102,7 @@ pub fn check_units(settings: &[EffectSetting], units: &[Vec<String>]) -> Result<
 /// # Errors
 /// [`Failure::Misconfigured`] when the values do not fit the genes, or a gene is a parameter of an
 /// effect that the case does not have.
-pub fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, Failure> {
+pub(super) fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, Failure> {
     let mut effects = case.effects.clone();
     for (quantity, value) in individual(case, genes)? {
         let Quantity::Effect { id, parameter, .. } = quantity else {
@@ -128,7 +131,7 @@ pub fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, F
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the first that does not fit.
-pub fn check_genes(case: &Case) -> Result<(), Failure> {
+pub(super) fn check_genes(case: &Case) -> Result<(), Failure> {
     for (at, gene) in case.genes.iter().enumerate() {
         let Quantity::Effect {
             id,

@@ -4,7 +4,7 @@ use simulation::statistics::Statistics;
 use simulation::verdict;
 
 /// A verdict as it travels.
-pub const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
+pub(super) const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
     match verdict {
         verdict::Verdict::Complete => job::Verdict::Complete,
         verdict::Verdict::Failed { kind, reached } => job::Verdict::Failed {
@@ -26,7 +26,7 @@ pub const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
 }
 
 /// Counters as they travel.
-pub const fn counters(statistics: &Statistics) -> Counters {
+pub(super) const fn counters(statistics: &Statistics) -> Counters {
     Counters {
         steps: statistics.steps,
         rejected_steps: statistics.error_rejections + statistics.newton_rejections,

@@ -1,0 +1,23 @@
+//! The pumping unit with double horse heads: from what travels to what the dynamics take, and back.
+//!
+//! The only folder that names both vocabularies: degrees become radians and megapascals pascals here.
+mod curves;
+mod digest;
+mod effect;
+mod genes;
+mod head;
+mod machine;
+mod machines;
+mod ran;
+mod reduce_head;
+mod refinement;
+mod reply;
+mod run;
+mod simulator;
+mod twins;
+
+pub use genes::rope_law;
+pub use machine::{machine, machine_with};
+pub use refinement::refined;
+pub use run::run_settings;
+pub use simulator::PumpingUnits;

@@ -1,0 +1,66 @@
+//! The pumping unit as a worker's programs see it: one kind of model among others.
+use super::{curves, digest, effect, machines::Machines, ran::Ran, reduce_head};
+use crate::simulator::{Model, Simulator};
+use protocol::{
+    announce::EffectDescriptor,
+    case::Case,
+    job::{Failure, Observation, SimulateSpec},
+    pumping_unit::{Machine, REDUCE_HEAD, Simulation},
+    wire,
+};
+use simulation::observe::Recorder;
+
+/// All pumping units with double horse heads.
+#[derive(Clone, Copy, Debug)]
+pub struct PumpingUnits;
+
+impl Simulator for PumpingUnits {
+    fn kind(&self) -> &'static str {
+        Machine::KIND
+    }
+
+    fn digest(&self) -> String {
+        digest::of_numerics().to_owned()
+    }
+
+    fn effects(&self) -> Vec<EffectDescriptor> {
+        effect::descriptors()
+    }
+
+    fn prepare(&self, case: &Case) -> Result<Box<dyn Model>, Failure> {
+        Ok(Box::new(Machines::new(case)?))
+    }
+
+    fn own(&self, name: &str, body: &[u8]) -> Result<Vec<u8>, Failure> {
+        if name != REDUCE_HEAD {
+            return Err(Failure::Refused {
+                reason: format!("a pumping unit knows no job `{name}`, only `{REDUCE_HEAD}`"),
+            });
+        }
+        let unreadable =
+            |error: wire::WireError| Failure::misconfigured(REDUCE_HEAD, error.to_string());
+        let head = reduce_head::run(&wire::decode(body).map_err(unreadable)?)?;
+        wire::encode(&head).map_err(unreadable)
+    }
+}
+
+impl Model for Machines {
+    fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure> {
+        // gauges are what is scored, and recording them alone costs less
+        let recorder = if scored_only {
+            Recorder::gauges_only()
+        } else {
+            Recorder::everything(0)
+        };
+        let ran = Ran::new(self, spec, recorder)?;
+        Ok(Observation {
+            verdict: ran.verdict,
+            counters: ran.counters,
+            curves: ran.channels(&self.unit.case, spec.individual.condition)?,
+        })
+    }
+
+    fn draw(&self, spec: &SimulateSpec, motion_step_deg: f64) -> Result<Simulation, Failure> {
+        curves::run(self, spec, motion_step_deg)
+    }
+}
