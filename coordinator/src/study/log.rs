@@ -36,7 +36,7 @@ pub struct Entry {
     pub purpose: Purpose,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// What the search was told: the objective `MPa^2` if complete, a grade otherwise.
+    /// What the search was told: the objective if complete, a grade otherwise.
     pub fitness: f64,
     /// How it ended.
     pub ending: Ending,

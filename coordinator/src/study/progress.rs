@@ -23,7 +23,7 @@ pub struct ProgressView {
     pub failed: u64,
     /// How many came from an earlier session.
     pub replayed: u64,
-    /// Smallest fitness of a complete individual so far `MPa^2`.
+    /// Smallest fitness of a complete individual so far.
     pub best: Option<f64>,
 }
 

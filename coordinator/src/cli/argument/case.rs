@@ -13,7 +13,7 @@ pub(crate) struct CaseChoice {
     /// Case folder, with `case.toml` in it.
     #[arg(value_name = "CASE")]
     pub(crate) case: PathBuf,
-    /// Folder whose load cards and gauge records replace those of the case: a new test of the
+    /// Folder whose inputs and records replace those of the case: a new test of the
     /// same machine.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     pub(crate) measured: Option<PathBuf>,

@@ -33,7 +33,7 @@ use search::{
 };
 use std::{path::PathBuf, time::Instant};
 
-/// Identify stiffness and damping from the gauge records; the same command resumes.
+/// Identify the unknowns of a case from its records; the same command resumes.
 #[derive(Debug, Args)]
 #[command(
     after_help = format!("{}\n{EXIT_CODES}", examples()),
@@ -191,7 +191,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         ));
     }
     let found = session.work(&run, async |bus, stop| {
-        let mut display = Display::new();
+        let mut display = Display::new(run.case.objective_unit());
         display.resumed(bus.recorded());
         let found = calibrate(bus, &run, &mut display, stop).await;
         display.clear();

@@ -47,7 +47,7 @@ pub(super) struct Arguments {
     /// Case folder, or the folder of a finished calibration.
     #[arg(value_name = "CASE|RUN")]
     target: PathBuf,
-    /// Folder whose load cards and gauge records replace those of the case: a new test of the
+    /// Folder whose inputs and records replace those of the case: a new test of the
     /// same machine.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     measured: Option<PathBuf>,

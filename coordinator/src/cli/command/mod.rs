@@ -24,7 +24,7 @@ use super::output::{problem, terminal};
 use clap::{CommandFactory as _, Parser, Subcommand};
 use std::process::ExitCode;
 
-/// Makes a simulation of a rope-driven pumping unit agree with its strain gauges.
+/// Makes a simulation agree with what was measured on the machine, and finds what it is missing.
 #[derive(Debug, Parser)]
 #[command(name = "horsehead", version, max_term_width = 100, after_help = FIRST_STEPS)]
 struct Cli {

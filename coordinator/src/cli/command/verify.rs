@@ -38,10 +38,10 @@ pub(super) struct Arguments {
     /// Run folder of a calibration.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
-    /// Working condition, one with a gauge record.
+    /// Working condition, one with a record.
     #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
     condition: String,
-    /// Folder whose load cards and gauge records replace those of the case.
+    /// Folder whose inputs and records replace those of the case.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
     measured: Option<PathBuf>,
     /// Worker processes to start [default: one per core].

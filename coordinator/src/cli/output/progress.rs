@@ -16,6 +16,8 @@ const LOOK: Duration = Duration::from_millis(200);
 
 /// Shows how a calibration comes along.
 pub(crate) struct Display {
+    /// Behind the best objective, with a space before it; empty where it has no unit.
+    unit: String,
     bar: Option<ProgressBar>,
     last: Instant,
     generation: Option<u32>,
@@ -24,7 +26,8 @@ pub(crate) struct Display {
 }
 
 impl Display {
-    pub(crate) fn new() -> Self {
+    /// Of a calibration whose objective is a square of this unit.
+    pub(crate) fn new(unit: Option<&str>) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let template = "{bar:32} {pos}/{len}  {msg}";
             let style = ProgressStyle::with_template(template)
@@ -33,6 +36,7 @@ impl Display {
             ProgressBar::new(1).with_style(style)
         });
         Self {
+            unit: unit.map_or_else(String::new, |unit| format!(" {unit}^2")),
             bar,
             last: Instant::now(),
             generation: None,
@@ -137,7 +141,7 @@ impl Watch<ProgressView> for Display {
         }
         self.last = now;
         self.generation = Some(view.generation);
-        let words = describe(view, &crew());
+        let words = describe(view, &self.unit, &crew());
         match &self.bar {
             Some(bar) => {
                 bar.set_length(view.expected);
@@ -150,13 +154,13 @@ impl Watch<ProgressView> for Display {
 }
 
 /// One line: generation, best, failures, workers, rate, time left.
-fn describe(view: &ProgressView, crew: &Crew) -> String {
+fn describe(view: &ProgressView, unit: &str, crew: &Crew) -> String {
     let mut parts = vec![format!(
         "generation or stage {} of {}",
         view.generation, view.generations
     )];
     if let Some(best) = view.best {
-        parts.push(format!("best {best:.4} MPa^2"));
+        parts.push(format!("best {best:.4}{unit}"));
     }
     if view.failed > 0 {
         parts.push(format!("{} failed", view.failed));
@@ -237,7 +241,7 @@ mod tests {
         };
         let mut crew = Crew::default();
         assert_eq!(
-            describe(&ProgressView::default(), &crew),
+            describe(&ProgressView::default(), " N^2", &crew),
             "generation or stage 0 of 0  waiting for workers"
         );
         crew.workers.push(WorkerStatus {
@@ -245,13 +249,13 @@ mod tests {
             ..WorkerStatus::default()
         });
         assert_eq!(
-            describe(&ProgressView::default(), &crew),
+            describe(&ProgressView::default(), " N^2", &crew),
             "generation or stage 0 of 0  waiting for 1 worker to get ready"
         );
         crew.computing = Duration::from_secs(20);
         assert_eq!(
-            describe(&view, &crew),
-            "generation or stage 3 of 60  best 0.3124 MPa^2  12 failed  1 worker  10.0/s  9 min 44 s left"
+            describe(&view, " N^2", &crew),
+            "generation or stage 3 of 60  best 0.3124 N^2  12 failed  1 worker  10.0/s  9 min 44 s left"
         );
         crew.spent = Spent {
             connected_us: 10_000_000,
@@ -260,7 +264,7 @@ mod tests {
             starved_us: 50_000,
             ..Spent::default()
         };
-        let line = describe(&view, &crew);
+        let line = describe(&view, "", &crew);
         assert!(
             line.contains("1 worker  slots 90 % useful, 10 % barrier  10.0/s"),
             "{line}"
