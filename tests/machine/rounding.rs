@@ -3,9 +3,9 @@
 use super::folder;
 use coordinator::case::{Overrides, load_with_notes};
 use discrepancy::laboratory::channels;
+use discrepancy::record::basis::Group;
 use discrepancy::record::metric::Metric;
 use discrepancy::record::noise::Noise;
-use discrepancy::record::spectrum::Orders;
 use protocol::case::EffectSetting;
 use protocol::job::{Answer, Individual, Job, Observation, Outcome, Reply, SimulateSpec};
 use worker::handler::Prepared;
@@ -48,9 +48,9 @@ fn rounded_channels_are_short_and_far_below_the_noise() {
     let condition = case.objective.condition;
     let record = loaded.cycles.iter().find(|it| it.condition == condition);
     let record = record.unwrap();
-    let orders = Orders::new(record.samples(), ORDERS);
-    let noise = Noise::estimate(record, &orders, &[]);
-    let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
+    let groups = Group::of(record, ORDERS, &[]);
+    let noise = Noise::estimate(record, &groups, &[]);
+    let metric = Metric::new(&groups, &noise);
     let prepared = Prepared::new(worker::SIMULATORS, case).unwrap();
     let whitened = |individual: &Individual| {
         let seen = both(&prepared, individual);

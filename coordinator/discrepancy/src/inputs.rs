@@ -8,7 +8,7 @@ use search::space::Space;
 /// A case with its records, and what may be suspected.
 #[derive(Clone, Debug)]
 pub struct Inputs {
-    /// Genes and their bounds.
+    /// The case's unknowns and their bounds.
     pub space: Space,
     /// Records, the calibrated condition's first.
     pub records: Vec<Record>,
@@ -18,8 +18,9 @@ pub struct Inputs {
     pub start: Option<Vec<f64>>,
     /// Discretisation of all experiments but that of the numerical check.
     pub usual: Discretisation,
-    /// A finer discretisation, for the numerical check.
-    pub finer: Discretisation,
+    /// Finer discretisations, for the numerical check: the finest, then what it is made of, one thing at a
+    /// time, for where the finest does not complete.
+    pub finer: Vec<Discretisation>,
     /// Seed of the way into the valley.
     pub seed: u64,
     /// How it is decided.
@@ -34,8 +35,11 @@ impl Inputs {
         self.library.iter().filter(kept)
     }
 
-    /// Records of the other conditions.
-    pub(crate) fn others(&self) -> &[Record] {
-        self.records.get(1..).unwrap_or_default()
+    /// Records of the other conditions that are not held out.
+    pub(crate) fn others(&self) -> impl Iterator<Item = &Record> {
+        self.records
+            .iter()
+            .skip(1)
+            .filter(|record| !record.held_out)
     }
 }

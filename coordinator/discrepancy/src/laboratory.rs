@@ -5,9 +5,9 @@ use protocol::job::{Observation, SimulateSpec, Verdict};
 /// A part of the diagnosis, for progress and for accounts of time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// A way into the valley in which the machine's resonances fit.
+    /// A way into the valley in which resonances fit.
     Basin,
-    /// Fit of all genes in the metric of the tests.
+    /// Fit of all unknowns in the metric of the tests.
     Recalibrate,
     /// How much the discretisation matters.
     Preflight,

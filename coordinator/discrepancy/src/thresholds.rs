@@ -5,15 +5,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Thresholds {
-    /// Highest order of the crank that is compared.
+    /// Highest order of a period that is compared.
     pub orders: usize,
     /// Level of the family of all effects' tests.
     pub alpha: f64,
     /// Level of the test that nothing at all is left: below it a record without a name is unresolved.
     pub adequacy: f64,
-    /// Misfit from which a fit is suspected to lie outside the valley of the rope's stiffness.
+    /// Misfit from which a fit is suspected to lie outside the valley that the case describes.
     pub valley: f64,
-    /// Suspects that are refitted with all genes free.
+    /// Suspects that are refitted with all unknowns free.
     pub suspects: usize,
     /// Nats, times the squared misfit, that an effect must gain to be believed.
     pub gain: f64,
@@ -27,13 +27,13 @@ pub struct Thresholds {
     pub generic_gain: f64,
     /// Squared cosine of projected signatures from which a form of force is a name's own.
     pub alike: f64,
-    /// Noise sets that the angle map is held against.
+    /// Noise sets that the map along the abscissa is held against.
     pub draws: usize,
     /// Longest step of all experiments, as a share of the case's: what is enough for a search is
     /// seen beside averaged noise.
     pub step: f64,
-    /// Cylinder length of the numerical check, as a share of the case's. The fits keep the case's
-    /// length: what a finer model changes counts as noise.
+    /// Size of the elements of the numerical check, as a share of the case's. The fits keep the case's:
+    /// what a finer model changes counts as noise.
     pub refinement: f64,
     /// Effects that are not considered.
     pub without: Vec<String>,

@@ -22,8 +22,10 @@ pub enum Verdict {
 pub enum Ground {
     /// The fit converged, the model is fine enough, the noise was seen: tests mean what they say.
     Firm,
-    /// The noise was assumed: no name is as sure as its tests say.
+    /// The noise is only stated: no name is as sure as its tests say.
     NoiseAssumed,
+    /// The noise was neither seen nor stated.
+    NoiseUnknown,
     /// Not one effect of the library was considered: nothing can be named, and nothing is unlisted.
     NothingConsidered,
     /// How far the discretisation moves the curves is not known.
@@ -75,6 +77,7 @@ mod tests {
         let grounds = [
             Ground::Firm,
             Ground::NoiseAssumed,
+            Ground::NoiseUnknown,
             Ground::NothingConsidered,
             Ground::Unsound,
         ];

@@ -145,7 +145,7 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         working.push(read.working);
         channels.extend(read.channels);
         records.push(read.facts);
-        cycles.extend(read.cycles);
+        cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
     let mut genes = genes::declared(&document, &file.genes, &Bodies::of(&file))?;

@@ -15,9 +15,10 @@ use discrepancy::model::Fit;
 use discrepancy::model::Model;
 use discrepancy::place::wander::{Part, Shift, Wander};
 use discrepancy::place::whereabouts::Where;
-use discrepancy::place::{angle, joint, order};
+use discrepancy::place::{along, joint, order};
 use discrepancy::proof::closed::closed;
-use discrepancy::proof::compare::Row;
+use discrepancy::proof::compare::{self, Row};
+use discrepancy::record::noise::Known;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
@@ -200,25 +201,31 @@ fn record(condition: usize, cycles: usize) -> Record {
     let recorded = |(curve, sensor): (usize, Sensor)| Recorded {
         curve,
         scored: matches!(sensor, Sensor::Gauge(_)),
+        held_out: false,
         channel: sensor.channel(condition, Vec::new()),
     };
     Record {
         condition,
         channels: CHANNELS.into_iter().enumerate().map(recorded).collect(),
         cycles: cycles.collect(),
+        held_out: false,
         stated: Stated::default(),
     }
 }
 
 fn rows(records: &[Record], after: f64) -> Vec<Row> {
-    let (fitted, held) = records[0].split();
-    let mut all = vec![(fitted, true), (held, false)];
-    all.extend(records[1..].iter().map(|record| (record.clone(), false)));
+    let split = records[0].split();
+    let mut all = vec![
+        (split.fitted, compare::Portion::Fitted),
+        (split.cycles, compare::Portion::Cycles),
+    ];
+    let others = records[1..].iter().cloned();
+    all.extend(others.map(|record| (record, compare::Portion::Condition)));
     all.retain(|(record, _)| !record.cycles.is_empty());
     all.into_iter()
-        .map(|(record, fitted)| Row {
+        .map(|(record, part)| Row {
             condition: record.condition,
-            fitted,
+            part,
             closed: closed(&record, &curves(1.0), &curves(after)),
             before: curves(1.0),
             after: curves(after),
@@ -289,16 +296,24 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
     }
 }
 
+/// The bins of a turn.
+const TURN: along::Bins = along::Bins {
+    from: 0.0,
+    width: 3.0,
+    count: along::BINS,
+    around: true,
+};
+
 fn whereabouts() -> Where {
     let strength = |c: usize| -> Vec<f64> {
-        (0..angle::BINS)
+        (0..along::BINS)
             .map(|b| 9.0 * ((b + 9 * c) as f64 * 0.1).sin())
             .collect()
     };
-    let window = |channel, from_deg: f64, to_deg: f64, strength| angle::Window {
+    let window = |channel, from: f64, to: f64, strength| along::Window {
         channel,
-        from_deg,
-        to_deg,
+        from,
+        to,
         strength,
         p_value: 1.0 / 401.0,
     };
@@ -318,7 +333,8 @@ fn whereabouts() -> Where {
         unit: "N".to_owned(),
     };
     Where {
-        angle: angle::AngleMap {
+        along: along::AlongMap {
+            bins: vec![TURN; CHANNELS.len()],
             strength: (0..CHANNELS.len()).map(strength).collect(),
             windows: vec![window(0, 30.0, 93.0, 12.1), window(1, 345.0, 378.0, -9.0)],
         },
@@ -460,7 +476,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         rival: added.then(|| ("load_cell_lag".to_owned(), rows(&records, 0.4))),
         generic: (verdict == Verdict::Unlisted).then(|| "probe.back_head.sign".to_owned()),
         force,
-        assumed_noise: false,
+        noise: Known::Seen,
         notes: Vec::new(),
     };
     Made {
@@ -478,8 +494,8 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
 /// The first gene, twice as large in the second quarter of the turn and elsewhere as it is.
 fn wander(p_value: f64) -> Wander {
     let sector = |k: usize| Part::Sector {
-        from_deg: 90.0 * k as f64,
-        to_deg: 90.0 * (k + 1) as f64,
+        from: 90.0 * k as f64,
+        to: 90.0 * (k + 1) as f64,
     };
     let parts = (0..4).map(sector).chain([Part::Condition(1)]);
     let shift = |(k, part)| Shift {
@@ -521,7 +537,7 @@ pub(crate) fn assumed() -> Made {
     let mut made = diagnosis(Verdict::Unresolved);
     let suspect = estimate(&made.library[0], 0.8, 596.9);
     let diagnosis = &mut made.diagnosed.diagnosis;
-    diagnosis.assumed_noise = true;
+    diagnosis.noise = Known::Stated;
     diagnosis.effects = vec![suspect];
     made
 }
@@ -532,7 +548,7 @@ pub(crate) fn stopped(reason: &str) -> Made {
     made.records = vec![record(0, 1)];
     made.diagnosed = Diagnosed {
         diagnosis: Diagnosis {
-            assumed_noise: true,
+            noise: Known::Stated,
             ..Diagnosis::unresolved(reason)
         },
         accounts: Vec::new(),

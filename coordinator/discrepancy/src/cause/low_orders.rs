@@ -1,20 +1,19 @@
-//! The likeliest effects by the low orders of the crank alone.
+//! The likeliest effects by the low orders of the period alone.
 //!
-//! Where the rope's modes ring, sixty and eighty times a turn, a wrong phase leaves more than any effect,
-//! and the fit that leaves least may be one that has thrown the modes out: tests there say nothing. Far
-//! below them the machine follows its load without ringing. So where no refit has found a valley, a fit of
+//! Where modes ring, tens of times a period, a wrong phase leaves more than any effect, and the fit that
+//! leaves least may be one that has thrown the modes out: tests there say nothing. Far below them the
+//! simulated thing follows its load without ringing. So where no refit has found a valley, a fit of
 //! the low orders is tested instead, and the likeliest effects go from there with the size that they have.
 use crate::cause::{refit, signature, suspect};
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::fit::{Fit, closest};
 use crate::model::unknowns::Point;
-use crate::record::spectrum::Orders;
 use crate::record::whitened::WhitenedRecord;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::Settings;
 
-/// Highest order: half of the lower mode's.
+/// Highest order: half of what the lowest mode of a machine that rings usually has.
 const HIGHEST: usize = 30;
 /// Suspects that are refitted.
 const REFITS: usize = 6;
@@ -22,7 +21,8 @@ const REFITS: usize = 6;
 const LIKELIEST: usize = 2;
 
 /// Models with one more effect, the likeliest first, fitted to the low orders of the record; none where
-/// they cannot be fitted. `current` is the model so far; its genes start from the recommended ones, too.
+/// they cannot be fitted, or some channel has no period. `current` is the model so far; its unknowns start
+/// from the case's values, too. No order above `highest` is compared.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -30,11 +30,14 @@ pub async fn likeliest<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     current: &Fit,
     effects: &[EffectDescriptor],
+    highest: usize,
 ) -> Result<Vec<Point>, L::Error> {
     let whole = experiments.on;
-    let highest = HIGHEST.min(whole.metric.orders().highest());
-    let orders = Orders::new(whole.record.samples(), highest);
-    let low = WhitenedRecord::under_own_noise(whole.record.clone(), orders, whole.discretisation);
+    if !whole.metric.is_periodic() {
+        return Ok(Vec::new());
+    }
+    let highest = HIGHEST.min(highest);
+    let low = WhitenedRecord::under_own_noise(whole.record.clone(), highest, whole.discretisation);
     let mut experiments = experiments.with(&low);
     let mut recommended = current.point();
     recommended.x[..current.model.space.dimension()].fill(0.0);

@@ -4,7 +4,7 @@
 //! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
 //! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
 //! whole way from the start; all others are refitted from the deepest, and all are judged again. If even
-//! that is no valley, the low orders of the crank say which effects to begin with.
+//! that is no valley, the low orders of the period say which effects to begin with.
 use crate::cause::low_orders;
 use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
@@ -102,8 +102,9 @@ async fn from_low_orders<L: Laboratory>(
     round: &mut Round,
 ) -> Result<Vec<Found>, L::Error> {
     let effects: Vec<EffectDescriptor> = round.suspects.iter().map(|s| s.effect.clone()).collect();
+    let highest = session.inputs.thresholds.orders;
     let mut experiments = session.experiments(Stage::Refit);
-    let likeliest = low_orders::likeliest(&mut experiments, current, &effects).await?;
+    let likeliest = low_orders::likeliest(&mut experiments, current, &effects, highest).await?;
     let fits = experiments.fits(likeliest, Settings::short(3)).await?;
     let left = round.refits.iter().map(|refit| refit.fit.chi_squared());
     let least = left.fold(current.chi_squared(), f64::min);

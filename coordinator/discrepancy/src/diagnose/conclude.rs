@@ -11,18 +11,18 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::place::wander::refit::wander;
 use crate::place::whereabouts;
-use crate::place::whiteness::p_value;
-use crate::proof::compare::{Shown, compare};
-use crate::record::measured::Record;
+use crate::proof::compare::{Portion, Shown, compare};
+use crate::record::measured::Split;
+use crate::record::noise::Known;
 use crate::size::estimate::estimates;
 use crate::size::force::Force;
 use crate::verdict::{Findings, Ground, verdict};
 
-/// Estimates, the proof and the verdict; `held` are the cycles that took no part in the fit.
+/// Estimates, the proof and the verdict; `split` is the calibrated condition's record.
 pub(crate) async fn conclude<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: Fit,
-    held: &Record,
+    split: &Split,
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
     let (base, inputs) = (session.base, session.inputs);
@@ -38,19 +38,13 @@ pub(crate) async fn conclude<L: Laboratory>(
     diagnosis.effects = estimates(&diagnosis.rounds, &after);
     let (after, suspect) = match ground {
         Ground::Firm => (after, None),
-        Ground::NoiseAssumed | Ground::NothingConsidered | Ground::Unsound => {
-            (base.fit.clone(), withhold(diagnosis))
-        }
+        Ground::NoiseAssumed
+        | Ground::NoiseUnknown
+        | Ground::NothingConsidered
+        | Ground::Unsound => (base.fit.clone(), withhold(diagnosis)),
     };
-    prove(session, &after, held, diagnosis).await?;
-    diagnosis.whiteness = diagnosis.whereabouts.as_ref().map(|seen| {
-        let before = p_value(&seen.order, base.freedom);
-        if after.model.added.is_empty() {
-            return [before; 2];
-        }
-        let left = whereabouts::orders(base, &after);
-        [before, p_value(&left, base.freedom)]
-    });
+    prove(session, &after, split, diagnosis).await?;
+    diagnosis.whiteness = Some([&base.fit, &after].map(|fit| whereabouts::white(base, fit)));
     let mut experiments = session.experiments(Stage::Show);
     diagnosis.wander = wander(&mut experiments, &base.fit, inputs.others()).await?;
     if !after.model.added.is_empty() {
@@ -97,7 +91,9 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> G
     let checked = base.preflight.is_some() || diagnosis.preflight_after.is_some();
     if claims && !checked {
         Ground::Unsound
-    } else if base.assumed {
+    } else if base.known == Known::Guessed {
+        Ground::NoiseUnknown
+    } else if base.known == Known::Stated {
         Ground::NoiseAssumed
     } else if inputs.considered().all(|effect| effect.generic) {
         Ground::NothingConsidered
@@ -130,20 +126,22 @@ fn withhold(diagnosis: &mut Diagnosis) -> Option<String> {
 async fn prove<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: &Fit,
-    held: &Record,
+    split: &Split,
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
-    let (base, others) = (session.base, session.inputs.others());
-    let kept = |record| Shown {
-        record,
-        fitted: false,
-    };
-    let mut records = vec![Shown {
-        record: &base.on.record,
-        fitted: true,
-    }];
-    records.extend(std::iter::once(held).chain(others).map(kept));
-    records.retain(|shown| !shown.record.cycles.is_empty());
+    let base = session.base;
+    let others = session.inputs.records.iter().skip(1);
+    let mut records = vec![
+        (&split.fitted, Portion::Fitted),
+        (&split.cycles, Portion::Cycles),
+        (&split.channels, Portion::Channels),
+    ];
+    records.extend(others.map(|record| (record, Portion::Condition)));
+    records.retain(|(record, _)| !record.cycles.is_empty() && !record.channels.is_empty());
+    let records: Vec<Shown<'_>> = records
+        .into_iter()
+        .map(|(record, part)| Shown { record, part })
+        .collect();
     let mut experiments = session.experiments(Stage::Show);
     let before = &base.fit;
     diagnosis.rows = compare(&mut experiments, &records, before, after).await?;

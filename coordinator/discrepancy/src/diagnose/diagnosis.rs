@@ -6,6 +6,7 @@ use crate::model::fit::Fit;
 use crate::place::wander::shifts::Wander;
 use crate::place::whereabouts::Where;
 use crate::proof::compare::Row;
+use crate::record::noise::Known;
 use crate::size::data_value::LookAlikes;
 use crate::size::estimate::Estimate;
 use crate::size::force::Force;
@@ -51,8 +52,8 @@ pub struct Diagnosis {
     pub generic: Option<String>,
     /// A force that beats every name, with its size, whatever the verdict says of it.
     pub force: Option<Force>,
-    /// Whether the noise was assumed.
-    pub assumed_noise: bool,
+    /// How the noise is known.
+    pub noise: Known,
     /// What else should be known.
     pub notes: Vec<String>,
 }
@@ -88,7 +89,7 @@ impl Diagnosis {
             rival: None,
             generic: None,
             force: None,
-            assumed_noise: false,
+            noise: Known::Seen,
             notes: Vec::new(),
         }
     }

@@ -30,13 +30,22 @@ const PROMISED: f64 = 0.1;
 /// # Errors
 /// Those of the laboratory: nobody simulates any more, or the user stopped.
 pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
-    let Some(record) = inputs.records.first().filter(|r| !r.cycles.is_empty()) else {
+    let Some(record) = inputs
+        .records
+        .first()
+        .filter(|r| !r.cycles.is_empty() && !r.held_out)
+    else {
         return Ok(Diagnosis::unresolved(
             "there is no record of the calibrated condition",
         ));
     };
-    let (fitted, held) = record.split();
-    let Some(base) = establish(lab, inputs, fitted).await? else {
+    let split = record.split();
+    if split.fitted.channels.is_empty() {
+        return Ok(Diagnosis::unresolved(
+            "every channel of the calibrated condition is held out",
+        ));
+    }
+    let Some(base) = establish(lab, inputs, split.fitted.clone()).await? else {
         return Ok(Diagnosis::unresolved(
             "no point near the recommended parameters completes its simulation",
         ));
@@ -49,7 +58,7 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
     let mut diagnosis = Diagnosis {
         reason: None,
         whereabouts: Some(whereabouts::look(&mut session).await?),
-        assumed_noise: base.assumed,
+        noise: base.known,
         preflight: base.preflight.clone(),
         notes: base.notes.clone(),
         before: Some(base.fit.clone()),
@@ -65,6 +74,6 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
         return Ok(diagnosis);
     }
     let after = rounds(&mut session, &mut diagnosis).await?;
-    conclude(&mut session, after, &held, &mut diagnosis).await?;
+    conclude(&mut session, after, &split, &mut diagnosis).await?;
     Ok(diagnosis)
 }

@@ -23,9 +23,10 @@ pub(crate) struct Rejection {
 /// What is left and is no noise, in words.
 pub(crate) fn left(base: &Base, after: &Fit) -> String {
     let ratio = after.chi_squared() / base.noise();
-    if base.assumed && ratio < 1.0 {
+    let assumed = !base.known.is_seen();
+    if assumed && ratio < 1.0 {
         format!("what is left is only {ratio:.2} times the assumed noise, which is no such noise")
-    } else if base.assumed {
+    } else if assumed {
         format!("what is left is {ratio:.2} times the assumed noise")
     } else {
         format!("what is left is {ratio:.2} times the noise: more than noise, and not explained")
@@ -71,6 +72,10 @@ pub(crate) fn reason(
             "the noise is assumed, for one cycle does not show it, and an assumption carries no name; \
              {what}; record more cycles"
         ),
+        Ground::NoiseUnknown => format!(
+            "the noise is not known: there is one cycle, and some channel states no noise; {what}; \
+             record more cycles, or state `noise` of every channel"
+        ),
         Ground::NothingConsidered => format!(
             "something is left, and no effect of the library was considered that could name it; {what}"
         ),
@@ -88,7 +93,7 @@ pub(crate) fn remarks(inputs: &Inputs, diagnosis: &mut Diagnosis) {
         diagnosis.notes.push(format!(
             "numerical error: a finer model moves {of}'s curves by {ratio:.2} standard errors of the \
              record, where a third is the aim; it counts as noise in every test, but sizes may be off \
-             by as much, and shorter cylinders in the case would lower it"
+             by as much, and a finer model in the case would lower it"
         ));
     }
     let added = diagnosis.rounds.iter().any(|round| round.added.is_some());

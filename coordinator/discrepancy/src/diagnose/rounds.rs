@@ -55,7 +55,7 @@ pub(crate) async fn rounds<L: Laboratory>(
     if answer.model.added.len() < added {
         let mut finer = session.experiments(Stage::Preflight);
         diagnosis.preflight_after =
-            preflight::check(&mut finer, &answer, &base.fit, inputs.finer).await?;
+            preflight::check(&mut finer, &answer, &base.fit, &inputs.finer).await?;
     }
     Ok(answer)
 }

@@ -2,6 +2,7 @@
 use crate::ground::preflight::Preflight;
 use crate::linear::score::misfit_tail;
 use crate::model::fit::Fit;
+use crate::record::noise::Known;
 use crate::record::whitened::WhitenedRecord;
 
 /// A data sheet's noise may be off by this factor in its variance, either way; what is left beyond it
@@ -16,8 +17,8 @@ pub(crate) struct Base {
     pub(crate) fit: Fit,
     /// Its numerical check; nothing where no finer model completes.
     pub(crate) preflight: Option<Preflight>,
-    /// Whether the noise was assumed rather than seen.
-    pub(crate) assumed: bool,
+    /// How the noise is known.
+    pub(crate) known: Known,
     /// Degrees of freedom behind a variance of the noise.
     pub(crate) freedom: f64,
     /// What else should be known.
@@ -34,7 +35,7 @@ impl Base {
     /// noise is only assumed, whether the assumption bears with what is left.
     pub(crate) fn is_noise(&self, chi_squared: f64, parameters: usize, level: f64) -> bool {
         let n = self.on.metric.len();
-        if self.assumed {
+        if !self.known.is_seen() {
             let left = n.saturating_sub(parameters).max(1) as f64;
             return (1.0 / ASSUMED..=ASSUMED).contains(&(chi_squared / left));
         }

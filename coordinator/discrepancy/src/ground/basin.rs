@@ -1,6 +1,6 @@
-//! A way into the valley in which the machine's resonances fit.
+//! A way into the valley in which resonances fit.
 //!
-//! The residual of a rope that is a little too soft or too stiff is a wave of the wrong phase, and no
+//! The residual of something that is a little too soft or too stiff is a wave of the wrong phase, and no
 //! local search leaves the plateau around the valley. So a search strategy goes first, on the same
 //! whitened residual.
 use crate::laboratory::Laboratory;

@@ -7,7 +7,6 @@ use crate::linear::evidence::misfit;
 use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
-use crate::record::noise::smoothed;
 use nalgebra::{DMatrix, DVector};
 use search::least_squares::{Linearized, Prior, Variable};
 
@@ -28,7 +27,7 @@ pub(crate) async fn believed<L: Laboratory>(
     before: &Fit,
     after: &Fit,
 ) -> Result<Option<Checked>, L::Error> {
-    let (base, finer) = (session.base, session.inputs.finer);
+    let (base, finer) = (session.base, &session.inputs.finer);
     let mut experiments = session.experiments(Stage::Preflight);
     let Some(mut preflight) = check(&mut experiments, after, before, finer).await? else {
         return Ok(None);
@@ -57,21 +56,11 @@ pub(crate) async fn believed<L: Laboratory>(
     }))
 }
 
-/// By how much each entry counts when the power of an error, smoothed over orders, is noise as far as
-/// it exceeds that of an error which the metric knows.
+/// By how much each entry counts when the power of an error about it is noise as far as it exceeds that
+/// of an error which the metric knows.
 fn floor(metric: &Metric, error: &DVector<f64>, known: &DVector<f64>) -> DVector<f64> {
-    let power = |x: &DVector<f64>, channel: usize| -> Vec<f64> {
-        let part = |order: usize| 0.5 * metric.coefficient(x, order, channel).norm_sqr();
-        let powers: Vec<f64> = (1..=metric.orders().highest()).map(part).collect();
-        smoothed(&powers)
-    };
-    let both = |channel| (power(error, channel), power(known, channel));
-    let powers: Vec<(Vec<f64>, Vec<f64>)> = (0..metric.channels()).map(both).collect();
-    DVector::from_fn(error.len(), |entry, _| {
-        let (order, channel) = metric.place(entry);
-        let (own, known) = (powers[channel].0[order - 1], powers[channel].1[order - 1]);
-        1.0 / (1.0 + (own - known).max(0.0)).sqrt()
-    })
+    let weight = |own: f64, known: f64| 1.0 / (1.0 + (own - known).max(0.0)).sqrt();
+    metric.powers(error).zip_map(&metric.powers(known), weight)
 }
 
 /// What a fit leaves, to first order, in entries that count by weights and with an error of known

@@ -8,12 +8,12 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::{Model, Point};
-use crate::record::measured::Record;
+use crate::record::basis::Group;
+use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
-use crate::record::spectrum::Orders;
 use crate::record::whitened::WhitenedRecord;
-use nalgebra::{Complex, DVector};
+use nalgebra::DVector;
 
 /// Noise, way into the valley, recalibration, numerical check, final metric, final fit; nothing where
 /// no fit completes.
@@ -22,8 +22,8 @@ pub(crate) async fn establish<L: Laboratory>(
     inputs: &Inputs,
     record: Record,
 ) -> Result<Option<Base>, L::Error> {
-    let orders = Orders::new(record.samples(), inputs.thresholds.orders);
-    let own = WhitenedRecord::under_own_noise(record.clone(), orders.clone(), inputs.usual);
+    let highest = inputs.thresholds.orders;
+    let own = WhitenedRecord::under_own_noise(record.clone(), highest, inputs.usual);
     let mut experiments = Experiments {
         lab: &mut *lab,
         on: &own,
@@ -34,19 +34,11 @@ pub(crate) async fn establish<L: Laboratory>(
     };
     let mut recalibration = experiments.during(Stage::Recalibrate);
     let errors = input_errors(&mut recalibration, &first, &inputs.library).await?;
-    let spectra: Vec<Vec<Vec<Complex<f64>>>> = errors
-        .iter()
-        .map(|error| {
-            error
-                .curves
-                .iter()
-                .map(|curve| orders.transform(curve))
-                .collect()
-        })
-        .collect();
-    let mut noise = Noise::estimate(&record, &orders, &spectra);
+    let wrong: Vec<Curves> = errors.iter().map(|error| error.curves.clone()).collect();
+    let groups = Group::of(&record, highest, &wrong);
+    let mut noise = Noise::estimate(&record, &groups, &wrong);
     let weigh = |noise: &Noise| {
-        let mut metric = Metric::new(orders.clone(), record.channels.len(), &noise.covariances);
+        let mut metric = Metric::new(&groups, noise);
         let directions: Vec<DVector<f64>> = errors
             .iter()
             .map(|error| metric.whiten(&error.curves) * error.deviation)
@@ -61,17 +53,16 @@ pub(crate) async fn establish<L: Laboratory>(
         return Ok(None);
     };
     let mut finer = experiments.during(Stage::Preflight);
-    let preflight = preflight::check(&mut finer, &second, &second, inputs.finer).await?;
+    let preflight = preflight::check(&mut finer, &second, &second, &inputs.finer).await?;
     let mut notes = Vec::new();
     let (on, fit) = if let Some(seen) = &preflight {
         if !seen.whole {
             notes.push(
-                "the finer model did not complete as a whole: cylinders and steps were refined one at \
-                 a time"
+                "the finer model did not complete as a whole: its parts were refined one at a time"
                     .to_owned(),
             );
         }
-        noise.add_error(&seen.left);
+        noise.add_error(&groups, &seen.left);
         let on = weigh(&noise);
         let mut last = Experiments {
             lab,
@@ -90,7 +81,7 @@ pub(crate) async fn establish<L: Laboratory>(
         on,
         fit,
         preflight,
-        assumed: noise.assumed,
+        known: noise.known,
         freedom: noise.freedom,
         notes,
     }))

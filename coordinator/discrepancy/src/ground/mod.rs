@@ -1,4 +1,4 @@
-//! What every test stands on: the noise, a way into the valley in which the machine's resonances fit,
+//! What every test stands on: the noise, a way into the valley in which resonances fit,
 //! the recalibration there, and how far the discretisation matters. It knows no suspect.
 pub(crate) mod base;
 pub mod basin;

@@ -1,16 +1,16 @@
 //! The numerical check: how far the discretisation moves the curves, once recalibration has taken
 //! what it can.
 //!
-//! Shorter cylinders, shorter steps and more head modes at the fitted point; the difference, projected
-//! off the tangent space, becomes a part of the noise (an adequacy floor), so that no effect is named
-//! for what a coarser rope does.
+//! A finer model at the fitted point; the difference, projected off the tangent space, becomes a part of
+//! the noise (an adequacy floor), so that no effect is named for what a coarser model does.
 use crate::laboratory::{Laboratory, curves};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::record::measured::{Curves, difference};
 use crate::record::metric::Metric;
+use crate::record::spectrum::Spectra;
 use crate::record::whitened::WhitenedRecord;
-use nalgebra::{Complex, DVector};
+use nalgebra::DVector;
 use protocol::pumping_unit::Discretisation;
 
 /// What a finer model says.
@@ -22,10 +22,10 @@ pub struct Preflight {
     pub rms: Vec<f64>,
     /// The same after recalibration has taken its share.
     pub rms_left: Vec<f64>,
-    /// Standard error of the record's mean by channel, root mean square over the compared orders.
+    /// Standard error of the record's mean by channel, root mean square over what is compared.
     pub standard_error: Vec<f64>,
-    /// Coefficients of what is left, by channel.
-    pub left: Vec<Vec<Complex<f64>>>,
+    /// Entries of what is left, by channel.
+    pub left: Spectra,
     /// Whether the whole finer model completed; else its parts, one at a time, as far as they did.
     pub whole: bool,
 }
@@ -40,8 +40,8 @@ impl Preflight {
 
 /// Simulates a fitted point more finely; what a fit (that one, or the one before an effect was added,
 /// for a size must not hide what it does not explain) can absorb is taken off. If the finer model
-/// fails, its cylinders and the rest of it are refined one at a time, and their differences added: so
-/// it is to first order. Nothing if that fails too.
+/// fails, its parts are refined one at a time, and their differences added: so it is to first order.
+/// Nothing if that fails too.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -49,22 +49,15 @@ pub async fn check<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
     absorbing: &Fit,
-    finer: Discretisation,
+    finer: &[Discretisation],
 ) -> Result<Option<Preflight>, L::Error> {
     let on = experiments.on;
-    let whole = differences(experiments, fit, &[finer]).await?;
+    let (finest, parts) = finer.split_at(finer.len().min(1));
+    let whole = differences(experiments, fit, finest).await?;
     if let Some(difference) = whole.into_iter().flatten().next() {
         return Ok(Some(preflight(on, absorbing, difference, true)));
     }
-    let cylinders = Discretisation {
-        cylinder_length_m: finer.cylinder_length_m,
-        ..on.discretisation
-    };
-    let rest = Discretisation {
-        cylinder_length_m: on.discretisation.cylinder_length_m,
-        ..finer
-    };
-    let parts = differences(experiments, fit, &[cylinders, rest]).await?;
+    let parts = differences(experiments, fit, parts).await?;
     let sum = parts.into_iter().flatten().reduce(|mut sum, part| {
         for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
             *sum += part;
@@ -94,21 +87,10 @@ async fn differences<L: Laboratory>(
 fn preflight(on: &WhitenedRecord, absorbing: &Fit, difference: Curves, whole: bool) -> Preflight {
     let metric = &on.metric;
     let left = metric.colour(&left(metric, absorbing, &difference));
-    let rms = |spectrum: &Vec<Complex<f64>>| {
-        (2.0 * spectrum.iter().map(Complex::norm_sqr).sum::<f64>()).sqrt()
-    };
-    let orders = metric.orders();
     Preflight {
-        rms: difference
-            .iter()
-            .map(|curve| rms(&orders.transform(curve)))
-            .collect(),
-        rms_left: left.iter().map(rms).collect(),
-        standard_error: metric
-            .deviations()
-            .iter()
-            .map(|deviations| (2.0 * deviations.iter().map(|d| d * d).sum::<f64>()).sqrt())
-            .collect(),
+        rms: metric.rms(&metric.entries(&difference)),
+        rms_left: metric.rms(&left),
+        standard_error: metric.standard_error(),
         difference,
         left,
         whole,

@@ -22,7 +22,7 @@ pub fn order(id: &str) -> Option<usize> {
     digits.parse().ok()
 }
 
-/// The order of a harmonic of the crank; nothing for a constant.
+/// The order of a harmonic of the period; nothing for a constant.
 pub fn harmonic(id: &str) -> Option<usize> {
     order(id).filter(|order| *order > 0)
 }

@@ -1,11 +1,11 @@
-//! Joint: where in the machine an unknown periodic force would explain the residual best.
+//! Joint: where in the simulated thing an unknown periodic force would explain the residual best.
 //!
 //! A latent force pair across a joint with harmonics up to `H_f`, whose amplitudes have a prior that
 //! falls off with the order, has the Bayes factor
 //! `ln BF = 1/2 u^T (Q^-1 + F)^-1 u - 1/2 ln |I + Q F|`, `u = H^T r`, `F = H^T B H`,
 //! `Q = s^2 diag((1 + h/2)^-4)`, maximised over the scale s. Joints within `max(3 phi^2, 10 %)` nats
 //! of the best are not told apart. The amplitudes that are likeliest then give the force itself over the
-//! revolution: its shape is a hint at the cause where no name fits (a latent force).
+//! period: its shape is a hint at the cause where no name fits (a latent force).
 use crate::linear::evidence::log_determinant;
 use crate::linear::tangent::Tangent;
 use nalgebra::{DMatrix, DVector};
@@ -27,9 +27,9 @@ pub struct JointEvidence {
 /// One part of a periodic force.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Harmonic {
-    /// Order of the crank; 0 for a constant.
+    /// Order of the period; 0 for a constant.
     pub order: usize,
-    /// Whether it is a sine rather than a cosine of the turn from bottom dead centre.
+    /// Whether it is a sine rather than a cosine of the phase.
     pub sine: bool,
     /// Amplitude, in the joint's unit.
     pub amplitude: f64,
@@ -49,10 +49,10 @@ pub struct Latent {
 }
 
 impl JointEvidence {
-    /// The likeliest force at a turn of the crank from bottom dead centre (deg), in its unit.
-    pub fn force_at(&self, turn_deg: f64) -> f64 {
+    /// The likeliest force at a phase of the period (deg), in its unit.
+    pub fn force_at(&self, phase_deg: f64) -> f64 {
         let part = |part: &Harmonic| {
-            let angle = part.order as f64 * turn_deg.to_radians();
+            let angle = part.order as f64 * phase_deg.to_radians();
             let unit = if part.sine {
                 libm::sin(angle)
             } else {
@@ -102,7 +102,7 @@ fn evidence(latent: &Latent, residual: &DVector<f64>, tangent: &Tangent) -> Join
     // scales from hardly visible to overwhelming, four a decade
     for k in -8..=32 {
         let s2 = libm::exp10(0.25 * f64::from(k)) / typical;
-        // nothing moves the gauges: no scale
+        // it moves no channel: no scale
         if !(s2 > 0.0 && s2.is_finite()) {
             break;
         }
@@ -138,7 +138,7 @@ mod tests {
     use search::random::{Phase, Streams};
 
     /// A force that acted at a joint comes back with its amplitudes and its curve; a joint that has
-    /// nothing to do with it explains less, one that moves no gauge nothing.
+    /// nothing to do with it explains less, one that moves no channel nothing.
     #[test]
     fn the_force_that_acted_is_found() {
         let mut stream = Streams::new(5, 0).at(0, Phase::Initial, 0);

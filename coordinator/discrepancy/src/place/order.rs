@@ -1,11 +1,12 @@
-//! Channel x order of the crank: coefficients of the residual that are no noise.
+//! Channel x order of the period: coefficients of the residual that are no noise.
 //!
 //! The squared modulus of a whitened coefficient, over its mean under noise, follows F(2, 2 nu);
 //! Benjamini and Hochberg's rule keeps the share of false entries below a set level.
 use crate::linear::tangent::Tangent;
 use crate::place::residual::Residual;
 use crate::record::metric::Metric;
-use nalgebra::DVector;
+use crate::record::spectrum::Spectra;
+use nalgebra::{Complex, DVector};
 use search::random::{Phase, Streams};
 use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 
@@ -14,7 +15,7 @@ use statrs::distribution::{ContinuousCDF as _, FisherSnedecor};
 pub struct Peak {
     /// Index of the channel.
     pub channel: usize,
-    /// Order of the crank.
+    /// Order of the period.
     pub order: usize,
     /// Squared modulus over its mean under noise.
     pub ratio: f64,
@@ -31,24 +32,17 @@ pub struct OrderMap {
     pub peaks: Vec<Peak>,
 }
 
-/// Maps a whitened residual; `freedom` is that of the noise's variances.
+/// Maps a whitened residual; `freedom` is that of the noise's variances. A channel without a period has no
+/// orders.
 pub fn map(residual: &Residual<'_>, freedom: f64, level: f64) -> OrderMap {
-    let Residual {
-        left,
-        metric,
-        tangent,
-    } = *residual;
-    let expected = expectation(metric, tangent);
-    let own = |order: usize, channel: usize| {
-        let power = metric.coefficient(left, order, channel).norm_sqr();
-        power / expected[metric.entry(order, channel)].max(1e-3)
-    };
-    let row = |c: usize| {
-        (1..=metric.orders().highest())
-            .map(|order| own(order, c))
-            .collect()
-    };
-    let ratio: Vec<Vec<f64>> = (0..metric.channels()).map(row).collect();
+    let bins = residual.metric.bins();
+    let mut ratio = vec![Vec::new(); bins.len()];
+    if bins.iter().any(|bins| bins.around) {
+        let powers = powers(residual).into_iter().zip(&bins);
+        ratio = powers
+            .map(|(row, bins)| if bins.around { row } else { Vec::new() })
+            .collect();
+    }
     // variances without doubt are like very many degrees of freedom
     let law = FisherSnedecor::new(2.0, freedom.clamp(2.0, 1e6));
     let tail = |x: f64| law.as_ref().map_or(1.0, |law| law.sf(x));
@@ -80,26 +74,44 @@ pub fn map(residual: &Residual<'_>, freedom: f64, level: f64) -> OrderMap {
     }
 }
 
-/// Mean power of projected noise, by sampling, entry by entry of a whitened vector (both parts
-/// together).
-fn expectation(metric: &Metric, tangent: &Tangent) -> Vec<f64> {
+/// Powers of the waves of a whitened residual, over what they would be of noise; channel by channel, the
+/// lowest first.
+pub fn powers(residual: &Residual<'_>) -> Vec<Vec<f64>> {
+    let Residual {
+        left,
+        metric,
+        tangent,
+    } = *residual;
+    let waves = metric.waves(left).into_iter();
+    let channels = waves.zip(expectation(metric, tangent));
+    let ratio = |(wave, expected): (&Complex<f64>, &f64)| wave.norm_sqr() / expected.max(1e-3);
+    channels
+        .map(|(waves, expected)| waves.iter().zip(&expected).map(ratio).collect())
+        .collect()
+}
+
+/// Mean power of the waves of projected noise, by sampling.
+fn expectation(metric: &Metric, tangent: &Tangent) -> Vec<Vec<f64>> {
     const DRAWS: usize = 64;
     let streams = Streams::new(0x6f72_6465, 0);
-    let mut sum = vec![0.0; metric.len()];
+    let mut sums: Spectra = Vec::new();
     for draw in 0..DRAWS {
         let mut stream = streams.at(0, Phase::Resample, draw);
         let z = DVector::from_fn(metric.len(), |_, _| stream.normal());
         // 1 - (share that the projection takes): less noisy than the power itself
         let lost = &z - tangent.project(&z);
-        for (at, sum) in sum.iter_mut().enumerate() {
-            *sum += 2.0 * z[at] * lost[at] - lost[at] * lost[at];
+        let (drawn, lost) = (metric.waves(&z), metric.waves(&lost));
+        sums.resize_with(drawn.len(), Vec::new);
+        for ((sum, drawn), lost) in sums.iter_mut().zip(&drawn).zip(&lost) {
+            sum.resize(drawn.len(), Complex::new(0.0, 0.0));
+            for ((sum, z), lost) in sum.iter_mut().zip(drawn).zip(lost) {
+                sum.re += 2.0 * z.re * lost.re - lost.re * lost.re;
+                sum.im += 2.0 * z.im * lost.im - lost.im * lost.im;
+            }
         }
     }
-    (0..metric.len())
-        .map(|at| {
-            let pair = at / 2 * 2;
-            let taken = (sum[pair] + sum[pair + 1]) / DRAWS as f64;
-            (2.0 - taken).clamp(0.2, 2.0)
-        })
+    let left = |sum: &Complex<f64>| (2.0 - (sum.re + sum.im) / DRAWS as f64).clamp(0.2, 2.0);
+    sums.iter()
+        .map(|sum| sum.iter().map(left).collect())
         .collect()
 }

@@ -7,16 +7,16 @@ use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
 use crate::place::latent::latents;
 use crate::place::residual::Residual;
-use crate::place::{angle, joint, order};
+use crate::place::{along, joint, order, whiteness};
 use crate::record::whitened::WhitenedRecord;
 use nalgebra::DVector;
 
 /// Where the disagreement lies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Where {
-    /// By crank angle and channel.
-    pub angle: angle::AngleMap,
-    /// By channel and order of the crank.
+    /// By abscissa and channel.
+    pub along: along::AlongMap,
+    /// By channel and order of the period, where there is one.
     pub order: order::OrderMap,
     /// Joints at which a periodic force would explain it, the most likely first.
     pub joints: Vec<joint::JointEvidence>,
@@ -25,12 +25,12 @@ pub struct Where {
 }
 
 impl Where {
-    /// Whether the map by angle or that by order rejects that only noise is left, each at a level over
+    /// Whether the map by abscissa or that by order rejects that only noise is left, each at a level over
     /// all its places.
     pub fn rejects(&self, alpha: f64) -> bool {
         let entries: usize = self.order.ratio.iter().map(Vec::len).sum();
         let mut peaks = self.order.peaks.iter();
-        self.angle.windows.iter().any(|w| w.p_value <= alpha)
+        self.along.windows.iter().any(|w| w.p_value <= alpha)
             || peaks.any(|peak| family_wise(peak.p_value, entries) <= alpha)
     }
 }
@@ -53,21 +53,21 @@ pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<
     };
     let deviations = deviations(&base.on, &tangent);
     Ok(Where {
-        angle: angle::map::map(&residual, &deviations, inputs.thresholds.draws, LEVEL),
-        order: orders(base, fit),
+        along: along::map::map(&residual, &deviations, inputs.thresholds.draws, LEVEL),
+        order: order::map(&residual, base.freedom, LEVEL),
         equivalent: joint::indistinguishable(&joints, fit.misfit()),
         joints,
     })
 }
 
-/// The map by order alone of what a fit leaves; it takes no simulation.
-pub(crate) fn orders(base: &Base, fit: &Fit) -> order::OrderMap {
+/// Tail probability that what a fit leaves is white.
+pub(crate) fn white(base: &Base, fit: &Fit) -> f64 {
     let residual = Residual {
         left: &fit.search.settled_residual(),
         metric: &base.on.metric,
         tangent: &fit.tangent(),
     };
-    order::map(&residual, base.freedom, LEVEL)
+    whiteness::p_value(&order::powers(&residual), base.freedom)
 }
 
 /// What recalibration leaves of each cycle's deviation from the mean, whitened.

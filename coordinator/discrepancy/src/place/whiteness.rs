@@ -1,17 +1,17 @@
-//! Whether what is left is white: spread over the orders of the crank as noise spreads.
+//! Whether what is left is white: spread over the orders of a period, or the waves of a row of samples, as
+//! noise spreads.
 //!
-//! Powers of a whitened residual, each over its mean under noise, are summed from the lowest order on. Of
+//! Powers of a whitened residual, each over its mean under noise, are summed from the lowest on. Of
 //! noise the share grows evenly; its largest distance from that line follows Kolmogorov's law
 //! (Bartlett's test of the cumulated periodogram; Priestley, *Spectral Analysis and Time Series*, 6.2.5).
-//! The level does not count, only where it lies: too little noise assumed at every order alike passes
+//! The level does not count, only where it lies: too little noise assumed at every wave alike passes
 //! here, and shows as the misfit.
-use crate::place::order::OrderMap;
-
-/// Tail probability that noise alone is spread so unevenly; `freedom` is that of the noise's
+/// Tail probability that noise alone is spread so unevenly, from powers over their mean under noise, by
+/// channel; `freedom` is that of the noise's
 /// variances. 1 for fewer than two entries.
-pub fn p_value(map: &OrderMap, freedom: f64) -> f64 {
-    let highest = map.ratio.iter().map(Vec::len).max().unwrap_or(0);
-    let at = |k: usize| map.ratio.iter().filter_map(move |row| row.get(k));
+pub fn p_value(ratio: &[Vec<f64>], freedom: f64) -> f64 {
+    let highest = ratio.iter().map(Vec::len).max().unwrap_or(0);
+    let at = |k: usize| ratio.iter().filter_map(move |row| row.get(k));
     let powers: Vec<f64> = (0..highest).flat_map(at).copied().collect();
     let (count, sum) = (powers.len() as f64, powers.iter().sum::<f64>());
     if powers.len() < 2 || !(sum > 0.0 && sum.is_finite()) {
@@ -46,7 +46,7 @@ mod tests {
     use search::random::{Phase, Streams};
 
     /// Powers of noise with variances from `freedom` draws, of two channels over fifty orders.
-    fn noise(seed: u64, freedom: usize) -> OrderMap {
+    fn noise(seed: u64, freedom: usize) -> Vec<Vec<f64>> {
         let mut stream = Streams::new(seed, 3).at(0, Phase::Initial, 0);
         let mut square = |count: usize| (0..count).map(|_| stream.normal().powi(2)).sum::<f64>();
         let mut power = || {
@@ -57,13 +57,10 @@ mod tests {
                 mean / (square(2 * freedom) / (2 * freedom) as f64)
             }
         };
-        OrderMap {
-            ratio: vec![
-                (0..50).map(|_| power()).collect(),
-                (0..50).map(|_| power()).collect(),
-            ],
-            peaks: Vec::new(),
-        }
+        vec![
+            (0..50).map(|_| power()).collect(),
+            (0..50).map(|_| power()).collect(),
+        ]
     }
 
     /// Kolmogorov's law at its usual points.
@@ -93,16 +90,13 @@ mod tests {
     fn what_is_left_at_low_orders_is_not_white() {
         let mut map = noise(4, 12);
         let white = p_value(&map, 12.0);
-        map.ratio
-            .iter_mut()
-            .flatten()
-            .for_each(|power| *power *= 3.0);
+        map.iter_mut().flatten().for_each(|power| *power *= 3.0);
         assert!((p_value(&map, 12.0) - white).abs() < 1e-9);
-        for row in &mut map.ratio {
+        for row in &mut map {
             row[..10].iter_mut().for_each(|power| *power *= 3.0);
         }
         assert!(p_value(&map, 12.0) < 1e-3);
-        map.ratio.clear();
+        map.clear();
         assert_eq!(p_value(&map, 12.0).to_bits(), 1.0_f64.to_bits());
     }
 }

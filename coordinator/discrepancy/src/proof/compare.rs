@@ -10,8 +10,8 @@ use crate::record::measured::{Curves, Record};
 pub struct Row {
     /// Index of the condition.
     pub condition: usize,
-    /// Whether its cycles took part in the fit.
-    pub fitted: bool,
+    /// What of the records it is.
+    pub part: Portion,
     /// The gap.
     pub closed: Closed,
     /// Curves before, by channel.
@@ -20,13 +20,26 @@ pub struct Row {
     pub after: Curves,
 }
 
+/// Which part of the records a gap is counted on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Portion {
+    /// What was fitted.
+    Fitted,
+    /// Cycles of the calibrated condition that took no part in the fit.
+    Cycles,
+    /// Channels of the calibrated condition that took no part in it; none of its others.
+    Channels,
+    /// Another condition.
+    Condition,
+}
+
 /// A record of the proof.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shown<'a> {
     /// What was measured.
     pub(crate) record: &'a Record,
-    /// Whether its cycles took part in the fit.
-    pub(crate) fitted: bool,
+    /// What of the records it is.
+    pub(crate) part: Portion,
 }
 
 /// Compares two models on records; nothing for a record on which one of them fails.
@@ -54,7 +67,7 @@ pub(crate) async fn compare<L: Laboratory>(
             let (before, after) = (curves(0)?, curves(1)?);
             Some(Row {
                 condition: shown.record.condition,
-                fitted: shown.fitted,
+                part: shown.part,
                 closed: closed(shown.record, &before, &after),
                 before,
                 after,

@@ -1,5 +1,5 @@
 //! What was measured, cycle by cycle, as the diagnosis takes it.
-use crate::record::tolerance::Tolerance;
+use crate::record::nuisance::Nuisance;
 use protocol::case::Channel;
 use std::ops::Range;
 
@@ -15,6 +15,8 @@ pub struct Recorded {
     /// Whether the gap is counted on it. The others help to tell causes apart; where none is
     /// counted on, all are.
     pub scored: bool,
+    /// Whether it takes no part in any fit or test: it is compared at the end alone.
+    pub held_out: bool,
     /// Its names, unit, abscissa and noise; what was measured of it are the record's cycles.
     pub channel: Channel,
 }
@@ -26,6 +28,7 @@ impl Recorded {
         Self {
             curve,
             scored: channel.record.is_some(),
+            held_out: false,
             channel: Channel {
                 record: None,
                 ..channel.clone()
@@ -39,30 +42,56 @@ impl Recorded {
 pub struct Record {
     /// Index of the condition in the case.
     pub condition: usize,
-    /// Its channels, in the order of all curves.
+    /// Its channels, in the order of all curves; those that are held out stand last.
     pub channels: Vec<Recorded>,
     /// Whole cycles; cycle, channel, grid.
     pub cycles: Vec<Curves>,
+    /// Whether the whole of it takes no part in any fit or test: it is compared at the end alone.
+    pub held_out: bool,
     /// What the data sheet says of the measurement.
     pub stated: Stated,
+}
+
+/// A record in parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Split {
+    /// What is fitted.
+    pub fitted: Record,
+    /// Cycles of the fitted channels that take no part.
+    pub cycles: Record,
+    /// Channels that take no part.
+    pub channels: Record,
 }
 
 /// What a data sheet says of a measurement.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stated {
-    /// Standard deviation of the load from cycle to cycle, over its value.
-    pub load_scatter: f64,
-    /// Tolerance of the crank angle (deg).
-    pub angle_tolerance_deg: f64,
+    /// What the input may be wrong by from cycle to cycle.
+    pub nuisances: Vec<Nuisance>,
     /// Correlation of the noise from sample to sample, over the grid.
     pub noise_correlation: f64,
     /// Variance of one cycle about the mean by channel, where more cycles than these tell it.
     pub cycle_variance: Vec<f64>,
-    /// How good the instruments are.
-    pub tolerance: Tolerance,
+    /// Standard deviations of the instruments' errors, constant over the measurement, by name.
+    pub tolerances: Vec<(String, f64)>,
 }
 
 impl Record {
+    /// Where the first channel's abscissa begins and ends, in its unit.
+    pub fn span(&self) -> [f64; 2] {
+        let Some(abscissa) = self.channels.first().map(|own| &own.channel.abscissa) else {
+            return [0.0; 2];
+        };
+        let ends = [abscissa.points.first(), abscissa.points.last()];
+        let [first, last] = ends.map(|x| x.copied().unwrap_or_default());
+        [first, abscissa.period.map_or(last, |period| first + period)]
+    }
+
+    /// Standard deviation of a value of a channel, as stated.
+    pub fn noise(&self, channel: usize) -> Option<f64> {
+        self.channels[channel].channel.noise
+    }
+
     /// Samples of a turn.
     pub fn samples(&self) -> usize {
         let first = self.cycles.first().and_then(|cycle| cycle.first());
@@ -91,9 +120,9 @@ impl Record {
         }
     }
 
-    /// The cycles that are fitted and those that take no part in the fit: a quarter, at least one;
-    /// none of fewer than three.
-    pub fn split(&self) -> (Self, Self) {
+    /// What is fitted and what takes no part in the fit: of the cycles a quarter, at least one, none of
+    /// fewer than three; of the channels those that are marked so.
+    pub fn split(&self) -> Split {
         let n = self.cycles.len();
         let held = if n < 3 { 0 } else { (n / 4).max(1) };
         let whole = Self {
@@ -103,7 +132,49 @@ impl Record {
             },
             ..self.clone()
         };
-        (whole.part(0..n - held), whole.part(n - held..n))
+        let [free, marked] = [false, true].map(|held_out| whole.of_channels(held_out));
+        Split {
+            fitted: free.part(0..n - held),
+            cycles: free.part(n - held..n),
+            channels: marked,
+        }
+    }
+
+    /// The same with the channels that are held out behind the others, as a diagnosis numbers them.
+    #[must_use]
+    pub fn held_out_last(self) -> Self {
+        if self.channels.iter().is_sorted_by_key(|own| own.held_out) {
+            return self;
+        }
+        let [mut all, held] = [false, true].map(|held_out| self.of_channels(held_out));
+        all.channels.extend(held.channels);
+        for (cycle, held) in all.cycles.iter_mut().zip(held.cycles) {
+            cycle.extend(held);
+        }
+        all.stated.cycle_variance.extend(held.stated.cycle_variance);
+        all
+    }
+
+    /// Those of its channels that are held out, or those that are not.
+    fn of_channels(&self, held_out: bool) -> Self {
+        let all = 0..self.channels.len();
+        let kept: Vec<usize> = all
+            .filter(|&c| self.channels[c].held_out == held_out)
+            .collect();
+        let curves = |curves: &Curves| kept.iter().map(|&c| curves[c].clone()).collect();
+        let variances = &self.stated.cycle_variance;
+        Self {
+            channels: kept.iter().map(|&c| self.channels[c].clone()).collect(),
+            cycles: self.cycles.iter().map(curves).collect(),
+            stated: Stated {
+                cycle_variance: kept
+                    .iter()
+                    .filter_map(|&c| variances.get(c).copied())
+                    .collect(),
+                ..self.stated.clone()
+            },
+            ..self.clone()
+        }
     }
 
     /// Variance of one cycle about the mean, by channel, as stated or as seen; zeros where nothing tells
@@ -195,6 +266,7 @@ pub(crate) mod tests {
         Recorded {
             curve,
             scored: true,
+            held_out: false,
             channel,
         }
     }
@@ -205,6 +277,7 @@ pub(crate) mod tests {
             condition: 0,
             channels: vec![recorded(4), recorded(0), recorded(2)],
             cycles: Vec::new(),
+            held_out: false,
             stated: Stated::default(),
         };
         record.channels[1].scored = false;
@@ -213,5 +286,38 @@ pub(crate) mod tests {
             channel.scored = false;
         }
         assert_eq!(record.scored(), [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_quarter_of_the_cycles_and_the_marked_channels_take_no_part() {
+        let cycle = |k: usize| {
+            let curve = |c: usize| vec![(10 * c + k) as f64, 0.0];
+            (0..3).map(curve).collect()
+        };
+        let mut record = Record {
+            condition: 0,
+            channels: vec![recorded(0), recorded(1), recorded(2)],
+            cycles: (0..8).map(cycle).collect(),
+            held_out: false,
+            stated: Stated::default(),
+        };
+        record.channels[1].held_out = true;
+        let whole = record.cycle_variance();
+        let Split {
+            fitted,
+            cycles,
+            channels,
+        } = record.split();
+        let names = |record: &Record| -> Vec<usize> {
+            record.channels.iter().map(|own| own.curve).collect()
+        };
+        assert_eq!((names(&fitted), names(&cycles)), (vec![0, 2], vec![0, 2]));
+        assert_eq!(names(&channels), [1]);
+        let sizes = [&fitted, &cycles, &channels].map(|part| part.cycles.len());
+        assert_eq!(sizes, [6, 2, 8]);
+        assert_eq!(cycles.cycles[0], [vec![6.0, 0.0], vec![26.0, 0.0]]);
+        // how much a cycle scatters is known from all of them
+        assert_eq!(fitted.cycle_variance(), [whole[0], whole[2]]);
+        assert_eq!(record.part(0..2).split().cycles.cycles.len(), 0);
     }
 }

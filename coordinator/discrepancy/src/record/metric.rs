@@ -1,48 +1,153 @@
 //! The metric in which everything is fitted and tested: residuals in units of their own
 //! uncertainty.
 //!
-//! The coefficients of all channels at one order of the crank are divided by the Cholesky factor of
-//! their covariance; what the measured input may be wrong by (load scale, crank angle) is
+//! The entries of all channels of a group at one place of their basis (an order of the period, a sample)
+//! are divided by the Cholesky factor of their covariance; what the measured input may be wrong by is
 //! marginalised: with nuisance columns N of standard deviations T, `(I + N T^2 N^T)^(-1/2)` is
 //! applied on top. Every entry of a residual that is noise alone then has variance 1.
+use crate::record::basis::{Group, smoothed};
+use crate::record::bins::{Bins, along};
 use crate::record::measured::Curves;
-use crate::record::spectrum::Orders;
+use crate::record::noise::Noise;
+use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
+
+type C = Complex<f64>;
 
 /// Whitening of curves.
 #[derive(Clone, Debug)]
 pub struct Metric {
-    orders: Orders,
+    blocks: Vec<Block>,
     channels: usize,
-    /// Inverse Cholesky factors, order by order.
-    factors: Vec<DMatrix<Complex<f64>>>,
     /// Orthonormal directions and by how much each is shortened.
     shrunk: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
-impl Metric {
-    /// From the covariance of the mean coefficients at each order; `channels` x `channels`,
-    /// Hermitian. A covariance that is not positive definite leaves its order out.
-    pub fn new(orders: Orders, channels: usize, covariances: &[DMatrix<Complex<f64>>]) -> Self {
-        let nothing = || DMatrix::zeros(channels, channels);
-        let factor = |covariance: &DMatrix<Complex<f64>>| {
-            let lower = covariance.clone().cholesky()?.unpack();
-            lower.solve_lower_triangular(&DMatrix::identity(channels, channels))
-        };
-        Self {
-            factors: covariances
-                .iter()
-                .map(|s| factor(s).unwrap_or_else(nothing))
-                .collect(),
-            orders,
-            channels,
-            shrunk: None,
+/// A group of channels and its part of a whitened vector: place, channel, real and imaginary part.
+#[derive(Clone, Debug)]
+struct Block {
+    group: Group,
+    /// Inverse Cholesky factors, place by place.
+    factors: Vec<DMatrix<C>>,
+    /// Where its part begins.
+    begin: usize,
+}
+
+impl Block {
+    fn rows(&self) -> usize {
+        self.group.channels.len()
+    }
+
+    fn parts(&self) -> usize {
+        self.group.basis.parts()
+    }
+
+    /// What a part of an entry of variance 1 is multiplied by to have variance 1 itself.
+    fn scale(&self) -> f64 {
+        if self.parts() == 2 {
+            // a circular complex variable of variance 1 has parts of variance 1/2
+            std::f64::consts::SQRT_2
+        } else {
+            1.0
         }
     }
 
-    /// Orders and channels.
-    pub const fn orders(&self) -> &Orders {
-        &self.orders
+    fn len(&self) -> usize {
+        self.parts() * self.rows() * self.factors.len()
+    }
+
+    /// Where an entry begins in a whitened vector.
+    fn at(&self, place: usize, row: usize) -> usize {
+        self.begin + self.parts() * (place * self.rows() + row)
+    }
+
+    /// An entry of a whitened vector.
+    fn entry(&self, whitened: &DVector<f64>, place: usize, row: usize) -> C {
+        let at = self.at(place, row);
+        let imaginary = if self.parts() == 2 {
+            whitened[at + 1]
+        } else {
+            0.0
+        };
+        Complex::new(whitened[at], imaginary)
+    }
+
+    /// All entries of a channel, by its place in the group.
+    fn entries(&self, whitened: &DVector<f64>, row: usize) -> Vec<C> {
+        let places = 0..self.factors.len();
+        places
+            .map(|place| self.entry(whitened, place, row))
+            .collect()
+    }
+
+    fn whiten(&self, spectra: &Spectra, out: &mut DVector<f64>) {
+        let scale = self.scale();
+        let mut at = self.begin;
+        for (k, factor) in self.factors.iter().enumerate() {
+            for row in 0..self.rows() {
+                let mut sum = Complex::new(0.0, 0.0);
+                for (column, spectrum) in spectra.iter().enumerate().take(row + 1) {
+                    sum += factor[(row, column)] * spectrum[k];
+                }
+                out[at] = scale * sum.re;
+                if self.parts() == 2 {
+                    out[at + 1] = scale * sum.im;
+                }
+                at += self.parts();
+            }
+        }
+    }
+
+    fn colour(&self, whitened: &DVector<f64>, out: &mut Spectra) {
+        for (k, factor) in self.factors.iter().enumerate() {
+            let part = DVector::from_fn(self.rows(), |row, _| {
+                self.entry(whitened, k, row) / self.scale()
+            });
+            let solved = factor.solve_lower_triangular(&part).unwrap_or(part);
+            for (c, f) in self.group.channels.iter().zip(solved.iter()) {
+                out[*c].push(*f);
+            }
+        }
+    }
+
+    /// Standard deviations of a channel's mean entries.
+    fn deviations(&self, row: usize) -> Vec<f64> {
+        let deviation = |factor: &DMatrix<C>| {
+            let lower = factor.clone().try_inverse();
+            let square: f64 = lower.map_or(0.0, |l| l.row(row).iter().map(Complex::norm_sqr).sum());
+            square.sqrt()
+        };
+        self.factors.iter().map(deviation).collect()
+    }
+}
+
+impl Metric {
+    /// From the covariance of the mean entries of groups that hold all channels of a record; Hermitian.
+    /// A covariance that is not positive definite leaves its entry out.
+    pub fn new(groups: &[Group], noise: &Noise) -> Self {
+        let mut begin = 0;
+        let block = |(group, covariances): (&Group, &Vec<DMatrix<C>>)| {
+            let rows = group.channels.len();
+            let factor = |covariance: &DMatrix<C>| {
+                let lower = covariance.clone().cholesky()?.unpack();
+                lower.solve_lower_triangular(&DMatrix::identity(rows, rows))
+            };
+            let factors = covariances.iter();
+            let block = Block {
+                factors: factors
+                    .map(|s| factor(s).unwrap_or_else(|| DMatrix::zeros(rows, rows)))
+                    .collect(),
+                group: group.clone(),
+                begin,
+            };
+            begin += block.len();
+            block
+        };
+        Self {
+            blocks: groups.iter().zip(&noise.covariances).map(block).collect(),
+            channels: groups.iter().map(|group| group.channels.len()).sum(),
+            shrunk: None,
+        }
     }
 
     /// Number of channels.
@@ -50,9 +155,9 @@ impl Metric {
         self.channels
     }
 
-    /// Length of a whitened vector: order, channel, real and imaginary part.
+    /// Length of a whitened vector.
     pub fn len(&self) -> usize {
-        2 * self.channels * self.factors.len()
+        self.blocks.iter().map(Block::len).sum()
     }
 
     /// Whether there is nothing to compare.
@@ -60,52 +165,17 @@ impl Metric {
         self.len() == 0
     }
 
-    /// Order (from 1) and channel of an entry of a whitened vector.
-    pub const fn place(&self, entry: usize) -> (usize, usize) {
-        (1 + entry / (2 * self.channels), entry / 2 % self.channels)
-    }
-
-    /// The whitened coefficient of an order (from 1) and a channel.
-    pub fn coefficient(
-        &self,
-        whitened: &DVector<f64>,
-        order: usize,
-        channel: usize,
-    ) -> Complex<f64> {
-        let at = self.entry(order, channel);
-        Complex::new(whitened[at], whitened[at + 1])
-    }
-
-    /// Where that coefficient begins in a whitened vector.
-    pub const fn entry(&self, order: usize, channel: usize) -> usize {
-        2 * ((order - 1) * self.channels + channel)
+    /// Whether all channels have a period, so that there are low orders and high ones.
+    pub fn is_periodic(&self) -> bool {
+        self.blocks.iter().all(|block| block.group.is_periodic())
     }
 
     /// Curves in units of their uncertainty. Linear: the residual of two curves is the difference of
     /// their images.
     pub fn whiten(&self, curves: &Curves) -> DVector<f64> {
-        let spectra: Vec<Vec<Complex<f64>>> = curves
-            .iter()
-            .map(|curve| self.orders.transform(curve))
-            .collect();
-        self.whiten_spectra(&spectra)
-    }
-
-    /// The same from the coefficients, channel by channel.
-    pub fn whiten_spectra(&self, spectra: &[Vec<Complex<f64>>]) -> DVector<f64> {
         let mut out = DVector::zeros(self.len());
-        let mut at = 0;
-        for (k, factor) in self.factors.iter().enumerate() {
-            for row in 0..self.channels {
-                let mut sum = Complex::new(0.0, 0.0);
-                for (column, spectrum) in spectra.iter().enumerate().take(row + 1) {
-                    sum += factor[(row, column)] * spectrum[k];
-                }
-                // a circular complex variable of variance 1 has parts of variance 1/2
-                out[at] = std::f64::consts::SQRT_2 * sum.re;
-                out[at + 1] = std::f64::consts::SQRT_2 * sum.im;
-                at += 2;
-            }
+        for block in &self.blocks {
+            block.whiten(&block.group.transform(curves), &mut out);
         }
         self.shorten(&mut out);
         out
@@ -124,37 +194,89 @@ impl Metric {
         self.shrunk = Some((u, lost));
     }
 
-    /// Coefficients whose image a whitened vector is, by channel; what was marginalised stays
-    /// shortened.
-    pub fn colour(&self, whitened: &DVector<f64>) -> Vec<Vec<Complex<f64>>> {
-        let channels = self.channels();
-        let mut out = vec![Vec::with_capacity(self.orders().highest()); channels];
-        for (k, factor) in self.factors.iter().enumerate() {
-            let part = DVector::from_fn(channels, |c, _| {
-                self.coefficient(whitened, k + 1, c) / std::f64::consts::SQRT_2
-            });
-            let solved = factor.solve_lower_triangular(&part).unwrap_or(part);
-            for (curve, f) in out.iter_mut().zip(solved.iter()) {
-                curve.push(*f);
+    /// Entries whose image a whitened vector is, by channel; what was marginalised stays shortened.
+    pub fn colour(&self, whitened: &DVector<f64>) -> Spectra {
+        let mut out = vec![Vec::new(); self.channels];
+        for block in &self.blocks {
+            block.colour(whitened, &mut out);
+        }
+        out
+    }
+
+    /// Entries of curves, by channel.
+    pub fn entries(&self, curves: &Curves) -> Spectra {
+        self.by_channel(|block, row| {
+            let curve = &curves[block.group.channels[row]];
+            block.group.basis.transform(row, curve)
+        })
+    }
+
+    /// The change of curves per unit of their abscissas.
+    pub(crate) fn slopes(&self, curves: &Curves) -> Curves {
+        self.by_channel(|block, row| block.group.slope(&curves[block.group.channels[row]]))
+    }
+
+    /// Root mean square of the curve of each channel's entries, in the channel's unit.
+    pub fn rms(&self, spectra: &Spectra) -> Vec<f64> {
+        self.by_channel(|block, row| {
+            block
+                .group
+                .basis
+                .rms(row, &spectra[block.group.channels[row]])
+        })
+    }
+
+    /// Standard error of the record's mean, root mean square along each channel, in its unit.
+    pub fn standard_error(&self) -> Vec<f64> {
+        self.by_channel(|block, row| block.group.basis.deviation(&block.deviations(row)))
+    }
+
+    /// The waves of a whitened vector, by channel, lowest first: parts of variance 1 where it is noise.
+    /// Orders of the period where a channel has one, else waves of its samples.
+    pub fn waves(&self, whitened: &DVector<f64>) -> Spectra {
+        self.by_channel(|block, row| block.group.basis.waves(block.entries(whitened, row)))
+    }
+
+    /// A whitened vector along each channel's abscissa, in the channel's bins.
+    pub fn along(&self, whitened: &DVector<f64>) -> Vec<Vec<f64>> {
+        self.by_channel(|block, row| along(&block.group, &block.entries(whitened, row)))
+    }
+
+    /// The abscissas' bins, by channel.
+    pub fn bins(&self) -> Vec<Bins> {
+        self.by_channel(|block, _| Bins::of(&block.group))
+    }
+
+    /// For each entry of a whitened vector the mean power, in variances of noise, of those about it.
+    pub fn powers(&self, whitened: &DVector<f64>) -> DVector<f64> {
+        let mut out = DVector::zeros(self.len());
+        for block in &self.blocks {
+            let parts = block.parts();
+            for row in 0..block.rows() {
+                let entries = block.entries(whitened, row);
+                let powers: Vec<f64> = entries
+                    .iter()
+                    .map(|e| e.norm_sqr() / parts as f64)
+                    .collect();
+                for (place, power) in smoothed(&block.group.basis, &powers).iter().enumerate() {
+                    let at = block.at(place, row);
+                    out.rows_mut(at, parts).fill(*power);
+                }
             }
         }
         out
     }
 
-    /// Standard deviation of every channel's mean coefficient, by channel and order.
-    pub fn deviations(&self) -> Vec<Vec<f64>> {
-        let channels = self.channels();
-        let mut out = vec![Vec::new(); channels];
-        for factor in &self.factors {
-            let lower = factor.clone().try_inverse();
-            for (c, row) in out.iter_mut().enumerate() {
-                let square = lower
-                    .as_ref()
-                    .map_or(0.0, |l| l.row(c).iter().map(Complex::norm_sqr).sum());
-                row.push(square.sqrt());
-            }
-        }
-        out
+    /// Something of every channel, in the record's order.
+    fn by_channel<T>(&self, of: impl Fn(&Block, usize) -> T) -> Vec<T> {
+        let of = &of;
+        let each = self.blocks.iter().flat_map(|block| {
+            let channels = block.group.channels.iter().enumerate();
+            channels.map(move |(row, channel)| (*channel, of(block, row)))
+        });
+        let mut each: Vec<(usize, T)> = each.collect();
+        each.sort_by_key(|(channel, _)| *channel);
+        each.into_iter().map(|(_, own)| own).collect()
     }
 
     fn shorten(&self, x: &mut DVector<f64>) {
@@ -168,6 +290,23 @@ impl Metric {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::basis::Basis;
+    use crate::record::noise::Known;
+    use crate::record::spectrum::Orders;
+    use protocol::case::Abscissa;
+
+    fn group() -> Group {
+        Group {
+            channels: vec![0, 1],
+            abscissa: Abscissa {
+                name: "phase".to_owned(),
+                unit: "deg".to_owned(),
+                points: (0..24).map(|i| 15.0 * f64::from(i)).collect(),
+                period: Some(360.0),
+            },
+            basis: Basis::Orders(Orders::new(24, 3)),
+        }
+    }
 
     fn metric() -> Metric {
         let covariance = |k: usize| {
@@ -183,8 +322,12 @@ mod tests {
                 ],
             )
         };
-        let covariances: Vec<_> = (0..3).map(covariance).collect();
-        Metric::new(Orders::new(24, 3), 2, &covariances)
+        let noise = Noise {
+            covariances: vec![(0..3).map(covariance).collect()],
+            known: Known::Stated,
+            freedom: f64::INFINITY,
+        };
+        Metric::new(&[group()], &noise)
     }
 
     #[test]
@@ -211,13 +354,16 @@ mod tests {
                     Complex::new(2.0, 0.0),
                 ],
             );
-            let f = DVector::from_fn(2, |c, _| metric.orders().coefficient(&curves[c], k + 1));
+            let orders = Orders::new(24, 3);
+            let f = DVector::from_fn(2, |c, _| orders.coefficient(&curves[c], k + 1));
             let solved = covariance.lu().solve(&f).unwrap();
             expected += 2.0 * f.dotc(&solved).re;
         }
         assert!((whitened.norm_squared() - expected).abs() < 1e-9 * expected);
-        assert_eq!(metric.place(0), (1, 0));
-        assert_eq!(metric.place(7), (2, 1));
+        // coloured again, they are the curves' own entries
+        for (back, own) in metric.colour(&whitened).iter().zip(metric.entries(&curves)) {
+            assert!(back.iter().zip(&own).all(|(a, b)| (a - b).norm() < 1e-9));
+        }
     }
 
     #[test]

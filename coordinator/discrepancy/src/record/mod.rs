@@ -1,11 +1,15 @@
 //! What was measured, cycle by cycle, and the units in which it counts: the noise of the record and
 //! the metric that follows from it. It knows no effect.
+pub mod basis;
+pub(crate) mod bins;
 pub(crate) mod measured;
 pub mod metric;
 pub mod noise;
+pub(crate) mod nuisance;
+pub mod samples;
+pub(crate) mod scatter;
 pub mod spectrum;
-pub(crate) mod tolerance;
 pub mod whitened;
 
-pub use measured::{Curves, Record, Recorded, Stated, mean_of};
-pub use tolerance::Tolerance;
+pub use measured::{Curves, Record, Recorded, Split, Stated, mean_of};
+pub use nuisance::Nuisance;

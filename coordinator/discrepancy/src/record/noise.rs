@@ -1,199 +1,162 @@
 //! The noise of a record, from the scatter between its cycles.
 //!
 //! Deviations of the cycles from their mean, with the input's known scatter regressed out, give the
-//! covariance of the channels at every order, smoothed over neighbouring orders and shrunk towards
-//! its diagonal as far as the few cycles demand (DISCOVERY: noise model). With one cycle there is no
-//! scatter: then the orders above those that are compared, and the data sheet, stand for it, and
-//! everything that follows is marked as resting on assumed noise.
+//! covariance of the channels at every entry of their basis, smoothed over neighbouring entries and
+//! shrunk towards its diagonal as far as the few cycles demand (DISCOVERY: noise model). With one cycle
+//! there is no scatter: then what the channels state, and what no smooth curve does, stand for it, and
+//! everything that follows is marked as resting on that.
+use crate::record::basis::{Basis, Group, smoothed};
 use crate::record::measured::Record;
-use crate::record::spectrum::Orders;
+use crate::record::scatter::unexplained;
+use crate::record::spectrum::{Orders, Spectra};
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
 
-/// Covariance of the mean coefficients.
-#[derive(Clone, Debug)]
-pub struct Noise {
-    /// Order by order, channels x channels, of the mean over the cycles.
-    pub covariances: Vec<DMatrix<C>>,
-    /// Whether it was assumed rather than seen.
-    pub assumed: bool,
-    /// Degrees of freedom behind a variance, of the least well known order; infinite where assumed.
-    pub freedom: f64,
+/// How a record's noise is known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Known {
+    /// Its cycles scatter.
+    Seen,
+    /// Every channel states it.
+    Stated,
+    /// There is one cycle, and some channel states nothing: it was guessed from the roughness of the curve.
+    Guessed,
 }
 
-/// Half-width of the smoothing over orders.
-fn reach(order: usize) -> usize {
-    match order {
-        0..=5 => 2,
-        6..=20 => 3,
-        21..=60 => 6,
-        _ => 12,
+impl Known {
+    /// Whether cycles have shown it.
+    pub const fn is_seen(self) -> bool {
+        matches!(self, Self::Seen)
     }
+}
+
+/// Covariance of the mean entries.
+#[derive(Clone, Debug)]
+pub struct Noise {
+    /// Group by group and entry by entry, channels x channels, of the mean over the cycles.
+    pub covariances: Vec<Vec<DMatrix<C>>>,
+    /// How it is known.
+    pub known: Known,
+    /// Degrees of freedom behind a variance, of the least well known entry; infinite where it was not seen.
+    pub freedom: f64,
 }
 
 impl Noise {
     /// From a record; `inputs` are curves by which cycles may differ because their input did (per
     /// unit of that input), channel by channel.
-    pub fn estimate(record: &Record, orders: &Orders, inputs: &[Vec<Vec<C>>]) -> Self {
+    pub fn estimate(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
         if record.cycles.len() < 2 {
-            return Self::assume(record, orders);
+            let stated = |c: usize| record.noise(c).is_some();
+            let known = if (0..record.channels.len()).all(stated) {
+                Known::Stated
+            } else {
+                Known::Guessed
+            };
+            let assume = |group| assumed(record, group);
+            return Self {
+                covariances: groups.iter().map(assume).collect(),
+                known,
+                freedom: f64::INFINITY,
+            };
         }
-        let deviations = deviations(record, orders, inputs);
-        let cycles = deviations.len() as f64;
-        let freedom = cycles - 1.0 - inputs.len() as f64 / 10.0;
-        let channels = record.channels.len();
-        let mut least = f64::INFINITY;
-        let covariances = (1..=orders.highest())
-            .map(|order| {
-                let reach = reach(order);
-                let (from, to) = (order.saturating_sub(reach).max(1), order + reach);
-                let mut sum = DMatrix::<C>::zeros(channels, channels);
-                let mut terms = 0.0;
-                for k in from..=to.min(orders.highest()) {
-                    for cycle in &deviations {
-                        let d = DVector::from_fn(channels, |c, _| cycle[c][k - 1]);
-                        sum += &d * d.adjoint();
-                    }
-                    terms += freedom;
-                }
-                least = least.min(2.0 * terms);
-                let single = sum / C::from(terms);
-                shrink(single, terms) / C::from(cycles)
-            })
-            .collect();
+        let seen = groups.iter().map(|group| seen(record, group, inputs));
+        let (covariances, freedoms): (Vec<_>, Vec<f64>) = seen.unzip();
         Self {
             covariances,
-            assumed: false,
-            freedom: least,
+            known: Known::Seen,
+            freedom: freedoms.into_iter().fold(f64::INFINITY, f64::min),
         }
     }
 
-    /// White above the compared orders, and at least what the data sheet says.
-    fn assume(record: &Record, orders: &Orders) -> Self {
-        let n = orders.samples();
-        let all = Orders::new(n, n / 2);
-        let variance = |channel: usize| -> f64 {
-            let curve = record
-                .cycles
-                .first()
-                .map_or(&[][..], |cycle| &cycle[channel]);
-            let above = orders.highest() + 1..=n / 2;
-            let count = above.clone().count().max(1) as f64;
-            let seen: f64 = above.map(|k| all.coefficient(curve, k).norm_sqr()).sum();
-            let stated = record.channels[channel].channel.noise.unwrap_or(0.0);
-            (seen / count).max(stated * stated / n as f64)
-        };
-        let variances: Vec<f64> = (0..record.channels.len()).map(variance).collect();
-        let rho = record.stated.noise_correlation;
-        let covariances = (1..=orders.highest())
-            .map(|order| {
+    /// Adds an error whose entries are known (numerical error of the model, say), by channel, smoothed over
+    /// neighbours and taken as independent between channels.
+    pub fn add_error(&mut self, groups: &[Group], spectra: &[Vec<C>]) {
+        for (group, covariances) in groups.iter().zip(&mut self.covariances) {
+            for (row, &channel) in group.channels.iter().enumerate() {
+                let powers: Vec<f64> = spectra[channel].iter().map(C::norm_sqr).collect();
+                let means = smoothed(&group.basis, &powers);
+                for (covariance, mean) in covariances.iter_mut().zip(means) {
+                    covariance[(row, row)] += C::from(mean);
+                }
+            }
+        }
+    }
+}
+
+/// From the scatter between cycles, with the degrees of freedom of the least well known variance.
+fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatrix<C>>, f64) {
+    let basis = &group.basis;
+    let of = |curves: &Vec<Vec<f64>>| group.transform(curves);
+    let inputs: Vec<Spectra> = inputs.iter().map(of).collect();
+    let deviations = unexplained(record.cycles.iter().map(of).collect(), &inputs);
+    let cycles = deviations.len() as f64;
+    let freedom = cycles - 1.0 - inputs.len() as f64 / 10.0;
+    let (channels, parts) = (group.channels.len(), basis.parts() as f64);
+    let mut least = f64::INFINITY;
+    let covariances = (0..basis.places())
+        .map(|place| {
+            let reach = basis.reach(place);
+            let (from, to) = (place.saturating_sub(reach), place + reach);
+            let mut sum = DMatrix::<C>::zeros(channels, channels);
+            let mut terms = 0.0;
+            for k in from..=to.min(basis.places() - 1) {
+                for cycle in &deviations {
+                    let d = DVector::from_fn(channels, |c, _| cycle[c][k]);
+                    sum += &d * d.adjoint();
+                }
+                terms += freedom;
+            }
+            least = least.min(parts * terms);
+            let single = sum / C::from(terms);
+            shrink(single, 0.5 * parts * terms) / C::from(cycles)
+        })
+        .collect();
+    (covariances, least)
+}
+
+/// As stated, or as the curve is rougher than anything smooth, whichever is more.
+fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
+    let rho = record.stated.noise_correlation;
+    let variance = |c: &usize| {
+        let curve = record.cycles.first().map_or(&[][..], |cycle| &cycle[*c]);
+        let stated = record.noise(*c).unwrap_or(0.0);
+        match &group.basis {
+            Basis::Orders(orders) => {
+                let n = orders.samples();
+                let all = Orders::new(n, n / 2);
+                let above = orders.highest() + 1..=n / 2;
+                let count = above.clone().count().max(1) as f64;
+                let seen: f64 = above.map(|k| all.coefficient(curve, k).norm_sqr()).sum();
+                (seen / count).max(stated * stated / n as f64)
+            }
+            // a third difference of independent values has twenty times their variance
+            Basis::Samples(_) => {
+                let third = curve
+                    .windows(4)
+                    .map(|y| y[0] - 3.0 * y[1] + 3.0 * y[2] - y[3]);
+                let count = third.len().max(1) as f64;
+                let seen: f64 = third.map(|d| d * d / 20.0).sum();
+                (seen / count).max(stated * stated)
+            }
+        }
+    };
+    let variances: Vec<f64> = group.channels.iter().map(variance).collect();
+    let at = |place: usize| {
+        let shape = match &group.basis {
+            Basis::Orders(orders) => {
                 // a first-order process is stronger at low orders
-                let turn = std::f64::consts::TAU * order as f64 / n as f64;
-                let shape = (1.0 - rho * rho) / (1.0 - 2.0 * rho * libm::cos(turn) + rho * rho);
-                DMatrix::from_diagonal(&DVector::from_iterator(
-                    variances.len(),
-                    variances.iter().map(|v| C::from(v * shape.max(1.0))),
-                ))
-            })
-            .collect();
-        Self {
-            covariances,
-            assumed: true,
-            freedom: f64::INFINITY,
-        }
-    }
-
-    /// Adds an error of known spectrum (numerical error of the model, say), smoothed over orders and
-    /// taken as independent between channels.
-    pub fn add_error(&mut self, spectra: &[Vec<C>]) {
-        for (channel, spectrum) in spectra.iter().enumerate() {
-            let powers: Vec<f64> = spectrum.iter().map(C::norm_sqr).collect();
-            for (covariance, mean) in self.covariances.iter_mut().zip(smoothed(&powers)) {
-                covariance[(channel, channel)] += C::from(mean);
+                let turn = std::f64::consts::TAU * (place + 1) as f64 / orders.samples() as f64;
+                ((1.0 - rho * rho) / (1.0 - 2.0 * rho * libm::cos(turn) + rho * rho)).max(1.0)
             }
-        }
-    }
-}
-
-/// Powers by order, from 1 on, each the mean over its neighbours.
-pub(crate) fn smoothed(powers: &[f64]) -> Vec<f64> {
-    let highest = powers.len();
-    let mean = |order: usize| {
-        let reach = reach(order);
-        let (from, to) = (
-            order.saturating_sub(reach).max(1),
-            (order + reach).min(highest),
-        );
-        powers[from - 1..to].iter().sum::<f64>() / (to + 1 - from) as f64
+            Basis::Samples(_) => 1.0,
+        };
+        DMatrix::from_diagonal(&DVector::from_iterator(
+            variances.len(),
+            variances.iter().map(|v| C::from(v * shape)),
+        ))
     };
-    (1..=highest).map(mean).collect()
-}
-
-/// Deviations of the cycles' coefficients from their mean, less what the inputs explain; cycle,
-/// channel, order.
-fn deviations(record: &Record, orders: &Orders, inputs: &[Vec<Vec<C>>]) -> Vec<Vec<Vec<C>>> {
-    let cycles: Vec<Vec<Vec<C>>> = record
-        .cycles
-        .iter()
-        .map(|cycle| cycle.iter().map(|curve| orders.transform(curve)).collect())
-        .collect();
-    let n = cycles.len() as f64;
-    let channels = record.channels.len();
-    let mean = |c: usize, k: usize| cycles.iter().map(|cycle| cycle[c][k]).sum::<C>() / C::from(n);
-    let means: Vec<Vec<C>> = (0..channels)
-        .map(|c| (0..orders.highest()).map(|k| mean(c, k)).collect())
-        .collect();
-    cycles
-        .into_iter()
-        .map(|mut cycle| {
-            for (curve, mean) in cycle.iter_mut().zip(&means) {
-                for (f, mean) in curve.iter_mut().zip(mean) {
-                    *f -= mean;
-                }
-            }
-            regress_out(&mut cycle, inputs, &means);
-            cycle
-        })
-        .collect()
-}
-
-/// Subtracts the best combination of the inputs, each channel weighted by its own size.
-fn regress_out(cycle: &mut [Vec<C>], inputs: &[Vec<Vec<C>>], means: &[Vec<C>]) {
-    if inputs.is_empty() {
-        return;
-    }
-    let weights: Vec<f64> = means
-        .iter()
-        .map(|mean| {
-            1.0 / mean
-                .iter()
-                .map(C::norm_sqr)
-                .sum::<f64>()
-                .max(f64::MIN_POSITIVE)
-        })
-        .collect();
-    let dot = |a: &[Vec<C>], b: &[Vec<C>]| -> f64 {
-        let channels = a.iter().zip(b).zip(&weights);
-        channels
-            .map(|((a, b), w)| w * a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum::<f64>())
-            .sum()
-    };
-    let matrix = DMatrix::from_fn(inputs.len(), inputs.len(), |i, j| {
-        dot(&inputs[i], &inputs[j])
-    });
-    let right = DVector::from_fn(inputs.len(), |i, _| dot(&inputs[i], cycle));
-    let Some(factor) = matrix.cholesky() else {
-        return;
-    };
-    let amounts = factor.solve(&right);
-    for (input, amount) in inputs.iter().zip(amounts.iter()) {
-        for (curve, input) in cycle.iter_mut().zip(input) {
-            for (f, input) in curve.iter_mut().zip(input) {
-                *f -= input * C::from(*amount);
-            }
-        }
-    }
+    (0..group.basis.places()).map(at).collect()
 }
 
 /// Towards the diagonal: hardly with many terms, wholly with few.

@@ -1,15 +1,18 @@
-//! Fourier coefficients of curves over one turn: orders of the crank.
+//! Fourier coefficients of curves over one period: its orders.
 //!
 //! `F_h = (1/n) sum_i y_i exp(-i h phi_i)`, so the mean square of a curve about its mean is
 //! `2 sum_h |F_h|^2`.
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
-/// Sines and cosines of a grid of equally spaced crank angles, from 0 on, without 360 deg.
+/// Entries of curves in their coordinates, channel by channel.
+pub type Spectra = Vec<Vec<Complex<f64>>>;
+
+/// Sines and cosines of a grid of equally spaced phases, from 0 on, without the end of the period.
 #[derive(Clone, Debug)]
 pub struct Orders {
     highest: usize,
-    /// Unit vectors `exp(-i phi)` at the grid's angles.
+    /// Unit vectors `exp(-i phi)` at the grid's phases.
     turn: Vec<Complex<f64>>,
 }
 

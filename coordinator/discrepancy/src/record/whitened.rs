@@ -1,8 +1,8 @@
 //! A record in the metric in which it counts: what every simulation is compared with.
+use crate::record::basis::Group;
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
-use crate::record::spectrum::Orders;
 use nalgebra::DVector;
 use protocol::pumping_unit::Discretisation;
 
@@ -31,10 +31,10 @@ impl WhitenedRecord {
         }
     }
 
-    /// A record under a metric of its own noise at some orders, without errors of its inputs.
-    pub fn under_own_noise(record: Record, orders: Orders, discretisation: Discretisation) -> Self {
-        let noise = Noise::estimate(&record, &orders, &[]);
-        let metric = Metric::new(orders, record.channels.len(), &noise.covariances);
+    /// A record under a metric of its own noise up to an order, without errors of its inputs.
+    pub fn under_own_noise(record: Record, highest: usize, discretisation: Discretisation) -> Self {
+        let groups = Group::of(&record, highest, &[]);
+        let metric = Metric::new(&groups, &Noise::estimate(&record, &groups, &[]));
         Self::new(record, metric, discretisation)
     }
 

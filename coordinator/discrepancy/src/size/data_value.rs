@@ -49,6 +49,7 @@ pub(crate) async fn weigh<L: Laboratory>(
     limits: &[Limit],
 ) -> Result<Vec<LookAlikes>, L::Error> {
     let (base, others) = (&session.base.on, session.inputs.others());
+    let highest = session.inputs.thresholds.orders;
     let visible = round.suspects.iter();
     let visible: Vec<Visible<'_>> = visible
         .filter_map(|suspect| {
@@ -67,9 +68,8 @@ pub(crate) async fn weigh<L: Laboratory>(
     }
     let (mut jacobian, mut signatures) = (at.jacobian.clone(), here);
     let mut joined = false;
-    for record in others.iter().filter(|record| !record.cycles.is_empty()) {
-        let orders = base.metric.orders().clone();
-        let other = WhitenedRecord::under_own_noise(record.clone(), orders, base.discretisation);
+    for record in others.filter(|record| !record.cycles.is_empty()) {
+        let other = WhitenedRecord::under_own_noise(record.clone(), highest, base.discretisation);
         let mut experiments = session.experiments(Stage::What);
         let Some(seen) = linearized(&mut experiments.with(&other), fit, &visible).await? else {
             continue;

@@ -12,6 +12,7 @@
     clippy::repeat_vec_with_capacity,
     reason = "a stand-in machine with known, small numbers and ASCII names"
 )]
+mod by_sample;
 mod case;
 mod composed;
 mod data_value;

@@ -10,10 +10,10 @@ use discrepancy::model::{Model, Point, probe};
 use discrepancy::place::residual::Residual;
 use discrepancy::place::wander::Wander;
 use discrepancy::place::whereabouts::Where;
-use discrepancy::place::{angle, joint, order};
+use discrepancy::place::{along, joint, order};
+use discrepancy::record::basis::Group;
 use discrepancy::record::metric::Metric;
 use discrepancy::record::noise::Noise;
-use discrepancy::record::spectrum::Orders;
 use discrepancy::record::{Curves, Record, mean_of};
 use nalgebra::{DMatrix, DVector};
 use protocol::pumping_unit::Discretisation;
@@ -83,16 +83,16 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     let at = simulate(&plain(&truth.genes));
     let slopes = slopes(&truth.genes);
     let variables = model.variables(&truth.genes);
-    let orders = Orders::new(at[0].len(), ORDERS);
     let template = record(&truth, 0, &ALL, 6);
     let clean = mean_of(&[&at]);
     let latents = latents(&truth.genes, &at);
-    let (mut angles, mut peaks, mut joints, mut clear) = (0, 0, 0, 0);
+    let (mut windows, mut peaks, mut joints, mut clear) = (0, 0, 0, 0);
     for set in 0..sets {
         // noise of its own: cycles of a machine whose curves are the model's
         let noisy = noise_of(&truth, set, &clean, &template);
-        let noise = Noise::estimate(&noisy, &orders, &[]);
-        let metric = Metric::new(orders.clone(), ALL.len(), &noise.covariances);
+        let groups = Group::of(&noisy, ORDERS, &[]);
+        let noise = Noise::estimate(&noisy, &groups, &[]);
+        let metric = Metric::new(&groups, &noise);
         let (residual, tangent) = linear_fit(&noisy, &metric, &at, &slopes, &variables);
         let measured = metric.whiten(&noisy.mean());
         let cycles = noisy.cycles.iter();
@@ -104,15 +104,15 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
             metric: &metric,
             tangent: &tangent,
         };
-        let angle = angle::map(&all, &deviations, 200, 0.05);
-        angles += usize::from(!angle.windows.is_empty());
+        let along = along::map(&all, &deviations, 200, 0.05);
+        windows += usize::from(!along.windows.is_empty());
         let order = order::map(&all, noise.freedom, 0.05);
         peaks += usize::from(!order.peaks.is_empty());
         let seen: Vec<joint::Latent> = latents.iter().map(|l| l.seen(&metric)).collect();
         let ranked = joint::rank(&seen, &residual, &tangent);
         joints += usize::from(ranked[0].log_bayes > 20_f64.ln());
         let seen = Where {
-            angle,
+            along,
             order,
             equivalent: joint::indistinguishable(&ranked, 1.0),
             joints: ranked,
@@ -121,16 +121,16 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
     }
     let share = |count: usize| 100.0 * count as f64 / sets as f64;
     say(&format!(
-        "false maps: angle {:.1} %, order {:.1} %, joint {:.1} %; angle or order at level 1 %: {:.1} %",
-        share(angles),
+        "false maps: along {:.1} %, order {:.1} %, joint {:.1} %; along or order at level 1 %: {:.1} %",
+        share(windows),
         share(peaks),
         share(joints),
         share(clear)
     ));
-    for found in [angles, peaks] {
+    for found in [windows, peaks] {
         assert!(
             (1.0..=8.0).contains(&share(found)),
-            "{angles} {peaks} of {sets}"
+            "{windows} {peaks} of {sets}"
         );
     }
     assert!(share(joints) <= 8.0, "{joints} of {sets}");
@@ -214,10 +214,9 @@ fn scores_do_not_see_what_recalibration_explains() {
         .into_iter()
         .map(|v| Variable { prior: None, ..v })
         .collect();
-    let orders = Orders::new(at[0].len(), ORDERS);
     let measured = record(&truth, 0, &ALL, 6);
-    let noise = Noise::estimate(&measured, &orders, &[]);
-    let metric = Metric::new(orders, ALL.len(), &noise.covariances);
+    let groups = Group::of(&measured, ORDERS, &[]);
+    let metric = Metric::new(&groups, &Noise::estimate(&measured, &groups, &[]));
     let (residual, tangent) = linear_fit(&measured, &metric, &at, &slopes, &variables);
     // a tenth of a decade of the back rope's damping and of the contact's
     let moved = [4, 8].iter().fold(residual.clone(), |sum, &k| {

@@ -5,6 +5,8 @@ use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::{Diagnosis, Round};
 use discrepancy::model::Fit;
+use discrepancy::proof::compare::Portion;
+use discrepancy::record::noise::Known;
 use discrepancy::verdict::Verdict;
 
 /// A few truths of every sort.
@@ -113,15 +115,10 @@ fn one_cycle_only_carries_no_name() {
     let mut quiet = 0;
     for seed in 0..8 {
         let (answer, _) = diagnosed(&Truth::healthy(8000 + seed), &setup);
-        assert!(answer.assumed_noise);
+        assert_eq!(answer.noise, Known::Stated);
         withheld(&answer);
         quiet += usize::from(answer.verdict == Verdict::NothingDetected);
-        assert!(
-            answer
-                .rows
-                .iter()
-                .all(|row| row.fitted || row.condition == 1)
-        );
+        assert!(answer.rows.iter().all(|row| row.part != Portion::Cycles));
     }
     assert!(quiet >= 7, "{quiet} of 8");
     let id = &named()[1].id;
@@ -216,7 +213,7 @@ fn a_named_effect_closes_the_gap_where_nothing_was_fitted() {
         .iter()
         .find(|row| row.condition == 1)
         .expect("a row of the other condition");
-    assert!(!other.fitted);
+    assert_eq!(other.part, Portion::Condition);
     let interval = other.closed.interval.expect("four cycles");
     assert!(interval[0] > 0.0, "{:?}", other.closed);
     assert!(other.closed.closed > 0.5, "{:?}", other.closed);

@@ -87,11 +87,17 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
                 .collect(),
         ),
         usual: Discretisation::default(),
-        finer: Discretisation {
-            cylinder_length_m: Some(0.025),
-            longest_step_s: Some(0.01),
+        finer: [
+            (Some(0.025), Some(0.01)),
+            (Some(0.025), None),
+            (None, Some(0.01)),
+        ]
+        .map(|(cylinder_length_m, longest_step_s)| Discretisation {
+            cylinder_length_m,
+            longest_step_s,
             ..Discretisation::default()
-        },
+        })
+        .to_vec(),
         seed: 1,
         thresholds: setup.thresholds.clone(),
     };

@@ -1,7 +1,7 @@
 //! The machine as it really is: marched through time, with other laws than the tool knows, and the
 //! sensors that read it. Shares the data sheet with the tool's machine and not one line of code.
 use crate::case::{RECOMMENDED, SAMPLES, SPEED, card};
-use discrepancy::record::{Curves, Record, Recorded, Stated};
+use discrepancy::record::{Curves, Nuisance, Record, Recorded, Stated};
 use protocol::case::{Abscissa, Channel};
 use search::random::{Phase, Stream, Streams};
 use std::f64::consts::TAU;
@@ -383,6 +383,7 @@ pub(crate) fn recorded(curve: usize, noise: Option<f64>) -> Recorded {
     Recorded {
         curve,
         scored: curve < 4,
+        held_out: false,
         channel,
     }
 }
@@ -403,9 +404,17 @@ pub(crate) fn record(truth: &Truth, condition: usize, channels: &[usize], cycles
         condition,
         channels: channels.iter().map(wanted).collect(),
         cycles,
+        held_out: false,
         stated: Stated {
-            load_scatter: LOAD_SCATTER,
-            angle_tolerance_deg: ANGLE_TOLERANCE_DEG,
+            nuisances: vec![
+                Nuisance::Abscissa {
+                    tolerance: ANGLE_TOLERANCE_DEG,
+                },
+                Nuisance::Effect {
+                    id: "load_cell_gain".to_owned(),
+                    deviation: LOAD_SCATTER,
+                },
+            ],
             noise_correlation: CORRELATION,
             ..Stated::default()
         },

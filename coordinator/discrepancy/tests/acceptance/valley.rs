@@ -10,7 +10,6 @@ use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::{Laboratory, Stage};
 use discrepancy::model::experiments::Experiments;
 use discrepancy::model::{Fit, Model, Point};
-use discrepancy::record::spectrum::Orders;
 use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Stated};
 use discrepancy::thresholds::Thresholds;
@@ -165,14 +164,14 @@ fn record(truth: Ringing) -> Record {
         condition: 0,
         channels: (0..4).map(|c| recorded(c, None)).collect(),
         cycles: (0..8).map(|_| noisy()).collect(),
+        held_out: false,
         stated: Stated::default(),
     }
 }
 
 /// The record under a metric of its own noise.
 fn whole(truth: Ringing) -> WhitenedRecord {
-    let orders = Orders::new(SAMPLES, ORDERS);
-    WhitenedRecord::under_own_noise(record(truth), orders, Discretisation::default())
+    WhitenedRecord::under_own_noise(record(truth), ORDERS, Discretisation::default())
 }
 
 /// Experiments on it.
@@ -200,7 +199,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         library: library(),
         start: None,
         usual: Discretisation::default(),
-        finer: Discretisation::default(),
+        finer: vec![Discretisation::default()],
         seed: 1,
         thresholds: Thresholds {
             draws: 20,
@@ -285,7 +284,12 @@ fn low_orders_see_the_size_that_the_modes_hide() {
         "{:?}",
         all[0].start
     );
-    let found = now(low_orders::likeliest(&mut experiments, &lost, &library));
+    let found = now(low_orders::likeliest(
+        &mut experiments,
+        &lost,
+        &library,
+        ORDERS,
+    ));
     let Point { model, x } = &found[0];
     assert_eq!(model.added[0].id, "card_time_shift");
     assert!((clock(x[3]) / truth.clock - 1.0).abs() < 0.01, "{x:?}");

@@ -9,6 +9,7 @@ mod samples;
 mod sheet;
 #[cfg(test)]
 mod tests;
+mod tolerance;
 
 pub(super) use agreement::Expected;
 pub use agreement::RecordFacts;

@@ -89,6 +89,7 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
             condition: expected.index,
             channels: recorded.collect(),
             cycles: cycles.single,
+            held_out: false,
             stated: sheet.stated(samples.step_deg / expected.step_deg),
         },
         channels,

@@ -4,7 +4,8 @@ use super::super::{
     error::CaseError,
     note::Note,
 };
-use discrepancy::record::{Stated, Tolerance};
+use super::tolerance::Tolerance;
+use discrepancy::record::{Nuisance, Stated};
 use protocol::pumping_unit::{Sensor, TurnSense};
 use serde::Deserialize;
 use std::path::Path;
@@ -118,14 +119,25 @@ impl Sheet {
     /// What the sheet says of the measurement, for channels that are sampled `grid` times as densely
     /// on the output grid as in the record.
     pub(super) fn stated(&self, grid: f64) -> Stated {
+        let positive = |value: &f64| *value > 0.0;
+        let turned = self.crank.index_tolerance_deg.filter(positive);
+        let turned = turned.map(|tolerance| Nuisance::Abscissa { tolerance });
+        let loaded = self.load.cycle_to_cycle_variation.filter(positive);
+        let loaded = loaded.map(|deviation| Nuisance::Effect {
+            id: "load_cell_gain".to_owned(),
+            deviation,
+        });
         Stated {
-            load_scatter: self.load.cycle_to_cycle_variation.unwrap_or(0.0),
-            angle_tolerance_deg: self.crank.index_tolerance_deg.unwrap_or(0.0),
+            nuisances: turned.into_iter().chain(loaded).collect(),
             noise_correlation: self
                 .gauges
                 .noise_correlation_per_sample
                 .map_or(0.0, |rho| libm::pow(rho, 1.0 / grid)),
-            tolerance: self.tolerance,
+            tolerances: self
+                .tolerance
+                .stated()
+                .map(|(name, of)| (name.to_owned(), of))
+                .collect(),
             ..Stated::default()
         }
     }

@@ -133,22 +133,32 @@ fn inputs(
     let machine = Machine::of(case)?;
     let available = machine.modal_head.frequencies_hz.len();
     let thresholds = &manifest.settings.thresholds;
+    let usual = Discretisation {
+        longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
+        ..Discretisation::default()
+    };
+    let finest = Discretisation {
+        cylinder_length_m: Some(machine.ropes.cylinder_length_m * thresholds.refinement),
+        lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
+        modes: Some((machine.run.modes + 2).min(available)),
+        longest_step_s: Some(0.5 * thresholds.step * machine.run.longest_step_s),
+        ..Discretisation::OF_THE_CASE
+    };
+    let cylinders = Discretisation {
+        cylinder_length_m: finest.cylinder_length_m,
+        ..usual
+    };
+    let rest = Discretisation {
+        cylinder_length_m: usual.cylinder_length_m,
+        ..finest
+    };
     Ok(Inputs {
         start: manifest.start_genes().map(|genes| space.point(genes)),
         space,
         records,
         library,
-        usual: Discretisation {
-            longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
-            ..Discretisation::default()
-        },
-        finer: Discretisation {
-            cylinder_length_m: Some(machine.ropes.cylinder_length_m * thresholds.refinement),
-            lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
-            modes: Some((machine.run.modes + 2).min(available)),
-            longest_step_s: Some(0.5 * thresholds.step * machine.run.longest_step_s),
-            ..Discretisation::OF_THE_CASE
-        },
+        usual,
+        finer: vec![finest, cylinders, rest],
         seed: manifest.seed,
         thresholds: thresholds.clone(),
     })

@@ -6,13 +6,13 @@ use super::scale::Scale;
 use crate::report::color::{self, INK};
 use crate::report::document::Figure;
 use crate::report::number::{fixed, range};
-use discrepancy::place::angle::{AngleMap, BINS, WIDTHS, Window};
+use discrepancy::place::along::{AlongMap, BINS, WIDTHS, Window};
 
 /// The colour scale ends here at the earliest (standard deviations): noise stays pale.
 const LEAST: f64 = 5.0;
 
 /// Draws the map; rows are `channels`, in the map's order. None of an empty map.
-pub(in crate::report) fn angle_map(map: &AngleMap, channels: &[String]) -> Option<Figure> {
+pub(in crate::report) fn angle_map(map: &AlongMap, channels: &[String]) -> Option<Figure> {
     if map.strength.is_empty() || map.strength.len() != channels.len() {
         return None;
     }
@@ -74,7 +74,7 @@ fn outline(canvas: &mut Canvas, panel: &Panel, window: &Window) {
     let pen = Pen::new(INK, 1.3);
     let top = panel.at_y(window.channel as f64) + INSET;
     let bottom = panel.at_y(window.channel as f64 + 1.0) - INSET;
-    let (from, to) = (window.from_deg, window.to_deg);
+    let (from, to) = (window.from, window.to);
     let parts = if to > 360.0 {
         vec![(from, 360.0), (0.0, to - 360.0)]
     } else {
@@ -85,10 +85,10 @@ fn outline(canvas: &mut Canvas, panel: &Panel, window: &Window) {
         canvas.line(&[(left, top), (right, top)], pen);
         canvas.line(&[(left, bottom), (right, bottom)], pen);
         // a part that goes on beyond bottom dead centre stays open there
-        if from > 0.0 || window.from_deg <= 0.0 {
+        if from > 0.0 || window.from <= 0.0 {
             canvas.line(&[(left, top), (left, bottom)], pen);
         }
-        if to < 360.0 || window.to_deg <= 360.0 {
+        if to < 360.0 || window.to <= 360.0 {
             canvas.line(&[(right, top), (right, bottom)], pen);
         }
     }

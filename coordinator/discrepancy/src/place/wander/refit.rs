@@ -1,4 +1,4 @@
-//! Refits of single parameters on parts of the turn and under other conditions.
+//! Refits of single parameters on parts of the abscissa and under other conditions.
 use crate::laboratory::{Laboratory, curves};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -8,12 +8,12 @@ use crate::place::wander::shifts::{Wander, wanders};
 use crate::record::measured::{Curves, Record, difference};
 use search::least_squares::Variable;
 
-/// How the unknowns of a fit would have to wander; the genes come first among them. Each condition
+/// How the unknowns of a fit would have to wander; those of the case come first among them. Each condition
 /// takes a simulation per unknown.
 pub(crate) async fn wander<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    others: &[Record],
+    others: impl Iterator<Item = &Record>,
 ) -> Result<Vec<Wander>, L::Error> {
     let on = experiments.on;
     let Some(own) = sheet(experiments, fit, &on.record).await? else {

@@ -1,13 +1,12 @@
 //! A record beside a fitted point, linear in the unknowns, with the scatter of its cycles.
 use crate::record::measured::{Curves, Record};
 use nalgebra::{DMatrix, DVector};
-use std::ops::Range;
 
 /// Fewer cycles than these have no scatter to speak of.
 const CYCLES: usize = 3;
 
 /// What is left of a record at the fitted point, cycle by cycle, and how the unknowns change it: grid
-/// after grid of all channels, about their means (gauges have no zero), in units of the cycles' scatter.
+/// after grid of all channels, about their means (channels have no zero), in units of the cycles' scatter.
 #[derive(Clone, Debug)]
 pub(crate) struct Sheet {
     /// Index of the record's condition.
@@ -18,8 +17,10 @@ pub(crate) struct Sheet {
     pub(crate) deviations: Vec<DVector<f64>>,
     /// A column per unknown, per unit of it.
     pub(crate) columns: DMatrix<f64>,
-    /// Samples of a turn.
-    samples: usize,
+    /// Samples of each channel.
+    samples: Vec<usize>,
+    /// Where the first channel's abscissa begins and ends, in its unit.
+    pub(crate) span: [f64; 2],
 }
 
 impl Sheet {
@@ -53,17 +54,20 @@ impl Sheet {
             left: &mean - flat(fitted),
             deviations: record.cycles.iter().map(|c| flat(c) - &mean).collect(),
             columns: DMatrix::from_columns(&columns),
-            samples: record.samples(),
+            samples: fitted.iter().map(Vec::len).collect(),
+            span: record.span(),
         }
     }
 
-    /// Rows of the samples of one of so many equal parts of the turn, channel after channel.
+    /// Rows of the samples of one of so many equal parts, channel after channel.
     pub(crate) fn rows(&self, part: usize, of: usize) -> Vec<usize> {
-        let end = |k: usize| k * self.samples / of;
-        let own: Range<usize> = end(part)..end(part + 1);
-        let channels = (0..self.left.len()).step_by(self.samples.max(1));
-        channels
-            .flat_map(|c| own.clone().map(move |i| c + i))
-            .collect()
+        let mut begin = 0;
+        let mut rows = Vec::new();
+        for samples in &self.samples {
+            let end = |k: usize| begin + k * samples / of;
+            rows.extend(end(part)..end(part + 1));
+            begin += samples;
+        }
+        rows
     }
 }

@@ -1,7 +1,7 @@
-//! Parameters that would have to wander: each refitted alone on quarters of the turn and under other
+//! Parameters that would have to wander: each refitted alone on quarters of the abscissa and under other
 //! conditions.
 //!
-//! A parameter of the machine is the same at every crank angle and at every speed. One that would have
+//! A parameter of what is simulated is the same everywhere and under every condition. One that would have
 //! to change from part to part makes up for something that the model lacks. Everything is linear about
 //! the fitted point, and errors are the scatter of the same estimate from cycle to cycle, so that they
 //! need no model of the noise. It does not know what a parameter means.
@@ -10,20 +10,20 @@ use crate::place::wander::sheet::Sheet;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
-/// Parts of the turn.
+/// Parts of the abscissa.
 const SECTORS: usize = 4;
 
 /// Where a parameter was refitted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Part {
-    /// A part of the turn, from bottom dead centre.
+    /// A part of the abscissa.
     Sector {
-        /// Where it begins \[deg\].
-        from_deg: f64,
-        /// Where it ends \[deg\].
-        to_deg: f64,
+        /// Where it begins, in the unit of the first channel's abscissa.
+        from: f64,
+        /// Where it ends.
+        to: f64,
     },
-    /// The whole turn under another condition, by its index.
+    /// The whole record of another condition, by its index.
     Condition(usize),
 }
 
@@ -43,13 +43,13 @@ pub struct Shift {
 pub struct Wander {
     /// Its position among the unknowns.
     pub unknown: usize,
-    /// Its parts, those of the turn first.
+    /// Its parts, those of the abscissa first.
     pub shifts: Vec<Shift>,
-    /// Share of what is left that it takes up if it may be another in every part of the turn \[1\].
+    /// Share of what is left that it takes up if it may be another in every part of the abscissa \[1\].
     pub explained: f64,
 }
 
-/// How the unknowns would have to wander between the parts of a turn and to other conditions, for those
+/// How the unknowns would have to wander between the parts of the abscissa and to other conditions, for those
 /// that the record sees; the one that explains most first. `priors` are their standard deviations.
 pub(crate) fn wanders(own: &Sheet, priors: &[f64], others: &[Sheet]) -> Vec<Wander> {
     let Some(refit) = Refit::new(own, priors) else {
@@ -82,7 +82,7 @@ pub(crate) fn wanders(own: &Sheet, priors: &[f64], others: &[Sheet]) -> Vec<Wand
     all
 }
 
-/// A part of the turn: what the refit of the whole turn leaves there.
+/// A part of the abscissa: what the refit of the whole leaves there.
 struct Sector {
     part: Part,
     columns: DMatrix<f64>,
@@ -93,11 +93,12 @@ struct Sector {
 impl Sector {
     fn new(own: &Sheet, left: &DVector<f64>, scattered: &[DVector<f64>], at: usize) -> Self {
         let rows = own.rows(at, SECTORS);
-        let degrees = 360.0 / SECTORS as f64;
+        let [first, last] = own.span;
+        let width = (last - first) / SECTORS as f64;
         Self {
             part: Part::Sector {
-                from_deg: at as f64 * degrees,
-                to_deg: (at + 1) as f64 * degrees,
+                from: first + at as f64 * width,
+                to: first + (at + 1) as f64 * width,
             },
             columns: own.columns.select_rows(&rows),
             left: left.select_rows(&rows),
@@ -119,7 +120,7 @@ impl Sector {
     }
 }
 
-/// The linear refit of all unknowns on the whole turn.
+/// The linear refit of all unknowns on the whole record.
 struct Refit {
     curvature: Cholesky<f64, Dyn>,
 }
@@ -134,7 +135,7 @@ impl Refit {
         Some(Self { curvature })
     }
 
-    /// The step that the whole turn asks for.
+    /// The step that the whole record asks for.
     fn step(&self, own: &Sheet, v: &DVector<f64>) -> DVector<f64> {
         self.curvature.solve(&own.columns.tr_mul(v))
     }
@@ -197,7 +198,7 @@ mod tests {
     const GRID: usize = 120;
     const UNKNOWNS: usize = 4;
 
-    /// Change of two channels per unit of an unknown: different shapes along the turn.
+    /// Change of two channels per unit of an unknown: different shapes along the abscissa.
     fn change(k: usize) -> Curves {
         let curve = |c: usize| {
             (0..GRID)
@@ -233,6 +234,7 @@ mod tests {
             condition,
             channels: vec![recorded(0), recorded(2)],
             cycles: (0..8).map(cycle).collect(),
+            held_out: false,
             stated: Stated::default(),
         }
     }
@@ -276,8 +278,8 @@ mod tests {
         assert_eq!(
             clear[0].part,
             Part::Sector {
-                from_deg: 0.0,
-                to_deg: 90.0
+                from: 0.0,
+                to: 90.0
             }
         );
         assert!(clear[0].by > 0.5 && all[0].explained > 0.3, "{:?}", all[0]);

@@ -35,7 +35,7 @@ fn facts(subject: &Subject<'_>) -> Vec<Fact> {
     let Some(fit) = &diagnosis.before else {
         return Vec::new();
     };
-    let noise = if diagnosis.assumed_noise {
+    let noise = if !diagnosis.noise.is_seen() {
         "assumed from the data sheet and the highest orders: there was one cycle"
     } else {
         "seen: the scatter between the cycles, order by order"

@@ -4,7 +4,7 @@ use crate::report::diagnosis::subject::{Subject, channels};
 use crate::report::document::{Block, Figure, Section, figures};
 use crate::report::number::{figure, fixed};
 use crate::report::words::listed;
-use discrepancy::place::angle::Window;
+use discrepancy::place::along::Window;
 use discrepancy::place::whereabouts::Where;
 use discrepancy::record::Record;
 use protocol::pumping_unit::Machine;
@@ -42,7 +42,7 @@ fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
         .find_map(|it| it.conditions.get(record.condition));
     let speed_rpm = condition.map_or(f64::NAN, |condition| condition.speed_rpm);
     let all = [
-        chart::angle_map(&seen.angle, &names),
+        chart::angle_map(&seen.along, &names),
         chart::order_map(&seen.order, &names, speed_rpm),
         chart::joints(&seen.joints, seen.equivalent),
         chart::latent_forces(&seen.joints, seen.equivalent),
@@ -51,12 +51,12 @@ fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
 }
 
 fn windows(seen: &Where, channels: &[String]) -> Vec<Block> {
-    let all = &seen.angle.windows;
+    let all = &seen.along.windows;
     let item = |window: &Window| {
         format!(
             "{}, {} to {} deg: the simulation is too {} by {} standard deviations",
             channels.get(window.channel).map_or("", String::as_str),
-            fixed(window.from_deg, 0),
+            fixed(window.from, 0),
             fixed(end_deg(window), 0),
             if window.strength > 0.0 { "low" } else { "high" },
             fixed(window.strength.abs(), 1)
@@ -79,10 +79,10 @@ fn windows(seen: &Where, channels: &[String]) -> Vec<Block> {
 
 /// Where a window ends, within the revolution.
 fn end_deg(window: &Window) -> f64 {
-    if window.to_deg > 360.0 {
-        window.to_deg - 360.0
+    if window.to > 360.0 {
+        window.to - 360.0
     } else {
-        window.to_deg
+        window.to
     }
 }
 

@@ -68,7 +68,7 @@ fn gap(subject: &Subject<'_>, of: &compare::Row, changed: bool) -> Row {
         format!(
             "{}, {}",
             condition_name(subject.case, of.condition),
-            words::role(subject, of)
+            words::role(of)
         ),
         [
             small(of.closed.before),

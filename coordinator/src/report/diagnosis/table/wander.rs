@@ -29,8 +29,8 @@ pub(in crate::report::diagnosis) fn wander(
     let clear: Vec<&Wander> = clear(fit, wander).collect();
     let first = clear.first()?;
     let part = |shift: &Shift| match shift.part {
-        Part::Sector { from_deg, to_deg } => {
-            format!("{} to {} deg", fixed(from_deg, 0), fixed(to_deg, 0))
+        Part::Sector { from, to } => {
+            format!("{} to {} deg", fixed(from, 0), fixed(to, 0))
         }
         Part::Condition(index) => condition_name(subject.case, index),
     };

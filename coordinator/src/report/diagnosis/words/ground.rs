@@ -5,7 +5,7 @@ use crate::report::diagnosis::subject::Subject;
 use crate::report::number::{figure, percent, quantity};
 use crate::report::words::condition_name;
 use discrepancy::diagnose::{Force, Limit};
-use discrepancy::proof::compare::Row;
+use discrepancy::proof::compare::{Portion, Row};
 
 /// How sure the verdict is.
 pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
@@ -38,10 +38,13 @@ pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<Str
         sentences.extend(force(subject, found));
     }
     if !added.is_empty() {
-        let unseen = diagnosis.rows.iter().filter(|row| !row.fitted);
+        let unseen = diagnosis
+            .rows
+            .iter()
+            .filter(|row| row.part != Portion::Fitted);
         sentences.extend(unseen.map(|row| closing(subject, row)));
     }
-    if diagnosis.assumed_noise {
+    if !diagnosis.noise.is_seen() {
         sentences.push(
             "The noise was assumed, not seen: with one cycle there is no scatter to take it from, so \
              every probability and every limit here is as good as the data sheet."
@@ -64,7 +67,7 @@ fn force(subject: &Subject<'_>, force: &Force) -> Vec<String> {
         interval(force.interval, &force.unit),
         nats(force.ln_evidence)
     )];
-    let rows = force.rows.iter().filter(|row| !row.fitted);
+    let rows = force.rows.iter().filter(|row| row.part != Portion::Fitted);
     sentences.extend(rows.map(|row| format!("With that force, {}", closing(subject, row))));
     sentences
 }
@@ -87,18 +90,18 @@ fn closing(subject: &Subject<'_>, row: &Row) -> String {
     format!(
         "{}, {}: {} of the gap {direction}{spread}.",
         condition_name(subject.case, row.condition),
-        role(subject, row),
+        role(row),
         percent(closed.closed.abs()),
     )
 }
 
 /// What a row's cycles were to the fit.
-pub(in crate::report::diagnosis) fn role(subject: &Subject<'_>, row: &Row) -> &'static str {
-    let calibrated = row.condition == subject.case.objective.condition;
-    match (row.fitted, calibrated) {
-        (true, _) => "cycles that were fitted",
-        (false, true) => "held-out cycles",
-        (false, false) => "another condition, which took no part",
+pub(in crate::report::diagnosis) const fn role(row: &Row) -> &'static str {
+    match row.part {
+        Portion::Fitted => "cycles that were fitted",
+        Portion::Cycles => "held-out cycles",
+        Portion::Channels => "held-out channels",
+        Portion::Condition => "another condition, which took no part",
     }
 }
 

@@ -8,7 +8,7 @@ use discrepancy::verdict::Verdict;
 pub(in crate::report::diagnosis) fn next(subject: &Subject<'_>) -> Vec<String> {
     let diagnosis = subject.diagnosis();
     let mut steps = vec![by_verdict(diagnosis)];
-    if diagnosis.assumed_noise {
+    if !diagnosis.noise.is_seen() {
         steps.push("Record several cycles: five show the scatter, ten show it well.".to_owned());
     }
     let missing = missing_channels(subject);
@@ -59,7 +59,7 @@ fn unresolved(diagnosis: &Diagnosis) -> String {
             command::SIMULATE,
             command::CHECK
         )
-    } else if diagnosis.assumed_noise {
+    } else if !diagnosis.noise.is_seen() {
         "Do not change the machine for a suspect whose noise is only assumed.".to_owned()
     } else if diagnosis.rounds.is_empty() {
         format!(

@@ -95,7 +95,6 @@ struct StageOutput {
 /// The object of a diagnosis.
 pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
     let diagnosis = &subject.diagnosed.diagnosis;
-    let calibrated = subject.case.objective.condition;
     let genes = diagnosis
         .after
         .as_ref()
@@ -112,10 +111,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .map(|e| effect(diagnosis, e))
             .collect(),
         generic: diagnosis.generic.clone(),
-        generic_force: diagnosis
-            .force
-            .as_ref()
-            .map(|found| force(found, calibrated)),
+        generic_force: diagnosis.force.as_ref().map(force),
         rounds: rounds(diagnosis),
         whereabouts: whereabouts(subject),
         wander: wandered(subject),
@@ -126,15 +122,15 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .map(|pair| pair.effects.clone())
             .collect(),
         data_worth: diagnosis.look_alikes.clone(),
-        gap: gap(&diagnosis.rows, calibrated),
+        gap: gap(&diagnosis.rows),
         whiteness: diagnosis
             .whiteness
             .map(|[p_before, p_after]| WhitenessOutput { p_before, p_after }),
         rival: diagnosis.rival.as_ref().map(|(id, rows)| RivalOutput {
             id: id.clone(),
-            gap: gap(rows, calibrated),
+            gap: gap(rows),
         }),
-        assumed_noise: diagnosis.assumed_noise,
+        assumed_noise: !diagnosis.noise.is_seen(),
         numerical_error: numerical_error(diagnosis),
         genes: subject
             .case

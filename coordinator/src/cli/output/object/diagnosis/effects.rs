@@ -79,8 +79,8 @@ pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
     }
 }
 
-/// The force that the answer names, its gap at the calibrated condition.
-pub(super) fn force(found: &Force, calibrated: usize) -> ForceOutput {
+/// The force that the answer names.
+pub(super) fn force(found: &Force) -> ForceOutput {
     ForceOutput {
         id: found.id.clone(),
         joint: found.joint.clone(),
@@ -92,7 +92,7 @@ pub(super) fn force(found: &Force, calibrated: usize) -> ForceOutput {
         },
         phase_deg: found.phase_deg,
         ln_evidence: found.ln_evidence,
-        gap: gap(&found.rows, calibrated),
+        gap: gap(&found.rows),
     }
 }
 

@@ -54,13 +54,13 @@ pub(super) fn whereabouts(subject: &Subject<'_>) -> Option<WhereOutput> {
     };
     Some(WhereOutput {
         windows: seen
-            .angle
+            .along
             .windows
             .iter()
             .map(|window| WindowOutput {
                 channel: channel(window.channel),
-                from_deg: window.from_deg,
-                to_deg: window.to_deg,
+                from_deg: window.from,
+                to_deg: window.to,
                 strength: window.strength,
                 p_value: window.p_value,
             })

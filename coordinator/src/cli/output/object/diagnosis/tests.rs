@@ -9,12 +9,15 @@ use discrepancy::{
     laboratory::Stage,
     model::{Fit, Model},
     place::{
-        angle, joint, order,
+        along, joint, order,
         wander::{Part, Shift, Wander},
         whereabouts::Where,
     },
-    proof::{closed::Closed, compare::Row},
-    record::{Record, Recorded, Stated},
+    proof::{
+        closed::Closed,
+        compare::{Portion, Row},
+    },
+    record::{Record, Recorded, Stated, noise::Known},
     verdict::Verdict,
 };
 use protocol::case::Case;
@@ -30,15 +33,15 @@ fn case() -> Case {
     crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
 }
 
-fn row(condition: usize, fitted: bool, closed: f64) -> Row {
+fn row(part: Portion, closed: f64) -> Row {
     Row {
-        condition,
-        fitted,
+        condition: usize::from(part == Portion::Condition),
+        part,
         closed: Closed {
             before: 0.04,
             after: 0.04 * (1.0 - closed),
             closed,
-            interval: fitted.then_some([closed - 0.1, closed + 0.1]),
+            interval: (part == Portion::Fitted).then_some([closed - 0.1, closed + 0.1]),
         },
         before: Vec::new(),
         after: Vec::new(),
@@ -64,7 +67,7 @@ fn estimate(id: &str) -> Estimate {
 fn bare(verdict: Verdict) -> Diagnosis {
     Diagnosis {
         verdict,
-        assumed_noise: true,
+        noise: Known::Stated,
         ..Diagnosis::unresolved("because")
     }
 }
@@ -72,7 +75,12 @@ fn bare(verdict: Verdict) -> Diagnosis {
 /// Everything that can be said without a fit.
 fn full(verdict: Verdict) -> Diagnosis {
     let set = vec!["gauge_drift".to_owned(), "gauge_gain".to_owned()];
-    let rows = vec![row(0, true, 0.9), row(0, false, 0.8), row(1, false, 0.7)];
+    let parts = [
+        (Portion::Fitted, 0.9),
+        (Portion::Cycles, 0.8),
+        (Portion::Condition, 0.7),
+    ];
+    let rows = parts.map(|(part, closed)| row(part, closed)).to_vec();
     Diagnosis {
         reason: None,
         effects: set.iter().map(|id| estimate(id)).collect(),
@@ -88,12 +96,13 @@ fn full(verdict: Verdict) -> Diagnosis {
             reason: None,
         }],
         whereabouts: Some(Where {
-            angle: angle::AngleMap {
+            along: along::AlongMap {
+                bins: Vec::new(),
                 strength: Vec::new(),
-                windows: vec![angle::Window {
+                windows: vec![along::Window {
                     channel: 1,
-                    from_deg: 345.0,
-                    to_deg: 378.0,
+                    from: 345.0,
+                    to: 378.0,
                     strength: -9.0,
                     p_value: 0.0025,
                 }],
@@ -123,7 +132,7 @@ fn full(verdict: Verdict) -> Diagnosis {
         }],
         rows: rows.clone(),
         rival: Some(("rope_toe".to_owned(), rows)),
-        assumed_noise: false,
+        noise: Known::Seen,
         ..bare(verdict)
     }
 }
@@ -136,6 +145,7 @@ fn printed(diagnosis: Diagnosis) -> Value {
             .map(|at| Recorded::new(at, &case.channels[at]))
             .into(),
         cycles: Vec::new(),
+        held_out: false,
         stated: Stated::default(),
     }];
     let diagnosed = Diagnosed {
@@ -215,7 +225,7 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
             search,
             curves: Vec::new(),
         },
-        rows: vec![row(0, true, 0.9), row(1, false, 0.7)],
+        rows: vec![row(Portion::Fitted, 0.9), row(Portion::Condition, 0.7)],
     };
     let said = printed(Diagnosis {
         generic: Some(found.id.clone()),
@@ -240,8 +250,8 @@ fn wandering_genes_have_their_values() {
     let model = Model::plain(Space::new(&case.genes).unwrap());
     let search = LeastSquares::new(model.variables(&[]), Settings::default());
     let sector = Part::Sector {
-        from_deg: 90.0,
-        to_deg: 180.0,
+        from: 90.0,
+        to: 180.0,
     };
     let shift = |part, by| Shift {
         part,

@@ -57,7 +57,7 @@ fn wanders(subject: &Subject<'_>, fit: Option<&Fit>, all: &[Wander]) -> Vec<Wand
         };
         let part = |shift: &Shift| PartOutput {
             sector_deg: match shift.part {
-                Part::Sector { from_deg, to_deg } => Some([from_deg, to_deg]),
+                Part::Sector { from, to } => Some([from, to]),
                 Part::Condition(_) => None,
             },
             condition: match shift.part {

@@ -5,28 +5,28 @@ use serde::Deserialize;
 /// nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Tolerance {
+pub(super) struct Tolerance {
     /// Of each gauge's reading, relative \[1\].
-    pub gauge_factor: Option<f64>,
+    gauge_factor: Option<f64>,
     /// Of the index mark's place on the crank \[deg\].
-    pub index_deg: Option<f64>,
+    index_deg: Option<f64>,
     /// Of the load card's load, relative \[1\].
-    pub load_cell: Option<f64>,
+    load_cell: Option<f64>,
     /// Of the amplifier's delay, which is never negative \[s\].
-    pub amplifier_lag_s: Option<f64>,
+    amplifier_lag_s: Option<f64>,
     /// Of the rod position's reading, relative \[1\].
-    pub position: Option<f64>,
+    position: Option<f64>,
     /// Of the crank torque's reading, relative \[1\].
-    pub torque: Option<f64>,
+    torque: Option<f64>,
     /// Of the friction of the saddle bearing, which is never negative [N m].
-    pub bearing_friction_nm: Option<f64>,
+    bearing_friction_nm: Option<f64>,
     /// Of the moment of the beam's own weight about the saddle bearing [N m].
-    pub balance_nm: Option<f64>,
+    balance_nm: Option<f64>,
 }
 
 impl Tolerance {
     /// What is stated, by the names of its keys.
-    pub fn stated(&self) -> impl Iterator<Item = (&'static str, f64)> {
+    pub(super) fn stated(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let all = [
             ("gauge_factor", self.gauge_factor),
             ("index_deg", self.index_deg),

@@ -1,4 +1,4 @@
-//! Crank angle x channel: windows of the revolution in which a residual cannot be noise.
+//! Abscissa x channel: windows in which a residual cannot be noise.
 //!
 //! The residual's mean over windows of 5, 11 and 21 bins is held against the largest such mean, over
 //! all windows and channels, of records with nothing but noise: so any false window at all appears in
@@ -6,9 +6,10 @@
 //! flipped: where only noise is left, a cycle's residual is as likely as its negative, whatever its
 //! colour. Windows are measured in a scale that no flip changes. With too few cycles for that the
 //! noise is drawn from the metric, which knows its variances less well than it believes.
-use crate::place::angle::null::{Null, can_flip};
-use crate::place::angle::windows::{BINS, WIDTHS, Windows, windows};
+use crate::place::along::null::{Null, can_flip};
+use crate::place::along::windows::{WIDTHS, Windows, windows};
 use crate::place::residual::Residual;
+use crate::record::bins::Bins;
 use nalgebra::DVector;
 
 /// A window in which the residual is no noise.
@@ -16,10 +17,10 @@ use nalgebra::DVector;
 pub struct Window {
     /// Index of the channel.
     pub channel: usize,
-    /// Where it begins (deg from bottom dead centre).
-    pub from_deg: f64,
-    /// Where it ends; may exceed 360 where it runs through bottom dead centre.
-    pub to_deg: f64,
+    /// Where it begins, in the unit of the channel's abscissa.
+    pub from: f64,
+    /// Where it ends; beyond the end of a period where it runs on into the next.
+    pub to: f64,
     /// Mean of the residual in it over its standard deviation.
     pub strength: f64,
     /// Probability that noise alone has any window so strong.
@@ -29,8 +30,10 @@ pub struct Window {
 /// The map: strength by channel and bin for the narrowest windows, and the significant windows, the
 /// strongest of those that overlap.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AngleMap {
-    /// By channel and bin.
+pub struct AlongMap {
+    /// The bins of each channel's abscissa.
+    pub bins: Vec<Bins>,
+    /// By channel and first bin.
     pub strength: Vec<Vec<f64>>,
     /// Significant windows, the strongest first.
     pub windows: Vec<Window>,
@@ -43,7 +46,7 @@ pub fn map(
     deviations: &[DVector<f64>],
     draws: usize,
     alpha: f64,
-) -> AngleMap {
+) -> AlongMap {
     let Residual {
         left,
         metric,
@@ -59,16 +62,18 @@ pub fn map(
     } else {
         Null::drawn(metric, tangent, draws)
     };
-    let bin_deg = 360.0 / BINS as f64;
-    let places = (0..metric.channels())
-        .flat_map(|c| (0..WIDTHS.len()).flat_map(move |w| (0..BINS).map(move |b| (c, w, b))));
+    let bins = metric.bins();
+    let places = bins.iter().enumerate().flat_map(|(c, bins)| {
+        let widths = WIDTHS.iter().enumerate();
+        widths.flat_map(move |(w, width)| (0..bins.windows(*width)).map(move |b| (c, w, b)))
+    });
     let mut found: Vec<Window> = places
         .map(|(channel, w, b)| {
             let strength = seen[channel][w][b] / null.scales[channel][w];
             Window {
                 channel,
-                from_deg: b as f64 * bin_deg,
-                to_deg: (b + WIDTHS[w]) as f64 * bin_deg,
+                from: bins[channel].begin(b),
+                to: bins[channel].begin(b + WIDTHS[w]),
                 strength,
                 p_value: null.p_value(strength),
             }
@@ -77,7 +82,9 @@ pub fn map(
     let strength = (0..metric.channels())
         .map(|c| {
             let own = found.iter().filter(|f| f.channel == c);
-            own.take(BINS).map(|f| f.strength).collect()
+            own.take(bins[c].windows(WIDTHS[0]))
+                .map(|f| f.strength)
+                .collect()
         })
         .collect();
     found.retain(|f| f.p_value <= alpha);
@@ -86,19 +93,25 @@ pub fn map(
     for one in found {
         if !kept
             .iter()
-            .any(|k| k.channel == one.channel && overlap(k, &one))
+            .any(|k| k.channel == one.channel && overlap(k, &one, &bins[one.channel]))
         {
             kept.push(one);
         }
     }
-    AngleMap {
+    AlongMap {
+        bins,
         strength,
         windows: kept,
     }
 }
 
-fn overlap(a: &Window, b: &Window) -> bool {
-    [-360.0, 0.0, 360.0]
+fn overlap(a: &Window, b: &Window, bins: &Bins) -> bool {
+    let turn = if bins.around {
+        bins.width * bins.count as f64
+    } else {
+        0.0
+    };
+    [-turn, 0.0, turn]
         .iter()
-        .any(|turn| a.from_deg < b.to_deg + turn && b.from_deg + turn < a.to_deg)
+        .any(|turn| a.from < b.to + turn && b.from + turn < a.to)
 }

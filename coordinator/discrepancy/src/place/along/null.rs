@@ -1,7 +1,7 @@
 //! What noise alone does to windows: the record's own cycles with signs flipped, or noise as the metric
 //! describes it.
 use crate::linear::tangent::Tangent;
-use crate::place::angle::windows::{BINS, WIDTHS, Windows, windows};
+use crate::place::along::windows::{WIDTHS, Windows, windows};
 use crate::record::metric::Metric;
 use nalgebra::DVector;
 use search::random::{Phase, Streams};
@@ -27,7 +27,7 @@ impl Null {
         let n = cycles.len();
         let square = |c: usize, w: usize| -> f64 {
             let of = |cycle: &Windows| cycle[c][w].iter().map(|x| x * x).sum::<f64>();
-            cycles.iter().map(of).sum::<f64>() / BINS as f64
+            cycles.iter().map(of).sum::<f64>() / cycles[0][c][w].len() as f64
         };
         let scale = |c: usize, w: usize| (square(c, w).sqrt() / n as f64).max(f64::MIN_POSITIVE);
         let scales: Vec<Vec<f64>> = (0..cycles[0].len())
@@ -64,7 +64,7 @@ impl Null {
                     .map(|(cycle, sign)| sign * cycle[c][w][b]);
                 parts.sum::<f64>() / n as f64
             };
-            largest(&scales, mean)
+            largest(&cycles[0], &scales, mean)
         });
         let maxima = maxima.collect();
         Self::new(maxima, scales, complete)
@@ -83,14 +83,15 @@ impl Null {
         let scale = |c: usize, w: usize| -> f64 {
             let of = |set: &Windows| set[c][w].iter().map(|x| x * x).sum::<f64>();
             let sum: f64 = noise.iter().map(of).sum();
-            (sum / (draws * BINS) as f64).sqrt().max(f64::MIN_POSITIVE)
+            let count = noise.first().map_or(0, |set| draws * set[c][w].len());
+            (sum / count as f64).sqrt().max(f64::MIN_POSITIVE)
         };
         let scales: Vec<Vec<f64>> = (0..metric.channels())
             .map(|c| (0..WIDTHS.len()).map(|w| scale(c, w)).collect())
             .collect();
         let maxima = noise
             .iter()
-            .map(|set| largest(&scales, |c, w, b| set[c][w][b]));
+            .map(|set| largest(set, &scales, |c, w, b| set[c][w][b]));
         let maxima = maxima.collect();
         Self::new(maxima, scales, false)
     }
@@ -119,12 +120,12 @@ impl Null {
     }
 }
 
-/// The largest window over all channels, widths and bins.
-fn largest(scales: &[Vec<f64>], value: impl Fn(usize, usize, usize) -> f64) -> f64 {
+/// The largest window over all channels, widths and bins that windows like these have.
+fn largest(like: &Windows, scales: &[Vec<f64>], value: impl Fn(usize, usize, usize) -> f64) -> f64 {
     let mut most: f64 = 0.0;
     for (c, scales) in scales.iter().enumerate() {
         for (w, scale) in scales.iter().enumerate() {
-            for b in 0..BINS {
+            for b in 0..like[c][w].len() {
                 most = most.max((value(c, w, b) / scale).abs());
             }
         }

@@ -1,0 +1,8 @@
+//! Windows of the abscissa in which a residual cannot be noise.
+pub(crate) mod map;
+pub(crate) mod null;
+pub(crate) mod windows;
+
+pub use crate::record::bins::{BINS, Bins};
+pub use map::{AlongMap, Window, map};
+pub use windows::WIDTHS;

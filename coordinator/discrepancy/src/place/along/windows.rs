@@ -1,0 +1,23 @@
+//! Means of a whitened residual over windows of the abscissa. What is significant it does not know.
+use crate::record::metric::Metric;
+use nalgebra::DVector;
+
+/// Widths of the windows (bins).
+pub const WIDTHS: [usize; 3] = [5, 11, 21];
+
+/// Means over windows, channel x width x first bin.
+pub(crate) type Windows = Vec<Vec<Vec<f64>>>;
+
+/// Window means of every channel's whitened curve.
+pub(crate) fn windows(whitened: &DVector<f64>, metric: &Metric) -> Windows {
+    let curves = metric.along(whitened);
+    let channels = metric.bins().into_iter().zip(&curves);
+    channels
+        .map(|(bins, curve)| {
+            WIDTHS
+                .iter()
+                .map(|&width| bins.moving_mean(curve, width))
+                .collect()
+        })
+        .collect()
+}

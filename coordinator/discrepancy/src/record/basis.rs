@@ -1,0 +1,239 @@
+//! The coordinates in which curves are compared: orders of a period where the abscissa has one and the
+//! grid is even, samples elsewhere. Whoever whitens or maps asks here and need not know which.
+use crate::record::measured::{Record, variance};
+use crate::record::samples::Samples;
+use crate::record::scatter::unexplained;
+use crate::record::spectrum::{Orders, Spectra};
+use nalgebra::Complex;
+use protocol::case::Abscissa;
+
+type C = Complex<f64>;
+
+/// Waves of a row of samples at most: what is left of a model lies in the slow ones.
+const WAVES: usize = 240;
+
+/// Channels that share an abscissa, and what they are compared in.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Their places in the record, ascending.
+    pub channels: Vec<usize>,
+    /// Their abscissa.
+    pub abscissa: Abscissa,
+    /// Their coordinates.
+    pub basis: Basis,
+}
+
+/// Coordinates of a group's curves; none holds a curve's constant, for channels have no zero.
+#[derive(Clone, Debug)]
+pub enum Basis {
+    /// Orders of the period.
+    Orders(Orders),
+    /// Samples, with a correlation length for each channel of the group.
+    Samples(Vec<Samples>),
+}
+
+impl Basis {
+    /// Entries of a curve.
+    pub fn places(&self) -> usize {
+        match self {
+            Self::Orders(orders) => orders.highest(),
+            Self::Samples(samples) => samples.first().map_or(0, Samples::len),
+        }
+    }
+
+    /// Real numbers that an entry has.
+    pub const fn parts(&self) -> usize {
+        match self {
+            Self::Orders(_) => 2,
+            Self::Samples(_) => 1,
+        }
+    }
+
+    /// The entries of a curve of a channel, by its place in the group.
+    pub fn transform(&self, row: usize, curve: &[f64]) -> Vec<C> {
+        match self {
+            Self::Orders(orders) => orders.transform(curve),
+            Self::Samples(samples) => samples[row].transform(curve),
+        }
+    }
+
+    /// Half-width of the neighbourhood of an entry (from 0) in which noise is about as strong.
+    pub fn reach(&self, place: usize) -> usize {
+        match self {
+            Self::Orders(_) => match place + 1 {
+                0..=5 => 2,
+                6..=20 => 3,
+                21..=60 => 6,
+                _ => 12,
+            },
+            Self::Samples(_) => (self.places() / 8).max(12),
+        }
+    }
+
+    /// Root mean square of the curve of a channel's entries.
+    pub fn rms(&self, row: usize, entries: &[C]) -> f64 {
+        match self {
+            Self::Orders(_) => (2.0 * entries.iter().map(C::norm_sqr).sum::<f64>()).sqrt(),
+            Self::Samples(samples) => variance(&samples[row].curve(entries)).sqrt(),
+        }
+    }
+
+    /// Standard deviation of a curve whose entries have these.
+    pub fn deviation(&self, entries: &[f64]) -> f64 {
+        let square: f64 = entries.iter().map(|d| d * d).sum();
+        match self {
+            Self::Orders(_) => (2.0 * square).sqrt(),
+            // innovations are as strong as the noise itself
+            Self::Samples(_) => (square / entries.len().max(1) as f64).sqrt(),
+        }
+    }
+
+    /// The waves of which a channel's whitened entries consist, each with two parts that are as strong as
+    /// one entry: its orders as they are, or those of a row of samples.
+    pub fn waves(&self, entries: Vec<C>) -> Vec<C> {
+        match self {
+            Self::Orders(_) => entries,
+            Self::Samples(_) => {
+                let n = entries.len();
+                let row: Vec<f64> = entries.iter().map(|e| e.re).collect();
+                // the last wave of an even row has no second part
+                let highest = (n.saturating_sub(1) / 2).min(WAVES);
+                let waves = Orders::new(n, highest).transform(&row);
+                let scale = (2.0 * n as f64).sqrt();
+                waves.into_iter().map(|wave| wave * scale).collect()
+            }
+        }
+    }
+}
+
+impl Group {
+    /// Which of a record's channels are compared in what, up to an order where they have a period.
+    /// `inputs` are curves by which cycles may differ because their input did.
+    pub fn of(record: &Record, highest: usize, inputs: &[Vec<Vec<f64>>]) -> Vec<Self> {
+        let mut groups: Vec<(Vec<usize>, Abscissa)> = Vec::new();
+        for (c, channel) in record.channels.iter().enumerate() {
+            let abscissa = &channel.channel.abscissa;
+            match groups.iter_mut().find(|(_, own)| own == abscissa) {
+                Some((channels, _)) => channels.push(c),
+                None => groups.push((vec![c], abscissa.clone())),
+            }
+        }
+        let group = |(channels, abscissa): (Vec<usize>, Abscissa)| {
+            let n = abscissa.points.len();
+            let basis = if is_turn(&abscissa) {
+                Basis::Orders(Orders::new(n, highest))
+            } else {
+                Basis::Samples(samples(record, &channels, &abscissa, inputs))
+            };
+            Self {
+                channels,
+                abscissa,
+                basis,
+            }
+        };
+        groups.into_iter().map(group).collect()
+    }
+
+    /// Whether its channels are compared by orders.
+    pub const fn is_periodic(&self) -> bool {
+        matches!(self.basis, Basis::Orders(_))
+    }
+
+    /// Entries of this group's channels, of curves of all channels.
+    pub fn transform(&self, curves: &[Vec<f64>]) -> Spectra {
+        let channels = self.channels.iter().enumerate();
+        channels
+            .map(|(row, &c)| self.basis.transform(row, &curves[c]))
+            .collect()
+    }
+
+    /// The change of a curve per unit of its abscissa.
+    pub fn slope(&self, curve: &[f64]) -> Vec<f64> {
+        if let (Basis::Orders(orders), Some(period)) = (&self.basis, self.abscissa.period) {
+            let per_unit = std::f64::consts::TAU / period;
+            let entries = orders.transform(curve).into_iter().enumerate();
+            let steep: Vec<C> = entries
+                .map(|(k, f)| f * Complex::new(0.0, (k + 1) as f64 * per_unit))
+                .collect();
+            return orders.curve(&steep);
+        }
+        let x = &self.abscissa.points;
+        let last = x.len().saturating_sub(1);
+        let slope = |i: usize| {
+            let (a, b) = (i.saturating_sub(1), (i + 1).min(last));
+            if b > a {
+                (curve[b] - curve[a]) / (x[b] - x[a])
+            } else {
+                0.0
+            }
+        };
+        (0..curve.len()).map(slope).collect()
+    }
+}
+
+/// Whether an abscissa is one period in equal steps.
+fn is_turn(abscissa: &Abscissa) -> bool {
+    let (Some(period), Some(first)) = (abscissa.period, abscissa.points.first()) else {
+        return false;
+    };
+    let step = period / abscissa.points.len() as f64;
+    let mut points = abscissa.points.iter().enumerate();
+    points.all(|(i, x)| (x - first - step * i as f64).abs() < 1e-6 * step)
+}
+
+/// The noise of each channel along its samples: its correlation from the scatter between cycles where
+/// there are several, else as stated.
+fn samples(
+    record: &Record,
+    channels: &[usize],
+    abscissa: &Abscissa,
+    inputs: &[Vec<Vec<f64>>],
+) -> Vec<Samples> {
+    let points = &abscissa.points;
+    if record.cycles.len() < 2 {
+        let span = points
+            .last()
+            .zip(points.first())
+            .map_or(0.0, |(b, a)| b - a);
+        let step = span / (points.len() as f64 - 1.0).max(1.0);
+        let rho = record.stated.noise_correlation;
+        let length = if rho > 0.0 {
+            -step / libm::log(rho)
+        } else {
+            0.0
+        };
+        return channels
+            .iter()
+            .map(|_| Samples::new(points, length))
+            .collect();
+    }
+    let own = |curves: &Vec<Vec<f64>>| -> Spectra {
+        let curve = |c: &usize| curves[*c].iter().map(|y| C::from(*y)).collect();
+        channels.iter().map(curve).collect()
+    };
+    let inputs: Vec<Spectra> = inputs.iter().map(own).collect();
+    let deviations = unexplained(record.cycles.iter().map(own).collect(), &inputs);
+    let of = |row: usize| -> Vec<Vec<f64>> {
+        let cycles = deviations.iter();
+        cycles
+            .map(|cycle| cycle[row].iter().map(|y| y.re).collect())
+            .collect()
+    };
+    (0..channels.len())
+        .map(|row| Samples::likeliest(points, &of(row)))
+        .collect()
+}
+
+/// Powers, each the mean over the neighbourhood in which noise is about as strong.
+pub(crate) fn smoothed(basis: &Basis, powers: &[f64]) -> Vec<f64> {
+    let highest = powers.len();
+    let mean = |place: usize| {
+        let reach = basis.reach(place);
+        let (from, to) = (
+            place.saturating_sub(reach),
+            (place + reach + 1).min(highest),
+        );
+        powers[from..to].iter().sum::<f64>() / (to - from) as f64
+    };
+    (0..highest).map(mean).collect()
+}

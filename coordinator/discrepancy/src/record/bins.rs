@@ -1,0 +1,113 @@
+//! Equal parts of an abscissa, and what a whitened curve is in each.
+use crate::record::basis::{Basis, Group};
+use nalgebra::Complex;
+
+/// Parts of an abscissa at most.
+pub const BINS: usize = 120;
+
+/// Equal parts of an abscissa.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bins {
+    /// Where the first one begins, in the abscissa's unit.
+    pub from: f64,
+    /// How wide each is.
+    pub width: f64,
+    /// How many there are.
+    pub count: usize,
+    /// Whether the first one follows the last.
+    pub around: bool,
+}
+
+impl Bins {
+    /// Those of a group's abscissa: no more than there are samples.
+    pub fn of(group: &Group) -> Self {
+        let points = &group.abscissa.points;
+        let from = points.first().copied().unwrap_or_default();
+        let around = group.is_periodic();
+        let span = points.last().map_or(0.0, |last| last - from);
+        let span = group.abscissa.period.filter(|_| around).unwrap_or(span);
+        let count = if around {
+            BINS
+        } else {
+            BINS.min(group.basis.places())
+        };
+        Self {
+            from,
+            width: span / count.max(1) as f64,
+            count,
+            around,
+        }
+    }
+
+    /// Where a bin begins.
+    pub fn begin(&self, bin: usize) -> f64 {
+        self.from + bin as f64 * self.width
+    }
+
+    /// Windows of so many bins; none wider than the abscissa.
+    pub const fn windows(&self, width: usize) -> usize {
+        match (self.around, self.count < width) {
+            (_, true) => 0,
+            (true, _) => self.count,
+            (false, _) => self.count + 1 - width,
+        }
+    }
+
+    /// Mean over each window of so many bins, by its first.
+    pub(crate) fn moving_mean(&self, values: &[f64], width: usize) -> Vec<f64> {
+        let n = values.len();
+        let mut sum: f64 = values.iter().take(width).sum();
+        (0..self.windows(width))
+            .map(|b| {
+                let mean = sum / width as f64;
+                sum += values[(b + width) % n] - values[b];
+                mean
+            })
+            .collect()
+    }
+}
+
+/// Whitened entries of a channel of a group along the abscissa, one value a bin.
+pub(crate) fn along(group: &Group, entries: &[Complex<f64>]) -> Vec<f64> {
+    match &group.basis {
+        Basis::Orders(_) => turn(entries),
+        Basis::Samples(_) => {
+            let bins = Bins::of(group);
+            let (mut sums, mut counts) = (vec![0.0; bins.count], vec![0.0; bins.count]);
+            // a sample's entry says what it adds to the one before: the first has none
+            for (entry, x) in entries.iter().zip(group.abscissa.points.iter().skip(1)) {
+                let ahead = ((x - bins.from) / bins.width).max(0.0);
+                #[expect(
+                    clippy::cast_possible_truncation,
+                    clippy::cast_sign_loss,
+                    reason = "not negative, and cut at the last bin"
+                )]
+                let bin = (ahead as usize).min(bins.count - 1);
+                sums[bin] += entry.re;
+                counts[bin] += 1.0;
+            }
+            let each = sums.iter().zip(&counts);
+            each.map(|(sum, count): (&f64, &f64)| sum / count.max(1.0).sqrt())
+                .collect()
+        }
+    }
+}
+
+/// The curve of a spectrum at the bins' centres, low orders only: a bin shows no more.
+fn turn(spectrum: &[Complex<f64>]) -> Vec<f64> {
+    let turn = std::f64::consts::TAU / (2 * BINS) as f64;
+    let table: Vec<(f64, f64)> = (0..2 * BINS)
+        .map(|i| libm::sincos(turn * i as f64))
+        .collect();
+    (0..BINS)
+        .map(|b| {
+            let orders = spectrum.iter().take(BINS / 2).enumerate();
+            orders
+                .map(|(k, f)| {
+                    let (sine, cosine) = table[(k + 1) * (2 * b + 1) % (2 * BINS)];
+                    f.re * cosine - f.im * sine
+                })
+                .sum()
+        })
+        .collect()
+}

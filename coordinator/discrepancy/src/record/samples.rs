@@ -1,0 +1,231 @@
+//! Curves by sample: what each sample says beyond the one before it.
+//!
+//! Noise that forgets what it was over a correlation length `l` (an Ornstein-Uhlenbeck process: the
+//! first-order autoregression of any grid) has `rho_i = exp(-(x_i+1 - x_i) / l)` between neighbours, and
+//! its innovations `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as itself. A
+//! constant is turned into one entry that is left out, for channels have no zero; so of n samples n - 1
+//! entries remain.
+use nalgebra::Complex;
+
+type C = Complex<f64>;
+
+/// Innovations of curves on a grid, under one correlation length.
+#[derive(Clone, Debug)]
+pub struct Samples {
+    /// Correlation of each sample with the one before it; 0 for the first.
+    rho: Vec<f64>,
+    /// The direction of the reflection that turns a constant into the first entry.
+    mirror: Vec<f64>,
+}
+
+impl Samples {
+    /// On a grid, ascending, of at least two points, for noise of a correlation length in the grid's unit;
+    /// 0 where every sample is on its own.
+    pub fn new(points: &[f64], length: f64) -> Self {
+        let gaps = points.windows(2).map(|pair| pair[1] - pair[0]);
+        let rho = gaps.map(|gap| {
+            if length > 0.0 {
+                libm::exp(-gap / length)
+            } else {
+                0.0
+            }
+        });
+        let mut samples = Self {
+            rho: std::iter::once(0.0).chain(rho).collect(),
+            mirror: Vec::new(),
+        };
+        let mut mirror = samples.innovations(&vec![1.0; points.len()]);
+        let norm = length_of(&mirror);
+        if let Some(first) = mirror.first_mut() {
+            // the image of a constant is positive everywhere: no cancellation
+            *first += norm;
+        }
+        let norm = length_of(&mirror);
+        samples.mirror = mirror.iter().map(|v| v / norm).collect();
+        samples
+    }
+
+    /// For the noise of several curves about their common mean on a grid: the correlation length under
+    /// which they are likeliest, their constants left open.
+    pub fn likeliest(points: &[f64], deviations: &[Vec<f64>]) -> Self {
+        /// Correlation lengths that are tried: this many between neighbours, and the whole grid.
+        const TRIED: u32 = 60;
+        let (Some(first), Some(last)) = (points.first(), points.last()) else {
+            return Self::new(points, 0.0);
+        };
+        let shortest = 0.2 * (last - first) / points.len() as f64;
+        let ratio = libm::log((last - first) / shortest) / f64::from(TRIED);
+        let tried = (0..=TRIED).map(|k| {
+            let length = if k == 0 {
+                0.0
+            } else {
+                shortest * libm::exp(ratio * f64::from(k))
+            };
+            Self::new(points, length)
+        });
+        let surprise = tried.map(|samples| (samples.surprise(deviations), samples));
+        let least = surprise.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        least.map_or_else(|| Self::new(points, 0.0), |(_, samples)| samples)
+    }
+
+    /// Entries of a curve.
+    pub fn len(&self) -> usize {
+        self.rho.len().saturating_sub(1)
+    }
+
+    /// Whether a curve has none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The entries of a curve; they have no imaginary part.
+    pub fn transform(&self, curve: &[f64]) -> Vec<C> {
+        let mirrored = self.reflected(self.innovations(curve));
+        mirrored.into_iter().skip(1).map(C::from).collect()
+    }
+
+    /// The curve whose entries these are, up to a constant.
+    pub fn curve(&self, entries: &[C]) -> Vec<f64> {
+        let all = std::iter::once(0.0).chain(entries.iter().map(|e| e.re));
+        let mut before = 0.0;
+        let step = |(rho, e): (&f64, f64)| {
+            before = rho * before + (1.0 - rho * rho).sqrt() * e;
+            before
+        };
+        self.rho
+            .iter()
+            .zip(self.reflected(all.collect()))
+            .map(step)
+            .collect()
+    }
+
+    fn innovations(&self, curve: &[f64]) -> Vec<f64> {
+        let mut before = 0.0;
+        let step = |(rho, y): (&f64, &f64)| {
+            let innovation = (y - rho * before) / (1.0 - rho * rho).sqrt();
+            before = *y;
+            innovation
+        };
+        self.rho.iter().zip(curve).map(step).collect()
+    }
+
+    fn reflected(&self, mut x: Vec<f64>) -> Vec<f64> {
+        let along: f64 = x.iter().zip(&self.mirror).map(|(x, v)| x * v).sum();
+        for (x, v) in x.iter_mut().zip(&self.mirror) {
+            *x -= 2.0 * along * v;
+        }
+        x
+    }
+
+    /// Minus twice the logarithm of the restricted likelihood, at the likeliest variance; up to a constant
+    /// of the curves.
+    fn surprise(&self, deviations: &[Vec<f64>]) -> f64 {
+        let square = |curve: &Vec<f64>| self.transform(curve).iter().map(C::norm_sqr).sum::<f64>();
+        let sum: f64 = deviations.iter().map(square).sum();
+        let constant = length_of(&self.innovations(&vec![1.0; self.rho.len()]));
+        let determinant: f64 = self.rho.iter().map(|rho| libm::log(1.0 - rho * rho)).sum();
+        self.len() as f64 * libm::log(sum.max(f64::MIN_POSITIVE))
+            + determinant
+            + 2.0 * libm::log(constant)
+    }
+}
+
+fn length_of(x: &[f64]) -> f64 {
+    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use search::random::{Phase, Streams};
+
+    /// A grid whose steps differ.
+    fn uneven(n: usize) -> Vec<f64> {
+        let step = |k: usize| 0.01 * (1.0 + 0.5 * (k as f64).sin());
+        (0..n)
+            .scan(2.0, |x, k| {
+                *x += step(k);
+                Some(*x)
+            })
+            .collect()
+    }
+
+    /// Noise of a correlation length on a grid, with a constant.
+    fn coloured(points: &[f64], length: f64, seed: u64, size: f64) -> Vec<f64> {
+        let mut stream = Streams::new(seed, 11).at(0, Phase::Initial, 0);
+        let mut y = stream.normal();
+        let mut before = points[0];
+        let next = |x: &f64| {
+            let rho = (-(x - before) / length).exp();
+            before = *x;
+            y = rho * y + (1.0 - rho * rho).sqrt() * stream.normal();
+            7.0 + size * y
+        };
+        points.iter().map(next).collect()
+    }
+
+    #[test]
+    fn a_constant_has_no_entry_and_every_other_curve_comes_back() {
+        let points = uneven(50);
+        let samples = Samples::new(&points, 0.03);
+        assert!(
+            samples
+                .transform(&[4.0; 50])
+                .iter()
+                .all(|e| e.norm() < 1e-12)
+        );
+        let curve: Vec<f64> = (0..50).map(|i| f64::from(i * i % 17)).collect();
+        let back = samples.curve(&samples.transform(&curve));
+        let shift = curve[0] - back[0];
+        assert!(
+            back.iter()
+                .zip(&curve)
+                .all(|(b, y)| (b + shift - y).abs() < 1e-9)
+        );
+    }
+
+    /// Entries of coloured noise are as strong as those of the few cycles from which its length was
+    /// estimated, and have no correlation from one to the next.
+    #[test]
+    fn entries_of_coloured_noise_are_white() {
+        let points = uneven(400);
+        for length in [0.02, 0.1] {
+            let cycles: Vec<Vec<f64>> = (0..4)
+                .map(|seed| coloured(&points, length, seed, 3.0))
+                .collect();
+            let mean = |i: usize| cycles.iter().map(|cycle| cycle[i]).sum::<f64>() / 4.0;
+            let less =
+                |cycle: &Vec<f64>| cycle.iter().enumerate().map(|(i, y)| y - mean(i)).collect();
+            let deviations: Vec<Vec<f64>> = cycles.iter().map(less).collect();
+            let samples = Samples::likeliest(&points, &deviations);
+            let power = |curve: &Vec<f64>| -> f64 {
+                samples.transform(curve).iter().map(C::norm_sqr).sum()
+            };
+            // four cycles lie about their own mean with three degrees of freedom
+            let seen = deviations.iter().map(power).sum::<f64>() / 3.0;
+            let (mut square, mut lagged) = (0.0, 0.0);
+            for seed in 100..130 {
+                let noise = coloured(&points, length, seed, 3.0);
+                let e = samples.transform(&noise);
+                square += power(&noise);
+                lagged += e
+                    .windows(2)
+                    .map(|pair| pair[0].re * pair[1].re)
+                    .sum::<f64>();
+            }
+            let (ratio, correlation) = (square / 30.0 / seen, lagged / square);
+            assert!((ratio - 1.0).abs() < 0.1, "{length} {ratio}");
+            assert!(correlation.abs() < 0.08, "{length} {correlation}");
+        }
+    }
+
+    #[test]
+    fn white_noise_is_told_from_coloured() {
+        let points = uneven(300);
+        let cycles: Vec<Vec<f64>> = (0..3)
+            .map(|seed| coloured(&points, 1e-4, seed, 1.0))
+            .collect();
+        let samples = Samples::likeliest(&points, &cycles);
+        assert!(samples.rho.iter().all(|rho| *rho < 0.2));
+    }
+}

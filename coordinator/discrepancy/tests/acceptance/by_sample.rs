@@ -1,0 +1,443 @@
+//! Records without a period, compared by sample: noise is white in their metric, maps of it are empty, and
+//! what is hidden is found where it is, from cycles or from the noise that is stated.
+use crate::case::{effect, size};
+use crate::trial::{now, say, trials};
+use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
+use discrepancy::laboratory::{Laboratory, Stage};
+use discrepancy::linear::score::misfit_tail;
+use discrepancy::linear::tangent::Tangent;
+use discrepancy::place::residual::Residual;
+use discrepancy::place::{along, order, whiteness};
+use discrepancy::proof::compare::Portion;
+use discrepancy::record::basis::Group;
+use discrepancy::record::metric::Metric;
+use discrepancy::record::noise::{Known, Noise};
+use discrepancy::record::{Curves, Record, Recorded, Stated};
+use discrepancy::thresholds::Thresholds;
+use discrepancy::verdict::Verdict;
+use nalgebra::{DMatrix, DVector};
+use protocol::announce::{EffectDescriptor, Place, Sign};
+use protocol::case::{Abscissa, Channel, Coefficient, Gene};
+use protocol::job::{Counters, Individual, Observation, SimulateSpec, Verdict as Ended};
+use protocol::pumping_unit::Discretisation;
+use protocol::unit::Unit;
+use search::least_squares::Linearized;
+use search::random::{Phase, Stream, Streams};
+use search::space::Space;
+use std::convert::Infallible;
+
+/// Samples of a channel.
+const SAMPLES: usize = 300;
+/// Correlation length of the noise of each channel (s), and its size.
+const LENGTHS: [f64; 2] = [0.05, 0.02];
+const SIZES: [f64; 2] = [0.03, 0.2];
+/// What the channels' noise has in common.
+const COMMON: f64 = 0.6;
+
+/// When the samples are taken (s): not evenly, and not from zero on.
+fn times() -> Vec<f64> {
+    let step = |k: usize| 0.01 * (1.0 + 0.4 * (0.3 * k as f64).sin());
+    let next = |t: &mut f64, k: usize| {
+        *t += step(k);
+        Some(*t)
+    };
+    (0..SAMPLES).scan(1.0, next).collect()
+}
+
+fn channel(curve: usize, noise: Option<f64>) -> Recorded {
+    Recorded {
+        curve,
+        scored: true,
+        held_out: false,
+        channel: Channel {
+            name: format!("channel_{curve}"),
+            title: format!("channel {curve}"),
+            unit: "1".to_owned(),
+            condition: 0,
+            abscissa: Abscissa {
+                name: "time".to_owned(),
+                unit: "s".to_owned(),
+                points: times(),
+                period: None,
+            },
+            noise,
+            step: None,
+            record: None,
+        },
+    }
+}
+
+/// Noise of both channels, correlated along each and between them, with a zero that nobody knows.
+fn noise(stream: &mut Stream) -> Curves {
+    let times = times();
+    let mut state = [0.0; 2];
+    let mut curves: Curves = vec![Vec::new(); 2];
+    let zeros = [3.0 * stream.normal(), 3.0 * stream.normal()];
+    for (k, t) in times.iter().enumerate() {
+        let gap = if k == 0 {
+            f64::INFINITY
+        } else {
+            t - times[k - 1]
+        };
+        let shared = stream.normal();
+        for c in 0..2 {
+            let rho = (-gap / LENGTHS[c]).exp();
+            let fresh = COMMON * shared + (1.0 - COMMON * COMMON).sqrt() * stream.normal();
+            state[c] = rho * state[c] + (1.0 - rho * rho).sqrt() * fresh;
+            curves[c].push(zeros[c] + SIZES[c] * state[c]);
+        }
+    }
+    curves
+}
+
+/// Cycles of curves with noise.
+fn record(seed: u64, cycles: usize, clean: &Curves, stated: bool) -> Record {
+    let mut stream = Streams::new(seed, 21).at(0, Phase::Initial, 0);
+    let mut cycle = || {
+        let mut noisy = noise(&mut stream);
+        for (y, clean) in noisy.iter_mut().flatten().zip(clean.iter().flatten()) {
+            *y += clean;
+        }
+        noisy
+    };
+    let step = (times()[SAMPLES - 1] - times()[0]) / (SAMPLES - 1) as f64;
+    Record {
+        condition: 0,
+        channels: (0..2)
+            .map(|c| channel(c, stated.then_some(SIZES[c])))
+            .collect(),
+        cycles: (0..cycles).map(|_| cycle()).collect(),
+        held_out: false,
+        stated: Stated {
+            noise_correlation: if stated {
+                (-step / LENGTHS[0]).exp()
+            } else {
+                0.0
+            },
+            ..Stated::default()
+        },
+    }
+}
+
+fn zero() -> Curves {
+    vec![vec![0.0; SAMPLES]; 2]
+}
+
+/// The metric of a record's own noise, the freedom of its variances, and the whitened mean.
+fn whitened(record: &Record) -> (Metric, f64, DVector<f64>) {
+    let groups = Group::of(record, 120, &[]);
+    let noise = Noise::estimate(record, &groups, &[]);
+    let metric = Metric::new(&groups, &noise);
+    let mean = metric.whiten(&record.mean());
+    (metric, noise.freedom, mean)
+}
+
+/// A fit of nothing.
+fn nothing(entries: usize) -> Tangent {
+    let at = Linearized {
+        x: Vec::new(),
+        residual: DVector::zeros(entries),
+        jacobian: DMatrix::zeros(entries, 0),
+    };
+    Tangent::new(&at, &[])
+}
+
+/// Entries have variance 1, and know nothing of each other along a channel or between channels.
+#[test]
+fn entries_of_noise_are_white() {
+    let (mut square, mut along, mut across, mut count) = (0.0, 0.0, 0.0, 0.0);
+    for seed in 0..40 {
+        let (metric, _, z) = whitened(&record(seed, 5, &zero(), false));
+        assert_eq!(metric.len(), 2 * (SAMPLES - 1));
+        // place by place, both channels
+        let rows = z.as_slice();
+        square += z.norm_squared();
+        along += rows.iter().zip(&rows[2..]).map(|(a, b)| a * b).sum::<f64>();
+        across += rows.chunks(2).map(|pair| pair[0] * pair[1]).sum::<f64>();
+        count += z.len() as f64;
+    }
+    let (variance, along, across) = (square / count, along / square, 2.0 * across / square);
+    say(&format!(
+        "by sample: variance {variance:.3}, correlation {along:.3} along and {across:.3} across"
+    ));
+    assert!((variance - 1.0).abs() < 0.05, "{variance}");
+    assert!(
+        along.abs() < 0.03 && across.abs() < 0.05,
+        "{along} {across}"
+    );
+}
+
+/// Maps along the abscissa, the test of whiteness and that of the misfit reject noise at their levels, of
+/// cycles that can be flipped and of fewer.
+#[test]
+fn noise_is_rejected_as_often_as_is_said() {
+    for cycles in [3, 6] {
+        let sets = trials(80);
+        let (mut windows, mut coloured, mut long) = (0, 0, 0);
+        for seed in 0..sets {
+            let own = record(1000 + seed, cycles, &zero(), false);
+            let (metric, freedom, z) = whitened(&own);
+            let tangent = nothing(z.len());
+            let residual = Residual {
+                left: &z,
+                metric: &metric,
+                tangent: &tangent,
+            };
+            let each = own.cycles.iter();
+            let deviations: Vec<DVector<f64>> =
+                each.map(|cycle| metric.whiten(cycle) - &z).collect();
+            let map = along::map(&residual, &deviations, 100, 0.05);
+            windows += usize::from(!map.windows.is_empty());
+            coloured += usize::from(whiteness::p_value(&order::powers(&residual), freedom) < 0.05);
+            let behind = z.len() as f64 * (cycles as f64 - 1.0);
+            let tail = misfit_tail(z.norm_squared(), z.len(), 0, behind);
+            long += usize::from(tail < 0.05);
+        }
+        let share = |count: usize| 100.0 * count as f64 / sets as f64;
+        let said = format!(
+            "by sample, {cycles} cycles: windows {:.1} %, not white {:.1} %, misfit {:.1} %",
+            share(windows),
+            share(coloured),
+            share(long)
+        );
+        say(&said);
+        for found in [windows, coloured, long] {
+            assert!((0.5..=10.0).contains(&share(found)), "{said}");
+        }
+    }
+}
+
+/// What is stated is as good as what is seen, where it is true; what is neither is guessed and said to be.
+#[test]
+fn noise_of_one_cycle_is_as_stated_or_guessed() {
+    let ratio = |stated: bool| {
+        let sets = 20;
+        let each = (0..sets).map(|seed| {
+            let own = record(3000 + seed, 1, &zero(), stated);
+            let groups = Group::of(&own, 120, &[]);
+            let known = Noise::estimate(&own, &groups, &[]).known;
+            assert_eq!(
+                known,
+                if stated {
+                    Known::Stated
+                } else {
+                    Known::Guessed
+                }
+            );
+            let (metric, _, z) = whitened(&own);
+            // the first channel, whose correlation is the one that is stated
+            z.iter().step_by(2).map(|e| e * e).sum::<f64>() / (metric.len() / 2) as f64
+        });
+        each.sum::<f64>() / sets as f64
+    };
+    assert!((ratio(true) - 1.0).abs() < 0.1, "{}", ratio(true));
+}
+
+/// A bump in one channel is found where it is, in the abscissa's own unit; there is no map of orders.
+#[test]
+fn a_bump_is_found_where_it_is() {
+    let mut clean = zero();
+    for (t, y) in times().iter().zip(&mut clean[1]) {
+        *y = 0.5 * (-((t - 2.5) / 0.05).powi(2)).exp();
+    }
+    let own = record(7, 6, &clean, false);
+    let (metric, freedom, z) = whitened(&own);
+    let tangent = nothing(z.len());
+    let residual = Residual {
+        left: &z,
+        metric: &metric,
+        tangent: &tangent,
+    };
+    let each = own.cycles.iter();
+    let deviations: Vec<DVector<f64>> = each.map(|cycle| metric.whiten(cycle) - &z).collect();
+    let map = along::map(&residual, &deviations, 200, 0.05);
+    let orders = order::map(&residual, freedom, 0.05);
+    assert!(orders.ratio.iter().all(Vec::is_empty) && orders.peaks.is_empty());
+    let first = map.windows.first().expect("a window");
+    assert_eq!(first.channel, 1);
+    assert!(first.from < 2.5 + 0.1 && first.to > 2.5 - 0.1, "{first:?}");
+    assert!(first.to - first.from < 1.0 && first.from > 2.0, "{first:?}");
+}
+
+/// What is simulated: something that rings down, its deflection and its force.
+struct Ringing;
+
+/// Decades of its frequency and damping from the start.
+const TRUTH: [f64; 2] = [0.03, -0.1];
+
+fn curves(genes: &[f64], effects: &[(&str, f64)]) -> Curves {
+    let amount = |id: &str| {
+        let own = effects.iter().find(|(name, _)| *name == id);
+        own.map_or(0.0, |(_, amount)| *amount)
+    };
+    let (frequency, damping) = (genes[0], genes[1]);
+    let at = |t: f64| {
+        let t = t - amount("late");
+        let hard = amount("hardening");
+        let fade = (-damping * t).exp();
+        // a hardening spring rings faster while it swings far
+        let phase = frequency * t + hard * (1.0 - fade * fade);
+        (
+            fade * phase.cos(),
+            8.0 * fade * phase.cos() * (1.0 + 0.5 * hard * fade),
+        )
+    };
+    let drift = |t: f64| amount("drift") * (t - 2.5);
+    let both: Vec<(f64, f64)> = times()
+        .iter()
+        .map(|t| {
+            let (deflection, force) = at(*t);
+            (deflection + drift(*t), force)
+        })
+        .collect();
+    let both = both.into_iter();
+    let (deflection, force): (Vec<f64>, Vec<f64>) = both.unzip();
+    vec![deflection, force]
+}
+
+impl Laboratory for Ringing {
+    type Error = Infallible;
+
+    async fn observe(
+        &mut self,
+        _: Stage,
+        batch: Vec<SimulateSpec>,
+    ) -> Result<Vec<Option<Observation>>, Infallible> {
+        let seen = |spec: SimulateSpec| {
+            let Individual { genes, effects, .. } = spec.individual;
+            let effects: Vec<(&str, f64)> = effects
+                .iter()
+                .map(|e| (e.id.as_str(), e.parameters[0].1))
+                .collect();
+            Some(Observation {
+                verdict: Ended::Complete,
+                counters: Counters::default(),
+                curves: curves(&genes, &effects),
+            })
+        };
+        Ok(batch.into_iter().map(seen).collect())
+    }
+}
+
+fn library() -> Vec<EffectDescriptor> {
+    let own = |id: &str, typical: f64, sign: Sign| {
+        effect(
+            id,
+            "spring",
+            Place::Dynamics,
+            vec![size("amount", "1", typical, sign)],
+        )
+    };
+    vec![
+        own("late", 0.01, Sign::Either),
+        own("hardening", 0.2, Sign::Positive),
+        own("drift", 0.05, Sign::Either),
+    ]
+}
+
+fn space() -> Space {
+    let gene =
+        |name, unit, value: f64| Gene::coefficient(name, unit, value, [0.1 * value, 10.0 * value]);
+    let genes = [
+        gene(Coefficient::Kb1, Unit::NewtonPerMetre, 9.0),
+        gene(Coefficient::Cb1, Unit::NewtonSecondPerMetre, 0.4),
+    ];
+    Space::new(&genes).expect("positive and ordered")
+}
+
+/// A record of the truth with an effect.
+fn hidden(effects: &[(&str, f64)], cycles: usize, stated: bool) -> Record {
+    record(
+        77,
+        cycles,
+        &curves(&space().values(&TRUTH), effects),
+        stated,
+    )
+}
+
+/// Diagnoses records, from beside the truth.
+fn diagnosed(records: Vec<Record>) -> Diagnosis {
+    let inputs = Inputs {
+        space: space(),
+        records,
+        library: library(),
+        start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
+        usual: Discretisation::default(),
+        finer: vec![Discretisation::default()],
+        seed: 1,
+        thresholds: Thresholds {
+            draws: 100,
+            ..Thresholds::default()
+        },
+    };
+    now(diagnose(&mut Ringing, &inputs))
+}
+
+/// The whole way, without a period anywhere: a healthy record is left alone, each effect gets its name and its
+/// size, and one cycle carries a suspect but no name.
+#[test]
+fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
+    let healthy = diagnosed(vec![hidden(&[], 8, false)]);
+    let said = crate::trial::line(&healthy);
+    assert_eq!(healthy.verdict, Verdict::NothingDetected, "{said}");
+    for (id, amount) in [("late", 0.01), ("hardening", 0.2), ("drift", -0.05)] {
+        let answer = diagnosed(vec![hidden(&[(id, amount)], 8, false)]);
+        let said = crate::trial::line(&answer);
+        assert_eq!(answer.verdict, Verdict::Named, "{said}");
+        assert_eq!(answer.effects[0].id, id, "{said}");
+        let found = &answer.effects[0].parameters[0];
+        assert!((found.value / amount - 1.0).abs() < 0.15, "{found:?}");
+        let [low, high] = found.interval;
+        assert!((low..=high).contains(&amount), "{found:?}");
+        let white = answer.whiteness.expect("a test");
+        assert!(white[0] < 0.01 && white[1] > 0.01, "{white:?}");
+        for (stated, word) in [(true, "assumed"), (false, "not known")] {
+            let one = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, stated)]);
+            let said = crate::trial::line(&one);
+            assert_eq!(one.verdict, Verdict::Unresolved, "{said}");
+            assert!(
+                one.reason.is_some_and(|reason| reason.contains(word)),
+                "{said}"
+            );
+        }
+    }
+}
+
+/// What the case holds out is compared at the end and nowhere else: a channel, and a condition.
+#[test]
+fn what_is_held_out_is_compared_at_the_end() {
+    let effects = [("hardening", 0.6)];
+    let mut own = hidden(&effects, 8, false);
+    own.channels[1].held_out = true;
+    let mut other = hidden(&effects, 4, false);
+    other.condition = 1;
+    let parts =
+        |answer: &Diagnosis| -> Vec<Portion> { answer.rows.iter().map(|row| row.part).collect() };
+    let all = [
+        Portion::Fitted,
+        Portion::Cycles,
+        Portion::Channels,
+        Portion::Condition,
+    ];
+    let free = diagnosed(vec![own.clone(), other.clone()]);
+    other.held_out = true;
+    let held = diagnosed(vec![own, other]);
+    for answer in [&free, &held] {
+        let said = crate::trial::line(answer);
+        assert_eq!(answer.verdict, Verdict::Named, "{said}");
+        assert_eq!(answer.effects[0].id, "hardening", "{said}");
+        assert_eq!(parts(answer), all);
+        // only the first channel is fitted
+        let entries = answer.after.as_ref().expect("a model").entries();
+        assert_eq!(entries, SAMPLES - 1);
+        let unseen = &answer.rows[2];
+        assert!(
+            unseen.before.len() == 1 && unseen.closed.closed > 0.8,
+            "{:?}",
+            unseen.closed
+        );
+    }
+    // four parts of the abscissa, and the other condition where it may be looked at
+    let shifts = |answer: &Diagnosis| answer.wander[0].shifts.len();
+    assert_eq!((shifts(&free), shifts(&held)), (5, 4));
+}
