@@ -6,13 +6,29 @@
     clippy::format_collect,
     reason = "small inputs of a test"
 )]
-use coordinator::{case, journal};
-use proptest::{collection::vec, prelude::*};
-use protocol::{
-    event::Event,
-    wire::{self, HEADER_BYTES},
+#[expect(unreachable_pub, reason = "a module of the fuzz targets, too")]
+#[path = "../../tests/fuzz/targets/property/mod.rs"]
+mod property;
+
+use coordinator::{
+    MARK,
+    case::{Overrides, load},
 };
-use std::{fs, path::Path};
+use property::{
+    file::{
+        are_genes_or_refused, are_samples_or_refused, is_a_card_or_refused, is_a_case_or_refused,
+        is_a_mesh_or_refused, is_read_or_reported, record,
+    },
+    wire::is_canonical,
+};
+use proptest::{collection::vec, prelude::*};
+use protocol::{case::Case, event::Event, wire};
+use std::{path::Path, sync::LazyLock};
+
+static CASE: LazyLock<Case> = LazyLock::new(|| {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    load(&shipped, &Overrides::default()).unwrap()
+});
 
 /// A stretch of a journal: rubbish, or the body of a record whose mark and checksum are in order.
 #[derive(Clone, Debug)]
@@ -31,47 +47,26 @@ fn stretch() -> impl Strategy<Value = Stretch> {
     ];
     prop_oneof![
         bytes().prop_map(Stretch::Rubbish),
-        Just(Stretch::Rubbish(journal::MARK.to_vec())),
+        Just(Stretch::Rubbish(MARK.to_vec())),
         bytes().prop_map(Stretch::Sealed),
         sound.prop_map(Stretch::Sound),
     ]
 }
 
-fn sealed(body: &[u8]) -> Vec<u8> {
-    let length = u32::try_from(body.len()).unwrap().to_le_bytes();
-    let mut checksum = crc32fast::Hasher::new();
-    checksum.update(&length);
-    checksum.update(body);
-    let checksum = checksum.finalize().to_le_bytes();
-    [journal::MARK.as_slice(), &length, &checksum, body].concat()
-}
-
 proptest! {
     #[test]
     fn every_byte_of_a_journal_is_read_or_reported(stretches in vec(stretch(), 0..12)) {
-        let mut bytes = Vec::new();
-        for stretch in &stretches {
-            match stretch {
-                Stretch::Rubbish(rubbish) => bytes.extend_from_slice(rubbish),
-                Stretch::Sealed(body) => bytes.extend(sealed(body)),
-                Stretch::Sound(event) => bytes.extend(sealed(&wire::encode(event).unwrap())),
-            }
-        }
+        let stretch = |stretch: &Stretch| match stretch {
+            Stretch::Rubbish(rubbish) => rubbish.clone(),
+            Stretch::Sealed(body) => record(body),
+            Stretch::Sound(event) => record(&wire::encode(event).unwrap()),
+        };
+        let bytes: Vec<u8> = stretches.iter().flat_map(stretch).collect();
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("journal");
-        fs::write(&path, &bytes).unwrap();
-        let (mut read, mut events) = (0, 0);
-        let report = journal::fold(&path, |entry, _| {
-            read += u64::from(entry.length) + 12;
-            events += 1;
-        })
-        .unwrap();
-        let lost: u64 = report.damage.iter().map(|damage| damage.bytes).sum();
-        prop_assert_eq!(read + lost, bytes.len() as u64);
-        prop_assert_eq!(report.records, events);
+        let report = is_read_or_reported(folder.path(), &bytes);
         let sound = stretches.iter().filter(|one| matches!(one, Stretch::Sound(_)));
         // rubbish that looks like the beginning of a record may only swallow what it really holds
-        prop_assert!(events >= sound.count() as u64 || !report.damage.is_empty());
+        prop_assert!(report.records >= sound.count() as u64 || !report.damage.is_empty());
     }
 
     #[test]
@@ -79,42 +74,35 @@ proptest! {
         bytes in vec(any::<u8>(), 0..400),
         rows in vec(("[0-9.e+-]{0,9},", 6..=6_usize), 0..8),
     ) {
-        let path = Path::new("record.csv");
         let header = "time_s,crank_deg,stress_1_mpa,stress_2_mpa,stress_3_mpa,stress_4_mpa\n";
         let rows: String = rows.iter().map(|(cell, times)| format!("{}\n", cell.repeat(*times))).collect();
-        for csv in [bytes.clone(), [header.as_bytes(), &bytes].concat(), [header, &rows].concat().into_bytes()] {
-            match case::count_samples(path, &csv) {
-                Ok(samples) => prop_assert!(samples >= 4),
-                Err(error) => prop_assert!(error.to_string().contains("record.csv")),
-            }
+        for csv in [&bytes, &[header.as_bytes(), &bytes].concat(), (header.to_owned() + &rows).as_bytes()] {
+            are_samples_or_refused(csv);
         }
     }
 
     #[test]
-    fn a_mesh_of_any_bytes_is_refused_in_words(
+    fn a_file_of_any_bytes_is_refused_in_words(
         bytes in vec(any::<u8>(), 0..400),
         numbers in vec(-2..40_i64, 0..60),
     ) {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("head.msh");
         let numbers: Vec<String> = numbers.iter().map(ToString::to_string).collect();
         let text = format!(
             "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n{}\n$EndNodes\n$Elements\n{}\n$EndElements\n",
             numbers.join(" "),
             numbers.join("\n"),
         );
-        for content in [bytes, text.into_bytes()] {
-            fs::write(&path, content).unwrap();
-            let refused = case::mesh::read(&path).unwrap_err().to_string();
-            prop_assert!(refused.contains("head.msh"), "{}", refused);
+        for content in [&bytes, text.as_bytes()] {
+            is_a_mesh_or_refused(folder.path(), content);
+            is_a_card_or_refused(folder.path(), content);
+            is_a_case_or_refused(folder.path(), content);
+            are_genes_or_refused(folder.path(), &CASE, content);
         }
     }
 
     #[test]
     fn an_encoded_case_of_any_bytes_is_written_in_one_way_only(bytes in vec(any::<u8>(), 0..600)) {
-        if let Ok(case) = wire::decode::<protocol::case::Case>(&bytes) {
-            prop_assert_eq!(wire::encode(&case).unwrap(), bytes.as_slice());
-        }
-        prop_assert!(wire::open(wire::Kind::FromWorker, &bytes).is_err() || bytes.len() >= HEADER_BYTES);
+        is_canonical::<Case>(&bytes);
     }
 }

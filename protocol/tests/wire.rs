@@ -1,4 +1,9 @@
 //! The codec against its two promises: what goes in comes out, and nothing makes it panic.
+#[expect(unreachable_pub, reason = "a module of the fuzz targets, too")]
+#[path = "../../tests/fuzz/targets/property/wire.rs"]
+mod property;
+
+use property::{is_a_frame_or_refused, is_canonical, is_canonical_in_frame};
 use proptest::{collection::vec, option, prelude::*};
 use protocol::{
     case::EffectSetting,
@@ -165,20 +170,14 @@ proptest! {
     }
 
     #[test]
-    fn arbitrary_bytes_never_panic(noise in vec(any::<u8>(), 0..400), kind in 0..Kind::ALL.len()) {
-        let kind = Kind::ALL[kind];
-        let mut framed = wire::seal(kind, RunId(0), &()).unwrap();
-        framed.extend_from_slice(&noise);
-        framed[12..16].copy_from_slice(&u32::try_from(noise.len()).unwrap().to_le_bytes());
-        framed[16..20].copy_from_slice(&crc32fast::hash(&noise).to_le_bytes());
-        for frame in [&noise, &framed] {
-            drop(wire::unseal::<ToWorker>(kind, frame));
-            drop(wire::unseal::<FromWorker>(kind, frame));
-            drop(wire::unseal::<ToSlot>(kind, frame));
-            drop(wire::unseal::<FromSlot>(kind, frame));
-        }
-        drop(wire::decode::<Event>(&noise));
-        drop(wire::decode::<protocol::case::Case>(&noise));
+    fn arbitrary_bytes_are_refused_or_written_in_one_way_only(noise in vec(any::<u8>(), 0..400)) {
+        is_a_frame_or_refused(&noise);
+        is_canonical_in_frame::<ToWorker>(Kind::ToWorker, &noise);
+        is_canonical_in_frame::<FromWorker>(Kind::FromWorker, &noise);
+        is_canonical_in_frame::<ToSlot>(Kind::ToSlot, &noise);
+        is_canonical_in_frame::<FromSlot>(Kind::FromSlot, &noise);
+        is_canonical::<Event>(&noise);
+        is_canonical::<protocol::case::Case>(&noise);
     }
 }
 

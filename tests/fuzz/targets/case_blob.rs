@@ -1,6 +1,6 @@
 //! The encoded case, which a worker fetches by its hash and then believes.
 #![no_main]
-use fuzz::is_canonical;
+use fuzz::property::wire::is_canonical;
 use libfuzzer_sys::fuzz_target;
 use protocol::case::Case;
 

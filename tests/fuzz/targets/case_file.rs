@@ -1,12 +1,6 @@
-//! `case.toml` as people write it: a case or an error that names a file and a remedy.
+//! `case.toml` as people write it.
 #![no_main]
-use fuzz::file;
+use fuzz::{FOLDER, property::file::is_a_case_or_refused};
 use libfuzzer_sys::fuzz_target;
 
-fuzz_target!(|bytes: &[u8]| {
-    let path = file("case.toml", bytes);
-    let folder = path.parent().expect("a folder");
-    if let Err(error) = coordinator::case::check(folder) {
-        assert!(!error.to_string().is_empty());
-    }
-});
+fuzz_target!(|bytes: &[u8]| is_a_case_or_refused(&FOLDER, bytes));

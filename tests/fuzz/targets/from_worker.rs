@@ -1,6 +1,6 @@
 //! Bodies of [`FromWorker`] messages, and of what a slot says, which nest the same types.
 #![no_main]
-use fuzz::is_canonical_in_frame;
+use fuzz::property::wire::is_canonical_in_frame;
 use libfuzzer_sys::fuzz_target;
 use protocol::{
     message::{FromSlot, FromWorker},

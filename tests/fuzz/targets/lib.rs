@@ -1,58 +1,13 @@
-//! What the targets share: the properties that every decoder must keep, and a place for files.
-use protocol::{
-    id::RunId,
-    wire::{self, Kind},
-};
-use serde::{Serialize, de::DeserializeOwned};
-use std::{fs, path::PathBuf, sync::OnceLock};
+//! What the targets share: the properties, and a place for files.
+pub mod property;
 
-/// Whatever decodes encodes to the same bytes: there is one way to write a value.
-pub fn is_canonical<T: Serialize + DeserializeOwned>(bytes: &[u8]) {
-    if let Ok(value) = wire::decode::<T>(bytes) {
-        let again = wire::encode(&value).expect("what was decoded can be encoded");
-        assert_eq!(again, bytes, "two encodings of one value");
-    }
-}
+use std::{fs, path::PathBuf, sync::LazyLock};
 
-/// The same within a frame whose header and checksum are in order.
-pub fn is_canonical_in_frame<T: Serialize + DeserializeOwned>(kind: Kind, body: &[u8]) {
-    is_canonical::<T>(body);
-    let mut frame = wire::seal(kind, RunId(7), &()).expect("an empty frame");
-    frame.extend_from_slice(body);
-    let length = u32::try_from(body.len()).expect("inputs are short");
-    frame[12..16].copy_from_slice(&length.to_le_bytes());
-    frame[16..20].copy_from_slice(&crc32(body).to_le_bytes());
-    let opened = wire::open(kind, &frame).expect("a frame in order");
-    assert_eq!(opened.body, body);
-    assert_eq!(
-        wire::unseal::<T>(kind, &frame).is_ok(),
-        wire::decode::<T>(body).is_ok()
-    );
-}
-
-/// CRC-32 (IEEE), bit by bit: not by the code under test.
-pub fn crc32(bytes: &[u8]) -> u32 {
-    let mut crc = u32::MAX;
-    for byte in bytes {
-        crc ^= u32::from(*byte);
-        for _ in 0..8 {
-            crc = (crc >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(crc & 1));
-        }
-    }
-    !crc
-}
-
-/// A file of this process in memory-backed storage, with the given content.
-pub fn file(name: &str, content: &[u8]) -> PathBuf {
-    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
-    let folder = FOLDER.get_or_init(|| {
-        let shared = PathBuf::from("/dev/shm");
-        let base = if shared.is_dir() { shared } else { std::env::temp_dir() };
-        let folder = base.join(format!("horsehead-fuzz-{}", std::process::id()));
-        fs::create_dir_all(&folder).expect("a scratch folder");
-        folder
-    });
-    let path = folder.join(name);
-    fs::write(&path, content).expect("a scratch file");
-    path
-}
+/// A folder of this process, in memory-backed storage where there is such.
+pub static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
+    let shared = PathBuf::from("/dev/shm");
+    let base = if shared.is_dir() { shared } else { std::env::temp_dir() };
+    let folder = base.join(format!("horsehead-fuzz-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a scratch folder");
+    folder
+});

@@ -3,9 +3,9 @@ use super::effect;
 use protocol::id::ContentHash;
 use std::sync::OnceLock;
 
-/// Names the numerics of this build by the bits of two reference runs, without effects and with all of
-/// them, and by the catalogue's units and bounds: equal digests promise equal results. Takes as long
-/// as those runs, some tenths of a second, the first time in a process.
+/// Names the numerics of this build by the bits of short reference runs, as the machine is, with twin
+/// ropes and with all effects, and by the catalogue's units and bounds: equal digests promise equal
+/// results. Takes as long as those runs the first time in a process.
 pub(super) fn of_numerics() -> &'static str {
     static DIGEST: OnceLock<String> = OnceLock::new();
     DIGEST.get_or_init(computed)
@@ -13,8 +13,7 @@ pub(super) fn of_numerics() -> &'static str {
 
 fn computed() -> String {
     let mut bytes = Vec::new();
-    let plain = simulation::reference::bits();
-    for (bits, statistics) in [plain, simulation::reference::bits_with_effects()] {
+    for (bits, statistics) in simulation::reference::name() {
         bytes.extend(bits.iter().flat_map(|bits| bits.to_le_bytes()));
         bytes.extend_from_slice(format!("{statistics:?}").as_bytes());
     }

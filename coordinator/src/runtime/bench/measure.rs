@@ -10,7 +10,6 @@ use crate::{
     quantile,
     runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions},
 };
-use link::locator::Locator;
 use std::time::{Duration, Instant};
 use tokio::time::sleep;
 
@@ -42,7 +41,7 @@ pub async fn bench(
                 Some(_) => "quic/127.0.0.1:0",
                 None => "tcp/127.0.0.1:0",
             };
-            options.listen = Some(Locator::parse(any)?.with_free_port()?.to_string());
+            options.listen = Some(any.to_owned());
             let tls = options.tls.as_ref().map(|folder| folder.join(WORKER));
             let dispatch = Dispatch::open(options).await?;
             let at = dispatch.listening().into_iter().next().unwrap_or_default();

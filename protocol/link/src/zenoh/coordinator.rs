@@ -35,6 +35,10 @@ pub struct CoordinatorOptions {
     pub blob: Blob,
 }
 
+/// How often ports are chosen before it is given up: another program may take one between its choice
+/// and our listening on it.
+const CHOICES: u32 = 5;
+
 /// A coordinator on the bus.
 #[derive(Debug)]
 pub struct ZenohCoordinator {
@@ -53,6 +57,25 @@ impl ZenohCoordinator {
     /// [`LinkError::Exposed`] or [`LinkError::NoKeys`] for addresses that may not be
     /// listened on as they are; [`LinkError::Transport`] if the address is taken.
     pub async fn open(options: CoordinatorOptions) -> Result<Self, LinkError> {
+        // behind a gate, the router itself is at a port of our choice
+        let chosen = |at: &Locator| at.port == 0 || at.protocol == Protocol::Quic;
+        let mut left = if options.listen.iter().any(chosen) {
+            CHOICES
+        } else {
+            1
+        };
+        loop {
+            left -= 1;
+            match Self::listen(options.clone()).await {
+                Err(LinkError::Transport { doing, reason }) if left > 0 => {
+                    tracing::debug!(doing, reason, "other ports are tried");
+                }
+                ended => return ended,
+            }
+        }
+    }
+
+    async fn listen(options: CoordinatorOptions) -> Result<Self, LinkError> {
         let CoordinatorOptions {
             listen,
             insecure,

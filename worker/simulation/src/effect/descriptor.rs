@@ -3,7 +3,9 @@
 //!
 //! All numbers are in the declared unit; [`Unit::to_si`] gives what the equations take.
 use super::unit::Unit;
-use crate::model::hook::Effect;
+use super::value::{Edit, Read, Values};
+use crate::model::description::Description;
+use crate::model::hook::{Effect, Sampled};
 use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
@@ -31,33 +33,11 @@ pub struct Descriptor {
 struct Build(Arc<Builder>);
 
 /// From values to the effect that has them.
-type Builder = dyn Fn(&Values<'_>) -> Arc<dyn Effect> + Send + Sync;
+type Builder = dyn Fn(&Values) -> Arc<dyn Effect> + Send + Sync;
 
 impl fmt::Debug for Build {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Build")
-    }
-}
-
-/// Values of an effect's parameters, SI.
-#[derive(Clone, Copy, Debug)]
-pub struct Values<'a> {
-    parameters: &'a [Parameter],
-    values: &'a [f64],
-}
-
-impl Values<'_> {
-    /// The value of a parameter; not a number where the effect has none of that name, which no run of
-    /// the contract test survives.
-    pub fn get(&self, name: &str) -> f64 {
-        let place = self.parameters.iter().position(|p| p.name == name);
-        let value = place.and_then(|place| self.values.get(place));
-        value.copied().unwrap_or(f64::NAN)
-    }
-
-    /// The values of several parameters.
-    pub fn each<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
-        names.map(|name| self.get(name))
     }
 }
 
@@ -208,10 +188,26 @@ impl Descriptor {
     /// How it is made of its values.
     pub(super) fn builds<E: Effect + 'static>(
         mut self,
-        build: impl Fn(&Values<'_>) -> E + Send + Sync + 'static,
+        build: impl Fn(&Values) -> E + Send + Sync + 'static,
     ) -> Self {
         self.build = Build(Arc::new(move |values| Arc::new(build(values))));
         self
+    }
+
+    /// For an effect that edits the description and does nothing else: how.
+    pub(super) fn edits(self, edit: fn(&Values, &mut Description)) -> Self {
+        self.builds(move |v| Edit {
+            values: v.clone(),
+            edit,
+        })
+    }
+
+    /// For an effect that changes single readings of the gauges and does nothing else: how.
+    pub(super) fn reads(self, read: fn(&Values, &Sampled, &mut [f64; 4])) -> Self {
+        self.builds(move |v| Read {
+            values: v.clone(),
+            read,
+        })
     }
 
     /// Position of a parameter by its name.
@@ -223,11 +219,8 @@ impl Descriptor {
     /// [`Self::parameters`], be it absent or not.
     pub fn build(&self, values: &[f64]) -> Arc<dyn Effect> {
         let of = self.parameters.iter().zip(values);
-        let si: Vec<f64> = of.map(|(p, value)| p.unit.to_si(*value)).collect();
-        (self.build.0)(&Values {
-            parameters: &self.parameters,
-            values: &si,
-        })
+        let si = of.map(|(p, value)| (p.name, p.unit.to_si(*value)));
+        (self.build.0)(&Values(si.collect()))
     }
 
     /// Whether values leave it absent: every size at its absent value.

@@ -16,6 +16,7 @@ mod selection;
 #[cfg(test)]
 mod tests;
 mod unit;
+mod value;
 
 pub use crate::model::cycle::Cycle;
 pub use crate::model::hook::{
@@ -23,6 +24,7 @@ pub use crate::model::hook::{
     Strain,
 };
 pub use catalogue::catalogue;
-pub use descriptor::{Descriptor, Parameter, Place, Role, Values};
+pub use descriptor::{Descriptor, Parameter, Place, Role};
 pub use selection::{Asked, Refused, Selection};
 pub use unit::Unit;
+pub use value::Values;

@@ -3,25 +3,10 @@
 //! Source: articulating inertia of a pumping unit: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("beam_inertia", "Inertia of beam and heads")
         .at("saddle", Place::Dynamics)
         .size("share", Unit::One, 0.2, [-0.8, 2.0])
-        .builds(|v| Inertia {
-            share: v.get("share"),
-        })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Inertia {
-    share: f64,
-}
-
-impl Effect for Inertia {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        d.beam_inertia *= 1.0 + self.share;
-    }
+        .edits(|v, d| d.beam_inertia *= 1.0 + v.get("share"))
 }

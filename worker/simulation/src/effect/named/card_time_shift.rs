@@ -6,31 +6,18 @@
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
 use crate::math::spline::Splines;
-use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("card_time_shift", "Load card late against the crank")
         .at("load_cell", Place::Load)
         .size("time", Unit::Second, 0.1, [-1.0, 1.0])
-        .builds(|v| Shift {
-            time: v.get("time"),
+        .edits(|v, d| {
+            let step = std::f64::consts::TAU / d.card.len() as f64;
+            let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
+            // by how much the card is later than the load
+            let late = v.get("time") * d.crank.speed;
+            for (i, load) in d.card.iter_mut().enumerate() {
+                *load = card.value(step * i as f64 + late, 0);
+            }
         })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Shift {
-    /// By how much the card is later than the load \[s\].
-    time: f64,
-}
-
-impl Effect for Shift {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        let step = std::f64::consts::TAU / d.card.len() as f64;
-        let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
-        let late = self.time * d.crank.speed;
-        for (i, load) in d.card.iter_mut().enumerate() {
-            *load = card.value(step * i as f64 + late, 0);
-        }
-    }
 }

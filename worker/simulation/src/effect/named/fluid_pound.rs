@@ -8,11 +8,11 @@
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015); the blow's wave: Gibbs, JPT 15 (1963).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
+use crate::effect::value::Values;
 use crate::math::elementary::{exp, sin_cos};
 use crate::math::spline::Splines;
 use crate::model::cycle::Cycle;
 use crate::model::description::Description;
-use crate::model::hook::Effect;
 use std::f64::consts::TAU;
 
 pub(super) fn descriptor() -> Descriptor {
@@ -23,49 +23,34 @@ pub(super) fn descriptor() -> Descriptor {
         .shape("fillage", Unit::One, 0.85, [0.3, 0.99])
         .shape("fall", Unit::Degree, 8.0, [1.0, 60.0])
         .shape("frequency", Unit::Hertz, 0.739, [0.2, 3.0])
-        .builds(|v| Pound {
-            held: v.get("held"),
-            impact: v.get("impact"),
-            fillage: v.get("fillage"),
-            fall: v.get("fall"),
-            frequency: v.get("frequency"),
-        })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Pound {
-    held: f64,
-    impact: f64,
-    fillage: f64,
-    fall: f64,
-    frequency: f64,
+        .edits(pound)
 }
 
 /// Time in which the blow's ringing decays to 1/e \[s\].
 const DECAY: f64 = 3.0;
 
-impl Effect for Pound {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        // a mechanism that does not close is refused when the machine is built
-        let Ok(cycle) = Cycle::of(d) else { return };
-        let (top, blow) = (cycle.descent(0.0), cycle.descent(1.0 - self.fillage));
-        let n = d.card.len();
-        let step = TAU / n as f64;
-        let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
-        let full = card.value(top, 0);
-        for (i, load) in d.card.iter_mut().enumerate() {
-            let turn = step * i as f64;
-            if turn > top {
-                let u = ((turn - blow) / self.fall).clamp(0.0, 1.0);
-                let holding = 1.0 - u * u * (3.0 - 2.0 * u);
-                *load += self.held * holding * (full - *load);
-            }
-            for earlier in 0..3 {
-                let t = (turn - blow + TAU * f64::from(earlier)) / d.crank.speed;
-                if t > 0.0 {
-                    let (s, _) = sin_cos(TAU * self.frequency * t);
-                    *load -= self.impact * s * exp(-t / DECAY);
-                }
+fn pound(v: &Values, d: &mut Description) {
+    let [held, impact] = v.each(["held", "impact"]);
+    let [fillage, fall, frequency] = v.each(["fillage", "fall", "frequency"]);
+    // a mechanism that does not close is refused when the machine is built
+    let Ok(cycle) = Cycle::of(d) else { return };
+    let (top, blow) = (cycle.descent(0.0), cycle.descent(1.0 - fillage));
+    let n = d.card.len();
+    let step = TAU / n as f64;
+    let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
+    let full = card.value(top, 0);
+    for (i, load) in d.card.iter_mut().enumerate() {
+        let turn = step * i as f64;
+        if turn > top {
+            let u = ((turn - blow) / fall).clamp(0.0, 1.0);
+            let holding = 1.0 - u * u * (3.0 - 2.0 * u);
+            *load += held * holding * (full - *load);
+        }
+        for earlier in 0..3 {
+            let t = (turn - blow + TAU * f64::from(earlier)) / d.crank.speed;
+            if t > 0.0 {
+                let (s, _) = sin_cos(TAU * frequency * t);
+                *load -= impact * s * exp(-t / DECAY);
             }
         }
     }

@@ -6,29 +6,14 @@
 //! Source: the lever arm is geometry; arms of pumping units: Svinos, SPE 12201 (1983).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("front_head_radius", "Radius or centre of the front head")
         .at("front_head", Place::Dynamics)
         .size("radius", Unit::Metre, 0.02, [-0.1, 0.1])
         .size("centre", Unit::Metre, 0.02, [-0.1, 0.1])
-        .builds(|v| Arc {
-            radius: v.get("radius"),
-            centre: v.get("centre"),
+        .edits(|v, d| {
+            d.front_arc.radius += v.get("radius");
+            d.front_arc.center[1] -= v.get("centre");
         })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Arc {
-    radius: f64,
-    centre: f64,
-}
-
-impl Effect for Arc {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        d.front_arc.radius += self.radius;
-        d.front_arc.center[1] -= self.centre;
-    }
 }

@@ -7,44 +7,35 @@
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
+use crate::effect::value::Values;
 use crate::math::elementary::sin_cos;
 use crate::math::spline::Splines;
 use crate::model::cycle::Cycle;
 use crate::model::description::Description;
-use crate::model::hook::Effect;
 use std::f64::consts::{PI, TAU};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("gas_interference", "Gas interference in the pump")
         .at("suspension", Place::Load)
         .size("delay", Unit::Degree, 12.0, [0.0, 35.0])
-        .builds(|v| Gas {
-            delay: v.get("delay"),
-        })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Gas {
-    delay: f64,
+        .edits(late)
 }
 
 /// Turn over which the load is late \[rad\].
 const LATE: f64 = 120.0 * PI / 180.0;
 
-impl Effect for Gas {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        // a mechanism that does not close is refused when the machine is built
-        let Ok(cycle) = Cycle::of(d) else { return };
-        let top = cycle.descent(0.0);
-        let step = TAU / d.card.len() as f64;
-        let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
-        for (i, load) in d.card.iter_mut().enumerate() {
-            let turn = step * i as f64;
-            let since = turn - top;
-            if since > 0.0 && since < LATE {
-                let (s, _) = sin_cos(PI * since / LATE);
-                *load = card.value(turn - self.delay * s * s, 0);
-            }
+fn late(v: &Values, d: &mut Description) {
+    // a mechanism that does not close is refused when the machine is built
+    let Ok(cycle) = Cycle::of(d) else { return };
+    let top = cycle.descent(0.0);
+    let step = TAU / d.card.len() as f64;
+    let card = Splines::periodic(0.0, step, std::slice::from_ref(&d.card));
+    for (i, load) in d.card.iter_mut().enumerate() {
+        let turn = step * i as f64;
+        let since = turn - top;
+        if since > 0.0 && since < LATE {
+            let (s, _) = sin_cos(PI * since / LATE);
+            *load = card.value(turn - v.get("delay") * s * s, 0);
         }
     }
 }

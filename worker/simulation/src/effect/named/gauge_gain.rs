@@ -4,7 +4,6 @@
 //! Source: Hoffmann, *An Introduction to Measurements using Strain Gages* (1989).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("gauge_gain", "Gain of the gauges")
@@ -15,26 +14,9 @@ pub(super) fn descriptor() -> Descriptor {
             0.05,
             [-0.5, 0.5],
         )
-        .builds(|v| Gain {
-            gain: v.each(["gain_1", "gain_2", "gain_3", "gain_4"]),
+        .reads(|v, _, stress| {
+            for (stress, gain) in stress.iter_mut().zip(v.in_order()) {
+                *stress *= 1.0 + gain;
+            }
         })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Gain {
-    gain: [f64; 4],
-}
-
-impl Effect for Gain {
-    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
-        hooks.add_reading(*self);
-    }
-}
-
-impl Reading for Gain {
-    fn sample(&self, _: &Sampled, stress: &mut [f64; 4]) {
-        for (stress, gain) in stress.iter_mut().zip(self.gain) {
-            *stress *= 1.0 + gain;
-        }
-    }
 }

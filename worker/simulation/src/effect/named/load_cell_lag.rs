@@ -11,44 +11,34 @@
 //! Source: first-order instruments: Doebelin, *Measurement Systems*, 5th ed. (2004), chapter 3.
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
+use crate::effect::value::Values;
 use crate::math::elementary::{atan2, powf, sin_cos};
 use crate::math::harmonics::filter;
 use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new("load_cell_lag", "Lag of the load cell or its logger")
         .at("load_cell", Place::Load)
         .size("lag", Unit::Second, 0.15, [-0.5, 0.5])
         .shape("poles", Unit::One, 1.0, [1.0, 4.0])
-        .builds(|v| Lag {
-            lag: v.get("lag"),
-            poles: v.get("poles"),
-        })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Lag {
-    lag: f64,
-    poles: f64,
+        .edits(lag)
 }
 
 /// Harmonic at which half of the correction is left.
 const FADES: f64 = 90.0;
 
-impl Effect for Lag {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        let w = d.crank.speed;
-        d.card = filter(&d.card, u32::MAX, |harmonic| {
-            let n = f64::from(harmonic);
-            let x = n * w * self.lag / self.poles;
-            let fade = n / FADES;
-            let left = 1.0 / (1.0 + fade * fade * fade * fade);
-            let size = powf(1.0 + x * x, 0.5 * self.poles);
-            let size = if x > 0.0 { size } else { 1.0 / size };
-            let (im, re) = sin_cos(self.poles * atan2(x, 1.0));
-            let [re, im] = [size * re, size * im];
-            [1.0 + left * (re - 1.0), left * im]
-        });
-    }
+fn lag(v: &Values, d: &mut Description) {
+    let [lag, poles] = v.each(["lag", "poles"]);
+    let w = d.crank.speed;
+    d.card = filter(&d.card, u32::MAX, |harmonic| {
+        let n = f64::from(harmonic);
+        let x = n * w * lag / poles;
+        let fade = n / FADES;
+        let left = 1.0 / (1.0 + fade * fade * fade * fade);
+        let size = powf(1.0 + x * x, 0.5 * poles);
+        let size = if x > 0.0 { size } else { 1.0 / size };
+        let (im, re) = sin_cos(poles * atan2(x, 1.0));
+        let [re, im] = [size * re, size * im];
+        [1.0 + left * (re - 1.0), left * im]
+    });
 }

@@ -7,8 +7,6 @@
 //! unbalance: API Spec 11E.
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
@@ -17,20 +15,9 @@ pub(super) fn descriptor() -> Descriptor {
     )
     .at("load_cell", Place::Load)
     .size("force", Unit::Newton, 1000.0, [-2e4, 2e4])
-    .builds(|v| Offset {
-        force: v.get("force"),
-    })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Offset {
-    force: f64,
-}
-
-impl Effect for Offset {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
+    .edits(|v, d| {
         for load in &mut d.card {
-            *load += self.force;
+            *load += v.get("force");
         }
-    }
+    })
 }

@@ -5,8 +5,6 @@
 //! Source: permanent elongation: Feyrer, *Wire Ropes*, 2nd ed. (2015).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
@@ -15,18 +13,5 @@ pub(super) fn descriptor() -> Descriptor {
     )
     .at("back_rope", Place::Dynamics)
     .size("length", Unit::Metre, 0.02, [-0.1, 0.1])
-    .builds(|v| Stretch {
-        length: v.get("length"),
-    })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Stretch {
-    length: f64,
-}
-
-impl Effect for Stretch {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
-        d.rod.length += self.length;
-    }
+    .edits(|v, d| d.rod.length += v.get("length"))
 }

@@ -8,8 +8,6 @@
 //! Source: Takacs, *Sucker-Rod Pumping Handbook* (2015).
 use crate::effect::descriptor::{Descriptor, Place};
 use crate::effect::unit::Unit;
-use crate::model::description::Description;
-use crate::model::hook::Effect;
 
 pub(super) fn descriptor() -> Descriptor {
     Descriptor::new(
@@ -19,28 +17,15 @@ pub(super) fn descriptor() -> Descriptor {
     .at("suspension", Place::Load)
     .size("travelling", Unit::Newton, 2000.0, [0.0, 2e4])
     .size("standing", Unit::Newton, 2000.0, [0.0, 2e4])
-    .builds(|v| Leakage {
-        travelling: v.get("travelling"),
-        standing: v.get("standing"),
-    })
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Leakage {
-    travelling: f64,
-    standing: f64,
-}
-
-impl Effect for Leakage {
-    fn describe(&self, d: &mut Description, _: &mut usize) {
+    .edits(|v, d| {
         let step = 360.0 / d.card.len() as f64;
         for (i, load) in d.card.iter_mut().enumerate() {
             let turn = step * i as f64;
-            *load -= self.travelling * ramp(turn, [40.0, 190.0, 210.0]);
+            *load -= v.get("travelling") * ramp(turn, [40.0, 190.0, 210.0]);
             let later = if turn < 100.0 { turn + 360.0 } else { turn };
-            *load += self.standing * ramp(later, [210.0, 350.0, 370.0]);
+            *load += v.get("standing") * ramp(later, [210.0, 350.0, 370.0]);
         }
-    }
+    })
 }
 
 /// From 0 at the first angle to 1 at the second and back to 0 at the third.

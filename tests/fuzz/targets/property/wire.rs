@@ -1,0 +1,60 @@
+//! Properties of the wire: frames, and the messages in them.
+use protocol::{
+    id::RunId,
+    wire::{self, HEADER_BYTES, Kind},
+};
+use serde::{Serialize, de::DeserializeOwned};
+
+/// A frame is taken whole or refused, and its header alone gives the length.
+pub fn is_a_frame_or_refused(bytes: &[u8]) {
+    for kind in Kind::ALL {
+        let opened = wire::open(kind, bytes);
+        if let Some((header, rest)) = bytes.split_first_chunk::<HEADER_BYTES>() {
+            let length = wire::body_length(kind, header);
+            if let Ok(frame) = opened {
+                assert_eq!(length, Ok(rest.len()));
+                assert_eq!(frame.body, rest);
+            } else if let Ok(length) = length {
+                assert!(length <= wire::BODY_LIMIT);
+            }
+        } else {
+            assert!(opened.is_err());
+        }
+    }
+}
+
+/// Whatever decodes encodes to the same bytes: there is one way to write a value.
+pub fn is_canonical<T: Serialize + DeserializeOwned>(bytes: &[u8]) {
+    if let Ok(value) = wire::decode::<T>(bytes) {
+        let again = wire::encode(&value).expect("what was decoded can be encoded");
+        assert_eq!(again, bytes, "two encodings of one value");
+    }
+}
+
+/// The same within a frame whose header and checksum are in order.
+pub fn is_canonical_in_frame<T: Serialize + DeserializeOwned>(kind: Kind, body: &[u8]) {
+    is_canonical::<T>(body);
+    let mut frame = wire::seal(kind, RunId(7), &()).expect("an empty frame");
+    frame.extend_from_slice(body);
+    let length = u32::try_from(body.len()).expect("inputs are short");
+    frame[12..16].copy_from_slice(&length.to_le_bytes());
+    frame[16..20].copy_from_slice(&crc32(body).to_le_bytes());
+    let opened = wire::open(kind, &frame).expect("a frame in order");
+    assert_eq!(opened.body, body);
+    assert_eq!(
+        wire::unseal::<T>(kind, &frame).is_ok(),
+        wire::decode::<T>(body).is_ok()
+    );
+}
+
+/// CRC-32 (IEEE), bit by bit: not by the code under test.
+pub fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = u32::MAX;
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = (crc >> 1) ^ (0xedb8_8320 & 0_u32.wrapping_sub(crc & 1));
+        }
+    }
+    !crc
+}

@@ -1,0 +1,58 @@
+//! Values of an effect's parameters, and effects that are no more than a function of them.
+use crate::model::description::Description;
+use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
+
+/// Values of an effect's parameters by name, in their order, SI.
+#[derive(Clone, Debug)]
+pub struct Values(pub(super) Vec<(&'static str, f64)>);
+
+impl Values {
+    /// The value of a parameter; not a number where the effect has none of that name, which no run of
+    /// the contract test survives.
+    pub fn get(&self, name: &str) -> f64 {
+        let value = self.0.iter().find(|(own, _)| *own == name);
+        value.map_or(f64::NAN, |(_, value)| *value)
+    }
+
+    /// The values of several parameters.
+    pub fn each<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
+        names.map(|name| self.get(name))
+    }
+
+    /// All of them, in the order of the parameters.
+    pub fn in_order(&self) -> impl Iterator<Item = f64> {
+        self.0.iter().map(|(_, value)| *value)
+    }
+}
+
+/// An effect that edits the description and does nothing else.
+#[derive(Clone, Debug)]
+pub(super) struct Edit {
+    pub(super) values: Values,
+    pub(super) edit: fn(&Values, &mut Description),
+}
+
+impl Effect for Edit {
+    fn describe(&self, description: &mut Description, _: &mut usize) {
+        (self.edit)(&self.values, description);
+    }
+}
+
+/// An effect that changes single readings of the gauges and does nothing else.
+#[derive(Clone, Debug)]
+pub(super) struct Read {
+    pub(super) values: Values,
+    pub(super) read: fn(&Values, &Sampled, &mut [f64; 4]),
+}
+
+impl Effect for Read {
+    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
+        hooks.add_reading(self.clone());
+    }
+}
+
+impl Reading for Read {
+    fn sample(&self, at: &Sampled, stress: &mut [f64; 4]) {
+        (self.read)(&self.values, at, stress);
+    }
+}
