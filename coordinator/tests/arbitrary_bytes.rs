@@ -11,8 +11,8 @@
 mod property;
 
 use coordinator::{
-    MARK,
     case::{Overrides, load},
+    journal::MARK,
 };
 use property::{
     file::{

@@ -3,6 +3,7 @@
 //! It is mounted in a mount namespace, which only the test's own processes see. Where the machine
 //! does not allow that, the test says so and proves nothing; the writer's own tests inject the same
 //! failures.
+use super::LIMIT;
 use coordinator::journal;
 use protocol::event::Event;
 use std::{
@@ -19,7 +20,6 @@ use std::{
 };
 use tests::process::{Process, free_locator, is_alive, wait_until};
 
-const LIMIT: Duration = Duration::from_mins(1);
 const JOBS: u64 = 400;
 const SKIPPED: &str = "skipped: this machine lets nobody mount a file system in a namespace";
 

@@ -1,16 +1,14 @@
 //! Local workers that end: started again while the run makes progress, given up with one clear
 //! message when it cannot.
+use super::LIMIT;
 use std::{
     fs,
     io::{BufRead, BufReader, Read},
     os::unix::fs::PermissionsExt,
     path::Path,
     process::{Command, Stdio},
-    time::Duration,
 };
 use tests::process::{Process, worker_program};
-
-const LIMIT: Duration = Duration::from_mins(1);
 
 /// What a run with local workers alone came to.
 struct Ended {

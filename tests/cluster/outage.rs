@@ -3,6 +3,7 @@
 //!
 //! `HORSEHEAD_TEST_OUTAGE_S` sets how long the coordinator is gone (default 6 s, longer than every
 //! lease: the transport's is 3 s, silence means loss after 4 s).
+use super::LIMIT;
 use rustix::process::Signal;
 use std::{
     collections::BTreeMap,
@@ -70,7 +71,8 @@ fn workers_come_back_after_an_outage_and_nothing_is_computed_twice() {
         "after an outage of {:?} the first result came in {fresh_after:?}",
         outage()
     );
-    assert!(fresh_after <= Duration::from_secs(5), "{fresh_after:?}");
+    // it takes a second where nothing else runs; workers that had to be told would never come
+    assert!(fresh_after <= LIMIT / 4, "{fresh_after:?}");
     assert!(last.starts_with("done repeated 0 "), "{last}");
     expect_computed_once(&trace);
     drop(workers);

@@ -1,4 +1,5 @@
 //! A coordinator that is killed, and the same command again.
+use super::LIMIT;
 use coordinator::journal;
 use protocol::{event::Event, id::JobId, job::Outcome};
 use rustix::process::Signal;
@@ -8,14 +9,11 @@ use std::{
     io::{BufRead, BufReader, Read},
     path::Path,
     process::Command,
-    time::Duration,
 };
 use tests::{
     expect_results,
     process::{Process, children, free_locator, is_alive, wait_until},
 };
-
-const LIMIT: Duration = Duration::from_mins(1);
 
 fn coordinator(run_dir: &Path, locator: &str, jobs: u64, local: usize) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_test-coordinator"));
@@ -89,7 +87,7 @@ fn a_killed_coordinator_leaves_no_process_behind() {
         .collect();
     assert_eq!((workers.len(), slots.len()), (2, 2));
     process.signal(Signal::KILL);
-    wait_until("all are gone", Duration::from_secs(2), || {
+    wait_until("all are gone", LIMIT, || {
         workers.iter().chain(&slots).all(|pid| !is_alive(*pid))
     });
     assert!(

@@ -274,7 +274,7 @@ async fn rubbish_costs_little_and_no_result() {
     let (mut dispatch, _honest, locator) = stage(folder.path()).await;
     let peer = Arc::new(Peer::join(&locator, 1).await);
     let mut results = BTreeMap::new();
-    let time = Duration::from_secs(4);
+    let time = Duration::from_secs(2);
     let before = rate(&mut dispatch, &mut results, time).await;
     let (stop, thrown) = (
         Arc::new(AtomicBool::new(false)),
@@ -302,7 +302,7 @@ async fn rubbish_costs_little_and_no_result() {
     expect_results(&results, jobs);
     let last: Snapshot = dispatch.close().await.unwrap().last;
     assert_eq!((last.lost, last.failed, last.done as u64), (0, 0, jobs));
-    assert!(thrown > 1000, "{thrown}");
+    assert!(thrown > 300, "{thrown}");
 }
 
 /// A peer that is admitted, does no work, and hands in results of jobs that others have.

@@ -10,9 +10,9 @@
 //! (0.5 % damping) and the ropes' axial modes lie in it, so that higher orders cost more steps, not
 //! fewer: 434 with orders up to 2, 77,911 up to 4 on the shipped unit (this crate's README). The default
 //! cap is therefore 2.
-use super::newton::{Newton, NotConverged, Stage};
+use super::newton::{Newton, Stage};
 use super::step_control::StepControl;
-use super::stepper::{Step, Stepper};
+use super::stepper::{Step, Stepper, Tried};
 use crate::system::{Equations, Powers, State, System};
 
 /// Highest order that is stable at all steps for a real decaying mode and in use (6 hardly is).
@@ -218,13 +218,7 @@ impl Bdf {
 }
 
 impl<E: Equations> Stepper<E> for Bdf {
-    fn step(
-        &mut self,
-        system: &mut System<E>,
-        from: &State,
-        h: f64,
-        to: &mut State,
-    ) -> Result<Step, NotConverged> {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
         if self.points == 0 {
             self.begin(from, h);
         }

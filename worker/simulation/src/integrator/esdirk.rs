@@ -3,8 +3,8 @@
 //!
 //! Every implicit stage is `q = base_q + c v`, `v = base_v + c a`, `M a = Q(q, v, t)` with the same
 //! `c`, so one factorisation of `M / c^2 - D / c - K` serves all of them.
-use super::newton::{Newton, NotConverged, Stage};
-use super::stepper::{Step, Stepper};
+use super::newton::{Newton, Stage};
+use super::stepper::{Step, Stepper, Tried};
 use super::tableau::Tableau;
 use crate::system::{Equations, Powers, State, System};
 
@@ -94,13 +94,7 @@ impl Esdirk {
 }
 
 impl<E: Equations> Stepper<E> for Esdirk {
-    fn step(
-        &mut self,
-        system: &mut System<E>,
-        from: &State,
-        h: f64,
-        to: &mut State,
-    ) -> Result<Step, NotConverged> {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
         let tableau = self.tableau;
         let last = tableau.stages() - 1;
         let c = tableau.diagonal * h;

@@ -7,8 +7,8 @@
 //! motion at `t_n + (alpha_m - alpha_f) h`. It stays inside: a [`State`] carries the acceleration at
 //! its own time. When the step size changes, `a_0` is moved to where the new step wants it, without
 //! which the order would fall to one.
-use super::newton::{Newton, NotConverged, Stage};
-use super::stepper::{Step, Stepper};
+use super::newton::{Newton, Stage};
+use super::stepper::{Step, Stepper, Tried};
 use crate::system::{Equations, Powers, State, System};
 
 /// The method with its buffers.
@@ -86,13 +86,7 @@ impl GeneralizedAlpha {
 }
 
 impl<E: Equations> Stepper<E> for GeneralizedAlpha {
-    fn step(
-        &mut self,
-        system: &mut System<E>,
-        from: &State,
-        h: f64,
-        to: &mut State,
-    ) -> Result<Step, NotConverged> {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
         self.start(from, h);
         let (c, d) = self.bases(from, h);
         let stage = Stage {

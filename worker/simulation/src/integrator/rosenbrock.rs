@@ -8,7 +8,7 @@
 //! adds what Newton's method can do without ([`Equations::add_spin_tangent`]).
 use super::dense::interpolate;
 use super::newton::NotConverged;
-use super::stepper::{Step, Stepper};
+use super::stepper::{Step, Stepper, Tried};
 use crate::linear::Bordered;
 use crate::system::{Equations, Powers, Shift, State, StateRef, System};
 
@@ -208,13 +208,7 @@ fn add(to: &mut [f64], weight: f64, x: &[f64]) {
 }
 
 impl<E: Equations> Stepper<E> for Rosenbrock {
-    fn step(
-        &mut self,
-        system: &mut System<E>,
-        from: &State,
-        h: f64,
-        to: &mut State,
-    ) -> Result<Step, NotConverged> {
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried {
         self.linearize(system, from, h)?;
         for i in 0..STAGES {
             self.argument(i, from, to);

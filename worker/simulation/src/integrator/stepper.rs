@@ -12,6 +12,9 @@ pub struct Step {
     pub work: Powers,
 }
 
+/// A step that was made, or could not be.
+pub type Tried = Result<Step, NotConverged>;
+
 /// A method of integration with its buffers and whatever it remembers of earlier steps.
 ///
 /// It knows neither what is recorded nor which size a step should have, unless it says so in
@@ -24,13 +27,7 @@ pub trait Stepper<E: Equations>: Debug {
     ///
     /// # Errors
     /// [`NotConverged`] when the step could not be made; `to` is then meaningless.
-    fn step(
-        &mut self,
-        system: &mut System<E>,
-        from: &State,
-        h: f64,
-        to: &mut State,
-    ) -> Result<Step, NotConverged>;
+    fn step(&mut self, system: &mut System<E>, from: &State, h: f64, to: &mut State) -> Tried;
 
     /// The last step was accepted; it ends in `to`.
     fn accept(&mut self, equations: &E, to: &State);

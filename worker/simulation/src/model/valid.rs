@@ -59,9 +59,7 @@ pub(super) fn check(d: &Description, modes: usize) -> Result<(), InvalidDescript
         ("back radius", d.back_arc.radius),
     ];
     for (what, value) in positive {
-        if !(value > 0.0 && value.is_finite()) {
-            return Err(InvalidDescription::NotPositive { what, value });
-        }
+        check_positive(what, value)?;
     }
     check_tables(d, modes)?;
     d.twins
@@ -69,69 +67,50 @@ pub(super) fn check(d: &Description, modes: usize) -> Result<(), InvalidDescript
         .map_or(Ok(()), |twins| check_twins(d, twins, modes))
 }
 
+fn check_positive(what: &'static str, value: f64) -> Result<(), InvalidDescription> {
+    if value > 0.0 && value.is_finite() {
+        return Ok(());
+    }
+    Err(InvalidDescription::NotPositive { what, value })
+}
+
+fn check_size(what: &'static str, found: usize, expected: usize) -> Result<(), InvalidDescription> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(InvalidDescription::Shape {
+        what,
+        found,
+        expected,
+    })
+}
+
 /// The head has what its modes and its gauges need.
 fn check_tables(d: &Description, modes: usize) -> Result<(), InvalidDescription> {
-    let stations = d.head.radial.first().map_or(0, Vec::len);
-    let sizes = [
-        ("radial shapes", d.head.radial.len().min(modes), modes),
-        (
-            "tangential shapes",
-            d.head.tangential.len().min(modes),
-            modes,
-        ),
-        (
-            "head frequencies",
-            d.head.frequencies.len().min(modes),
-            modes,
-        ),
-        (
-            "gauge stresses",
-            d.head.gauge_stress.len().min(modes),
-            modes,
-        ),
-        (
-            "participations",
-            d.head.participation.len().min(modes),
-            modes,
-        ),
-        ("normal influence lines", d.head.normal_influence.len(), 4),
-        (
-            "tangential influence lines",
-            d.head.tangential_influence.len(),
-            4,
-        ),
-        ("back rope", d.rope.back.min(3), 3),
-        ("front rope", d.rope.front.min(3), 3),
-        ("load card", d.card.len().min(8), 8),
-    ];
-    for (what, found, expected) in sizes {
-        if found != expected {
-            return Err(InvalidDescription::Shape {
-                what,
-                found,
-                expected,
-            });
-        }
+    let head = &d.head;
+    for (what, found, least) in [
+        ("radial shapes", head.radial.len(), modes),
+        ("tangential shapes", head.tangential.len(), modes),
+        ("head frequencies", head.frequencies.len(), modes),
+        ("gauge stresses", head.gauge_stress.len(), modes),
+        ("participations", head.participation.len(), modes),
+        ("back rope", d.rope.back, 3),
+        ("front rope", d.rope.front, 3),
+        ("load card", d.card.len(), 8),
+    ] {
+        check_size(what, found.min(least), least)?;
     }
-    for table in d.head.radial.iter().chain(&d.head.tangential) {
-        if table.len() != stations {
-            return Err(InvalidDescription::Shape {
-                what: "mode shape",
-                found: table.len(),
-                expected: stations,
-            });
-        }
-    }
-    Ok(())
+    let tangential = head.tangential_influence.len();
+    check_size("normal influence lines", head.normal_influence.len(), 4)?;
+    check_size("tangential influence lines", tangential, 4)?;
+    let stations = head.radial.first().map_or(0, Vec::len);
+    let mut shapes = head.radial.iter().chain(&head.tangential);
+    shapes.try_for_each(|shape| check_size("mode shape", shape.len(), stations))
 }
 
 /// A pair of ropes, and a head that has tables for it.
 fn check_twins(d: &Description, twins: &Twins, modes: usize) -> Result<(), InvalidDescription> {
-    let value = twins.offset;
-    if !(value > 0.0 && value.is_finite()) {
-        let what = "distance of twin ropes from the plane";
-        return Err(InvalidDescription::NotPositive { what, value });
-    }
+    check_positive("distance of twin ropes from the plane", twins.offset)?;
     let sway = &twins.sway;
     let count = sway.frequencies.len();
     if modes + count > MAX_MODES {
@@ -142,53 +121,39 @@ fn check_twins(d: &Description, twins: &Twins, modes: usize) -> Result<(), Inval
         });
     }
     let lines = d.head.normal_influence.first().map_or(0, Vec::len);
-    let stations = d.head.radial.first().map(Vec::len);
-    let stations = stations.or(sway.radial.first().map(Vec::len)).unwrap_or(0);
-    let tables = [
+    let stations = d.head.radial.first().or(sway.radial.first());
+    let stations = stations.map_or(0, Vec::len);
+    for (family, sizes, tables) in [
         (
-            "radial shapes out of the plane",
-            &sway.radial,
-            count,
-            stations,
+            [
+                "radial shapes out of the plane",
+                "tangential shapes out of the plane",
+                "lateral shapes",
+            ],
+            [count, stations],
+            [&sway.radial, &sway.tangential, &sway.lateral],
         ),
         (
-            "tangential shapes out of the plane",
-            &sway.tangential,
-            count,
-            stations,
+            [
+                "normal influence lines of a pair",
+                "tangential influence lines of a pair",
+                "lateral influence lines",
+            ],
+            [4, lines],
+            [
+                &sway.normal_influence,
+                &sway.tangential_influence,
+                &sway.lateral_influence,
+            ],
         ),
-        ("lateral shapes", &sway.lateral, count, stations),
-        (
-            "normal influence lines of a pair",
-            &sway.normal_influence,
-            4,
-            lines,
-        ),
-        (
-            "tangential influence lines of a pair",
-            &sway.tangential_influence,
-            4,
-            lines,
-        ),
-        ("lateral influence lines", &sway.lateral_influence, 4, lines),
-    ];
-    for (what, table, rows, entries) in tables {
-        let wrong = table.iter().map(Vec::len).find(|&found| found != entries);
-        let rows = (table.len() != rows).then_some((table.len(), rows));
-        if let Some((found, expected)) = rows.or(wrong.map(|found| (found, entries))) {
-            return Err(InvalidDescription::Shape {
-                what,
-                found,
-                expected,
-            });
+    ] {
+        let [rows, entries] = sizes;
+        for (what, table) in family.into_iter().zip(tables) {
+            check_size(what, table.len(), rows)?;
+            let mut rows = table.iter();
+            rows.try_for_each(|row| check_size(what, row.len(), entries))?;
         }
     }
-    if sway.gauge_stress.len() != count {
-        return Err(InvalidDescription::Shape {
-            what: "gauge stresses out of the plane",
-            found: sway.gauge_stress.len(),
-            expected: count,
-        });
-    }
-    Ok(())
+    let found = sway.gauge_stress.len();
+    check_size("gauge stresses out of the plane", found, count)
 }
