@@ -12,6 +12,7 @@ pub mod core;
 mod draft;
 pub mod journal;
 mod line;
+pub mod pumping_unit;
 pub mod quantile;
 pub mod report;
 pub mod runtime;

@@ -7,7 +7,7 @@ use std::fmt;
 
 /// A colour: red, green and blue.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Color(pub u8, pub u8, pub u8);
+pub(crate) struct Color(pub u8, pub u8, pub u8);
 
 impl fmt::Display for Color {
     /// As CSS and SVG write it.
@@ -17,25 +17,25 @@ impl fmt::Display for Color {
 }
 
 /// Text and measured curves.
-pub(super) const INK: Color = Color(0x22, 0x22, 0x22);
+pub(crate) const INK: Color = Color(0x22, 0x22, 0x22);
 /// Secondary text.
-pub(super) const GREY: Color = Color(0x6b, 0x6b, 0x6b);
+pub(crate) const GREY: Color = Color(0x6b, 0x6b, 0x6b);
 /// Axes.
-pub(super) const AXIS: Color = Color(0x55, 0x55, 0x55);
+pub(crate) const AXIS: Color = Color(0x55, 0x55, 0x55);
 /// Guide lines behind curves.
-pub(super) const GUIDE: Color = Color(0xe9, 0xe9, 0xe6);
+pub(crate) const GUIDE: Color = Color(0xe9, 0xe9, 0xe6);
 /// The guide line at zero.
-pub(super) const ZERO: Color = Color(0xb9, 0xb9, 0xb5);
+pub(crate) const ZERO: Color = Color(0xb9, 0xb9, 0xb5);
 /// Bands of spread.
-pub(super) const BAND: Color = Color(0xd3, 0xd3, 0xd0);
+pub(crate) const BAND: Color = Color(0xd3, 0xd3, 0xd0);
 /// Simulated curves and the optimum.
-pub(super) const VERMILLION: Color = Color(0xc8, 0x4b, 0x11);
+pub(crate) const VERMILLION: Color = Color(0xc8, 0x4b, 0x11);
 /// Second simulated quantity.
-pub(super) const BLUE: Color = Color(0x0b, 0x5f, 0x9e);
+pub(crate) const BLUE: Color = Color(0x0b, 0x5f, 0x9e);
 /// Third simulated quantity.
-pub(super) const GREEN: Color = Color(0x1b, 0x7a, 0x5a);
+pub(crate) const GREEN: Color = Color(0x1b, 0x7a, 0x5a);
 /// Fourth simulated quantity.
-pub(super) const PURPLE: Color = Color(0x8a, 0x4f, 0x8f);
+pub(crate) const PURPLE: Color = Color(0x8a, 0x4f, 0x8f);
 
 /// Tension, low to high: deep blue over violet and rose to orange.
 const TENSION: [Color; 5] = [
@@ -65,23 +65,23 @@ const SIGNED: [Color; 5] = [
 ];
 
 /// Colour of a deviation, as a share of the scale (-1 to 1, held inside).
-pub(super) fn signed(share: f64) -> Color {
+pub(crate) fn signed(share: f64) -> Color {
     let share = if share.is_finite() { share } else { 0.0 };
     blend(&SIGNED, 0.5 + 0.5 * share)
 }
 
 /// Colour of a tension, as a share of the scale (0 to 1, held inside).
-pub(super) fn tension(share: f64) -> Color {
+pub(crate) fn tension(share: f64) -> Color {
     blend(&TENSION, share)
 }
 
 /// Colour of a pressure, as a share of the scale (0 to 1, held inside).
-pub(super) fn pressure(share: f64) -> Color {
+pub(crate) fn pressure(share: f64) -> Color {
     blend(&PRESSURE, share)
 }
 
 /// The stops of the tension scale as CSS colours, evenly spaced.
-pub(super) fn tension_stops() -> Vec<String> {
+pub(crate) fn tension_stops() -> Vec<String> {
     TENSION.iter().map(Color::to_string).collect()
 }
 

@@ -73,6 +73,17 @@ pub struct Run {
     pub simulation: Simulation,
 }
 
+/// One simulation, to be shown.
+#[derive(Clone, Copy, Debug)]
+pub struct Shown<'a> {
+    /// The case that was simulated.
+    pub case: &'a Case,
+    /// Index of the condition in the case.
+    pub condition: usize,
+    /// Its curves, as far as it got.
+    pub simulation: &'a Simulation,
+}
+
 /// Both parameter sets under one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConditionResult {
@@ -135,6 +146,35 @@ pub struct Calibration {
 }
 
 impl Calibration {
+    /// What the optimised parameters give under the calibrated condition.
+    pub fn optimum(&self) -> Option<Shown<'_>> {
+        let result = self.calibrated()?;
+        Some(Shown {
+            case: &self.case,
+            condition: result.condition,
+            simulation: &result.optimised.simulation,
+        })
+    }
+
+    /// What was simulated, condition by condition, with the name of the parameters.
+    pub fn shown(&self) -> Vec<(&'static str, Shown<'_>)> {
+        let both = self.conditions.iter().flat_map(|result| {
+            let runs = [
+                ("recommended", &result.recommended),
+                ("optimised", &result.optimised),
+            ];
+            runs.map(|(who, run)| {
+                let shown = Shown {
+                    case: &self.case,
+                    condition: result.condition,
+                    simulation: &run.simulation,
+                };
+                (who, shown)
+            })
+        });
+        both.collect()
+    }
+
     /// The result under the condition that was calibrated.
     pub fn calibrated(&self) -> Option<&ConditionResult> {
         self.conditions
@@ -162,4 +202,15 @@ pub struct SingleRun {
     pub simulation: Simulation,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
+}
+
+impl SingleRun {
+    /// What was simulated.
+    pub const fn shown(&self) -> Shown<'_> {
+        Shown {
+            case: &self.case,
+            condition: self.condition,
+            simulation: &self.simulation,
+        }
+    }
 }

@@ -44,7 +44,7 @@ pub(super) fn write_report(folder: &Path, report: &Report) -> Result<Vec<PathBuf
 }
 
 /// Name of the file of a figure: nothing but letters, digits, `-` and `_` before the dot.
-pub(super) fn svg_name(figure: &str) -> String {
+pub(crate) fn svg_name(figure: &str) -> String {
     let keep = |c: char| c.is_ascii_alphanumeric() || c == '-';
     let stem = figure.chars().map(|c| if keep(c) { c } else { '_' });
     format!("{}.svg", stem.collect::<String>())
@@ -54,7 +54,7 @@ pub(super) fn svg_name(figure: &str) -> String {
 ///
 /// # Errors
 /// [`ReportError::Write`] when it cannot be written.
-pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, ReportError> {
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, ReportError> {
     let path = folder.join(name);
     let result = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
     match result {
@@ -67,7 +67,7 @@ pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Re
 ///
 /// # Errors
 /// [`ReportError`] when it cannot be written.
-pub(super) fn stream(
+pub(crate) fn stream(
     folder: &Path,
     name: &str,
     fill: impl FnOnce(BufWriter<File>) -> Result<(), ::csv::Error>,

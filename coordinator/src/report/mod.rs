@@ -5,28 +5,26 @@
 //! or the network.
 //!
 //! From below upwards: `number`, `color` and `words` say one thing each; `document` is what every report
-//! is made of, and its forms; `table`, `chart` and `animation` fill it; `section` lists what a report
-//! says; `folder` and `write` make files of it.
-mod animation;
+//! is made of, and its forms; `table` and `chart` fill it, and `drawing` is what a kind of model fills in,
+//! those of `kind`; `section` lists what a report says; `folder` and `write` make files of it.
 pub mod chart;
-mod color;
-pub mod csv;
-mod data;
+pub(crate) mod color;
+pub(crate) mod data;
 pub mod diagnosis;
-mod document;
-mod folder;
-mod number;
+pub(crate) mod document;
+pub(crate) mod drawing;
+pub(crate) mod folder;
+mod kind;
+pub(crate) mod number;
 mod section;
 pub mod table;
-pub mod vtu;
 pub mod words;
 mod write;
 
 pub use data::{
-    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
+    Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, Shown, SingleRun,
+    WorkerUse,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub use folder::ReportError;
-pub use write::{
-    calibration, parameters, simulation, write_calibration, write_head_modes, write_simulation,
-};
+pub use write::{calibration, parameters, ranges, simulation, write_calibration, write_simulation};

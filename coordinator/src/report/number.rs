@@ -3,7 +3,7 @@
 //! Plain text only: powers of ten use Unicode superscripts, the minus is a real minus sign.
 
 /// What stands where there is no value.
-pub(super) const NONE: &str = "–";
+pub(crate) const NONE: &str = "–";
 
 /// Keeps a number and its unit or power on one line.
 const NO_BREAK: char = '\u{a0}';
@@ -18,7 +18,7 @@ fn exponent(value: f64) -> i32 {
 }
 
 /// An integer as Unicode superscript.
-pub(super) fn superscript(value: i32) -> String {
+pub(crate) fn superscript(value: i32) -> String {
     value
         .to_string()
         .chars()
@@ -45,7 +45,7 @@ fn signed(text: &str) -> String {
 }
 
 /// Three significant digits; powers of ten outside 0.01 to 100 000.
-pub(super) fn figure(value: f64) -> String {
+pub(crate) fn figure(value: f64) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
     }
@@ -66,7 +66,7 @@ pub(super) fn figure(value: f64) -> String {
 }
 
 /// A fixed number of decimals.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {
         return NONE.to_owned();
     }
@@ -81,7 +81,7 @@ pub(super) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// A share of 1 as per cent.
-pub(super) fn percent(share: f64) -> String {
+pub(crate) fn percent(share: f64) -> String {
     if !share.is_finite() {
         return NONE.to_owned();
     }
@@ -90,7 +90,7 @@ pub(super) fn percent(share: f64) -> String {
 }
 
 /// How many times, with the direction in the sign of the exponent: `2.49 ×`.
-pub(super) fn ratio(of: f64, to: f64) -> String {
+pub(crate) fn ratio(of: f64, to: f64) -> String {
     let ratio = of / to;
     if ratio.is_finite() {
         format!("{}{NO_BREAK}×", figure(ratio))
@@ -100,7 +100,7 @@ pub(super) fn ratio(of: f64, to: f64) -> String {
 }
 
 /// A unit as print sets it, from how files write it: `kg.m2` as `kg·m²`, `N/m^1.5` as `N/m¹·⁵`.
-pub(super) fn unit(symbol: &str) -> String {
+pub(crate) fn unit(symbol: &str) -> String {
     let mut set = String::with_capacity(symbol.len() + 4);
     let mut raised = false;
     for c in symbol.chars() {
@@ -119,7 +119,7 @@ pub(super) fn unit(symbol: &str) -> String {
 }
 
 /// The square of a unit as print sets it; nothing where there is no unit.
-pub(super) fn squared(symbol: Option<&str>) -> String {
+pub(crate) fn squared(symbol: Option<&str>) -> String {
     match symbol {
         None | Some("" | "1") => String::new(),
         Some(compound) if compound.contains(['.', '/']) => unit(&format!("({compound})^2")),
@@ -128,7 +128,7 @@ pub(super) fn squared(symbol: Option<&str>) -> String {
 }
 
 /// A value with its unit; the unit `1` is not written.
-pub(super) fn quantity(value: f64, symbol: &str) -> String {
+pub(crate) fn quantity(value: f64, symbol: &str) -> String {
     match symbol {
         _ if !value.is_finite() => NONE.to_owned(),
         "" | "1" => figure(value),
@@ -137,7 +137,7 @@ pub(super) fn quantity(value: f64, symbol: &str) -> String {
 }
 
 /// A whole number with thin spaces between thousands.
-pub(super) fn count(value: u64) -> String {
+pub(crate) fn count(value: u64) -> String {
     let digits = value.to_string();
     let mut grouped = String::with_capacity(digits.len() + digits.len() / 3);
     for (index, digit) in digits.chars().enumerate() {
@@ -150,7 +150,7 @@ pub(super) fn count(value: u64) -> String {
 }
 
 /// A duration in the unit that suits it.
-pub(super) fn duration(seconds: f64) -> String {
+pub(crate) fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
         NONE.to_owned()
     } else if seconds < 100.0 {
@@ -163,7 +163,7 @@ pub(super) fn duration(seconds: f64) -> String {
 }
 
 /// Smallest and largest finite value.
-pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
+pub(crate) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)> {
     values
         .into_iter()
         .filter(|value| value.is_finite())
@@ -171,6 +171,13 @@ pub(super) fn range(values: impl IntoIterator<Item = f64>) -> Option<(f64, f64)>
             None => Some((value, value)),
             Some((low, high)) => Some((low.min(value), high.max(value))),
         })
+}
+
+/// A number with all its digits, as a table of numbers has it; empty if it is none.
+pub(crate) fn field(value: Option<f64>) -> String {
+    value
+        .filter(|value| value.is_finite())
+        .map_or_else(String::new, |value| value.to_string())
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! What commands write: reports of calibrations and simulations with the data behind them.
 use super::data::{Calibration, SingleRun};
-use super::document::{Report, section_text};
-use super::folder::{ReportError, stream, svg_name, write, write_report};
-use super::{chart, csv, section};
+use super::document::{Report, Table, section_text};
+use super::folder::{ReportError, write_report};
+use super::{kind, section};
 use std::path::{Path, PathBuf};
 
 /// The report of a calibration.
@@ -24,44 +24,34 @@ pub fn simulation(run: &SingleRun) -> Report {
     Report::new(title, &run.origin.run, sections)
 }
 
+/// The ranges of a simulation's curves; none for a kind of model that has no more than its channels.
+pub fn ranges(run: &SingleRun) -> Option<Table> {
+    kind::of(&run.case)?.tables(run).into_iter().next()
+}
+
 /// Writes the report of a calibration into a folder, which is made if it does not exist:
-/// `report.html`, `tables.txt`, `figures/*.svg` and `curves.csv`. Returns the paths, the HTML first.
+/// `report.html`, `tables.txt`, `figures/*.svg` and the numbers of its kind of model. Returns the paths, the HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
 pub fn write_calibration(folder: &Path, of: &Calibration) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = write_report(folder, &calibration(of))?;
-    written.push(stream(folder, "curves.csv", |file| {
-        csv::curves(file, &of.case, &of.conditions)
-    })?);
+    if let Some(kind) = kind::of(&of.case) {
+        written.extend(kind.files(folder, &of.shown())?);
+    }
     Ok(written)
 }
 
 /// Writes the report of one simulation into a folder, which is made if it does not exist:
-/// `report.html`, `tables.txt`, `figures/*.svg`, `curves.csv` and `ropes.csv`. Returns the paths, the
+/// `report.html`, `tables.txt`, `figures/*.svg` and the numbers of its kind of model. Returns the paths, the
 /// HTML first.
 ///
 /// # Errors
 /// [`ReportError`] when a file cannot be written.
 pub fn write_simulation(folder: &Path, run: &SingleRun) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = write_report(folder, &simulation(run))?;
-    written.push(stream(folder, "curves.csv", |file| {
-        csv::single_curves(file, run)
-    })?);
-    written.push(stream(folder, "ropes.csv", |file| {
-        csv::ropes(file, &run.simulation)
-    })?);
+    if let Some(kind) = kind::of(&run.case) {
+        written.extend(kind.files(folder, &[(&run.genes_name, run.shown())])?);
+    }
     Ok(written)
-}
-
-/// Writes `head_modes.svg` into a folder, which is made if it does not exist. Returns its path.
-///
-/// # Errors
-/// [`ReportError`] when the file cannot be written.
-pub fn write_head_modes(
-    folder: &Path,
-    picture: &chart::HeadPicture<'_>,
-) -> Result<PathBuf, ReportError> {
-    let figure = chart::head_modes(picture);
-    write(folder, &svg_name(&figure.name), &figure.svg)
 }

@@ -6,6 +6,7 @@ mod numbers;
 mod sample;
 mod suspicion;
 
+use coordinator::pumping_unit::report::{balance, simulation};
 use coordinator::report::{
     self, Calibration, Figure, SingleRun, chart, table, write_calibration, write_simulation,
 };
@@ -475,8 +476,7 @@ fn terminal_tables_are_styled_only_on_demand() {
         assert!(plain.contains(part), "{part} is not in\n{plain}");
     }
     let run = sample::single();
-    let single =
-        table::text(&table::simulation(&run), false) + &table::text(&table::balance(&run), false);
+    let single = table::text(&simulation(&run), false) + &table::text(&balance(&run), false);
     for part in [
         "gauge 4",
         "stroke",

@@ -1,6 +1,6 @@
 //! The numbers behind the figures, as CSV.
 use super::{sample, with_failed_recommended};
-use coordinator::report::csv;
+use coordinator::pumping_unit::report::csv;
 use protocol::pumping_unit::Motion;
 
 #[test]
@@ -8,7 +8,7 @@ fn the_curves_are_written_with_all_their_digits() {
     let calibration = with_failed_recommended(210);
     let case = &calibration.case;
     let mut bytes = Vec::new();
-    csv::curves(&mut bytes, case, &calibration.conditions).unwrap();
+    csv::curves(&mut bytes, &calibration.shown()).unwrap();
     let mut reader = ::csv::Reader::from_reader(bytes.as_slice());
     let head = reader.headers().unwrap().clone();
     let column = |name: &str| head.iter().position(|column| column == name).unwrap();

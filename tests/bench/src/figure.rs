@@ -1,7 +1,7 @@
 //! Error against work as SVG, one curve per method of integration: Newton iterations on the left, wall
 //! time on the right, both axes logarithmic.
 use crate::work::{Comparison, Point};
-use coordinator::report::words::integrator_name;
+use coordinator::pumping_unit::report::integrator_name;
 use maud::{Markup, html};
 use protocol::pumping_unit::Integrator;
 

@@ -6,6 +6,7 @@ use crate::work::{Comparison, Plan, Point, compare};
 use clap::Args;
 use comfy_table::Table;
 use coordinator::case::read_genes;
+use coordinator::pumping_unit::report::integrator_name;
 use coordinator::report::words;
 use protocol::pumping_unit::Integrator;
 use std::path::PathBuf;
@@ -66,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let output = &arguments.output;
     let done = |point: &Point| {
-        let [name, limits] = [words::integrator_name(point.integrator), &limits(point)];
+        let [name, limits] = [integrator_name(point.integrator), &limits(point)];
         let time = point.wall_s;
         output.tell(&format!("{name:<18} {limits}: {time:.3} s, {}", end(point)))
     };
@@ -121,7 +122,7 @@ fn side_by_side(all: &Comparison) -> Table {
         let fastest = good.min_by(|a, b| a.wall_s.total_cmp(&b.wall_s));
         let mark = if fastest == Some(point) { " *" } else { "" };
         table.add_row([
-            words::integrator_name(point.integrator).to_owned() + mark,
+            integrator_name(point.integrator).to_owned() + mark,
             limits(point),
             point.steps.to_string(),
             point.rejected_steps.to_string(),

@@ -10,7 +10,10 @@ use crate::{
         },
         run::once::in_scratch,
     },
-    report::{self, chart::HeadPicture, table},
+    pumping_unit::report::{
+        HeadPicture, head_mode_table, head_pair, head_statics, write_head_modes,
+    },
+    report::table,
     study,
 };
 use anyhow::Context as _;
@@ -129,7 +132,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     if let Some(folder) = &arguments.out {
         let picture = picture(machine, &source, &head);
-        written.push(report::write_head_modes(folder, &picture)?);
+        written.push(write_head_modes(folder, &picture)?);
     }
     if arguments.write {
         written.extend(head_files::write_tables(machine, &source, &head)?);
@@ -140,10 +143,10 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let object = object::head::head((case, &name), &source.mesh_blake3, &head, &comparison);
     let tables = || {
         let styled = terminal::styled();
-        let modes = table::text(&table::head_modes(&head, &comparison), styled);
-        let statics = table::head_statics(&comparison, &name, machine.run.modes);
+        let modes = table::text(&head_mode_table(&head, &comparison), styled);
+        let statics = head_statics(&comparison, &name, machine.run.modes);
         let pair = head.twin.iter().zip(&machine.twin_ropes);
-        let pair = pair.map(|(twin, ropes)| table::head_pair(twin, ropes.offset_m));
+        let pair = pair.map(|(twin, ropes)| head_pair(twin, ropes.offset_m));
         let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
         let pair: String = pair.collect();
         format!("{modes}\n{}{pair}", table::text(&statics, styled))

@@ -92,7 +92,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         }
     }
     let object = simulation((case, condition), &curves);
-    let tables = || table::text(&table::simulation(&run), terminal::styled());
+    let tables = || {
+        let ranges = report::ranges(&run);
+        ranges.map_or_else(String::new, |ranges| {
+            table::text(&ranges, terminal::styled())
+        })
+    };
     terminal::print(arguments.output.output, tables, &object)
 }
 

@@ -3,7 +3,7 @@ use crate::{
     case::{GaugePlace, HeadSource, TwinFile},
     cli::run::bus::PROGRAM,
     draft::Draft,
-    report::vtu::{self, Field},
+    pumping_unit::report::vtu::{self, Field},
 };
 use anyhow::Context as _;
 use protocol::pumping_unit::{HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};

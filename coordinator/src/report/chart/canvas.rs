@@ -6,7 +6,7 @@ use crate::report::color::Color;
 use maud::{Markup, PreEscaped, Render, html};
 
 /// Width of every full-width figure [px].
-pub(super) const WIDTH: f64 = 960.0;
+pub(crate) const WIDTH: f64 = 960.0;
 /// Units of the SVG per pixel on screen.
 const FINENESS: f64 = 10.0;
 /// Typeface of every figure; the report's style sheet may replace it.
@@ -14,21 +14,21 @@ const FONT: &str = "Helvetica, Arial, sans-serif";
 
 /// A pen.
 #[derive(Clone, Copy)]
-pub(super) struct Pen {
+pub(crate) struct Pen {
     color: Color,
     width: f64,
 }
 
 impl Pen {
     /// A pen of a colour and a width [px].
-    pub(super) const fn new(color: Color, width: f64) -> Self {
+    pub(crate) const fn new(color: Color, width: f64) -> Self {
         Self { color, width }
     }
 }
 
 /// Where a text's anchor point lies in it, and how it looks.
 #[derive(Clone, Copy)]
-pub(super) struct Lettering {
+pub(crate) struct Lettering {
     /// Size [px].
     size: f64,
     color: Color,
@@ -42,7 +42,7 @@ pub(super) struct Lettering {
 
 impl Lettering {
     /// Upright text that starts at its anchor, centred vertically.
-    pub(super) const fn new(size: f64, color: Color) -> Self {
+    pub(crate) const fn new(size: f64, color: Color) -> Self {
         Self {
             size,
             color,
@@ -54,44 +54,44 @@ impl Lettering {
     }
 
     /// The same, ending at its anchor.
-    pub(super) const fn right(mut self) -> Self {
+    pub(crate) const fn right(mut self) -> Self {
         self.along = "end";
         self
     }
 
     /// The same with the anchor in its middle.
-    pub(super) const fn centered(mut self) -> Self {
+    pub(crate) const fn centered(mut self) -> Self {
         self.along = "middle";
         self
     }
 
     /// The same, standing on its anchor.
-    pub(super) const fn above(mut self) -> Self {
+    pub(crate) const fn above(mut self) -> Self {
         self.drop = -0.2;
         self
     }
 
     /// The same, hanging from its anchor.
-    pub(super) const fn below(mut self) -> Self {
+    pub(crate) const fn below(mut self) -> Self {
         self.drop = 0.76;
         self
     }
 
     /// The same in bold.
-    pub(super) const fn bold(mut self) -> Self {
+    pub(crate) const fn bold(mut self) -> Self {
         self.bold = true;
         self
     }
 
     /// The same, reading upwards.
-    pub(super) const fn upwards(mut self) -> Self {
+    pub(crate) const fn upwards(mut self) -> Self {
         self.upwards = true;
         self
     }
 }
 
 /// A sheet; all positions in pixels from its upper left corner.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     body: String,
 }
 
@@ -124,7 +124,7 @@ impl Canvas {
     }
 
     /// A curve; broken wherever a point is not finite.
-    pub(super) fn line(&mut self, points: &[(f64, f64)], pen: Pen) {
+    pub(crate) fn line(&mut self, points: &[(f64, f64)], pen: Pen) {
         for run in points.split(|&point| !is_finite(point)) {
             if run.len() > 1 {
                 self.draw(&html! {
@@ -136,7 +136,7 @@ impl Canvas {
     }
 
     /// A straight dashed line.
-    pub(super) fn dashed(&mut self, from: (f64, f64), to: (f64, f64), pen: Pen) {
+    pub(crate) fn dashed(&mut self, from: (f64, f64), to: (f64, f64), pen: Pen) {
         const DASH: f64 = 5.0;
         const GAP: f64 = 3.5;
         if is_finite(from) && is_finite(to) {
@@ -149,14 +149,14 @@ impl Canvas {
     }
 
     /// A filled polygon; nothing if a corner is not finite.
-    pub(super) fn fill(&mut self, points: &[(f64, f64)], color: Color) {
+    pub(crate) fn fill(&mut self, points: &[(f64, f64)], color: Color) {
         if points.len() > 2 && points.iter().all(|&point| is_finite(point)) {
             self.draw(&html! { polygon fill=(color) points=(list(points)) {} });
         }
     }
 
     /// A filled rectangle between two corners.
-    pub(super) fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), color: Color) {
+    pub(crate) fn rectangle(&mut self, from: (f64, f64), to: (f64, f64), color: Color) {
         if !(is_finite(from) && is_finite(to)) {
             return;
         }
@@ -168,7 +168,7 @@ impl Canvas {
     }
 
     /// A filled disc.
-    pub(super) fn dot(&mut self, at: (f64, f64), radius: f64, color: Color) {
+    pub(crate) fn dot(&mut self, at: (f64, f64), radius: f64, color: Color) {
         if is_finite(at) {
             self.draw(&html! {
                 circle fill=(color) cx=(unit(at.0)) cy=(unit(at.1)) r=(unit(radius)) {}
@@ -177,7 +177,7 @@ impl Canvas {
     }
 
     /// One line of text.
-    pub(super) fn text(&mut self, at: (f64, f64), text: &str, lettering: Lettering) {
+    pub(crate) fn text(&mut self, at: (f64, f64), text: &str, lettering: Lettering) {
         if !is_finite(at) {
             return;
         }
@@ -193,7 +193,7 @@ impl Canvas {
 }
 
 /// Draws one figure and returns its SVG: an element that can stand in HTML as well as in a file.
-pub(super) fn render(
+pub(crate) fn render(
     (width, height): (f64, f64),
     title: &str,
     paint: impl FnOnce(&mut Canvas),

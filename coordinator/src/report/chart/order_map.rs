@@ -10,12 +10,12 @@ use discrepancy::place::order::OrderMap;
 /// The colour scale ends here at the earliest: noise stays pale.
 const LEAST: f64 = 10.0;
 
-/// Draws the map; rows are `channels`, in the map's order; `speed_rpm` turns orders into
-/// frequencies. None of an empty map.
+/// Draws the map; rows are `channels`, in the map's order; `hertz`, the frequency of
+/// order 1, turns orders into frequencies. None of an empty map.
 pub(in crate::report) fn order_map(
     map: &OrderMap,
     channels: &[String],
-    speed_rpm: f64,
+    hertz: Option<f64>,
 ) -> Option<Figure> {
     let orders = map.ratio.iter().map(Vec::len).max().unwrap_or(0);
     if orders == 0 || map.ratio.len() != channels.len() {
@@ -53,15 +53,9 @@ pub(in crate::report) fn order_map(
             let at = panel.at((peak.order as f64, peak.channel as f64 + 0.5));
             canvas.dot(at, 1.9, mark(share(peak.ratio, end)));
         }
-        let hertz = speed_rpm / 60.0;
-        panel.lower_axis(
-            canvas,
-            true,
-            &format!(
-                "order of the crank (order 60 is {} Hz)",
-                figure(60.0 * hertz)
-            ),
-        );
+        let hertz = hertz.map(|hertz| format!(" (order 60 is {} Hz)", figure(60.0 * hertz)));
+        let title = format!("order of the crank{}", hertz.unwrap_or_default());
+        panel.lower_axis(canvas, true, &title);
     });
     Some(Figure {
         name: "where_order".to_owned(),

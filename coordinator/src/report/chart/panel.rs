@@ -9,7 +9,7 @@ const TICK: f64 = 4.0;
 const LABEL: f64 = 10.5;
 
 /// A rectangle on the sheet with a scale along each side.
-pub(super) struct Panel {
+pub(crate) struct Panel {
     /// Left edge [px].
     pub left: f64,
     /// Upper edge [px].
@@ -26,32 +26,32 @@ pub(super) struct Panel {
 
 impl Panel {
     /// Right edge [px].
-    pub(super) fn right(&self) -> f64 {
+    pub(crate) fn right(&self) -> f64 {
         self.left + self.width
     }
 
     /// Lower edge [px].
-    pub(super) fn bottom(&self) -> f64 {
+    pub(crate) fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
     /// Where a horizontal value lies [px].
-    pub(super) fn at_x(&self, x: f64) -> f64 {
+    pub(crate) fn at_x(&self, x: f64) -> f64 {
         self.left + self.width * self.x.share(x)
     }
 
     /// Where a vertical value lies [px].
-    pub(super) fn at_y(&self, y: f64) -> f64 {
+    pub(crate) fn at_y(&self, y: f64) -> f64 {
         self.bottom() - self.height * self.y.share(y)
     }
 
     /// Where a point lies [px].
-    pub(super) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+    pub(crate) fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         (self.at_x(x), self.at_y(y))
     }
 
     /// Guide lines behind the curves, and a firmer one at zero.
-    pub(super) fn guides(&self, canvas: &mut Canvas) {
+    pub(crate) fn guides(&self, canvas: &mut Canvas) {
         let (low, high) = self.y.ends();
         let ticks = self.y.ticks();
         for tick in ticks.iter().filter(|tick| !tick.label.is_empty()) {
@@ -63,7 +63,7 @@ impl Panel {
     }
 
     /// The left axis with ticks, labels on demand and its title.
-    pub(super) fn left_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
+    pub(crate) fn left_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
         canvas.line(&[(self.left, self.top), (self.left, self.bottom())], pen);
         for tick in self.y.ticks() {
@@ -87,7 +87,7 @@ impl Panel {
     }
 
     /// The lower axis with ticks, labels on demand and its title.
-    pub(super) fn lower_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
+    pub(crate) fn lower_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
         let y = self.bottom();
         canvas.line(&[(self.left, y), (self.right(), y)], pen);
@@ -112,13 +112,13 @@ impl Panel {
     }
 
     /// A curve.
-    pub(super) fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)], pen: Pen) {
+    pub(crate) fn curve(&self, canvas: &mut Canvas, points: &[(f64, f64)], pen: Pen) {
         let path: Vec<_> = points.iter().map(|&point| self.at(point)).collect();
         canvas.line(&path, pen);
     }
 
     /// The area between two curves over the same abscissas, for every stretch that is finite.
-    pub(super) fn band(&self, canvas: &mut Canvas, rows: &[(f64, f64, f64)], color: Color) {
+    pub(crate) fn band(&self, canvas: &mut Canvas, rows: &[(f64, f64, f64)], color: Color) {
         for run in rows.split(|(x, low, high)| !(x + low + high).is_finite()) {
             let upper = run.iter().map(|&(x, _, high)| self.at((x, high)));
             let lower = run.iter().rev().map(|&(x, low, _)| self.at((x, low)));
@@ -127,7 +127,7 @@ impl Panel {
     }
 
     /// A remark in the middle of the panel.
-    pub(super) fn remark(&self, canvas: &mut Canvas, text: &str) {
+    pub(crate) fn remark(&self, canvas: &mut Canvas, text: &str) {
         let lettering = Lettering::new(11.5, GREY).centered();
         canvas.text(
             (self.left + 0.5 * self.width, self.top + 0.5 * self.height),
@@ -138,7 +138,7 @@ impl Panel {
 }
 
 /// Title of every crank-angle axis.
-pub(super) const CRANK_TITLE: &str = "crank angle from bottom dead centre [deg]";
+pub(crate) const CRANK_TITLE: &str = "crank angle from bottom dead centre [deg]";
 
 const fn axis_pen() -> Pen {
     Pen::new(AXIS, 0.8)
@@ -150,7 +150,7 @@ const fn tick_length(label: &str) -> f64 {
 
 /// Heights for labels that want to stand at `wanted` [px] but need `gap` between them; the order
 /// of the input is kept.
-pub(super) fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
+pub(crate) fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> {
     let mut order: Vec<usize> = (0..wanted.len()).collect();
     order.sort_by(|&a, &b| wanted[a].total_cmp(&wanted[b]));
     let mut placed = wanted.to_vec();

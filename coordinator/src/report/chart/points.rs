@@ -1,7 +1,7 @@
 //! Lists of points before they are drawn: paired and thinned.
 
 /// Thins a list to at most `most` entries, evenly, first and last kept.
-pub(super) fn thinned<T: Copy>(values: &[T], most: usize) -> Vec<T> {
+pub(crate) fn thinned<T: Copy>(values: &[T], most: usize) -> Vec<T> {
     if values.len() <= most || most < 2 {
         return values.to_vec();
     }
@@ -11,7 +11,7 @@ pub(super) fn thinned<T: Copy>(values: &[T], most: usize) -> Vec<T> {
 }
 
 /// Points of a curve; as long as the shorter list.
-pub(super) fn points(xs: &[f64], ys: &[f64]) -> Vec<(f64, f64)> {
+pub(crate) fn points(xs: &[f64], ys: &[f64]) -> Vec<(f64, f64)> {
     xs.iter().copied().zip(ys.iter().copied()).collect()
 }
 

@@ -4,7 +4,7 @@ use crate::report::number::{fixed, range, superscript};
 
 /// A mark on an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
+pub(crate) struct Tick {
     /// The value that it marks.
     pub value: f64,
     /// What is written there; empty for a minor tick.
@@ -21,7 +21,7 @@ enum Spacing {
 
 /// One axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Scale {
+pub(crate) struct Scale {
     low: f64,
     high: f64,
     spacing: Spacing,
@@ -40,7 +40,7 @@ fn round_step(span: f64, parts: f64) -> f64 {
 
 impl Scale {
     /// One crank revolution: 0 to 360 degrees, a label every 60, a tick every 30.
-    pub(super) const fn crank() -> Self {
+    pub(crate) const fn crank() -> Self {
         Self {
             low: 0.0,
             high: 360.0,
@@ -50,7 +50,7 @@ impl Scale {
 
     /// Linear over all finite values with a little air; `parts` is the number of steps aimed at.
     /// Without any finite value: 0 to 1.
-    pub(super) fn linear(values: impl IntoIterator<Item = f64>, parts: f64) -> Self {
+    pub(crate) fn linear(values: impl IntoIterator<Item = f64>, parts: f64) -> Self {
         let (low, high) = range(values).unwrap_or((0.0, 1.0));
         // a constant curve still needs room around it
         let margin = if high - low > 1e-9 * high.abs().max(low.abs()).max(1e-9) {
@@ -70,7 +70,7 @@ impl Scale {
 
     /// Linear and symmetric about zero, over all finite values: a tick at zero and the same one or
     /// two on either side of it. Without any finite value: -1 to 1.
-    pub(super) fn symmetric(values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn symmetric(values: impl IntoIterator<Item = f64>) -> Self {
         let largest = range(values.into_iter().map(f64::abs)).map_or(1.0, |(_, high)| high);
         let largest = if largest > 0.0 { largest } else { 1.0 };
         // the roundest step that still fits between zero and the largest value
@@ -87,7 +87,7 @@ impl Scale {
     }
 
     /// Linear between two given ends.
-    pub(super) fn between(low: f64, high: f64, parts: f64) -> Self {
+    pub(crate) fn between(low: f64, high: f64, parts: f64) -> Self {
         Self {
             low,
             high,
@@ -98,7 +98,7 @@ impl Scale {
     }
 
     /// Logarithmic over all positive finite values with a little air; 1 to 10 without any.
-    pub(super) fn logarithmic(values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn logarithmic(values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|&value| value > 0.0);
         let (low, high) = range(positive).unwrap_or((1.0, 10.0));
         let air = 0.04 * (high / low).log10().max(0.5);
@@ -111,7 +111,7 @@ impl Scale {
 
     /// Where a value lies between the ends, 0 to 1; held inside, so that a curve stays in its
     /// frame. Not finite for values that have no place.
-    pub(super) fn share(&self, value: f64) -> f64 {
+    pub(crate) fn share(&self, value: f64) -> f64 {
         let share = match self.spacing {
             Spacing::Linear { .. } | Spacing::Crank => (value - self.low) / (self.high - self.low),
             Spacing::Logarithmic if value > 0.0 => {
@@ -123,12 +123,12 @@ impl Scale {
     }
 
     /// The ends.
-    pub(super) const fn ends(&self) -> (f64, f64) {
+    pub(crate) const fn ends(&self) -> (f64, f64) {
         (self.low, self.high)
     }
 
     /// Marks from low to high.
-    pub(super) fn ticks(&self) -> Vec<Tick> {
+    pub(crate) fn ticks(&self) -> Vec<Tick> {
         match self.spacing {
             Spacing::Crank => (0..=12)
                 .map(|index| Tick {

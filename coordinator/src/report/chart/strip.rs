@@ -14,14 +14,14 @@ const GAP: f64 = 16.0;
 const FOOT: f64 = 44.0;
 
 /// One curve with the label at its right end.
-pub(super) struct Curve {
+pub(crate) struct Curve {
     label: String,
     color: Color,
     points: Vec<(f64, f64)>,
 }
 
 /// One strip.
-pub(super) struct Strip<'a> {
+pub(crate) struct Strip<'a> {
     /// Title of its scale, with the unit.
     pub title: &'a str,
     /// Height [px].
@@ -35,7 +35,7 @@ pub(super) struct Strip<'a> {
 }
 
 /// A curve over the crank angle, its values times a factor.
-pub(super) fn curve(
+pub(crate) fn curve(
     label: impl Into<String>,
     color: Color,
     turn_deg: &[f64],
@@ -53,7 +53,7 @@ pub(super) fn curve(
 }
 
 /// A strip without a band.
-pub(super) const fn strip(title: &str, height: f64, curves: Vec<Curve>) -> Strip<'_> {
+pub(crate) const fn strip(title: &str, height: f64, curves: Vec<Curve>) -> Strip<'_> {
     Strip {
         title,
         height,
@@ -71,7 +71,7 @@ fn height(strips: &[Strip<'_>]) -> f64 {
 
 /// Left, right, upper and lower end of the crank axis, as shares of the figure's width and height:
 /// the place for a cursor.
-pub(super) fn span(strips: &[Strip<'_>]) -> [f64; 4] {
+pub(crate) fn span(strips: &[Strip<'_>]) -> [f64; 4] {
     let height = height(strips);
     [
         LEFT / WIDTH,
@@ -82,7 +82,7 @@ pub(super) fn span(strips: &[Strip<'_>]) -> [f64; 4] {
 }
 
 /// Draws the strips.
-pub(super) fn stack(
+pub(crate) fn stack(
     name: impl Into<String>,
     title: &str,
     caption: String,

@@ -4,7 +4,7 @@
 use super::judgement::{judge, ranked};
 use super::shown::shown;
 use super::subject::Subject;
-use crate::report::csv::field;
+use crate::report::number::field;
 use std::io::Write;
 
 const CURVES: [&str; 9] = [

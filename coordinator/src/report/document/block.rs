@@ -69,7 +69,7 @@ pub struct Fact {
 
 impl Fact {
     /// A fact in words.
-    pub(in crate::report) fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
+    pub(crate) fn new(name: impl Into<String>, value: impl Into<String>) -> Self {
         Self {
             name: name.into(),
             value: value.into(),
@@ -78,7 +78,7 @@ impl Fact {
     }
 
     /// A digest or a command.
-    pub(in crate::report) fn code(name: impl Into<String>, value: impl Into<String>) -> Self {
+    pub(crate) fn code(name: impl Into<String>, value: impl Into<String>) -> Self {
         Self {
             is_code: true,
             ..Self::new(name, value)
@@ -88,7 +88,7 @@ impl Fact {
 
 impl Report {
     /// A report from all sections that there could be: those without blocks are left out.
-    pub(in crate::report) fn new(
+    pub(crate) fn new(
         title: String,
         run: &str,
         sections: impl IntoIterator<Item = Section>,
@@ -125,11 +125,11 @@ fn gather<'a>(blocks: &'a [Block], figures: &mut Vec<&'a Figure>) {
 }
 
 /// Figures as blocks.
-pub(in crate::report) fn figures(all: impl IntoIterator<Item = Figure>) -> Vec<Block> {
+pub(crate) fn figures(all: impl IntoIterator<Item = Figure>) -> Vec<Block> {
     all.into_iter().map(Block::Figure).collect()
 }
 
 /// Tables as blocks.
-pub(in crate::report) fn tables(all: impl IntoIterator<Item = Table>) -> Vec<Block> {
+pub(crate) fn tables(all: impl IntoIterator<Item = Table>) -> Vec<Block> {
     all.into_iter().map(Block::Table).collect()
 }

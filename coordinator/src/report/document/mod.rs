@@ -9,10 +9,10 @@ mod table;
 mod text;
 
 pub use block::{Block, Report, Section};
-pub(super) use block::{Fact, figures, tables};
+pub(crate) use block::{Fact, figures, tables};
 pub use figure::Figure;
 pub use page::page;
-pub(super) use table::Row;
+pub(crate) use table::Row;
 pub use table::Table;
 pub(super) use text::section_text;
 pub use text::{set_table, text};

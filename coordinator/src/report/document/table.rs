@@ -83,7 +83,7 @@ impl Row {
     }
 
     /// The head of a group of rows.
-    pub(in crate::report) fn group(name: impl Into<String>) -> Self {
+    pub(crate) fn group(name: impl Into<String>) -> Self {
         Self::Group(name.into())
     }
 }

@@ -1,20 +1,23 @@
 //! The machine in motion, with the parameters the report is about.
-use crate::report::animation;
-use crate::report::data::{Calibration, SingleRun};
+use crate::report::data::{Calibration, Shown, SingleRun};
 use crate::report::document::{Block, Section};
+use crate::report::kind;
 use maud::{Markup, html};
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
-    let moving = calibration.calibrated().and_then(|result| {
-        let simulation = &result.optimised.simulation;
-        animation::machine(&calibration.case, result.condition, simulation)
-    });
-    section("the optimised", moving)
+    let optimum = calibration.optimum();
+    section(
+        "the optimised",
+        optimum.and_then(|optimum| moving(&optimum)),
+    )
 }
 
 pub(super) fn simulation(run: &SingleRun) -> Section {
-    let moving = animation::machine(&run.case, run.condition, &run.simulation);
-    section(&run.genes_name, moving)
+    section(&run.genes_name, moving(&run.shown()))
+}
+
+fn moving(shown: &Shown<'_>) -> Option<Markup> {
+    kind::of(shown.case)?.moving(shown)
 }
 
 fn section(whose: &str, machine: Option<Markup>) -> Section {

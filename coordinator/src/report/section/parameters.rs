@@ -1,7 +1,7 @@
 //! Parameters and errors in numbers (paper, Tables 3 and 4).
 use crate::report::data::{Calibration, SingleRun};
 use crate::report::document::{Section, Table, tables};
-use crate::report::table;
+use crate::report::{kind, table};
 
 pub(in crate::report) fn calibration(calibration: &Calibration) -> Section {
     let case = &calibration.case;
@@ -12,11 +12,9 @@ pub(in crate::report) fn calibration(calibration: &Calibration) -> Section {
 }
 
 pub(super) fn simulation(run: &SingleRun) -> Section {
-    section([
-        table::simulation(run),
-        table::balance(run),
-        table::genes(run),
-    ])
+    let own = kind::of(&run.case).map(|kind| kind.tables(run));
+    let own = own.into_iter().flatten();
+    section(own.chain([table::genes(run)]))
 }
 
 fn section(all: impl IntoIterator<Item = Table>) -> Section {

@@ -1,143 +1,44 @@
-//! One simulation in numbers.
+//! One simulation in numbers: what every model has of it.
 use crate::report::data::SingleRun;
 use crate::report::document::{Row, Table};
-use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, squared, unit};
-use crate::report::words::{self, channel_title, condition_name};
-use protocol::pumping_unit::{Energy, Simulation};
-
-/// Cells of a range: smallest, largest, half the range.
-fn range_cells(values: &[f64], factor: f64, unit: &str) -> [String; 4] {
-    match range(values.iter().map(|value| factor * value)) {
-        Some((low, high)) => [
-            unit.to_owned(),
-            fixed(low, 2),
-            fixed(high, 2),
-            fixed(0.5 * (high - low), 2),
-        ],
-        None => [
-            unit.to_owned(),
-            NONE.to_owned(),
-            NONE.to_owned(),
-            NONE.to_owned(),
-        ],
-    }
-}
+use crate::report::number::{count, duration, figure, percent, squared, unit};
+use crate::report::words::channel_title;
+use protocol::job::Counters;
 
 /// A row with one value.
-fn one(label: &str, unit: &str, value: String) -> Row {
+pub(crate) fn one(label: &str, unit: &str, value: String) -> Row {
     Row::new(label, [unit.to_owned(), value])
 }
 
-/// Verdict, and the range of every curve.
-pub fn simulation(run: &SingleRun) -> Table {
-    let simulation = &run.simulation;
-    let mut rows = vec![Row::group("Stress")];
-    for (gauge, values) in (1..).zip(&simulation.gauge_mpa) {
-        let label = format!("gauge {gauge}");
-        rows.push(Row::new(label, range_cells(values, 1.0, "MPa")));
-    }
-    rows.push(Row::group("Machine"));
-    let curves: [(&str, &[f64], f64, &str); 6] = [
-        (
-            "back rope tension",
-            &simulation.back_rope_tension_n,
-            1e-3,
-            "kN",
-        ),
-        (
-            "front rope tension",
-            &simulation.front_rope_tension_n,
-            1e-3,
-            "kN",
-        ),
-        ("beam angle", &simulation.beam_deg, 1.0, "deg"),
-        ("suspension height", &simulation.suspension_m, 1.0, "m"),
-        (
-            "suspension acceleration",
-            &simulation.suspension_acceleration_m_s2,
-            1.0,
-            "m/s²",
-        ),
-        (
-            "net crank torque",
-            &simulation.crank_torque_n_m,
-            1e-3,
-            "kN m",
-        ),
+/// Agreement with the record, as far as it was scored.
+pub(crate) fn agreement(run: &SingleRun) -> Vec<Row> {
+    let scored = run.evaluation.as_ref();
+    let Some(evaluation) = scored.filter(|scored| !scored.channels.is_empty()) else {
+        return Vec::new();
+    };
+    let unit = squared(run.case.objective_unit());
+    let mut rows = vec![
+        Row::group("Against the record"),
+        one("objective", &unit, figure(evaluation.fitness)),
     ];
-    for (label, values, factor, unit) in curves {
-        rows.push(Row::new(label, range_cells(values, factor, unit)));
+    for score in &evaluation.channels {
+        let channel = run.case.channels.get(score.channel);
+        let title = channel_title(&run.case, score.channel);
+        let unit = squared(channel.map(|channel| channel.unit.as_str()));
+        let error = format!("{title}: mean squared error");
+        rows.push(one(&error, &unit, figure(score.mse)));
+        let error = format!("{title}: relative error");
+        rows.push(one(&error, "", percent(score.relative_error)));
     }
-    Table::new(
-        format!(
-            "Condition {}, {} parameters: {}",
-            condition_name(&run.case, run.condition),
-            run.genes_name,
-            words::verdict(&simulation.verdict)
-        ),
-        ["", "unit", "smallest", "largest", "half range"],
-        rows,
-    )
+    rows
 }
 
-/// Stroke, agreement with the record, energy balance and work of a run.
-pub fn balance(run: &SingleRun) -> Table {
-    let simulation = &run.simulation;
-    let mut rows = Vec::new();
-    let stroke = range(simulation.suspension_m.iter().copied())
-        .map_or_else(|| NONE.to_owned(), |(low, high)| fixed(high - low, 3));
-    rows.push(one("stroke", "m", stroke));
-    if let Some(evaluation) = &run.evaluation
-        && !evaluation.channels.is_empty()
-    {
-        rows.push(Row::group("Against the record"));
-        let unit = squared(run.case.objective_unit());
-        rows.push(one("objective", &unit, figure(evaluation.fitness)));
-        for score in &evaluation.channels {
-            let channel = run.case.channels.get(score.channel);
-            let title = channel_title(&run.case, score.channel);
-            rows.push(one(
-                &format!("{title}: mean squared error"),
-                &squared(channel.map(|channel| channel.unit.as_str())),
-                figure(score.mse),
-            ));
-            rows.push(one(
-                &format!("{title}: relative error"),
-                "",
-                percent(score.relative_error),
-            ));
-        }
-    }
-    rows.extend(energy(&simulation.energy));
-    rows.extend(work(simulation));
-    Table::new(
-        "Stroke, agreement, energy and work",
-        ["", "unit", "value"],
-        rows,
-    )
-    .noted([
-        "Error of the balance: what it leaves over, relative to the larger of input and \
-             output work.",
-    ])
-}
-
-fn energy(energy: &Energy) -> Vec<Row> {
-    let joules = |value: f64| fixed(1e-3 * value, 2);
-    vec![
-        Row::group("Energy of the revolution"),
-        one("work of the crank pin", "kJ", joules(energy.input_j)),
-        one("work on the load", "kJ", joules(energy.output_j)),
-        one("dissipated", "kJ", joules(energy.dissipated_j)),
-        one("stored", "kJ", joules(energy.stored_j)),
-        one("error of the balance", "", figure(energy.relative_error)),
-    ]
-}
-
-fn work(simulation: &Simulation) -> Vec<Row> {
-    let counters = simulation.counters.named().into_iter();
+/// What the simulation took.
+pub(crate) fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
+    let counted = counters.named().into_iter();
     let mut rows = vec![Row::group("Work of the integrator")];
-    rows.extend(counters.map(|(_, what, number)| one(what, "", count(number))));
-    rows.push(one("wall time", "", duration(simulation.wall_s)));
+    rows.extend(counted.map(|(_, what, number)| one(what, "", count(number))));
+    rows.push(one("wall time", "", duration(wall_s)));
     rows
 }
 

@@ -10,7 +10,7 @@ use crate::{
 use protocol::event::Spent;
 
 /// What each worker did.
-pub(in crate::report) fn workers(workers: &[WorkerUse]) -> Table {
+pub(crate) fn workers(workers: &[WorkerUse]) -> Table {
     let rows = workers.iter().map(|worker| {
         Row::new(
             worker.name.clone(),

@@ -11,8 +11,8 @@ mod name;
 pub(super) use calibration::{absolute_worse, channels, complete_objective, headline, warnings};
 pub use ending::{failure, verdict};
 pub(super) use gene::{at_bound, bound, meaning, symbol};
-pub(super) use name::{capitalised, channel_title, condition_name, is_fitted, listed, lower};
-pub use name::{integrator_name, mode_family};
+pub(crate) use name::condition_name;
+pub(super) use name::{capitalised, channel_title, is_fitted, listed, lower};
 
 /// What to know of records that come from no test.
 pub(super) const SYNTHETIC: &str = "The gauge records of this case are synthetic: they were \

@@ -1,13 +1,12 @@
 //! Where the recalibrated simulation and the record part: crank angle, order, joint.
-use crate::report::chart;
 use crate::report::diagnosis::subject::{Subject, channels};
 use crate::report::document::{Block, Figure, Section, figures};
 use crate::report::number::{figure, fixed};
 use crate::report::words::listed;
+use crate::report::{chart, kind};
 use discrepancy::place::along::Window;
 use discrepancy::place::whereabouts::Where;
 use discrepancy::record::Record;
-use protocol::pumping_unit::Machine;
 
 /// Windows and entries that are named in words.
 const NAMED: usize = 6;
@@ -36,14 +35,11 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
 
 fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
     let names = channels(record);
-    let machine = Machine::of(subject.case);
-    let condition = machine
-        .iter()
-        .find_map(|it| it.conditions.get(record.condition));
-    let speed_rpm = condition.map_or(f64::NAN, |condition| condition.speed_rpm);
+    let kind = kind::of(subject.case);
+    let hertz = kind.and_then(|kind| kind.frequency_hz(subject.case, record.condition));
     let all = [
         chart::angle_map(&seen.along, &names),
-        chart::order_map(&seen.order, &names, speed_rpm),
+        chart::order_map(&seen.order, &names, hertz),
         chart::joints(&seen.joints, seen.equivalent),
         chart::latent_forces(&seen.joints, seen.equivalent),
     ];

@@ -1,9 +1,9 @@
 //! Contact between back rope and head: force per length over crank angle and place on the arc.
-use super::canvas::{Canvas, Lettering, WIDTH, render};
-use super::panel::{CRANK_TITLE, Panel};
-use super::points::thinned;
-use super::scale::Scale;
 use crate::quantile;
+use crate::report::chart::canvas::{Canvas, Lettering, WIDTH, render};
+use crate::report::chart::panel::{CRANK_TITLE, Panel};
+use crate::report::chart::points::thinned;
+use crate::report::chart::scale::Scale;
 use crate::report::color::{self, GREY, INK};
 use crate::report::document::Figure;
 use protocol::pumping_unit::{Machine, Motion, Simulation};
@@ -70,7 +70,7 @@ fn cells(machine: &Machine, simulation: &Simulation) -> Vec<Cell> {
 }
 
 /// Draws the map; none without snapshots or without any contact.
-pub(in crate::report) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figure> {
+pub(super) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figure> {
     let half_deg =
         0.5 * (machine.ropes.cylinder_length_m / machine.back_head.radius_m).to_degrees();
     let cells = cells(machine, simulation);

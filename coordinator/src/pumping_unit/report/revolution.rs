@@ -1,6 +1,6 @@
 //! The curves of one simulation over the crank angle: gauges, rope tensions, motion of the
 //! suspension, crank torque.
-use super::strip::{Curve, Strip, curve, span, stack, strip};
+use crate::report::chart::strip::{Curve, Strip, curve, span, stack, strip};
 use crate::report::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
@@ -8,7 +8,7 @@ use protocol::case::Case;
 use protocol::pumping_unit::{Sensor, Simulation};
 
 /// Stress at all four gauges, with the measured mean and its spread where there is a record.
-pub(in crate::report) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> Figure {
+pub(super) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> Figure {
     let name = condition_name(case, condition);
     let measured: Vec<_> = case.measured(condition).collect();
     let strips: Vec<_> = (1_u8..)
@@ -73,7 +73,7 @@ fn tensions(simulation: &Simulation) -> Vec<Curve> {
 }
 
 /// Axial force of both ropes at their free ends.
-pub(in crate::report) fn tension(simulation: &Simulation) -> Figure {
+pub(super) fn tension(simulation: &Simulation) -> Figure {
     let strips = [strip("tension [kN]", 150.0, tensions(simulation))];
     stack(
         "rope_tension",
@@ -85,7 +85,7 @@ pub(in crate::report) fn tension(simulation: &Simulation) -> Figure {
 }
 
 /// Motion of the suspension point.
-pub(in crate::report) fn motion(simulation: &Simulation) -> Figure {
+pub(super) fn motion(simulation: &Simulation) -> Figure {
     let turn = &simulation.turn_deg;
     let strips = [
         strip(
@@ -127,7 +127,7 @@ pub(in crate::report) fn motion(simulation: &Simulation) -> Figure {
 }
 
 /// Net torque at the crank shaft.
-pub(in crate::report) fn torque(simulation: &Simulation) -> Figure {
+pub(super) fn torque(simulation: &Simulation) -> Figure {
     let strips = [strip(
         "torque [kN m]",
         130.0,
@@ -151,7 +151,7 @@ pub(in crate::report) fn torque(simulation: &Simulation) -> Figure {
 
 /// The strips beside the moving machine, and where their crank axis lies: left, right, upper and
 /// lower end as shares of the figure's width and height.
-pub(in crate::report) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4]) {
+pub(super) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4]) {
     let turn = &simulation.turn_deg;
     let colors = [VERMILLION, INK, GREEN, PURPLE];
     let stress = case

@@ -7,7 +7,7 @@ mod drawing;
 mod film;
 mod rope;
 
-use super::chart;
+use super::revolution;
 use maud::{Markup, PreEscaped, html};
 use protocol::{
     case::Case,
@@ -21,7 +21,7 @@ const PLAYER: &str = include_str!("player.js");
 pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Option<Markup> {
     let machine = Machine::of(case).ok()?;
     let film = film::Film::new(case, &machine, condition, simulation)?;
-    let (curves, span) = chart::player(case, simulation);
+    let (curves, span) = revolution::player(case, simulation);
     let [left, right, top, bottom] = span.map(|share| 100.0 * share);
     let span = format!(
         "left:{left:.3}%;width:{:.3}%;top:{top:.3}%;height:{:.3}%",

@@ -1,20 +1,14 @@
 //! The data behind the figures as CSV, units in the column names.
 //!
 //! An empty field is a value that does not exist; numbers are written with all their digits.
-use super::data::{ConditionResult, Run, SingleRun};
-use super::words::condition_name;
+use crate::report::data::Shown;
+use crate::report::number::field;
+use crate::report::words::condition_name;
 use protocol::{
     case::{Case, Channel},
     pumping_unit::{Machine, Sensor, Simulation},
 };
 use std::io::Write;
-
-/// A number with all its digits, empty if it is none.
-pub(super) fn field(value: Option<f64>) -> String {
-    value
-        .filter(|value| value.is_finite())
-        .map_or_else(String::new, |value| value.to_string())
-}
 
 const CURVE_COLUMNS: [&str; 22] = [
     "condition",
@@ -52,58 +46,30 @@ fn head(modes: usize) -> impl Iterator<Item = String> {
     CURVE_COLUMNS.map(str::to_owned).into_iter().chain(modes)
 }
 
-/// Writes the curves of every condition: one row per crank angle and parameter set. Measured
-/// values stand in the rows whose crank angle is on the record's grid; a failed simulation has
+/// Writes the curves of named parameter sets of one case: one row per crank angle and parameter set.
+/// Measured values stand in the rows whose crank angle is on the record's grid; a failed simulation has
 /// rows as far as it got.
 ///
 /// # Errors
 /// [`csv::Error`] when the writer fails.
-pub fn curves(to: impl Write, case: &Case, results: &[ConditionResult]) -> Result<(), csv::Error> {
+pub fn curves(to: impl Write, runs: &[(&str, Shown<'_>)]) -> Result<(), csv::Error> {
     let mut writer = csv::Writer::from_writer(to);
-    let modes = modes(case);
+    let modes = runs.first().map_or(0, |(_, first)| modes(first.case));
     writer.write_record(head(modes))?;
-    for result in results {
-        for (who, run) in [
-            ("recommended", &result.recommended),
-            ("optimised", &result.optimised),
-        ] {
-            let Run { simulation, .. } = run;
-            rows(
-                (&mut writer, modes),
-                case,
-                result.condition,
-                who,
-                simulation,
-            )?;
-        }
+    for (parameters, run) in runs {
+        rows((&mut writer, modes), parameters, run)?;
     }
-    Ok(writer.flush()?)
-}
-
-/// Writes the curves of one simulation, in the columns of [`curves`].
-///
-/// # Errors
-/// [`csv::Error`] when the writer fails.
-pub fn single_curves(to: impl Write, run: &SingleRun) -> Result<(), csv::Error> {
-    let mut writer = csv::Writer::from_writer(to);
-    let modes = modes(&run.case);
-    writer.write_record(head(modes))?;
-    rows(
-        (&mut writer, modes),
-        &run.case,
-        run.condition,
-        &run.genes_name,
-        &run.simulation,
-    )?;
     Ok(writer.flush()?)
 }
 
 fn rows(
     (writer, modes): (&mut csv::Writer<impl Write>, usize),
-    case: &Case,
-    condition: usize,
     parameters: &str,
-    simulation: &Simulation,
+    &Shown {
+        case,
+        condition,
+        simulation,
+    }: &Shown<'_>,
 ) -> Result<(), csv::Error> {
     let name = condition_name(case, condition);
     let measured: Vec<_> = case.measured(condition).collect();

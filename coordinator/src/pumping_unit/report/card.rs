@@ -1,8 +1,8 @@
 //! The dynamometer card: load at the suspension over its simulated position.
-use super::canvas::{Lettering, Pen, render};
-use super::panel::Panel;
-use super::scale::Scale;
 use crate::line::periodic;
+use crate::report::chart::canvas::{Lettering, Pen, render};
+use crate::report::chart::panel::Panel;
+use crate::report::chart::scale::Scale;
 use crate::report::color::{GREY, INK, VERMILLION};
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
@@ -19,7 +19,7 @@ fn load_n(card: &LoadCard, turn_deg: f64) -> Option<f64> {
 }
 
 /// Draws the card; none if the simulation has no position.
-pub(in crate::report) fn card(
+pub(super) fn card(
     (case, machine): (&Case, &Machine),
     condition: usize,
     simulation: &Simulation,

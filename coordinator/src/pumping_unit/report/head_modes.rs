@@ -2,12 +2,14 @@
 //! outline of the head, with pins and gauges.
 //!
 //! Only the deflection along the arc is drawn, as the rope feels it; whole fields are for `ParaView`.
-use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
+use super::name::mode_family;
+use crate::report::chart::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use crate::report::color::{BLUE, GREY, GUIDE, INK, VERMILLION};
 use crate::report::document::Figure;
+use crate::report::folder::{ReportError, svg_name, write};
 use crate::report::number::fixed;
-use crate::report::words::mode_family;
 use protocol::pumping_unit::{HeadGauge, HeadMode};
+use std::path::{Path, PathBuf};
 
 /// Pictures side by side.
 const COLUMNS: usize = 4;
@@ -24,7 +26,7 @@ const LAYERS: usize = 40;
 
 /// What is drawn.
 #[derive(Clone, Copy, Debug)]
-pub struct HeadPicture<'a> {
+pub(crate) struct HeadPicture<'a> {
     /// Centre of the rope arc \[m\].
     pub center_m: [f64; 2],
     /// Its radius \[m\].
@@ -42,7 +44,7 @@ pub struct HeadPicture<'a> {
 }
 
 /// Draws all modes; every deflection is scaled to the same size, for a mode has none of its own.
-pub fn head_modes(picture: &HeadPicture<'_>) -> Figure {
+pub(super) fn head_modes(picture: &HeadPicture<'_>) -> Figure {
     let frame = Frame::around(picture);
     let rows = picture.modes.len().div_ceil(COLUMNS);
     let height = rows as f64 * frame.pitch();
@@ -237,6 +239,18 @@ impl Sheet<'_> {
         let pen = Pen::new(VERMILLION, 1.6);
         self.canvas.line(&moved, pen);
     }
+}
+
+/// Writes `head_modes.svg` into a folder, which is made if it does not exist. Returns its path.
+///
+/// # Errors
+/// [`ReportError`] when the file cannot be written.
+pub(crate) fn write_head_modes(
+    folder: &Path,
+    picture: &HeadPicture<'_>,
+) -> Result<PathBuf, ReportError> {
+    let figure = head_modes(picture);
+    write(folder, &svg_name(&figure.name), &figure.svg)
 }
 
 #[cfg(test)]

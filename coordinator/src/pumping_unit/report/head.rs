@@ -1,6 +1,6 @@
 //! A reduced back head in numbers: its modes beside the case's, and what they alone would show.
+use super::name::mode_family;
 use crate::report::document::{Row, Table};
-use crate::report::words::mode_family;
 use crate::{
     report::number::{NONE, fixed, percent},
     study::HeadComparison,
@@ -15,7 +15,7 @@ const COUPLING: &str = "Coupling: largest share of the static energy under a loa
 
 /// Modes, one row each, beside the most similar ones of the case's table; then what was left out
 /// below the highest.
-pub fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
+pub(crate) fn head_modes(head: &ReducedHead, comparison: &HeadComparison) -> Table {
     let row = |label: String, family, hz, table: Option<(f64, f64)>, coupling: f64| {
         let of_table = table.map_or_else(
             || [NONE, NONE, NONE].map(str::to_owned),
@@ -111,7 +111,7 @@ fn left_out(head: &ReducedHead) -> (&[LeftOutMode], &[LeftOutMode]) {
 
 /// Modes that a pair of ropes drives by pulling unequally, one row each: how far they move the rope at
 /// +z on the whole arc, and what the gauges read.
-pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
+pub(crate) fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
     let most = |curve: &[f64]| curve.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let rows = (0..tables.frequencies_hz.len()).map(|k| {
         let shapes = [&tables.radial, &tables.tangential, &tables.lateral];
@@ -144,7 +144,7 @@ pub fn head_pair(tables: &TwinHead, offset_m: f64) -> Table {
 }
 
 /// What truncation costs over a quasi-static turn.
-pub fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) -> Table {
+pub(crate) fn head_statics(comparison: &HeadComparison, condition: &str, modes: usize) -> Table {
     let ranges = &comparison.half_ranges;
     let rows = (0..4).map(|gauge| {
         let cells = [

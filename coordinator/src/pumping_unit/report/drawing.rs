@@ -1,0 +1,62 @@
+//! The pumping unit's part of a report, as the report asks for it.
+use super::{animation, card::card, contact::contact, csv, revolution, single};
+use crate::report::data::{Shown, SingleRun};
+use crate::report::document::{Figure, Table};
+use crate::report::drawing::Drawing;
+use crate::report::folder::{ReportError, stream};
+use maud::Markup;
+use protocol::{case::Case, pumping_unit::Machine};
+use std::path::{Path, PathBuf};
+
+/// The model of a pumping unit.
+pub(crate) struct Dhh;
+
+impl Drawing for Dhh {
+    fn kind(&self) -> &'static str {
+        Machine::KIND
+    }
+
+    fn channels(&self, of: &Shown<'_>) -> Figure {
+        revolution::gauges(of.case, of.condition, of.simulation)
+    }
+
+    fn figures(&self, of: &Shown<'_>) -> Vec<Figure> {
+        let Ok(unit) = Machine::of(of.case) else {
+            return Vec::new();
+        };
+        let mut figures = vec![revolution::tension(of.simulation)];
+        figures.extend(contact(&unit, of.simulation));
+        figures.push(revolution::motion(of.simulation));
+        figures.extend(card((of.case, &unit), of.condition, of.simulation));
+        figures.push(revolution::torque(of.simulation));
+        figures
+    }
+
+    fn moving(&self, of: &Shown<'_>) -> Option<Markup> {
+        animation::machine(of.case, of.condition, of.simulation)
+    }
+
+    fn tables(&self, run: &SingleRun) -> Vec<Table> {
+        vec![single::simulation(run), single::balance(run)]
+    }
+
+    fn files(
+        &self,
+        folder: &Path,
+        runs: &[(&str, Shown<'_>)],
+    ) -> Result<Vec<PathBuf>, ReportError> {
+        let mut written = vec![stream(folder, "curves.csv", |file| {
+            csv::curves(file, runs)
+        })?];
+        if let [(_, alone)] = runs {
+            let ropes = |file| csv::ropes(file, alone.simulation);
+            written.push(stream(folder, "ropes.csv", ropes)?);
+        }
+        Ok(written)
+    }
+
+    fn frequency_hz(&self, case: &Case, condition: usize) -> Option<f64> {
+        let machine = Machine::of(case).ok()?;
+        Some(machine.conditions.get(condition)?.speed_rpm / 60.0)
+    }
+}
