@@ -395,7 +395,7 @@ fn the_summary_tells_what_a_user_asks_first() {
         "condition   5rpm: 5 /min, load 34.4 to 78.3 kN",
         "record 5 cycles, 5970 samples at 100 Hz, 30 lost, measured speed 5.001 /min",
         "gauge 1: half-range 13.",
-        "objective   5rpm: gauges 1 (weight 1), 3 (weight 1)",
+        "objective   5rpm: gauge_1 (weight 1), gauge_3 (weight 1)",
         "30 of 6000 samples are lost",
     ] {
         assert!(summary.contains(expected), "no `{expected}` in\n{summary}");

@@ -324,7 +324,7 @@ fn a_gauge_that_got_worse_is_said_to_be_worse() {
         "{text}"
     );
     assert!(text.contains("Gauge 4 is worse with the optimised parameters under condition 4rpm."));
-    assert!(text.contains("The sum of the mean squared errors at points 1 and 3 fell from"));
+    assert!(text.contains("The sum of the mean squared errors of gauge 1 and gauge 3 fell from"));
 }
 
 #[test]
