@@ -1,8 +1,8 @@
 //! The case that is shipped loads, and its figures are those its README states.
 use coordinator::case::{self, Loaded, Overrides, RecordFacts, mesh};
 use protocol::{
-    case::{Case, ChannelRecord, Coefficient, Gene, Offset, Quantity, Term},
-    pumping_unit::{Machine, Sensor},
+    case::{Case, ChannelRecord, Offset, Scale, Term, Unknown},
+    pumping_unit::{Coefficient, Machine, Sensor},
     unit::Unit,
 };
 use std::{
@@ -64,7 +64,10 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
     let case = &loaded.case;
     assert_eq!(case.name, "CYJS10-5-37HB");
     assert_eq!(
-        case.genes.iter().map(Gene::label).collect::<Vec<_>>(),
+        case.unknowns
+            .iter()
+            .map(|u| u.name.as_str())
+            .collect::<Vec<_>>(),
         Coefficient::ALL.map(Coefficient::as_str)
     );
     assert_eq!(case.objective.condition, case.condition("5rpm").unwrap());
@@ -74,13 +77,13 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
     };
     assert_eq!(case.objective.terms, [1, 3].map(term));
     assert_eq!(case.objective.offset, Offset::Free);
-    for gene in &case.genes {
+    for gene in &case.unknowns {
         assert!(
-            (gene.upper / gene.recommended / 1e4 - 1.0).abs() < 1e-9,
+            (gene.upper / gene.start / 1e4 - 1.0).abs() < 1e-9,
             "{gene:?}"
         );
         assert!(
-            (gene.recommended / gene.lower / 1e4 - 1.0).abs() < 1e-9,
+            (gene.start / gene.lower / 1e4 - 1.0).abs() < 1e-9,
             "{gene:?}"
         );
     }
@@ -225,7 +228,7 @@ fn gene_files_are_read_in_the_units_of_the_case() {
     let folder = shipped();
     let case = case::load(&folder, &Overrides::default()).unwrap();
     let recommended = case::read_genes(&folder.join("recommended.toml"), &case).unwrap();
-    assert_eq!(recommended, case.recommended());
+    assert_eq!(recommended, case.start());
     let optimised = case::read_genes(&folder.join("table3_optimised.toml"), &case).unwrap();
     assert_eq!(
         optimised,
@@ -233,7 +236,7 @@ fn gene_files_are_read_in_the_units_of_the_case() {
             7.81e8, 2.26e8, 204.0, 308.0, 5201.0, 4287.0, 45.0, 56.0, 4.01e8, 1.02e3
         ]
     );
-    assert_eq!(case.genes[2].unit(), Unit::NewtonMetrePerDegree.symbol());
+    assert_eq!(case.unknowns[2].unit, Unit::NewtonMetrePerDegree.symbol());
 
     let scratch = tempfile::tempdir().unwrap();
     let file = scratch.path().join("genes.toml");
@@ -287,18 +290,12 @@ fn gene_files_hold_parameters_of_effects() {
     let mut case = case::load(&folder, &Overrides::default()).unwrap();
     let sizes = [("drift_1", -0.3, 0.1 + 0.2), ("drift_3", 0.5, -1.0 / 3.0)];
     for (parameter, recommended, _) in sizes {
-        case.genes.push(Gene {
-            quantity: Quantity::Effect {
-                id: "gauge_drift".to_owned(),
-                parameter: parameter.to_owned(),
-                unit: "MPa/rev".to_owned(),
-            },
-            recommended,
-            lower: -1.0,
-            upper: 1.0,
-        });
+        let name = format!("gauge_drift.{parameter}");
+        let bounds = [-1.0, 1.0];
+        let unknown = Unknown::new(name, "MPa/rev", Scale::Linear, recommended, bounds);
+        case.unknowns.push(unknown);
     }
-    let mut values = case.recommended();
+    let mut values = case.start();
     for (place, (_, _, value)) in (10..).zip(sizes) {
         values[place] = value;
     }
@@ -310,7 +307,7 @@ fn gene_files_hold_parameters_of_effects() {
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&back), bits(&values));
     let older = case::read_genes(&folder.join("recommended.toml"), &case).unwrap();
-    assert_eq!(bits(&older), bits(&case.recommended()));
+    assert_eq!(bits(&older), bits(&case.start()));
 
     let faults = [
         (
@@ -319,7 +316,7 @@ fn gene_files_hold_parameters_of_effects() {
         ),
         (
             text.replace("gauge_drift.drift_3", "a.b"),
-            "a parameter that the case searches: gauge_drift.drift_1, gauge_drift.drift_3",
+            "kc, cc, gauge_drift.drift_1, gauge_drift.drift_3",
         ),
         (text.replace("MPa/rev", "MPa"), "`gauge_drift.drift_1.unit`"),
         (
@@ -328,17 +325,20 @@ fn gene_files_hold_parameters_of_effects() {
         ),
         (
             text.replace("\"gauge_drift.drift_1\"", "gauge_drift.drift_1"),
-            "unknown field `gauge_drift`",
+            "unknown field `drift_1`",
         ),
     ];
     for (fault, expected) in faults {
         assert_ne!(fault, text, "{expected}");
         assert_refused(&file, &case, &fault, expected);
     }
-    case.genes.truncate(10);
+    case.unknowns.truncate(10);
     fs::write(&file, &text).unwrap();
     let message = case::read_genes(&file, &case).unwrap_err().to_string();
-    assert!(message.contains("the case searches none"), "{message}");
+    assert!(
+        message.contains("an unknown of the case: kb1, "),
+        "{message}"
+    );
 }
 
 /// Nodes and elements as the crate mshio reads them; volume as the modes' mass says.
@@ -427,7 +427,7 @@ fn the_template_loads_beside_its_data() {
     }
     let case = case::load(scratch.path(), &Overrides::default()).unwrap();
     assert_eq!(case.conditions.len(), 1);
-    assert_eq!(case.genes.len(), 10);
+    assert_eq!(case.unknowns.len(), 10);
     for line in case::template().lines().filter(|line| line.contains(" = ")) {
         let plain = [
             "gauges",

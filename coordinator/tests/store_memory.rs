@@ -87,7 +87,7 @@ fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
             let recording = store.journal(&run.join(journal::FILE)).unwrap();
             for job in 0..count {
                 let finished = recording.recall(JobId(job)).unwrap().unwrap();
-                let individual = Individual::new(0, case.recommended());
+                let individual = Individual::new(0, case.start());
                 let reply = Reply::Score {
                     with_residual: true,
                 };

@@ -43,6 +43,11 @@ impl Unit {
         Self::NewtonPerMetreToThreeHalves,
     ];
 
+    /// The unit of that symbol.
+    pub fn named(symbol: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|unit| unit.symbol() == symbol)
+    }
+
     /// As written in case files and tables.
     pub const fn symbol(self) -> &'static str {
         match self {

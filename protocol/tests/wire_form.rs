@@ -5,7 +5,7 @@
 //! belongs to the present version, as read from the types.
 use protocol::{
     announce::{Place, Role, Sign},
-    case::{Case, Coefficient, Offset, Quantity},
+    case::{Case, Offset, Scale},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Failure, Job, Outcome, PhysicsFailure, Reached, Reply, Verdict},
@@ -14,7 +14,6 @@ use protocol::{
         ElementKind, Integrator, Machine, ModeFamily, RopeEnds, Smoothing, StressRecovery,
         TurnSense,
     },
-    unit::Unit,
     wire::{self, Kind},
 };
 use serde_reflection::{Samples, Tracer, TracerConfig};
@@ -32,7 +31,7 @@ fn form() -> String {
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case Machine);
     trace!(Job Reply Answer Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
-    trace!(Place Role Sign Unit Coefficient Quantity Integrator Offset RopeEnds Smoothing StressRecovery);
+    trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense);
     let registry = tracer.registry().expect("every variant was seen");
     let mut text = format!("wire version {}\n", wire::VERSION);

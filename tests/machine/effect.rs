@@ -19,7 +19,7 @@ use worker::handler::Prepared;
 #[test]
 fn energy_ledger_closes_with_every_effect() {
     let unit = unit();
-    let law = worker::pumping_unit::rope_law(&unit, &unit.case.recommended()).unwrap();
+    let law = worker::pumping_unit::rope_law(&unit, &unit.case.start()).unwrap();
     let mut settings = worker::pumping_unit::run_settings(&unit.machine);
     settings.longest_step *= 0.5;
     let acts = |d: &&Descriptor| d.place == Place::Dynamics && !d.generic;
@@ -29,7 +29,7 @@ fn energy_ledger_closes_with_every_effect() {
         let effect = EffectSetting::new(&d.id, &typical);
         let individual = Individual {
             effects: vec![effect],
-            ..Individual::new(0, unit.case.recommended())
+            ..Individual::new(0, unit.case.start())
         };
         let machine = worker::pumping_unit::machine_with(&unit, &individual).unwrap();
         let (result, _) = run(&machine, &law, &settings);
@@ -50,7 +50,7 @@ fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisatio
     let spec = SimulateSpec {
         individual: Individual {
             effects: effects.to_vec(),
-            ..Individual::new(0, case.recommended())
+            ..Individual::new(0, case.start())
         },
         discretisation,
         reply: Reply::Channels,
@@ -83,7 +83,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     assert_eq!(plain.curves[0].len(), 720);
     let individual = Individual {
         effects: vec![EffectSetting::new("gauge_gain", &[("gain_1", 0.0)])],
-        ..Individual::new(0, case.recommended())
+        ..Individual::new(0, case.start())
     };
     let simulate = Job::Simulate(SimulateSpec::new(individual, CURVES));
     let Outcome::Done(Answer::Curves(whole)) = Prepared::new(worker::SIMULATORS, &case)
@@ -154,7 +154,7 @@ fn what_the_model_does_not_have_is_refused_by_field() {
         Outcome::Failed(Failure::Misconfigured { field, problem }) => (field, problem),
         other => unreachable!("{other:?}"),
     };
-    let plain = Individual::new(0, case.recommended());
+    let plain = Individual::new(0, case.start());
     let misstated = Individual {
         effects,
         ..plain.clone()

@@ -9,7 +9,7 @@ use coordinator::study::{
     Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
 };
 use protocol::{
-    case::{Case, ChannelRecord, EffectSetting, Gene, Quantity},
+    case::{Case, ChannelRecord, EffectSetting, Scale, Unknown},
     id::JobId,
     job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec},
     message::Cost,
@@ -25,17 +25,9 @@ use search::strategy::{
 use std::collections::VecDeque;
 use worker::handler::Prepared;
 
-fn gene((id, parameter): (&str, &str), unit: &str, [lower, upper]: [f64; 2], value: f64) -> Gene {
-    Gene {
-        quantity: Quantity::Effect {
-            id: id.to_owned(),
-            parameter: parameter.to_owned(),
-            unit: unit.to_owned(),
-        },
-        recommended: value,
-        lower,
-        upper,
-    }
+fn gene((id, parameter): (&str, &str), unit: &str, bounds: [f64; 2], value: f64) -> Unknown {
+    let name = format!("{id}.{parameter}");
+    Unknown::new(name, unit, Scale::Linear, value, bounds)
 }
 
 /// The shipped machine with long cylinders and effects of these sizes, as a case that searches none.
@@ -54,20 +46,20 @@ fn friction(moment: f64) -> EffectSetting {
     EffectSetting::new("pivot_friction", &[("creep", 0.004), ("moment", moment)])
 }
 
-fn moment() -> Gene {
+fn moment() -> Unknown {
     gene(("pivot_friction", "moment"), "N.m", [200.0, 4000.0], 1000.0)
 }
 
 /// The same case, which searches its friction.
 fn searched(case: &Case) -> Case {
     let mut case = case.clone();
-    case.genes.push(moment());
+    case.unknowns.push(moment());
     case
 }
 
 /// Recommended coefficients and that friction.
 fn individual(case: &Case, moment: f64) -> Vec<f64> {
-    let mut genes = case.recommended();
+    let mut genes = case.start();
     genes[10] = moment;
     genes
 }
@@ -94,7 +86,7 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let with_gene = Prepared::new(worker::SIMULATORS, &searched(&stated)).unwrap();
     let at = |moment: f64| individual(&searched(&stated), moment);
     let fixed = [&stated, &other].map(|case| Prepared::new(worker::SIMULATORS, case).unwrap());
-    let genes = stated.recommended();
+    let genes = stated.start();
     let [low, high] = fixed
         .each_ref()
         .map(|prepared| observed(prepared, &genes, &[]));
@@ -169,7 +161,7 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     ];
     for (gene, (field, problem)) in faults {
         let mut case = stated.clone();
-        case.genes.push(gene);
+        case.unknowns.push(gene);
         let (found, why) = refused(Prepared::new(worker::SIMULATORS, &case).unwrap_err());
         assert_eq!(found, field);
         assert!(why.contains(problem), "{why}");
@@ -179,7 +171,7 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     for (genes, field) in [
         (individual(&case, -1.0), "effects[0].parameters.moment"),
         (individual(&case, f64::NAN), "effects[0].parameters.moment"),
-        (stated.recommended(), "genes"),
+        (stated.start(), "genes"),
     ] {
         let reply = Reply::Score {
             with_residual: false,
@@ -228,7 +220,7 @@ impl Watch<ProgressView> for Unseen {
 }
 
 fn calibrated(case: &Case, parts: Vec<Part>) -> Calibrated {
-    let space = Space::new(&case.genes).unwrap();
+    let space = Space::new(&case.unknowns).unwrap();
     let trust = space.axes().iter().map(|axis| axis.trust).collect();
     let settings = Settings::of(&QuickSettings { trust, parts });
     let mut strategy = build(&settings, &space, 1).unwrap();
@@ -252,12 +244,12 @@ fn a_calibration_finds_the_sizes_of_effects() {
     let truth = coarse(&[friction(hidden_moment), late(hidden_time)]);
     let seen = observed(
         &Prepared::new(worker::SIMULATORS, &truth).unwrap(),
-        &truth.recommended(),
+        &truth.start(),
         &[],
     );
     let mut case = searched(&coarse(&[friction(1000.0), late(0.0)]));
     let time = gene(("card_time_shift", "time"), "s", [-0.04, 0.04], 0.0);
-    case.genes.push(time);
+    case.unknowns.push(time);
     for (channel, curve) in case.channels.iter_mut().zip(&seen.curves).take(4) {
         channel.record = Some(ChannelRecord {
             cycles: 1,

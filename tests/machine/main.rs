@@ -43,7 +43,7 @@ fn channels(simulation: &Simulation) -> Vec<Vec<f64>> {
 fn individuals(case: &Case) -> [(&'static str, Vec<f64>); 2] {
     let optimised = folder().join("table3_optimised.toml");
     [
-        ("recommended", case.recommended()),
+        ("recommended", case.start()),
         (
             "optimised",
             coordinator::case::read_genes(&optimised, case).unwrap(),

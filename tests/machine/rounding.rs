@@ -56,7 +56,7 @@ fn rounded_channels_are_short_and_far_below_the_noise() {
         let seen = both(&prepared, individual);
         seen.map(|seen| metric.whiten(&channels(&seen, record).unwrap()))
     };
-    let plain = Individual::new(condition, case.recommended());
+    let plain = Individual::new(condition, case.start());
     let at = whitened(&plain);
     let moved = &at[0] - &at[1];
     eprintln!("residuals move by {:.1e} at most", moved.amax());

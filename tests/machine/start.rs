@@ -1,7 +1,7 @@
 //! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
 use super::{individuals, unit};
 use coordinator::{case::QuasiStatic, study};
-use protocol::{case::Coefficient, pumping_unit};
+use protocol::pumping_unit;
 use simulation::{
     drive::Drive,
     model::{BackHeadLoads, Individual, Machine, description::RopeLaw},
@@ -42,11 +42,7 @@ fn gauges_at_rest_read_exact_statics() {
     let machine = worker::pumping_unit::machine(&unit, 0).unwrap();
     let settings = worker::pumping_unit::run_settings(&unit.machine);
     let [(_, recommended), (_, optimised)] = individuals(&unit.case);
-    let contact = unit
-        .case
-        .genes
-        .iter()
-        .position(|gene| gene.quantity.is(Coefficient::Kc));
+    let contact = unit.case.unknowns.iter().position(|gene| gene.name == "kc");
     let mut stiff = recommended.clone();
     stiff[contact.unwrap()] *= 100.0;
     for (name, genes, most) in [

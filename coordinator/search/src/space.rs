@@ -1,62 +1,42 @@
-//! The box of genes.
+//! The box of the unknowns that a search moves.
 //!
-//! A point is given by a *coordinate* per gene, 0 at the recommended value. On a logarithmic axis it
-//! counts decades, `value = recommended * 10^x`; on a linear one, halves of the interval to search,
-//! `value = recommended + x * (upper - lower) / 2`, so that such an axis is about as long as the part
-//! of a coefficient's that matters, and the same steps suit both. Nothing here knows what a gene means;
-//! its unit only decides how far from the recommendation a first search may go.
-use protocol::{
-    case::{Coefficient, Gene, Quantity, Scale},
-    unit::Unit,
-};
+//! A point is given by a *coordinate* per axis, 0 at the start. On a logarithmic axis it counts decades,
+//! `value = start * 10^x`; on a linear one, halves of the interval to search,
+//! `value = start + x * (upper - lower) / 2`, so that such an axis is about as long as the part of a
+//! logarithmic one that matters, and the same steps suit both.
+//!
+//! Values are those of *all* unknowns of the case, in its order: what is fixed, switched off or tied has
+//! no axis, and gets its value here and nowhere else. Nothing here knows what an unknown means.
+use protocol::case::{BadUnknown, Scale, Unknown, check_unknowns};
 
-/// A gene that cannot be searched.
+/// Unknowns that cannot be searched.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SpaceError {
     /// The space has no axis.
-    #[error("there is no gene to search")]
+    #[error("there is no unknown to search: each is fixed, tied or switched off")]
     Empty,
-    /// Bounds and recommendation are not ordered, or not positive on a logarithmic axis.
-    #[error("gene {name}: {rule} must hold, but they are {lower}, {recommended}, {upper}")]
-    Bounds {
-        /// Name of the gene.
-        name: String,
-        /// What must hold.
-        rule: &'static str,
-        /// Its lower bound, in its declared unit.
-        lower: f64,
-        /// Its recommended value.
-        recommended: f64,
-        /// Its upper bound.
-        upper: f64,
-    },
-    /// A search is to start outside the bounds of a gene.
-    #[error("gene {name}: the start, {start}, lies outside its bounds, {lower} to {upper}")]
-    Start {
-        /// Which.
-        name: String,
-        /// Where to start.
-        start: f64,
-        /// Its lower bound.
-        lower: f64,
-        /// Its upper bound.
-        upper: f64,
+    /// One of them is stated in a way that makes no sense.
+    #[error(transparent)]
+    Unknown(#[from] BadUnknown),
+    /// A search is to start from more or fewer values than there are unknowns.
+    #[error("the start has {found} values, but there are {expected} unknowns")]
+    Length {
+        /// How many values there are.
+        found: usize,
+        /// How many unknowns.
+        expected: usize,
     },
 }
 
-/// One gene: its interval, and the part of it in which models usually survive.
+/// One unknown that is searched: its interval, and the part of it in which models usually survive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    /// Which gene.
-    pub quantity: Quantity,
-    /// Value at coordinate 0, the recommended one unless the search starts elsewhere [declared unit].
-    pub centre: f64,
-    /// Smallest value [declared unit].
-    pub lower: f64,
-    /// Largest value [declared unit].
-    pub upper: f64,
-    /// Trust interval about the centre, inside the bounds (coordinate).
+    /// The unknown, at coordinate 0 where it starts.
+    pub unknown: Unknown,
+    /// Its position among all unknowns.
+    pub position: usize,
+    /// Trust interval about the start, inside the bounds (coordinate).
     pub trust: Interval,
 }
 
@@ -92,195 +72,186 @@ impl Interval {
 }
 
 impl Axis {
+    fn new(unknown: &Unknown, position: usize) -> Self {
+        let [from, to] = unknown.trust.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+        let mut axis = Self {
+            unknown: unknown.clone(),
+            position,
+            trust: Interval { from, to },
+        };
+        axis.trust = axis.trust.within(axis.interval());
+        axis
+    }
+
     /// The whole interval (coordinate).
     pub fn interval(&self) -> Interval {
         Interval {
-            from: self.coordinate(self.lower),
-            to: self.coordinate(self.upper),
+            from: self.coordinate(self.unknown.lower),
+            to: self.coordinate(self.unknown.upper),
         }
     }
 
     /// The value at a coordinate, never outside the bounds.
     pub fn value(&self, x: f64) -> f64 {
-        let value = match self.quantity.scale() {
-            Scale::Logarithmic => self.centre * libm::exp10(x),
-            Scale::Linear => self.centre + self.half() * x,
+        let value = match self.unknown.scale {
+            Scale::Logarithmic => self.unknown.start * libm::exp10(x),
+            Scale::Linear => self.unknown.start + self.half() * x,
         };
-        value.clamp(self.lower, self.upper)
+        value.clamp(self.unknown.lower, self.unknown.upper)
     }
 
     /// The coordinate of a value.
     pub fn coordinate(&self, value: f64) -> f64 {
-        match self.quantity.scale() {
-            Scale::Logarithmic => libm::log10(value / self.centre),
-            Scale::Linear => (value - self.centre) / self.half(),
+        match self.unknown.scale {
+            Scale::Logarithmic => libm::log10(value / self.unknown.start),
+            Scale::Linear => (value - self.unknown.start) / self.half(),
         }
     }
 
     /// Half of the interval: the unit of a linear axis [declared unit].
     fn half(&self) -> f64 {
-        0.5 * (self.upper - self.lower)
+        0.5 * (self.unknown.upper - self.unknown.lower)
     }
 }
 
-/// The box of all genes; at least one.
+/// The box of the unknowns that are searched; at least one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Space {
     axes: Vec<Axis>,
+    /// What gives each unknown its value, in the case's order.
+    givers: Vec<Giver>,
+}
+
+/// What gives an unknown its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Giver {
+    /// Nothing moves it.
+    Held(f64),
+    /// An axis, times a ratio: 1 for its own.
+    Axis(usize, f64),
 }
 
 impl Space {
-    /// The space of a case's genes, in their order.
+    /// The space of a case's unknowns.
     ///
     /// # Errors
-    /// If there is no gene, or bounds and recommendation of one are not ordered, or not positive on a
-    /// logarithmic axis.
-    pub fn new(genes: &[Gene]) -> Result<Self, SpaceError> {
-        if genes.is_empty() {
+    /// If one is stated in a way that makes no sense, or none is to be searched.
+    pub fn new(unknowns: &[Unknown]) -> Result<Self, SpaceError> {
+        check_unknowns(unknowns)?;
+        let mut axes: Vec<Axis> = Vec::new();
+        for (position, unknown) in unknowns.iter().enumerate() {
+            if unknown.tie.is_none() && !unknown.fixed && !unknown.is_off() {
+                axes.push(Axis::new(unknown, position));
+            }
+        }
+        let giver = |position: usize| {
+            let (leader, ratio) = leader(unknowns, position);
+            match axes.iter().position(|axis| axis.position == leader) {
+                Some(axis) => Giver::Axis(axis, ratio),
+                None => Giver::Held(unknowns[position].start),
+            }
+        };
+        let givers = (0..unknowns.len()).map(giver).collect();
+        if axes.is_empty() {
             return Err(SpaceError::Empty);
         }
-        let axes = genes.iter().map(axis).collect::<Result<_, _>>()?;
-        Ok(Self { axes })
+        Ok(Self { axes, givers })
     }
 
-    /// The space of a case's genes about other values than the recommended ones [declared units], in
-    /// the order of the genes.
+    /// The space of a case's unknowns about other values than those that it states [declared units],
+    /// one per unknown.
     ///
     /// # Errors
-    /// As [`Space::new`]; if a value lies outside its gene's bounds.
-    pub fn about(genes: &[Gene], centre: &[f64]) -> Result<Self, SpaceError> {
-        let moved = genes.iter().zip(centre).map(|(gene, &start)| {
-            if !(gene.lower..=gene.upper).contains(&start) {
-                return Err(SpaceError::Start {
-                    name: gene.label(),
-                    start,
-                    lower: gene.lower,
-                    upper: gene.upper,
-                });
+    /// As [`Space::new`]; if a value lies outside its unknown's bounds. That of a tied one is not
+    /// looked at.
+    pub fn about(unknowns: &[Unknown], start: &[f64]) -> Result<Self, SpaceError> {
+        if unknowns.len() != start.len() {
+            return Err(SpaceError::Length {
+                found: start.len(),
+                expected: unknowns.len(),
+            });
+        }
+        check_unknowns(unknowns)?;
+        let moved = unknowns.iter().enumerate().map(|(position, unknown)| {
+            let (leader, ratio) = leader(unknowns, position);
+            Unknown {
+                start: ratio * start[leader],
+                ..unknown.clone()
             }
-            Ok(Gene {
-                recommended: start,
-                ..gene.clone()
-            })
         });
-        Self::new(&moved.collect::<Result<Vec<_>, _>>()?)
+        Self::new(&moved.collect::<Vec<_>>())
     }
 
-    /// One axis per gene.
+    /// The unknowns that are searched.
     pub fn axes(&self) -> &[Axis] {
         &self.axes
     }
 
-    /// Position of a coefficient.
-    pub fn position(&self, name: Coefficient) -> Option<usize> {
-        self.axes.iter().position(|axis| axis.quantity.is(name))
+    /// Position of the axis of an unknown; none if that is not searched.
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.axes.iter().position(|axis| axis.unknown.name == name)
     }
 
-    /// Number of genes.
+    /// Number of axes.
     pub fn dimension(&self) -> usize {
         self.axes.len()
     }
 
-    /// Values [declared units] of a point; one per axis.
+    /// Values of all unknowns [declared units] at a point, which has one coordinate per axis.
     pub fn values(&self, point: &[f64]) -> Vec<f64> {
-        let pairs = self.axes.iter().zip(point);
-        pairs.map(|(axis, &x)| axis.value(x)).collect()
+        let axes = self.axes.iter().zip(point);
+        let own: Vec<f64> = axes.map(|(axis, &x)| axis.value(x)).collect();
+        self.expand(&own)
     }
 
-    /// The point of values [declared units].
+    /// Values of all unknowns where those that are searched have these [declared units].
+    pub fn expand(&self, own: &[f64]) -> Vec<f64> {
+        let value = |giver: &Giver| match *giver {
+            Giver::Held(value) => value,
+            Giver::Axis(axis, ratio) => ratio * own[axis],
+        };
+        self.givers.iter().map(value).collect()
+    }
+
+    /// The point of values of all unknowns [declared units].
     pub fn point(&self, values: &[f64]) -> Vec<f64> {
-        let pairs = self.axes.iter().zip(values);
-        pairs.map(|(axis, &value)| axis.coordinate(value)).collect()
+        let axes = self.axes.iter();
+        axes.map(|axis| axis.coordinate(values[axis.position]))
+            .collect()
     }
 }
 
-fn axis(gene: &Gene) -> Result<Axis, SpaceError> {
-    let inside = gene.lower <= gene.recommended
-        && gene.recommended <= gene.upper
-        && (gene.upper - gene.lower).is_finite();
-    let (fits, rule) = match gene.scale() {
-        Scale::Logarithmic => (gene.lower > 0.0, "0 < lower <= recommended <= upper"),
-        Scale::Linear => (
-            gene.lower < gene.upper,
-            "lower <= recommended <= upper and lower < upper",
-        ),
-    };
-    if !(inside && fits) {
-        return Err(SpaceError::Bounds {
-            name: gene.label(),
-            rule,
-            lower: gene.lower,
-            recommended: gene.recommended,
-            upper: gene.upper,
-        });
+/// The unknown that one follows by way of its ties, itself where it has none, and the ratio to it. The
+/// ties have been checked: they end.
+fn leader(unknowns: &[Unknown], position: usize) -> (usize, f64) {
+    let (mut at, mut ratio) = (position, 1.0);
+    while let Some(tie) = &unknowns[at].tie
+        && let Some(next) = unknowns.iter().position(|other| other.name == tie.to)
+    {
+        (at, ratio) = (next, ratio * tie.ratio);
     }
-    let mut axis = Axis {
-        quantity: gene.quantity.clone(),
-        centre: gene.recommended,
-        lower: gene.lower,
-        upper: gene.upper,
-        trust: match gene.quantity {
-            Quantity::Coefficient { unit, .. } => trust(unit),
-            // what a case says of an effect's parameter is searched whole
-            Quantity::Effect { .. } => Interval {
-                from: f64::NEG_INFINITY,
-                to: f64::INFINITY,
-            },
-        },
-    };
-    axis.trust = axis.trust.within(axis.interval());
-    Ok(axis)
-}
-
-/// Stiffness of a rope is known to a decade or so, its damping to several: a bushing's dashpot
-/// stands for every loss of the machine. Contact numbers are conventions of a simulation program
-/// rather than properties of the machine, and recommendations for them are mostly too soft.
-fn trust(unit: Unit) -> Interval {
-    match unit {
-        Unit::NewtonPerMetre | Unit::NewtonMetrePerRadian | Unit::NewtonMetrePerDegree => {
-            Interval {
-                from: -1.0,
-                to: 1.5,
-            }
-        }
-        Unit::NewtonSecondPerMetre
-        | Unit::NewtonMetreSecondPerRadian
-        | Unit::NewtonMetreSecondPerDegree => Interval {
-            from: -1.0,
-            to: 4.0,
-        },
-        Unit::NewtonPerMetreToThreeHalves => Interval {
-            from: -0.5,
-            to: 3.5,
-        },
-    }
+    (at, ratio)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use protocol::case::Tie;
 
-    fn gene(lower: f64, recommended: f64, upper: f64) -> Gene {
-        let unit = Unit::NewtonPerMetre;
-        Gene::coefficient(Coefficient::Kb23, unit, recommended, [lower, upper])
+    fn logarithmic(lower: f64, start: f64, upper: f64) -> Unknown {
+        let name = format!("mass of {start}");
+        Unknown::new(name, "kg", Scale::Logarithmic, start, [lower, upper])
     }
 
-    fn linear(lower: f64, recommended: f64, upper: f64) -> Gene {
-        Gene {
-            quantity: Quantity::Effect {
-                id: "gauge_drift".to_owned(),
-                parameter: "drift_1".to_owned(),
-                unit: "MPa/rev".to_owned(),
-            },
-            recommended,
-            lower,
-            upper,
-        }
+    fn linear(lower: f64, start: f64, upper: f64) -> Unknown {
+        let name = format!("offset of {start}");
+        Unknown::new(name, "mm", Scale::Linear, start, [lower, upper])
     }
 
     #[test]
     fn points_and_values_are_inverse_and_stay_in_the_box() {
-        let space = Space::new(&[gene(3e4, 3e8, 3e12), gene(2.0, 5.0, 7.0)]).unwrap();
+        let unknowns = [logarithmic(3e4, 3e8, 3e12), logarithmic(2.0, 5.0, 7.0)];
+        let space = Space::new(&unknowns).unwrap();
         assert_eq!(space.values(&[0.0, 0.0]), [3e8, 5.0]);
         let values = space.values(&[1.25, 0.1]);
         for (back, x) in space.point(&values).into_iter().zip([1.25, 0.1]) {
@@ -300,50 +271,86 @@ mod tests {
             assert_eq!(axis.interval(), Interval { from, to });
             assert_eq!(axis.trust, axis.interval());
         }
-        for bad in [
-            linear(1.0, 1.0, 1.0),
-            linear(0.0, 2.0, 1.0),
-            linear(f64::NEG_INFINITY, 0.0, 1.0),
-            linear(-1.0, f64::NAN, 1.0),
-        ] {
-            let error = Space::new(&[bad]).unwrap_err().to_string();
-            assert!(error.starts_with("gene gauge_drift.drift_1:"), "{error}");
-        }
     }
 
     #[test]
     fn a_space_about_other_values_has_them_at_its_origin_and_keeps_its_bounds() {
-        let genes = [gene(3e4, 3e8, 3e12), linear(-3.0, -1.0, 1.0)];
-        let space = Space::about(&genes, &[6e9, 0.5]).unwrap();
+        let unknowns = [logarithmic(3e4, 3e8, 3e12), linear(-3.0, -1.0, 1.0)];
+        let space = Space::about(&unknowns, &[6e9, 0.5]).unwrap();
         assert_eq!(space.values(&[0.0, 0.0]), [6e9, 0.5]);
         assert_eq!(space.values(&[9.0, -9.0]), [3e12, -3.0]);
-        for (outside, name) in [
-            ([2e4, 0.0], "kb23"),
-            ([3e8, f64::NAN], "gauge_drift.drift_1"),
-        ] {
-            let error = Space::about(&genes, &outside).unwrap_err().to_string();
-            let begins = format!("gene {name}: the start, ");
+        for (outside, name) in [([2e4, 0.0], "mass"), ([3e8, f64::NAN], "offset")] {
+            let error = Space::about(&unknowns, &outside).unwrap_err().to_string();
+            let begins = format!("unknown {name} of ");
             assert!(error.starts_with(&begins), "{error}");
+            assert!(error.contains("start = "), "{error}");
         }
+        let short = Space::about(&unknowns, &[6e9]);
+        let (found, expected) = (1, 2);
+        assert_eq!(short, Err(SpaceError::Length { found, expected }));
+    }
+
+    /// Whatever has no axis still has a value, and the box does not know its place in the case.
+    #[test]
+    fn only_what_moves_has_an_axis_and_all_have_values() {
+        let mut unknowns = [
+            linear(-3.0, -1.0, 1.0),
+            logarithmic(1.0, 2.0, 4.0),
+            linear(0.0, 0.5, 1.0),
+            logarithmic(1.0, 3.0, 9.0),
+            linear(-1.0, 0.0, 1.0),
+        ];
+        let tie = |to: &Unknown, ratio| {
+            Some(Tie {
+                to: to.name.clone(),
+                ratio,
+            })
+        };
+        unknowns[0].tie = tie(&unknowns[2], -2.0);
+        unknowns[1].fixed = true;
+        unknowns[2].tie = tie(&unknowns[3], 0.5 / 3.0);
+        unknowns[4].absent = Some(0.0);
+        let space = Space::new(&unknowns).unwrap();
+        assert_eq!(space.dimension(), 1);
+        assert_eq!(space.axes()[0].position, 3);
+        assert_eq!(space.position(&unknowns[3].name), Some(0));
+        assert_eq!(space.position(&unknowns[1].name), None);
+        let near = |values: Vec<f64>, expected: [f64; 5]| {
+            let pairs = values.iter().zip(expected);
+            assert!(
+                pairs.clone().all(|(a, b)| (a - b).abs() < 1e-12),
+                "{values:?}"
+            );
+        };
+        near(space.values(&[0.0]), [-1.0, 2.0, 0.5, 3.0, 0.0]);
+        near(space.values(&[9.0]), [-3.0, 2.0, 1.5, 9.0, 0.0]);
+        assert_eq!(space.point(&[7.0, 7.0, 7.0, 3.0, 7.0]), [0.0]);
+        // started elsewhere, the last is on, and the tied ones follow
+        let about = Space::about(&unknowns, &[7.0, 3.5, 7.0, 6.0, 0.25]).unwrap();
+        assert_eq!(about.dimension(), 2);
+        near(about.values(&[0.0, 0.0]), [-2.0, 3.5, 1.0, 6.0, 0.25]);
     }
 
     #[test]
     fn trust_never_leaves_the_bounds() {
-        let space = Space::new(&[gene(2.0, 5.0, 7.0)]).unwrap();
+        let mut unknown = logarithmic(2.0, 5.0, 7.0);
+        unknown.trust = Some([-1.0, 0.1]);
+        let space = Space::new(&[unknown]).unwrap();
         let axis = &space.axes()[0];
-        assert_eq!(axis.trust, axis.interval());
+        assert_eq!(axis.trust.from.to_bits(), axis.interval().from.to_bits());
+        assert_eq!(axis.trust.to.to_bits(), 0.1_f64.to_bits());
     }
 
     #[test]
-    fn unordered_bounds_are_refused_by_name() {
-        for bad in [
-            gene(0.0, 1.0, 2.0),
-            gene(2.0, 1.0, 3.0),
-            gene(1.0, 4.0, 3.0),
-        ] {
-            let error = Space::new(&[bad]).unwrap_err();
-            assert!(error.to_string().starts_with("gene kb23:"), "{error}");
-        }
+    fn what_cannot_be_searched_is_refused_by_name() {
+        let error = Space::new(&[logarithmic(0.0, 1.0, 2.0)]).unwrap_err();
+        assert!(
+            error.to_string().starts_with("unknown mass of 1: lower"),
+            "{error}"
+        );
         assert_eq!(Space::new(&[]), Err(SpaceError::Empty));
+        let mut fixed = linear(0.0, 1.0, 2.0);
+        fixed.fixed = true;
+        assert_eq!(Space::new(&[fixed]), Err(SpaceError::Empty));
     }
 }

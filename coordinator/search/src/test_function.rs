@@ -1,22 +1,27 @@
 //! Functions with known minima, to hold strategies to.
 //!
-//! Points are coordinates of the space: decades from the recommended value, over +-4 of them. All minima are 0.
+//! Points are coordinates of the space: decades from the start, over +-4 of them. All minima are 0.
 use crate::{
     space::{Space, SpaceError},
     strategy::Told,
 };
-use protocol::case::{Coefficient, Gene};
+use protocol::case::{Scale, Shift, Unknown, Valley};
 
 /// What a function gives: the residual vector whose squared length is the fitness, or the grade of
 /// a point that fails.
 type Value = Result<Vec<f64>, f64>;
+
+/// Trust in a stiffness, in a loss, and in a stiffness in series with the first (decades).
+const STIFF: [f64; 2] = [-1.0, 1.5];
+const LOSS: [f64; 2] = [-1.0, 4.0];
+const SERIES: [f64; 2] = [-0.5, 3.5];
 
 /// A function with a known minimum of 0.
 #[derive(Clone, Copy, Debug)]
 pub struct TestFunction {
     /// Its name.
     pub name: &'static str,
-    /// Where its minimum lies (coordinate); at most 10 genes.
+    /// Where its minimum lies (coordinate); at most 10 unknowns.
     pub optimum: &'static [f64],
     value: fn(&[f64], &[f64]) -> Value,
 }
@@ -24,7 +29,7 @@ pub struct TestFunction {
 /// Every published function.
 pub const ALL: &[TestFunction] = &[SPHERE, RASTRIGIN, CLIFF, RESONANCE];
 
-/// Sum of squares: one basin, all genes alike.
+/// Sum of squares: one basin, all unknowns alike.
 pub const SPHERE: TestFunction = TestFunction {
     name: "sphere",
     optimum: &[0.7, -1.3, 0.2, 1.9],
@@ -45,7 +50,7 @@ pub const CLIFF: TestFunction = TestFunction {
     value: cliff,
 };
 
-/// Two resonators under a comb of harmonics, like a rope under a load card: a valley in axial
+/// Two resonators under a comb of harmonics, as of a spring under a periodic load: a valley in
 /// stiffness about 0.02 decade wide, on a plateau on which too much damping pays.
 pub const RESONANCE: TestFunction = TestFunction {
     name: "resonance",
@@ -60,28 +65,53 @@ impl TestFunction {
         Self { optimum, ..self }
     }
 
-    /// Its space: genes named and measured as those of a rope, +-4 decades wide.
+    /// Its space: unknowns `x0`, `x1` and so on, +-4 decades wide. The first has a valley, which `x4` and
+    /// `x8` can hide.
     ///
     /// # Panics
     /// Never: the bounds are ordered.
     pub fn space(&self) -> Space {
-        let gene = |(name, scale): (Coefficient, f64)| {
-            Gene::coefficient(name, name.si_unit(), scale, [1e-4 * scale, 1e4 * scale])
-        };
-        let scales = [
-            3.14e8, 1.25e8, 110.0, 137.0, 400.0, 410.0, 40.0, 41.0, 1e6, 50.0,
+        const UNKNOWNS: [(f64, [f64; 2]); 10] = [
+            (3.14e8, STIFF),
+            (1.25e8, STIFF),
+            (110.0, STIFF),
+            (137.0, STIFF),
+            (400.0, LOSS),
+            (410.0, LOSS),
+            (40.0, LOSS),
+            (41.0, LOSS),
+            (1e6, SERIES),
+            (50.0, LOSS),
         ];
-        let genes: Vec<Gene> = Coefficient::ALL
-            .into_iter()
-            .zip(scales)
-            .take(self.optimum.len())
-            .map(gene)
-            .collect();
-        let space: Result<Space, SpaceError> = Space::new(&genes);
+        let hiding = [(4, -0.8), (8, 1.5)].into_iter();
+        let hiding = hiding.filter(|(axis, _)| *axis < self.optimum.len());
+        let hiding = hiding.map(|(axis, by)| Shift {
+            unknown: format!("x{axis}"),
+            by,
+        });
+        let mut valley = Some(Valley {
+            from: -0.3,
+            to: 1.1,
+            step: 0.02,
+            uncovered_by: hiding.collect(),
+            shares: None,
+            stand_ins: Vec::new(),
+        });
+        let unknowns = UNKNOWNS.iter().take(self.optimum.len()).enumerate();
+        let unknowns = unknowns.map(|(axis, &(start, trust))| {
+            let bounds = [1e-4 * start, 1e4 * start];
+            let name = format!("x{axis}");
+            Unknown {
+                trust: Some(trust),
+                valley: valley.take(),
+                ..Unknown::new(name, "1", Scale::Logarithmic, start, bounds)
+            }
+        });
+        let space: Result<Space, SpaceError> = Space::new(&unknowns.collect::<Vec<_>>());
         space.expect("ordered bounds about positive values")
     }
 
-    /// Its result at gene values [declared units of [`Self::space`]].
+    /// Its result at values of [`Self::space`].
     pub fn tell(&self, space: &Space, genes: &[f64]) -> Told {
         match (self.value)(&space.point(genes), self.optimum) {
             Ok(residual) => Told {
@@ -95,8 +125,7 @@ impl TestFunction {
         }
     }
 
-    /// Its residual vector at gene values [declared units of [`Self::space`]], whose squared length
-    /// is the fitness; empty where it fails.
+    /// Its residual vector at values of [`Self::space`], whose squared length is the fitness; empty where it fails.
     pub fn residual(&self, space: &Space, genes: &[f64]) -> Vec<f64> {
         (self.value)(&space.point(genes), self.optimum).unwrap_or_default()
     }
@@ -132,12 +161,12 @@ fn cliff(x: &[f64], optimum: &[f64]) -> Value {
 
 /// The difference of two steady responses, as a mean square.
 ///
-/// The load excites two rope modes near the 60th and 80th harmonic of the crank. Their frequency
-/// follows axial stiffness and contact stiffness in series, their damping the axial damping. The
+/// The load excites two modes near its 60th and 80th harmonic. Their frequency follows the stiffnesses
+/// `x0` and `x8` in series, their damping the loss `x4`. The
 /// response is `H_n = 1 / (1 - r^2 + 2 i zeta r)`, `r = n / order`, and the fitness the sum over
-/// harmonics of `a_n^2 |H_n - H*_n|^2 / 2`: a valley about 0.02 decade wide in axial stiffness,
-/// and a plateau near 0.3 on which too much damping pays. Bending matters a little, the other
-/// genes not at all; far from the recommendation the simulation fails.
+/// harmonics of `a_n^2 |H_n - H*_n|^2 / 2`: a valley about 0.02 decade wide in `x0`,
+/// and a plateau near 0.3 on which too much damping pays. `x3` matters a little, the other
+/// unknowns not at all; far from the start the simulation fails.
 fn resonance(x: &[f64], optimum: &[f64]) -> Value {
     let limits = [
         (0, -1.2, 2.2),
@@ -170,7 +199,7 @@ fn resonance(x: &[f64], optimum: &[f64]) -> Value {
     Ok(residual)
 }
 
-/// Order [harmonics of the crank] and damping ratio of both modes.
+/// Order [harmonics of the load] and damping ratio of both modes.
 fn modes(x: &[f64]) -> [(f64, f64); 2] {
     let compliance = libm::exp10(0.4 - x[0]) + 0.015 * libm::exp10((2.6 - x[8]) / 1.5);
     let root = libm::sqrt(1.015 / compliance);

@@ -1,7 +1,7 @@
 //! What `horsehead case check` tells about a case that is in order.
 use super::{CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts, load::load_machine};
 use protocol::{
-    case::{Case, Gene, Term},
+    case::{Case, Term, Unknown},
     pumping_unit::Machine,
 };
 use std::{fmt, path::Path};
@@ -25,7 +25,7 @@ pub struct Summary {
     /// Mass of the meshed head \[kg\].
     pub head_mass_kg: f64,
     /// The unknown numbers.
-    pub genes: Vec<Gene>,
+    pub genes: Vec<Unknown>,
     /// Effects beside the machine that is drawn.
     pub effects: Vec<CaseEffect>,
     /// One entry per condition.
@@ -107,7 +107,7 @@ pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseE
         ),
         notes: loaded.notes,
         effects: loaded.effects,
-        genes: case.genes,
+        genes: case.unknowns,
         name: case.name,
     })
 }
@@ -224,17 +224,13 @@ impl Summary {
             ""
         };
         writeln!(to, "genes       recommended (lower .. upper){whose}")?;
-        let labels = self.genes.iter().map(|gene| gene.label().len());
+        let labels = self.genes.iter().map(|gene| gene.name.len());
         let width = labels.fold(6, usize::max);
         for gene in &self.genes {
             writeln!(
                 to,
                 "  {:<width$} {:>10.3e} ({:.2e} .. {:.2e}) {}",
-                gene.label(),
-                gene.recommended,
-                gene.lower,
-                gene.upper,
-                gene.unit()
+                gene.name, gene.start, gene.lower, gene.upper, gene.unit
             )?;
         }
         if self.twin_ropes.is_none() {

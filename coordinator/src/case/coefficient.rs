@@ -1,7 +1,7 @@
 //! Recommended coefficients by formula: the elasticity of a rope (paper, Eq. 3) and the contact of two
 //! elastic bodies (paper, Eq. 5). Knows material and size, no bounds, and damping has no formula.
 use super::{recommended::Formula, schema::CaseFile};
-use protocol::case::Coefficient;
+use protocol::pumping_unit::Coefficient;
 use std::f64::consts::PI;
 
 /// Isotropic elastic material.
@@ -105,7 +105,7 @@ impl Bodies {
 mod tests {
     use super::{Bodies, Elastic};
     use crate::case::recommended::Formula;
-    use protocol::{case::Coefficient, unit::Unit};
+    use protocol::{pumping_unit::Coefficient, unit::Unit};
 
     const STEEL: Elastic = Elastic {
         young: 200e9,

@@ -7,7 +7,7 @@ use super::{
     error::CaseError,
 };
 use protocol::{
-    case::{EffectSetting, Gene, Quantity},
+    case::{EffectSetting, Scale, Unknown},
     unit::EFFECT_UNITS,
 };
 use serde::Deserialize;
@@ -77,18 +77,13 @@ impl CaseEffect {
     }
 
     /// Its parameters that are searched, in the order of [`Self::setting`].
-    pub fn genes(&self) -> impl Iterator<Item = Gene> {
+    pub fn genes(&self) -> impl Iterator<Item = Unknown> {
         self.parameters.iter().filter_map(|(name, p)| {
-            let [lower, upper] = p.search?;
-            Some(Gene {
-                quantity: Quantity::Effect {
-                    id: self.id.clone(),
-                    parameter: name.clone(),
-                    unit: p.unit.clone(),
-                },
-                recommended: p.value,
-                lower,
-                upper,
+            let label = format!("{}.{name}", self.id);
+            let unknown = Unknown::new(label, &p.unit, Scale::Linear, p.value, p.search?);
+            Some(Unknown {
+                title: format!("{name} of {}", self.id.replace('_', " ")),
+                ..unknown
             })
         })
     }

@@ -1,4 +1,5 @@
-//! The coefficients of rope and contact that a case declares as genes.
+//! The coefficients of rope and contact that a case declares as genes, and what is known of each as an
+//! unknown of a search.
 use super::{
     coefficient::Bodies,
     document::{Document, Step, units},
@@ -7,7 +8,8 @@ use super::{
     schema::GeneEntry,
 };
 use protocol::{
-    case::{Coefficient, Gene},
+    case::{Scale, Shares, Shift, Unknown, Valley},
+    pumping_unit::Coefficient,
     unit::Unit,
 };
 use std::collections::BTreeMap;
@@ -24,7 +26,7 @@ pub(super) fn declared(
     document: &Document,
     table: &BTreeMap<Coefficient, GeneEntry>,
     bodies: &Bodies,
-) -> Result<Vec<Gene>, CaseError> {
+) -> Result<Vec<Unknown>, CaseError> {
     let mut genes = Vec::new();
     for name in Coefficient::ALL {
         let Some(entry) = table.get(&name) else {
@@ -80,9 +82,65 @@ pub(super) fn declared(
             ));
         }
         let bounds = [entry.lower, entry.upper];
-        genes.push(Gene::coefficient(name, entry.unit, recommended, bounds));
+        genes.push(unknown(name, entry.unit, recommended, bounds));
     }
     Ok(genes)
+}
+
+/// A coefficient as an unknown of a search.
+pub fn unknown(name: Coefficient, unit: Unit, start: f64, bounds: [f64; 2]) -> Unknown {
+    let (letter, index) = name.as_str().split_at(1);
+    Unknown {
+        title: name.title().to_owned(),
+        symbol: format!("{}_{index}", letter.to_uppercase()),
+        trust: Some(trust(unit)),
+        valley: (name == Coefficient::Kb1).then(valley),
+        ..Unknown::new(
+            name.as_str(),
+            unit.symbol(),
+            Scale::Logarithmic,
+            start,
+            bounds,
+        )
+    }
+}
+
+/// Stiffness of a rope is known to a decade or so, its damping to several: a bushing's dashpot
+/// stands for every loss of the machine. Contact numbers are conventions of a simulation program
+/// rather than properties of the machine, and recommendations for them are mostly too soft.
+const fn trust(unit: Unit) -> [f64; 2] {
+    match unit {
+        Unit::NewtonPerMetre | Unit::NewtonMetrePerRadian | Unit::NewtonMetrePerDegree => {
+            [-1.0, 1.5]
+        }
+        Unit::NewtonSecondPerMetre
+        | Unit::NewtonMetreSecondPerRadian
+        | Unit::NewtonMetreSecondPerDegree => [-1.0, 4.0],
+        Unit::NewtonPerMetreToThreeHalves => [-0.5, 3.5],
+    }
+}
+
+/// The valley of the axial stiffness. The load excites two modes of the rope, some sixty and eighty
+/// times a turn, and a stiffness a few hundredths of a decade off gives their waves the wrong phase.
+/// Much damping hides the modes; a soft contact can stand in for a soft rope, and of a very hard one no
+/// small change shows. Damping over stiffness is 1 and 4 % of critical at the modes' 6 Hz, between
+/// which wire ropes lie.
+fn valley() -> Valley {
+    let shift = |name: Coefficient, by| Shift {
+        unknown: name.as_str().to_owned(),
+        by,
+    };
+    Valley {
+        from: -0.3,
+        to: 1.1,
+        step: 0.02,
+        uncovered_by: vec![shift(Coefficient::Cb1, -0.8), shift(Coefficient::Kc, 1.5)],
+        shares: Some(Shares {
+            unknown: Coefficient::Cb1.as_str().to_owned(),
+            of_scanned: vec![6e-4, 2e-3],
+        }),
+        stand_ins: vec![shift(Coefficient::Kc, 1.5), shift(Coefficient::Kc, -1.5)],
+    }
 }
 
 /// A coefficient's unit measures that kind of coefficient.

@@ -15,10 +15,7 @@ use super::{
     schema::{CaseFile, FlexibleHead, Records, TwinRopesEntry},
 };
 use discrepancy::record::Record;
-use protocol::{
-    case::{Case, Quantity},
-    pumping_unit::Machine,
-};
+use protocol::{case::Case, pumping_unit::Machine};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -60,10 +57,12 @@ impl Loaded {
         self.case.effects = self.effects.iter().map(CaseEffect::setting).collect();
         self.case.effect_units = self.effects.iter().map(CaseEffect::units).collect();
         let left = &self.case.effects;
-        self.case.genes.retain(|gene| match &gene.quantity {
-            Quantity::Coefficient { .. } => true,
-            Quantity::Effect { id, .. } => left.iter().any(|effect| effect.id == *id),
-        });
+        self.case
+            .unknowns
+            .retain(|unknown| match unknown.of_effect() {
+                None => true,
+                Some((id, _)) => left.iter().any(|effect| effect.id == id),
+            });
         self
     }
 }
@@ -148,8 +147,8 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
-    let mut genes = genes::declared(&document, &file.genes, &Bodies::of(&file))?;
-    genes.extend(file.effects.iter().flat_map(CaseEffect::genes));
+    let mut unknowns = genes::declared(&document, &file.genes, &Bodies::of(&file))?;
+    unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let machine = Machine {
         gravity_m_s2: file.gravity_m_s2,
         beam: file.beam,
@@ -176,7 +175,7 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         })?,
         effects: file.effects.iter().map(CaseEffect::setting).collect(),
         effect_units: file.effects.iter().map(CaseEffect::units).collect(),
-        genes,
+        unknowns,
         conditions,
         channels,
         objective,

@@ -37,6 +37,7 @@ pub use effect::{CaseEffect, CaseParameter, Provenance};
 pub use effect_text::{append_effects, write_effects};
 pub use error::CaseError;
 pub use gene_file::{read_genes, write_genes};
+pub use genes::unknown;
 pub use geometry::Envelope;
 pub use geometry::{QuasiStatic, quasi_static};
 pub(crate) use head::GaugePlace;

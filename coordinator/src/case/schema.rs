@@ -2,9 +2,9 @@
 //! checked beside the data they name.
 use super::{effect::CaseEffect, recommended::Recommended};
 use protocol::{
-    case::{Coefficient, Offset},
+    case::Offset,
     pumping_unit::{
-        BackHead, Beam, Contact, Crank, FrontHead, Rod, Ropes, RunSettings, Smoothing,
+        BackHead, Beam, Coefficient, Contact, Crank, FrontHead, Rod, Ropes, RunSettings, Smoothing,
         StressRecovery, Suspension,
     },
     unit::Unit,

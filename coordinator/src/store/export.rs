@@ -56,7 +56,7 @@ impl<'a> Store<'a> {
         let draft = Draft::begin(target)?;
         let mut book = Book::new(draft.sink()?);
         let tables = Tables::begin(&mut book, case)?;
-        for gene in &case.genes {
+        for gene in &case.unknowns {
             book.put(&tables.genes, gene)?;
         }
         Ok(Self {

@@ -40,7 +40,7 @@ impl Oracle {
         answer: fn(&Space, u64, &Individual) -> Outcome,
     ) -> Self {
         Self {
-            space: Space::new(&case.genes).unwrap(),
+            space: Space::new(&case.unknowns).unwrap(),
             open: Vec::new(),
             order: Streams::new(order, 0).at(0, Phase::Initial, 0),
             answer,
@@ -330,9 +330,9 @@ async fn the_user_can_stop_while_nothing_comes_back() {
 #[tokio::test]
 async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     let case = case();
-    let best: Vec<f64> = case.recommended().iter().map(|gene| 2.0 * gene).collect();
+    let best: Vec<f64> = case.start().iter().map(|gene| 2.0 * gene).collect();
     let individuals = vec![
-        ("recommended".to_owned(), case.recommended()),
+        ("recommended".to_owned(), case.start()),
         ("optimised".to_owned(), best),
     ];
     let wanted = |condition| Wanted {
@@ -368,7 +368,7 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
         |_: &Space, _: u64, _: &Individual| Outcome::Failed(Failure::Deadline { limit_ms: 1500 });
     let mut oracle = Oracle::new(&case, 1, answer);
     let (_sender, mut stop) = watch::channel(false);
-    let individuals = vec![("recommended".to_owned(), case.recommended())];
+    let individuals = vec![("recommended".to_owned(), case.start())];
     let wanted = [Wanted {
         condition: 0,
         individuals,
@@ -458,7 +458,7 @@ async fn one_by_one(answer: fn(&Space, u64, &Individual) -> Outcome) -> Result<u
     let case = case();
     let mut oracle = Oracle::new(&case, 1, answer);
     let mut strategy = OneByOne {
-        genes: case.recommended(),
+        genes: case.start(),
         asked: 0,
         results: Vec::new(),
         archive: Archive::default(),

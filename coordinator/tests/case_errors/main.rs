@@ -230,23 +230,20 @@ fn a_parameter_with_an_interval_to_search_is_a_gene() {
         )
     };
     let fixed = with(&moment(""));
-    assert_eq!(fixed.case.genes.len(), 10);
+    assert_eq!(fixed.case.unknowns.len(), 10);
     let searched = with(&moment(", search = [-1.0, 20.0]"));
-    let [.., gene] = searched.case.genes.as_slice() else {
+    let [.., gene] = searched.case.unknowns.as_slice() else {
         unreachable!("no genes");
     };
-    assert_eq!(searched.case.genes.len(), 11);
-    assert_eq!(gene.label(), "pivot_friction.moment");
-    assert_eq!((gene.unit(), gene.scale()), ("N.m", Scale::Linear));
-    assert_eq!(
-        (gene.lower, gene.recommended, gene.upper),
-        (-1.0, 9.0, 20.0)
-    );
+    assert_eq!(searched.case.unknowns.len(), 11);
+    assert_eq!(gene.name, "pivot_friction.moment");
+    assert_eq!((gene.unit.as_str(), gene.scale), ("N.m", Scale::Linear));
+    assert_eq!((gene.lower, gene.start, gene.upper), (-1.0, 9.0, 20.0));
     assert_eq!(searched.case.effects, fixed.case.effects);
     let other = searched.clone().without_found_in("another one");
     assert_eq!(other, searched);
     let without = searched.without_found_in("this one").case;
-    assert_eq!(without.genes, fixed.case.genes);
+    assert_eq!(without.unknowns, fixed.case.unknowns);
     assert!(without.effects.is_empty());
 }
 
@@ -271,7 +268,7 @@ fn recommended_values_by_formula() {
         copy.replace(TOML, number, formula);
     }
     let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
-    let recommended = |at: usize| case.genes[at].recommended;
+    let recommended = |at: usize| case.unknowns[at].start;
     assert!((recommended(0) / 3.1416e8 - 1.0).abs() < 1e-4);
     // per degree, and a quarter of what Table 3 recommends
     assert!((recommended(3) / 34.27 - 1.0).abs() < 1e-3);

@@ -1,23 +1,16 @@
 //! Genes that are parameters of effects, in tables, figures and words.
 use crate::sample;
 use coordinator::report::{chart, table};
-use protocol::case::{EffectSetting, Gene, Quantity};
+use protocol::case::{EffectSetting, Scale, Unknown};
 
 #[test]
 fn a_parameter_of_an_effect_is_shown_beside_the_coefficients() {
     let mut calibration = sample::calibration(200);
     let case = &mut calibration.case;
     case.effects = vec![EffectSetting::new("load_offset", &[("force", 0.0)])];
-    case.genes.push(Gene {
-        quantity: Quantity::Effect {
-            id: "load_offset".to_owned(),
-            parameter: "force".to_owned(),
-            unit: "N".to_owned(),
-        },
-        recommended: 0.0,
-        lower: -900.0,
-        upper: 2100.0,
-    });
+    let bounds = [-900.0, 2100.0];
+    let force = Unknown::new("load_offset.force", "N", Scale::Linear, 0.0, bounds);
+    case.unknowns.push(force);
     calibration.recommended.genes.push(0.0);
     calibration.optimised.genes.push(-899.0);
     for (number, point) in (0..).zip(&mut calibration.history) {

@@ -186,8 +186,8 @@ fn a_calibration_is_written_with_its_data() {
     }
     assert!(page.contains("What remains unexplained under condition 5rpm"));
     let text = words(&page);
-    for gene in &calibration.case.genes {
-        assert!(text.contains(&gene.label()), "{gene:?}");
+    for gene in &calibration.case.unknowns {
+        assert!(text.contains(&gene.name), "{gene:?}");
     }
     for gauge in 1..=4 {
         assert!(text.contains(&format!("Gauge {gauge}")));
@@ -244,8 +244,8 @@ fn every_figure_of_a_calibration_is_well_formed() {
         .iter()
         .find(|figure| figure.name == "genes")
         .unwrap();
-    for gene in &case.genes {
-        assert!(genes.svg.contains(&gene.label()));
+    for gene in &case.unknowns {
+        assert!(genes.svg.contains(&gene.name));
     }
 }
 
@@ -490,7 +490,7 @@ fn terminal_tables_are_styled_only_on_demand() {
 #[test]
 fn a_gene_at_its_bound_is_marked() {
     let mut calibration = sample::calibration(10);
-    calibration.optimised.genes[8] = calibration.case.genes[8].upper;
+    calibration.optimised.genes[8] = calibration.case.unknowns[8].upper;
     let text = words(&page_of(&calibration));
     assert!(text.contains("kc ended at its upper bound"));
     assert!(text.contains("* at a bound of the search: kc at its upper bound"));

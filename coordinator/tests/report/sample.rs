@@ -5,13 +5,13 @@ use coordinator::report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
 use protocol::{
-    case::{Case, Channel, ChannelRecord, Coefficient, Condition, Gene, Objective, Offset, Term},
+    case::{Case, Channel, ChannelRecord, Condition, Objective, Offset, Term, Unknown},
     event::Spent,
     job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
     pumping_unit::{
-        BackHead, Beam, Contact, Crank, Energy, FrontHead, Influence, LoadCard, Machine, ModalHead,
-        Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation, Smoothing, Suspension, TurnSense,
-        WorkingCondition,
+        BackHead, Beam, Coefficient, Contact, Crank, Energy, FrontHead, Influence, LoadCard,
+        Machine, ModalHead, Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation, Smoothing,
+        Suspension, TurnSense, WorkingCondition,
     },
     unit::Unit,
 };
@@ -53,12 +53,12 @@ fn load_n(turn_deg: f64) -> f64 {
     1e3 * (57.553 + harmonics.sum::<f64>())
 }
 
-fn gene(name: Coefficient, unit: Unit, recommended: f64) -> Gene {
+fn gene(name: Coefficient, unit: Unit, recommended: f64) -> Unknown {
     let bounds = [1e-4 * recommended, 1e4 * recommended];
-    Gene::coefficient(name, unit, recommended, bounds)
+    coordinator::case::unknown(name, unit, recommended, bounds)
 }
 
-fn genes() -> Vec<Gene> {
+fn genes() -> Vec<Unknown> {
     use Unit::{
         NewtonMetrePerDegree as Bend, NewtonMetreSecondPerDegree as BendRate,
         NewtonPerMetre as Stiff, NewtonPerMetreToThreeHalves as Hertz,
@@ -177,7 +177,7 @@ pub(crate) fn case() -> Case {
         model: machine.settings().unwrap(),
         effects: Vec::new(),
         effect_units: Vec::new(),
-        genes: genes(),
+        unknowns: genes(),
         conditions: ["5rpm", "4rpm"]
             .map(|name| Condition {
                 name: name.to_owned(),
@@ -447,7 +447,7 @@ fn history(case: &Case, best: &[f64], count: usize) -> Vec<HistoryPoint> {
             let progress = index as f64 / count as f64;
             let width = 4.0 * (1.0 - progress).powi(2) + 0.15;
             let genes: Vec<f64> = case
-                .genes
+                .unknowns
                 .iter()
                 .zip(best)
                 .map(|(gene, &best)| {
@@ -499,10 +499,10 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
     let case = case();
     let factors = [2.49, 1.81, 1.85, 2.25, 13.0, 10.7, 1.1, 1.4, 401.0, 20.4];
     let genes: Vec<f64> = case
-        .genes
+        .unknowns
         .iter()
         .zip(factors)
-        .map(|(gene, factor)| factor * gene.recommended)
+        .map(|(gene, factor)| factor * gene.start)
         .collect();
     let mut conditions: Vec<ConditionResult> = (0..2)
         .map(|condition| ConditionResult {
@@ -524,7 +524,7 @@ pub(crate) fn calibration(evaluations: usize) -> Calibration {
         origin: origin(),
         recommended: Individual {
             id: None,
-            genes: case.recommended(),
+            genes: case.start(),
         },
         optimised: Individual {
             id: evaluations.checked_sub(1).map(|id| id as u64),
@@ -573,7 +573,7 @@ pub(crate) fn single() -> SingleRun {
         },
         condition: 0,
         genes_name: "recommended".to_owned(),
-        genes: case.recommended(),
+        genes: case.start(),
         evaluation: Some(score(&case, 0, &simulation)),
         simulation,
         notes: Vec::new(),

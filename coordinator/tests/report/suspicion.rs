@@ -136,7 +136,7 @@ fn library() -> Vec<EffectDescriptor> {
 /// A finished fit of the linear model `residual = constant - A x`, with the genes and added effects
 /// as unknowns; `size` is the length of its residual.
 fn fit(case: &Case, added: &[&EffectDescriptor], size: f64, curves: Curves) -> Fit {
-    let space = Space::new(&case.genes).expect("the sample's genes are sound");
+    let space = Space::new(&case.unknowns).expect("the sample's genes are sound");
     let mut model = Model::plain(space);
     model.added.extend(added.iter().copied().cloned());
     let variables = model.variables(&[]);

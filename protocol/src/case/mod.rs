@@ -3,19 +3,21 @@
 //!
 //! The coordinator reads and validates case *files* and builds this; its encoded bytes travel as
 //! one blob, named by their content hash. Nothing here knows of files, of TOML or of dynamics.
+mod bad_unknown;
 mod channel;
 mod condition;
 mod effect;
-mod gene;
 mod model;
 mod objective;
+mod unknown;
 
+pub use bad_unknown::{BadUnknown, check_unknowns};
 pub use channel::{Abscissa, Channel, ChannelRecord};
 pub use condition::Condition;
 pub use effect::{EffectSetting, merged};
-pub use gene::{Coefficient, Gene, Quantity, Scale};
 pub use model::ModelSettings;
 pub use objective::{Objective, Offset, Term};
+pub use unknown::{Prior, Scale, Shares, Shift, Tie, Unknown, Valley};
 
 use serde::{Deserialize, Serialize};
 
@@ -31,9 +33,9 @@ pub struct Case {
     /// Units in which the case states those numbers, effect by effect in the same order; a worker
     /// refuses one that is not its own. Empty where nobody stated any.
     pub effect_units: Vec<Vec<String>>,
-    /// The unknown numbers, in the order of every gene vector: coefficients, then parameters of
-    /// [`Self::effects`], whose values there are the recommended ones.
-    pub genes: Vec<Gene>,
+    /// The unknown numbers, in the order of every individual's values; parameters of
+    /// [`Self::effects`] start at the values that they have there.
+    pub unknowns: Vec<Unknown>,
     /// Working conditions.
     pub conditions: Vec<Condition>,
     /// What a simulation shows under each condition, with what was measured of it.
@@ -81,14 +83,15 @@ impl Case {
         units.all(|unit| unit == first).then_some(first)
     }
 
-    /// The recommended gene vector, in declared units.
-    pub fn recommended(&self) -> Vec<f64> {
-        self.genes.iter().map(|gene| gene.recommended).collect()
+    /// The values that a search starts from, in declared units.
+    pub fn start(&self) -> Vec<f64> {
+        self.unknowns.iter().map(|unknown| unknown.start).collect()
     }
 
-    /// Whether parameters of effects are among the genes: then every individual is a machine of its
-    /// own.
-    pub fn has_effect_genes(&self) -> bool {
-        self.genes.iter().any(|gene| gene.quantity.is_of_effect())
+    /// Whether parameters of effects are among the unknowns: then every individual is a machine of
+    /// its own.
+    pub fn has_unknown_effects(&self) -> bool {
+        let mut unknowns = self.unknowns.iter();
+        unknowns.any(|unknown| unknown.of_effect().is_some())
     }
 }

@@ -5,6 +5,7 @@
 //! this one, that of the worker which simulates it and that of the coordinator which reads and draws
 //! it. Nothing here knows of files or of dynamics.
 mod card;
+mod coefficient;
 mod discretisation;
 mod drawing;
 mod head;
@@ -16,6 +17,7 @@ mod sensor;
 mod twin;
 
 pub use card::{LoadCard, Smoothing};
+pub use coefficient::Coefficient;
 pub use discretisation::Discretisation;
 pub use drawing::{Energy, Motion, Simulation};
 pub use head::{Influence, ModalHead, StressRecovery};

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let case = &machine.case;
     let plan = Plan {
         genes: match &arguments.genes {
-            None => case.recommended(),
+            None => case.start(),
             Some(file) => read_genes(file, case)?,
         },
         methods: match arguments.methods.as_slice() {

@@ -8,7 +8,7 @@ use crate::output::{Output, table};
 use crate::verdicts::{Class, Ended, classes};
 use clap::Args;
 use comfy_table::Table;
-use protocol::case::{Case, Gene};
+use protocol::case::Case;
 use protocol::pumping_unit::Discretisation;
 use search::space::{Interval, Space};
 use search::strategy::latin_hypercube;
@@ -67,7 +67,7 @@ struct Object<'a> {
 /// Runs, counts, writes.
 pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let machine = arguments.machine.load()?;
-    let individuals = individuals(&Space::new(&machine.case.genes)?, arguments);
+    let individuals = individuals(&Space::new(&machine.case.unknowns)?, arguments);
     let cores = thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.unwrap_or(cores).max(1);
     let output = &arguments.output;
@@ -145,7 +145,7 @@ fn rows(case: &Case, genes: &[Vec<f64>], ended: &[Ended]) -> anyhow::Result<Vec<
         "factorizations",
         "wall_s",
     ];
-    let names = case.genes.iter().map(Gene::label);
+    let names = case.unknowns.iter().map(|unknown| unknown.name.clone());
     let head = std::iter::once("point".to_owned()).chain(names);
     writer.write_record(head.chain(rest.map(str::to_owned)))?;
     for (index, (genes, one)) in genes.iter().zip(ended).enumerate() {

@@ -5,9 +5,9 @@ use crate::law::Hidden;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
 use protocol::{
-    case::{Case, Coefficient},
+    case::Case,
     job::Failure,
-    pumping_unit::{Discretisation, PumpingUnit},
+    pumping_unit::{Coefficient, Discretisation, PumpingUnit},
 };
 use simulation::effect::Effect;
 use simulation::integrator::method::Method;
@@ -74,14 +74,14 @@ const SPREAD: f64 = 0.35;
 /// # Errors
 /// A case that lacks one of the ten.
 pub fn genes(case: &Case, draw: &mut Draw) -> anyhow::Result<Vec<f64>> {
-    let genes = case.genes.iter().map(|gene| {
-        if gene.quantity.is_of_effect() {
-            return Ok(gene.recommended);
+    let genes = case.unknowns.iter().map(|gene| {
+        if gene.of_effect().is_some() {
+            return Ok(gene.start);
         }
         let (_, middle) = MIDDLE
             .iter()
-            .find(|(name, _)| gene.quantity.is(*name))
-            .with_context(|| format!("no middle for {}", gene.label()))?;
+            .find(|(name, _)| gene.name == name.as_str())
+            .with_context(|| format!("no middle for {}", gene.name))?;
         let value = middle * libm::exp(SPREAD * draw.cut_normal());
         Ok(value.clamp(gene.lower, gene.upper))
     });

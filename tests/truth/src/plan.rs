@@ -223,14 +223,16 @@ pub fn make(
         };
         write(folder, name, &sensors, &delivered)?;
     }
-    let named = unit.case.genes.iter().zip(&values);
+    let named = unit.case.unknowns.iter().zip(&values);
     Ok(Answer {
         seed: order.seed,
         stratum: order.stratum,
         case: unit.case.name.clone(),
         noise: order.noise,
         cycles: order.cycles,
-        genes: named.map(|(gene, value)| (gene.label(), *value)).collect(),
+        genes: named
+            .map(|(gene, value)| (gene.name.clone(), *value))
+            .collect(),
         effects: hidden.iter().map(AnswerEffect::of).collect(),
     })
 }

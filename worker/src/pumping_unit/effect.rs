@@ -1,7 +1,7 @@
 //! Effects: their descriptions as they travel, and settings as the dynamics take them.
 use super::genes::individual;
 use protocol::announce::{self, EffectDescriptor, ParameterDescriptor};
-use protocol::case::{Case, EffectSetting, Quantity};
+use protocol::case::{Case, EffectSetting};
 use protocol::job::Failure;
 use simulation::effect::{self, Asked, Refused, Selection, catalogue};
 
@@ -104,13 +104,13 @@ pub(super) fn check_units(
 /// effect that the case does not have.
 pub(super) fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSetting>, Failure> {
     let mut effects = case.effects.clone();
-    for (quantity, value) in individual(case, genes)? {
-        let Quantity::Effect { id, parameter, .. } = quantity else {
+    for (unknown, value) in individual(case, genes)? {
+        let Some((id, parameter)) = unknown.of_effect() else {
             continue;
         };
-        let Some(effect) = effects.iter_mut().find(|effect| effect.id == *id) else {
+        let Some(effect) = effects.iter_mut().find(|effect| effect.id == id) else {
             return Err(Failure::misconfigured(
-                format!("genes.{}", quantity.label()),
+                format!("genes.{}", unknown.name),
                 format!("the case has no effect `{id}`"),
             ));
         };
@@ -120,7 +120,7 @@ pub(super) fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSett
             .find(|(name, _)| name == parameter)
         {
             Some((_, own)) => *own = value,
-            None => effect.parameters.push((parameter.clone(), value)),
+            None => effect.parameters.push((parameter.to_owned(), value)),
         }
     }
     Ok(effects)
@@ -132,27 +132,23 @@ pub(super) fn of_individual(case: &Case, genes: &[f64]) -> Result<Vec<EffectSett
 /// # Errors
 /// [`Failure::Misconfigured`] naming the first that does not fit.
 pub(super) fn check_genes(case: &Case) -> Result<(), Failure> {
-    for (at, gene) in case.genes.iter().enumerate() {
-        let Quantity::Effect {
-            id,
-            parameter,
-            unit,
-        } = &gene.quantity
-        else {
+    for (at, unknown) in case.unknowns.iter().enumerate() {
+        let Some((id, parameter)) = unknown.of_effect() else {
             continue;
         };
-        for end in [gene.lower, gene.upper] {
-            let mut genes = case.recommended();
+        for end in [unknown.lower, unknown.upper] {
+            let mut genes = case.start();
             genes[at] = end;
             selection(&of_individual(case, &genes)?)
-                .map_err(|failure| of_search(failure, &gene.label()))?;
+                .map_err(|failure| of_search(failure, &unknown.name))?;
         }
-        let known = catalogue().iter().find(|d| d.id == *id);
+        let known = catalogue().iter().find(|d| d.id == id);
         let mut known = known.into_iter().flat_map(|d| d.parameters.iter());
         let own = known.find(|p| p.name == parameter);
+        let unit = &unknown.unit;
         if let Some(own) = own.map(|p| p.unit.symbol()).filter(|own| own != unit) {
             return Err(Failure::misconfigured(
-                format!("genes.{}.unit", gene.label()),
+                format!("genes.{}.unit", unknown.name),
                 format!("is \"{unit}\"; `{id}` takes it in {own}"),
             ));
         }

@@ -1,49 +1,57 @@
-//! What the values of an individual's genes are values of.
+//! What the values of an individual are values of.
 use protocol::{
-    case::{Case, Coefficient, Quantity},
+    case::{Case, Unknown},
     job::Failure,
-    pumping_unit::PumpingUnit,
+    pumping_unit::{Coefficient, PumpingUnit},
+    unit::Unit,
 };
 use simulation::element::{bushing::Bushing, impact::Impact};
 use simulation::model::description::RopeLaw;
 
-/// The genes of a case with the values of an individual.
+/// The unknowns of a case with the values of an individual.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when there are fewer or more values than genes.
+/// [`Failure::Misconfigured`] when there are fewer or more values than unknowns.
 pub(super) fn individual<'a>(
     case: &'a Case,
     genes: &'a [f64],
-) -> Result<impl Iterator<Item = (&'a Quantity, f64)> + Clone, Failure> {
-    if genes.len() != case.genes.len() {
+) -> Result<impl Iterator<Item = (&'a Unknown, f64)> + Clone, Failure> {
+    let (given, wanted) = (genes.len(), case.unknowns.len());
+    if given != wanted {
         return Err(Failure::misconfigured(
             "genes",
-            format!("{} values for {} genes", genes.len(), case.genes.len()),
+            format!("{given} values for {wanted} unknowns"),
         ));
     }
-    let quantities = case.genes.iter().map(|gene| &gene.quantity);
-    Ok(quantities.zip(genes.iter().copied()))
+    Ok(case.unknowns.iter().zip(genes.iter().copied()))
 }
 
-/// The rope law of a gene vector in declared units.
+/// The rope law of an individual's values in declared units.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] when a gene is missing, surplus or not a positive number.
+/// [`Failure::Misconfigured`] when a coefficient is missing, surplus, not a positive number, or not in one
+/// of its units.
 pub fn rope_law(unit: &PumpingUnit, genes: &[f64]) -> Result<RopeLaw, Failure> {
     let genes = individual(&unit.case, genes)?;
     let value = |name: Coefficient| -> Result<f64, Failure> {
-        let found = genes.clone().find_map(|(quantity, value)| match quantity {
-            Quantity::Coefficient { name: own, unit } if *own == name => Some((*unit, value)),
-            Quantity::Coefficient { .. } | Quantity::Effect { .. } => None,
-        });
-        match found {
-            Some((unit, value)) if value > 0.0 && value.is_finite() => Ok(unit.to_si(value)),
-            Some((_, value)) => Err(Failure::misconfigured(
-                name.as_str(),
-                format!("is {value}; it must be a positive number"),
-            )),
-            None => Err(Failure::misconfigured(name.as_str(), "is missing")),
+        let misconfigured = |problem: String| Failure::misconfigured(name.as_str(), problem);
+        let mut unknowns = genes.clone();
+        let found = unknowns.find(|(unknown, _)| unknown.name == name.as_str());
+        let (unknown, value) = found.ok_or_else(|| misconfigured("is missing".to_owned()))?;
+        let unit = Unit::named(&unknown.unit).filter(|unit| unit.si() == name.si_unit());
+        let unit = unit.ok_or_else(|| {
+            let fitting = name.si_unit().symbol();
+            misconfigured(format!(
+                "is in {}; it is measured in {fitting}",
+                unknown.unit
+            ))
+        })?;
+        if value > 0.0 && value.is_finite() {
+            return Ok(unit.to_si(value));
         }
+        Err(misconfigured(format!(
+            "is {value}; it must be a positive number"
+        )))
     };
     Ok(RopeLaw {
         bushing: Bushing {

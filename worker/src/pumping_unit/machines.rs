@@ -67,7 +67,7 @@ impl Machines {
     ) -> Result<Cow<'_, Machine>, Failure> {
         let stated = std::ptr::eq(unit, &raw const self.unit)
             && individual.effects.is_empty()
-            && !unit.case.has_effect_genes();
+            && !unit.case.has_unknown_effects();
         if !stated {
             return machine_with(unit, individual).map(Cow::Owned);
         }

@@ -75,7 +75,7 @@ pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
     } else {
         Reply::Channels
     };
-    let reference = Individual::new(condition, decoded.recommended());
+    let reference = Individual::new(condition, decoded.start());
     let job = Job::Simulate(SimulateSpec::new(reference, reply));
     Ok(Task {
         attempt: ATTEMPT,

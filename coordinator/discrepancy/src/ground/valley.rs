@@ -1,34 +1,25 @@
-//! Another way into the valley of the rope's stiffness, from a fit that leaves much.
+//! Another way into a narrow valley of an unknown, from a fit that leaves much.
 //!
-//! The load excites two modes of the rope, some sixty and eighty times a turn. An effect that moves the
-//! clock of the crank by a tenth of a degree moves their phase by ten degrees: without that effect in
-//! the model the valley is not where it is with it, and a fit settles on the plateau on which damping
-//! or stiffness hides the modes. So the stiffness is scanned again with the effect switched on, at the
-//! damping that ropes have, and the fit goes on from the best stations.
+//! An excitation rings a model's modes, some of them many times a period. An effect that moves a clock by
+//! a little moves their phase by a lot: without that effect in the model the valley is not where it is
+//! with it, and a fit settles on the plateau on which damping or stiffness hides the modes. So the
+//! unknown is scanned again with the effect switched on, as the case says, and the fit goes on from the
+//! best stations.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::{Fit, closest};
 use crate::model::unknowns::Point;
-use protocol::case::Coefficient;
+use protocol::case::Valley;
 use search::least_squares::Settings;
 
-/// Damping over stiffness of a joint (s): 1 and 4 % of critical at the modes' 6 Hz, between which wire
-/// ropes lie.
-const DAMPING_TIMES: [f64; 2] = [6e-4, 2e-3];
-/// How much harder and softer the contact is on further sets of lines (decades): a soft one can stand in
-/// for a soft rope, and of a very hard one no small change shows.
-const CONTACTS: [f64; 2] = [1.5, -1.5];
-/// Where the stiffness is scanned, from its recommended value, and in which steps (decades).
-const FROM: f64 = -0.3;
-const TO: f64 = 1.1;
-const STEP: f64 = 0.02;
-/// Stations from which a fit goes on, and how far apart they are (decades).
+/// Stations from which a fit goes on, and how far apart they are (coordinate).
 const STARTS: usize = 3;
 const APART: f64 = 0.05;
 /// A fit lies in another valley if it leaves less than this share of what the first one left.
 pub(crate) const BETTER: f64 = 0.9;
 
-/// A clearly better fit of the same model in another valley, if there is one.
+/// A clearly better fit of the same model in another valley, if there is one; none where no unknown has a
+/// narrow valley.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -36,11 +27,13 @@ pub async fn enter<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
 ) -> Result<Option<Fit>, L::Error> {
-    let stations = stations(&fit.point());
-    let curves = experiments.curves(&stations).await?;
-    let Some(stiffness) = fit.model.space.position(Coefficient::Kb1) else {
+    let axes = fit.model.space.axes().iter().enumerate();
+    let mut valleys = axes.filter_map(|(k, axis)| Some((k, axis.unknown.valley.as_ref()?)));
+    let Some((scanned, valley)) = valleys.next() else {
         return Ok(None);
     };
+    let stations = stations(&fit.point(), scanned, valley);
+    let curves = experiments.curves(&stations).await?;
     let left = |curves| experiments.on.residual(&curves).norm_squared();
     let seen = stations.into_iter().zip(curves);
     let mut seen: Vec<(f64, Point)> = seen
@@ -49,7 +42,7 @@ pub async fn enter<L: Laboratory>(
     seen.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut starts: Vec<Point> = Vec::new();
     for (_, point) in seen {
-        let near = |other: &Point| (other.x[stiffness] - point.x[stiffness]).abs() < APART;
+        let near = |other: &Point| (other.x[scanned] - point.x[scanned]).abs() < APART;
         if starts.len() < STARTS && !starts.iter().any(near) {
             starts.push(point);
         }
@@ -76,44 +69,47 @@ pub async fn follow<L: Laboratory>(
     Ok(further.or(Some(best)))
 }
 
-/// Lines along the stiffness through a point; none where the space lacks it.
-fn stations(from: &Point) -> Vec<Point> {
+/// Lines along the scanned axis through a point, and beside it.
+fn stations(from: &Point, scanned: usize, valley: &Valley) -> Vec<Point> {
     let (space, x) = (&from.model.space, &from.x);
-    let Some(stiffness) = space.position(Coefficient::Kb1) else {
-        return Vec::new();
-    };
-    let damping = space.position(Coefficient::Cb1);
-    let contact = space.position(Coefficient::Kc);
     let mut bases = vec![from.clone()];
-    if let Some(contact) = contact {
-        for shift in CONTACTS {
-            let mut other = from.clone();
-            other.x[contact] = space.axes()[contact].trust.clamp(x[contact] + shift);
-            if (other.x[contact] - x[contact]) * shift.signum() > 0.3 {
-                bases.push(other);
-            }
+    for shift in &valley.stand_ins {
+        let Some(axis) = space.position(&shift.unknown) else {
+            continue;
+        };
+        let mut other = from.clone();
+        other.x[axis] = space.axes()[axis].trust.clamp(x[axis] + shift.by);
+        if (other.x[axis] - x[axis]) * shift.by.signum() > 0.3 {
+            bases.push(other);
         }
     }
-    let axis = &space.axes()[stiffness];
+    let axis = &space.axes()[scanned];
     let interval = axis.interval();
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a small positive number"
     )]
-    let count = ((TO - FROM) / STEP).round() as usize;
-    let mut grid: Vec<f64> = (0..=count).map(|k| FROM + STEP * k as f64).collect();
+    let count = ((valley.to - valley.from) / valley.step).round() as usize;
+    let station = |k: usize| valley.from + valley.step * k as f64;
+    let mut grid: Vec<f64> = (0..=count).map(station).collect();
     grid.retain(|at| (interval.from..=interval.to).contains(at));
-    let mut stations = Vec::with_capacity(2 * bases.len() * grid.len());
+    let shared = valley.shares.as_ref();
+    let shared = shared.and_then(|shares| Some((space.position(&shares.unknown)?, shares)));
+    let shares: Vec<Option<(usize, f64)>> = match shared {
+        Some((axis, shares)) => shares.of_scanned.iter().map(|&s| Some((axis, s))).collect(),
+        None => vec![None],
+    };
+    let mut stations = Vec::with_capacity(shares.len() * bases.len() * grid.len());
     for base in &bases {
-        for time in DAMPING_TIMES {
+        for share in &shares {
             for at in &grid {
                 let mut station = base.clone();
-                station.x[stiffness] = *at;
-                if let Some(damping) = damping {
-                    let own = &space.axes()[damping];
-                    let wanted = own.coordinate(time * axis.value(*at));
-                    station.x[damping] = own.interval().clamp(wanted);
+                station.x[scanned] = *at;
+                if let Some((follower, share)) = *share {
+                    let own = &space.axes()[follower];
+                    let wanted = own.coordinate(share * axis.value(*at));
+                    station.x[follower] = own.interval().clamp(wanted);
                 }
                 stations.push(station);
             }

@@ -1,6 +1,6 @@
-//! The model that is fitted: the case's genes, and the effects that have been added to it.
+//! The model that is fitted: the case's unknowns, and the effects that have been added to it.
 //!
-//! A point is a vector of unknowns: genes by their coordinates in the space, then the parameters of
+//! A point is a vector: unknowns of the case by their coordinates in the space, then the parameters of
 //! each added effect in units of their physical scale, from their absent value. What an effect does is
 //! the workers' business; here it is a name with numbers.
 use crate::model::parameter::{setting, variable};
@@ -12,17 +12,17 @@ use protocol::{
 use search::least_squares::{Prior, Variable};
 use search::space::Space;
 
-/// Prior standard deviation of a gene (coordinate): the recommended values of a manual are rarely off
-/// by more than a few of these decades. Parameters of the case's effects are hardly held by it: the
-/// whole interval that they are searched in is two long.
-const GENE_DEVIATION: f64 = 1.5;
-/// First difference step of a gene (coordinate).
-const GENE_STEP: f64 = 0.02;
+/// Prior standard deviation of an unknown of which the case states none (coordinate): the recommended
+/// values of a manual are rarely off by more than a few of these decades. What is on a linear scale is
+/// hardly held by it: the whole interval that it is searched in is two long.
+const USUAL_DEVIATION: f64 = 1.5;
+/// First difference step of an unknown of the case (coordinate).
+const STEP: f64 = 0.02;
 
 /// A case with added effects.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// The genes.
+    /// Those of the case.
     pub space: Space,
     /// Added effects, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
@@ -46,31 +46,35 @@ impl Model {
     /// The unknowns, starting at `x`; what is beyond its length starts at its typical value for a
     /// shape, absent for a size.
     pub fn variables(&self, x: &[f64]) -> Vec<Variable> {
-        let genes = self.space.axes().iter().map(|axis| {
+        let own = self.space.axes().iter().map(|axis| {
             let interval = axis.interval();
+            let prior = axis.unknown.prior.map(|prior| Prior {
+                mean: axis.coordinate(prior.value),
+                deviation: prior.deviation,
+            });
             Variable {
                 start: 0.0,
                 lower: interval.from,
                 upper: interval.to,
-                step: GENE_STEP,
-                prior: Some(Prior {
+                step: STEP,
+                prior: prior.or(Some(Prior {
                     mean: 0.0,
-                    deviation: GENE_DEVIATION,
-                }),
+                    deviation: USUAL_DEVIATION,
+                })),
             }
         });
         let effects = self
             .added
             .iter()
             .flat_map(|e| e.parameters.iter().map(variable));
-        let mut all: Vec<Variable> = genes.chain(effects).collect();
+        let mut all: Vec<Variable> = own.chain(effects).collect();
         for (variable, x) in all.iter_mut().zip(x) {
             variable.start = *x;
         }
         all
     }
 
-    /// Gene values of a point, in declared units.
+    /// Values of all unknowns of the case at a point, in declared units.
     pub fn genes(&self, x: &[f64]) -> Vec<f64> {
         self.space.values(&x[..self.space.dimension()])
     }

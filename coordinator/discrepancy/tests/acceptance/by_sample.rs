@@ -17,10 +17,9 @@ use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::{EffectDescriptor, Place, Sign};
-use protocol::case::{Abscissa, Channel, Coefficient, Gene};
+use protocol::case::{Abscissa, Channel, Scale, Unknown};
 use protocol::job::{Counters, Individual, Observation, SimulateSpec, Verdict as Ended};
 use protocol::pumping_unit::Discretisation;
-use protocol::unit::Unit;
 use search::least_squares::Linearized;
 use search::random::{Phase, Stream, Streams};
 use search::space::Space;
@@ -336,13 +335,18 @@ fn library() -> Vec<EffectDescriptor> {
 }
 
 fn space() -> Space {
-    let gene =
-        |name, unit, value: f64| Gene::coefficient(name, unit, value, [0.1 * value, 10.0 * value]);
-    let genes = [
-        gene(Coefficient::Kb1, Unit::NewtonPerMetre, 9.0),
-        gene(Coefficient::Cb1, Unit::NewtonSecondPerMetre, 0.4),
+    let unknown = |name, unit, value: f64| {
+        let bounds = [0.1 * value, 10.0 * value];
+        Unknown {
+            trust: Some([-1.0, 1.5]),
+            ..Unknown::new(name, unit, Scale::Logarithmic, value, bounds)
+        }
+    };
+    let unknowns = [
+        unknown("stiffness", "N/m", 9.0),
+        unknown("damping", "N.s/m", 0.4),
     ];
-    Space::new(&genes).expect("positive and ordered")
+    Space::new(&unknowns).expect("positive and ordered")
 }
 
 /// A record of the truth with an effect.

@@ -1,8 +1,7 @@
-//! What both sides know: the data sheet of the stand-in machine. Its cards, its genes, its grid; no
+//! What both sides know: the data sheet of the stand-in machine. Its cards, its unknowns, its grid; no
 //! equation of motion.
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
-use protocol::case::{Coefficient, Gene};
-use protocol::unit::Unit;
+use protocol::case::{Scale, Shares, Shift, Unknown, Valley};
 use search::space::Space;
 use std::f64::consts::TAU;
 
@@ -48,33 +47,52 @@ pub(crate) fn card(condition: usize, angle: f64) -> f64 {
     62.0 + swing * slow + ripple
 }
 
-/// A gene with bounds of two decades either way.
-fn gene(name: Coefficient, unit: Unit, recommended: f64) -> Gene {
-    let bounds = [0.01 * recommended, 100.0 * recommended];
-    Gene::coefficient(name, unit, recommended, bounds)
+/// An unknown with bounds of two decades either way.
+pub(crate) fn unknown(name: &str, start: f64, trust: [f64; 2]) -> Unknown {
+    let bounds = [0.01 * start, 100.0 * start];
+    Unknown {
+        trust: Some(trust),
+        ..Unknown::new(name, "1", Scale::Logarithmic, start, bounds)
+    }
 }
 
-/// Recommended genes, in the order of [`Coefficient::ALL`].
+/// How far stiffness and loss are trusted about their recommended values (decades).
+pub(crate) const STIFFNESS: [f64; 2] = [-1.0, 1.5];
+pub(crate) const LOSS: [f64; 2] = [-1.0, 4.0];
+
+/// The valley of a stiffness that rings, with the loss over it and what can stand in for it.
+pub(crate) fn valley(loss: &str, contact: &str) -> Valley {
+    let shift = |unknown: &str, by| Shift {
+        unknown: unknown.to_owned(),
+        by,
+    };
+    Valley {
+        from: -0.3,
+        to: 1.1,
+        step: 0.02,
+        uncovered_by: vec![shift(loss, -0.8), shift(contact, 1.5)],
+        shares: Some(Shares {
+            unknown: loss.to_owned(),
+            of_scanned: vec![6e-4, 2e-3],
+        }),
+        stand_ins: vec![shift(contact, 1.5), shift(contact, -1.5)],
+    }
+}
+
+/// Recommended values: stiffness of the rope along, across, in torsion and in bending, losses of the
+/// same, stiffness and loss of the contact.
 pub(crate) const RECOMMENDED: [f64; 10] =
     [3150.0, 345.0, 10.0, 1.0, 20.0, 2.0, 1.0, 1.0, 1500.0, 10.0];
 
-/// The space of the genes.
+/// The space of the unknowns.
 pub(crate) fn space() -> Space {
-    let stiffness = Unit::NewtonPerMetre;
-    let damping = Unit::NewtonSecondPerMetre;
-    let genes: Vec<Gene> = Coefficient::ALL
-        .iter()
-        .zip(RECOMMENDED)
-        .enumerate()
-        .map(|(k, (&name, value))| {
-            gene(
-                name,
-                if k < 4 || k == 8 { stiffness } else { damping },
-                value,
-            )
-        })
-        .collect();
-    Space::new(&genes).expect("positive and ordered")
+    let unknowns = RECOMMENDED.iter().enumerate().map(|(k, &value)| {
+        let trust = if k < 4 || k == 8 { STIFFNESS } else { LOSS };
+        unknown(&format!("x{k}"), value, trust)
+    });
+    let mut unknowns: Vec<Unknown> = unknowns.collect();
+    unknowns[0].valley = Some(valley("x4", "x8"));
+    Space::new(&unknowns).expect("positive and ordered")
 }
 
 /// Crank angles of the grid (rad).

@@ -17,8 +17,6 @@ use discrepancy::verdict::Verdict;
 use discrepancy::{cause::low_orders, cause::signature, ground::valley};
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
-use protocol::case::{Coefficient, Gene};
-use protocol::unit::Unit;
 use protocol::{
     job::{Counters, Observation, SimulateSpec, Verdict as Ended},
     pumping_unit::Discretisation,
@@ -53,16 +51,13 @@ struct Ringing {
 }
 
 fn space() -> Space {
-    let gene = |(name, unit, recommended): (Coefficient, Unit, f64)| {
-        let bounds = [0.01 * recommended, 100.0 * recommended];
-        Gene::coefficient(name, unit, recommended, bounds)
-    };
-    let genes = [
-        (Coefficient::Kb1, Unit::NewtonPerMetre, 5e8),
-        (Coefficient::Cb1, Unit::NewtonSecondPerMetre, 4e5),
-        (Coefficient::Kc, Unit::NewtonPerMetreToThreeHalves, 3e8),
+    let mut unknowns = [
+        case::unknown("stiffness", 5e8, case::STIFFNESS),
+        case::unknown("loss", 4e5, case::LOSS),
+        case::unknown("contact", 3e8, [-0.5, 3.5]),
     ];
-    Space::new(&genes.map(gene)).expect("positive and ordered")
+    unknowns[0].valley = Some(case::valley("loss", "contact"));
+    Space::new(&unknowns).expect("positive and ordered")
 }
 
 fn library() -> Vec<EffectDescriptor> {

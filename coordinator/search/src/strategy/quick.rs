@@ -1,11 +1,12 @@
 //! A search that fits a laptop: a short memetic search in the trust box, line scans of the one
-//! gene whose valley is narrow, and local refinement.
+//! unknown whose valley is narrow, and local refinement.
 //!
-//! A fitness with two resonances has a valley in the axial stiffness that is a hundred times
-//! narrower than the box, so a population finds the plateau around it but not the valley; and on
-//! the plateau more damping always looks better, because it removes the oscillation whose phase
-//! does not fit. Hence the order: population, scan at several levels of damping, refinement, fine
-//! scan, refinement.
+//! A fitness with resonances has a valley in a stiffness that is a hundred times narrower than the
+//! box, so a population finds the plateau around it but not the valley; and on the plateau more
+//! damping always looks better, because it removes the oscillation whose phase does not fit. Hence the
+//! order: population, scan at several levels of damping, refinement, fine scan, refinement. Which
+//! unknown has such a valley, and what hides it, the case says; where it says nothing, nothing is
+//! scanned.
 use super::{
     ask_tell::Strategy,
     conductor::Conductor,
@@ -26,13 +27,13 @@ use crate::{
     random::Streams,
     space::{Interval, Space},
 };
-use protocol::case::Coefficient;
+use protocol::case::Valley;
 use serde::{Deserialize, Serialize};
 
 /// The search with refinements.
 pub const QUICK: Preset = Preset {
     name: "quick",
-    summary: "a short memetic search, line scans of the axial stiffness, refinement",
+    summary: "a short memetic search, line scans of a narrow valley, refinement",
     strategy: QuickSettings::STRATEGY,
     settings: |plan| Settings::of(&QuickSettings::for_space(plan.space)),
     groups: &[
@@ -93,11 +94,12 @@ const fn part(named: &'static str, place: &'static str, table: &'static [Setting
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Part {
-    /// The memetic algorithm in the trust box, from the recommended individual and a Latin
-    /// hypercube.
+    /// The memetic algorithm in the trust box, from the start and a Latin hypercube.
     Memetic(MemeticSettings),
     /// A line scan around the best points.
     Scan(ScanSettings),
+    /// No scan, where no unknown has a narrow valley.
+    NoScan,
     /// A refinement around the best point.
     Refine(RefineSettings),
     /// A descent of the residual vector from the best points.
@@ -108,56 +110,33 @@ pub enum Part {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickSettings {
-    /// Where the memetic part searches, gene by gene, from the recommended value (coordinate).
+    /// Where the memetic part searches, axis by axis, from the start (coordinate).
     pub trust: Vec<Interval>,
     /// What is done, in order.
     pub parts: Vec<Part>,
 }
 
 impl QuickSettings {
-    /// About 900 evaluations. The axial stiffness of the rope is scanned (the first gene, if
-    /// there is none), at the best point, with less axial damping, with a harder contact, and
-    /// with both: a soft contact can stand in for a soft rope, and then hides the valley.
+    /// About 900 evaluations. The first axis with a valley is scanned, at the best point and with every
+    /// set of shifts that may uncover it.
     pub fn for_space(space: &Space) -> Self {
         let trust: Vec<Interval> = space.axes().iter().map(|axis| axis.trust).collect();
-        let gene = space.position(Coefficient::Kb1).unwrap_or(0);
-        let shift = |name, by| space.position(name).map(|gene| Shift { gene, by });
-        let damping = shift(Coefficient::Cb1, -0.8);
-        let contact = shift(Coefficient::Kc, 1.5);
-        let mut lines: Vec<Vec<Shift>> = [
-            [None, None],
-            [damping, None],
-            [None, contact],
-            [damping, contact],
-        ]
-        .map(|shifts| shifts.into_iter().flatten().collect())
-        .into();
-        lines.dedup();
-        let spread = |scanned: f64, share: f64| {
+        let scanned = space.axes().iter().enumerate();
+        let mut scanned =
+            scanned.filter_map(|(axis, own)| Some((axis, own.unknown.valley.as_ref()?)));
+        let scanned = scanned.next();
+        // of the scanned axis only the valley's floor is left to refine
+        let spread = |floor: f64, share: f64| {
             let all = trust.iter().enumerate();
-            all.map(|(axis, interval)| {
-                if axis == gene {
-                    scanned
-                } else {
-                    share * interval.length()
-                }
+            all.map(|(axis, interval)| match scanned {
+                Some((own, valley)) if own == axis => floor * valley.step,
+                _ => share * interval.length(),
             })
             .collect::<Vec<f64>>()
         };
-        let coarse = ScanSettings {
-            gene,
-            center: Center::Recommended,
-            below: 0.3,
-            above: 1.1,
-            step: 0.02,
-            points: 1,
-            apart: 0.3,
-            lines,
-        };
-        let mut fine = coarse.clone();
-        fine.center = Center::Point;
-        (fine.below, fine.above, fine.step) = (0.03, 0.03, 0.003);
-        fine.lines = vec![Vec::new()];
+        let scans = scanned.map(|(axis, valley)| scans(space, axis, valley));
+        let [coarse, fine] =
+            scans.map_or([Part::NoScan, Part::NoScan], |scans| scans.map(Part::Scan));
         let memetic = MemeticSettings {
             population: 32,
             generations: 6,
@@ -168,17 +147,17 @@ impl QuickSettings {
         Self {
             parts: vec![
                 Part::Memetic(memetic),
-                Part::Scan(coarse),
+                coarse,
                 Part::Refine(RefineSettings {
                     batch: 16,
                     rounds: 12,
-                    spread: spread(0.008, 0.06),
+                    spread: spread(0.4, 0.06),
                 }),
-                Part::Scan(fine),
+                fine,
                 Part::Refine(RefineSettings {
                     batch: 16,
                     rounds: 8,
-                    spread: spread(0.002, 0.02),
+                    spread: spread(0.1, 0.02),
                 }),
             ],
             trust,
@@ -205,12 +184,47 @@ impl QuickSettings {
     }
 }
 
+/// The scan of an axis for its valley, and a fine one on the floor that the first has found.
+fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
+    let shifts = valley.uncovered_by.iter();
+    // what is not searched cannot be shifted
+    let shifts = shifts.filter_map(|shift| {
+        let axis = space.position(&shift.unknown)?;
+        Some(Shift { axis, by: shift.by })
+    });
+    let mut lines = vec![Vec::new()];
+    for shift in shifts {
+        let with = |line: &Vec<Shift>| line.iter().copied().chain([shift]).collect();
+        let more: Vec<Vec<Shift>> = lines.iter().map(with).collect();
+        lines.extend(more);
+    }
+    let coarse = ScanSettings {
+        axis,
+        center: Center::Start,
+        below: -valley.from,
+        above: valley.to,
+        step: valley.step,
+        points: 1,
+        apart: 0.3,
+        lines,
+    };
+    let fine = ScanSettings {
+        center: Center::Point,
+        below: 1.5 * valley.step,
+        above: 1.5 * valley.step,
+        step: 0.15 * valley.step,
+        lines: vec![Vec::new()],
+        ..coarse.clone()
+    };
+    [coarse, fine]
+}
+
 impl Recipe for QuickSettings {
     const STRATEGY: &'static str = "quick";
 
     fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
         let intervals = self.trust.len();
-        let one_each = "one interval per gene";
+        let one_each = "one interval per axis";
         require(intervals == space.dimension(), "trust", intervals, one_each)?;
         let mut pieces: Vec<Box<dyn Piece>> = Vec::with_capacity(self.parts.len());
         let mut reuse_clones = true;
@@ -226,6 +240,7 @@ impl Recipe for QuickSettings {
                     Box::new(Memetic::new(memetic.clone(), inside, &start, streams)?)
                 }
                 Part::Scan(scan) => Box::new(Scan::new(scan.clone(), space)?),
+                Part::NoScan => continue,
                 Part::Refine(refine) => Box::new(Refine::new(refine.clone(), space, streams)?),
                 Part::LeastSquares(settings) => Box::new(Levenberg::new(settings.clone(), space)?),
             });

@@ -1,4 +1,4 @@
-//! Line scans: one gene is moved over a grid, everything else stays.
+//! Line scans: one unknown is moved over a grid, everything else stays.
 //!
 //! A narrow valley that no random step meets is found by brute force along the one axis that is
 //! known to be narrow. All stations are independent, so any number of workers is busy at once.
@@ -15,18 +15,18 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Center {
-    /// The recommended value of the scanned gene.
-    Recommended,
+    /// Where the scanned unknown starts.
+    Start,
     /// The value that the point has.
     Point,
 }
 
-/// A gene that is moved away from the point's value, for a whole line.
+/// An unknown that is moved away from the point's value, for a whole line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Shift {
-    /// Position of the gene in the case.
-    pub gene: usize,
+    /// Its axis.
+    pub axis: usize,
     /// Offset from the point's value (coordinate).
     pub by: f64,
 }
@@ -35,8 +35,8 @@ pub struct Shift {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScanSettings {
-    /// Position of the scanned gene in the case.
-    pub gene: usize,
+    /// The scanned axis.
+    pub axis: usize,
     /// What the grid is laid around.
     pub center: Center,
     /// How far below the centre it begins (coordinate).
@@ -47,7 +47,7 @@ pub struct ScanSettings {
     pub step: f64,
     /// How many of the best points are scanned.
     pub points: usize,
-    /// How far apart those points are at least, in any gene but the scanned one (coordinate).
+    /// How far apart those points are at least, along any axis but the scanned one (coordinate).
     pub apart: f64,
     /// The lines through and beside each point, each with its shifts; at least one.
     pub lines: Vec<Vec<Shift>>,
@@ -77,10 +77,10 @@ impl ScanSettings {
             "above 0",
         )?;
         require(!self.lines.is_empty(), "lines of a scan", 0, least)?;
-        let shifted = self.lines.iter().flatten().map(|shift| shift.gene);
-        for gene in shifted.chain([self.gene]) {
-            let known = gene < space.dimension();
-            require(known, "gene of a scan", gene, "the position of a gene")?;
+        let shifted = self.lines.iter().flatten().map(|shift| shift.axis);
+        for axis in shifted.chain([self.axis]) {
+            let known = axis < space.dimension();
+            require(known, "axis of a scan", axis, "one that is searched")?;
         }
         Ok(())
     }
@@ -139,7 +139,7 @@ impl Scan {
             let point = self.space.point(&entry.genes);
             let far = |base: &Vec<f64>| {
                 let pairs = base.iter().zip(&point).enumerate();
-                let others = pairs.filter(|(axis, _)| *axis != self.settings.gene);
+                let others = pairs.filter(|(own, _)| *own != self.settings.axis);
                 others.fold(0.0, |far: f64, (_, (a, b))| far.max((a - b).abs()))
                     >= self.settings.apart
             };
@@ -160,7 +160,7 @@ impl Piece for Scan {
             return None;
         }
         let ScanSettings {
-            gene,
+            axis,
             center,
             below,
             step,
@@ -169,16 +169,16 @@ impl Piece for Scan {
         let mut drafts = Vec::new();
         for base in self.bases(archive) {
             let middle = match center {
-                Center::Recommended => 0.0,
-                Center::Point => base[gene],
+                Center::Start => 0.0,
+                Center::Point => base[axis],
             };
             for shifts in &self.settings.lines {
                 for station in 0..self.settings.stations() {
                     let mut point = base.clone();
                     for shift in shifts {
-                        point[shift.gene] += shift.by;
+                        point[shift.axis] += shift.by;
                     }
-                    point[gene] = middle - below + step * station as f64;
+                    point[axis] = middle - below + step * station as f64;
                     let genes = self.space.values(&point);
                     drafts.push(Draft {
                         genes,

@@ -5,10 +5,7 @@ use crate::{
     space::Space,
     test_function::{self, RESONANCE, SPHERE, TestFunction},
 };
-use protocol::{
-    case::{Coefficient, Gene, Quantity},
-    unit::Unit,
-};
+use protocol::case::{Scale, Unknown};
 use std::collections::BTreeMap;
 
 /// A function that strategies are held to.
@@ -187,7 +184,8 @@ fn bounds_are_never_left_and_the_recommended_individual_opens_a_quick_search() {
         let record = run_preset(preset, &far, 3, None);
         for proposal in &record.asked {
             for (value, axis) in proposal.genes.iter().zip(space.axes()) {
-                assert!((axis.lower..=axis.upper).contains(value), "{}", preset.name);
+                let bounds = axis.unknown.lower..=axis.unknown.upper;
+                assert!(bounds.contains(value), "{}", preset.name);
             }
         }
         if preset.promise.opens_at_recommended {
@@ -295,24 +293,18 @@ fn every_preset_finds_the_minima_that_it_promises_to_find() {
     }
 }
 
-/// Two coefficients beside two parameters of effects: one negative, one that begins at its lower bound.
+/// Two logarithmic unknowns beside two linear ones: one negative, one that begins at its lower bound.
 /// Every preset finds the minimum, and none leaves the bounds.
 #[test]
 fn linear_axes_are_searched_like_logarithmic_ones() {
-    let linear = |parameter: &str, recommended: f64, [lower, upper]: [f64; 2]| Gene {
-        quantity: Quantity::Effect {
-            id: "effect".to_owned(),
-            parameter: parameter.to_owned(),
-            unit: "N".to_owned(),
-        },
-        recommended,
-        lower,
-        upper,
+    let linear = |name, start, bounds| Unknown::new(name, "N", Scale::Linear, start, bounds);
+    let logarithmic = |name| Unknown {
+        trust: Some([-1.0, 1.5]),
+        ..Unknown::new(name, "N/m", Scale::Logarithmic, 1e8, [1e4, 1e12])
     };
-    let stiffness = |name| Gene::coefficient(name, Unit::NewtonPerMetre, 1e8, [1e4, 1e12]);
     let space = Space::new(&[
-        stiffness(Coefficient::Kb1),
-        stiffness(Coefficient::Kb23),
+        logarithmic("first"),
+        logarithmic("second"),
         linear("negative", -0.2, [-1.0, 0.2]),
         linear("one-sided", 0.0, [0.0, 10.0]),
     ])
@@ -329,7 +321,8 @@ fn linear_axes_are_searched_like_logarithmic_ones() {
         );
         for proposal in &record.asked {
             for (value, axis) in proposal.genes.iter().zip(space.axes()) {
-                assert!((axis.lower..=axis.upper).contains(value), "{}", preset.name);
+                let bounds = axis.unknown.lower..=axis.unknown.upper;
+                assert!(bounds.contains(value), "{}", preset.name);
             }
         }
         let found = &record.best.genes;

@@ -24,7 +24,7 @@ impl IndividualChoice {
     /// Its genes in the case's order.
     pub(crate) fn genes(&self, case: &Case) -> anyhow::Result<Vec<f64>> {
         Ok(match self.genes.as_str() {
-            "recommended" => case.recommended(),
+            "recommended" => case.start(),
             file => read_genes(Path::new(file), case)?,
         })
     }

@@ -63,7 +63,7 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
         genes: summary
             .genes
             .iter()
-            .map(protocol::case::Gene::label)
+            .map(|unknown| unknown.name.clone())
             .collect(),
         notes: summary.notes.iter().map(ToString::to_string).collect(),
     };

@@ -98,9 +98,9 @@ struct Target {
 impl Target {
     /// Without what this very diagnosis has added to the case; the start is one of what is left.
     fn without_found_by(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
-        let stated = self.loaded.case.genes.clone();
+        let stated = self.loaded.case.unknowns.clone();
         self.loaded = earlier.as_begun(self.loaded)?;
-        let left = &self.loaded.case.genes;
+        let left = &self.loaded.case.unknowns;
         let kept = |values: Vec<f64>| {
             let pairs = stated.iter().zip(values);
             let kept = pairs.filter(|(gene, _)| left.contains(gene));

@@ -85,7 +85,7 @@ impl Evaluator for Scribe {
 /// A run whose journal holds so many results; the log if it came to its end.
 fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
     let case = case();
-    let space = Space::new(&case.genes).unwrap();
+    let space = Space::new(&case.unknowns).unwrap();
     let manifest = Manifest {
         kind: CALIBRATE.to_owned(),
         format: FORMAT,
@@ -176,7 +176,7 @@ fn expect_log(tables: &Tables, log: &EvaluationLog) {
             Value::Null | Value::Integer(_) | Value::Real(_) => Vec::new(),
         })
         .collect();
-    assert_eq!(genes.len(), case.genes.len());
+    assert_eq!(genes.len(), case.unknowns.len());
     let purposes = column(tables, "evaluations", "purpose");
     let fitness = column(tables, "evaluations", "fitness_mpa2");
     let jobs = integers(tables, "evaluations", "job");

@@ -103,11 +103,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 
 /// Genes that a search of this case would never try, one sentence each.
 fn outside_bounds(case: &Case, genes: &[f64]) -> Vec<String> {
-    let genes = case.genes.iter().zip(genes);
+    let genes = case.unknowns.iter().zip(genes);
     genes
         .filter(|(gene, value)| !(gene.lower..=gene.upper).contains(value))
         .map(|(gene, value)| {
-            let (name, unit) = (gene.label(), gene.unit());
+            let (name, unit) = (&gene.name, &gene.unit);
             let (lower, upper) = (gene.lower, gene.upper);
             format!(
                 "{name} = {value:e} {unit} lies outside the case's search bounds, {lower:e} to \
@@ -130,9 +130,9 @@ mod tests {
     fn genes_outside_the_bounds_are_noted() {
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
         let case = crate::case::load(&shipped, &crate::case::Overrides::default()).unwrap();
-        let mut genes = case.recommended();
+        let mut genes = case.start();
         assert_eq!(outside_bounds(&case, &genes), [""; 0]);
-        genes[1] = 2.0 * case.genes[1].upper;
+        genes[1] = 2.0 * case.unknowns[1].upper;
         let notes = outside_bounds(&case, &genes);
         assert_eq!(notes.len(), 1);
         assert!(notes[0].starts_with("kb23 = "), "{}", notes[0]);

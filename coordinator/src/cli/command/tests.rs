@@ -33,7 +33,7 @@ fn shipped() -> PathBuf {
 }
 
 fn manifest(case: &Case, seed: u64) -> Manifest {
-    let space = Space::new(&case.genes).unwrap();
+    let space = Space::new(&case.unknowns).unwrap();
     Manifest {
         kind: CALIBRATE.to_owned(),
         format: FORMAT,
@@ -59,11 +59,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
 fn started(case: &Case) -> Start {
     Start {
         file: "found.toml".into(),
-        genes: case
-            .genes
-            .iter()
-            .map(|gene| 2.0 * gene.recommended)
-            .collect(),
+        genes: case.unknowns.iter().map(|gene| 2.0 * gene.start).collect(),
     }
 }
 
@@ -90,7 +86,7 @@ fn a_run_keeps_the_genes_that_it_started_at() {
     );
     // what is computed again for a report begins there, too
     let kept = Calibration::open(scratch.path()).unwrap();
-    let origin = vec![0.0; case.genes.len()];
+    let origin = vec![0.0; case.unknowns.len()];
     assert_eq!(
         kept.manifest.space(&kept.case).unwrap().values(&origin),
         started(&case).genes
@@ -240,8 +236,8 @@ fn calibrated_parameters_come_back_from_their_file_bit_for_bit() {
     let scratch = tempfile::tempdir().unwrap();
     let case = load(&shipped(), &Overrides::default()).unwrap();
     let values: Vec<f64> = (0..)
-        .zip(&case.genes)
-        .map(|(n, gene)| gene.recommended * (1.0 + f64::from(n) / 7.0))
+        .zip(&case.unknowns)
+        .map(|(n, gene)| gene.start * (1.0 + f64::from(n) / 7.0))
         .collect();
     let file = scratch.path().join("calibrated.toml");
     std::fs::write(&file, write_genes(&case, &values, "a test")).unwrap();
@@ -316,7 +312,7 @@ fn the_way_to_go_on_names_the_folder_in_hand() {
 /// What `--set` makes of a preset's settings, with so many workers planned.
 fn chosen(name: &str, set: &[(&str, &str)], workers: usize) -> Result<Chosen, Usage> {
     let case = load(&shipped(), &Overrides::default()).unwrap();
-    let space = Space::new(&case.genes).unwrap();
+    let space = Space::new(&case.unknowns).unwrap();
     let plan = Plan {
         space: &space,
         workers,

@@ -161,7 +161,7 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
         },
         recommended: Individual {
             id: None,
-            genes: case.recommended(),
+            genes: case.start(),
         },
         optimised: Individual {
             id: Some(best.id),

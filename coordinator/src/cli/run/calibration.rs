@@ -61,7 +61,7 @@ fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
 /// The two parameter sets of the paper's tables.
 pub(crate) fn pair(case: &Case, best: &[f64]) -> Vec<(String, Vec<f64>)> {
     vec![
-        ("recommended".to_owned(), case.recommended()),
+        ("recommended".to_owned(), case.start()),
         ("optimised".to_owned(), best.to_vec()),
     ]
 }

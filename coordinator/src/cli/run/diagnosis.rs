@@ -120,7 +120,7 @@ fn inputs(
     library: Vec<EffectDescriptor>,
 ) -> anyhow::Result<Inputs> {
     let case = &loaded.case;
-    let space = Space::new(&case.genes)?;
+    let space = Space::new(&case.unknowns)?;
     let calibrated = case.objective.condition;
     let mut records = loaded.cycles.clone();
     records.sort_by_key(|record| record.condition != calibrated);

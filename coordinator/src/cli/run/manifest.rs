@@ -193,7 +193,7 @@ impl<S: Decides> Manifest<S> {
 /// As [`Space::new`] and [`Space::about`].
 pub(crate) fn space(case: &Case, start: Option<&Start>) -> Result<Space, SpaceError> {
     match start {
-        None => Space::new(&case.genes),
-        Some(start) => Space::about(&case.genes, &start.genes),
+        None => Space::new(&case.unknowns),
+        Some(start) => Space::about(&case.unknowns, &start.genes),
     }
 }

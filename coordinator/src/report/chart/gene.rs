@@ -7,8 +7,7 @@ use crate::report::color::{AXIS, Color, GREY, INK, VERMILLION};
 use crate::report::data::Calibration;
 use crate::report::document::Figure;
 use crate::report::number::{figure, unit};
-use crate::report::words::meaning;
-use protocol::case::{self, Quantity};
+use protocol::case;
 
 const COLUMNS: usize = 5;
 const LEFT: f64 = 58.0;
@@ -45,7 +44,7 @@ fn selection(calibration: &Calibration) -> Vec<usize> {
 
 /// Draws one small panel per gene.
 pub fn genes(calibration: &Calibration) -> Figure {
-    let genes = &calibration.case.genes;
+    let genes = &calibration.case.unknowns;
     let chosen = selection(calibration);
     let complete = calibration.history.iter().filter(|point| point.complete);
     let fitness = Scale::logarithmic(complete.map(|point| point.fitness));
@@ -61,7 +60,7 @@ pub fn genes(calibration: &Calibration) -> Figure {
                 top: TOP + (index / COLUMNS) as f64 * ROW + 18.0,
                 width,
                 height: PLOT,
-                x: match gene.scale() {
+                x: match gene.scale {
                     case::Scale::Logarithmic => Scale::logarithmic([gene.lower, gene.upper]),
                     case::Scale::Linear => Scale::linear([gene.lower, gene.upper], 3.0),
                 },
@@ -75,7 +74,7 @@ pub fn genes(calibration: &Calibration) -> Figure {
         caption: format!(
             "{title}: objective over the value of each gene, on logarithmic axes{}; every panel \
              shows the same individuals. Individuals that failed are ticks along the upper edge{}.",
-            if calibration.case.has_effect_genes() {
+            if calibration.case.has_unknown_effects() {
                 " (linear ones for parameters of effects)"
             } else {
                 ""
@@ -101,13 +100,13 @@ fn small(
     index: usize,
     chosen: &[usize],
 ) {
-    let gene = &calibration.case.genes[index];
+    let gene = &calibration.case.unknowns[index];
     let bound = Pen::new(AXIS, 0.7);
     for value in [gene.lower, gene.upper] {
         let x = panel.at_x(value);
         canvas.dashed((x, panel.top), (x, panel.bottom()), bound);
     }
-    let x = panel.at_x(gene.recommended);
+    let x = panel.at_x(gene.start);
     let pen = Pen::new(INK, 0.7);
     canvas.line(&[(x, panel.top), (x, panel.bottom())], pen);
     for &member in chosen {
@@ -140,9 +139,9 @@ fn small(
         }
     }
     let name = Lettering::new(11.5, INK).bold().above();
-    let (heading, about) = match &gene.quantity {
-        Quantity::Coefficient { name, .. } => (name.as_str(), meaning(*name)),
-        Quantity::Effect { id, parameter, .. } => (parameter.as_str(), id.as_str()),
+    let (heading, about) = match gene.of_effect() {
+        Some((effect, parameter)) => (parameter, effect),
+        None => (gene.name.as_str(), gene.title.as_str()),
     };
     canvas.text((panel.left, panel.top - 7.0), heading, name);
     let right = Lettering::new(10.5, VERMILLION).right().above();
@@ -150,7 +149,7 @@ fn small(
     canvas.text((panel.right(), panel.top - 7.0), &text, right);
     let first = index.is_multiple_of(COLUMNS);
     panel.left_axis(canvas, first, if first { "objective [MPa²]" } else { "" });
-    let title = format!("{about} [{}]", unit(gene.unit()));
+    let title = format!("{about} [{}]", unit(&gene.unit));
     panel.lower_axis(canvas, true, &title);
 }
 

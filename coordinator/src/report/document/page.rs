@@ -2,7 +2,6 @@
 use super::block::{Block, Fact, Report};
 use super::figure::Figure;
 use super::table::{Label, Row, Table};
-use crate::report::words::{meaning, symbol};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
@@ -121,11 +120,15 @@ fn row_markup(table: &Table, row: &Row) -> Markup {
 fn label_markup(label: &Label) -> Markup {
     match label {
         Label::Text(text) => html! { (text) },
-        Label::Gene(gene) => {
-            let (letter, index) = symbol(*gene);
+        Label::Unknown {
+            name,
+            title,
+            symbol,
+        } => {
+            let (letter, index) = symbol.split_once('_').unwrap_or((symbol, ""));
             html! {
-                span.symbol { i { (letter) } sub { (index) } } " " (meaning(*gene))
-                " " span.id { (gene.as_str()) }
+                @if symbol != name { span.symbol { i { (letter) } sub { (index) } } " " }
+                (title) " " span.id { (name) }
             }
         }
     }

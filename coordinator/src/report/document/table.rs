@@ -1,5 +1,5 @@
 //! A table before it is set as text or as HTML.
-use protocol::case::{Coefficient, Gene, Quantity};
+use protocol::case::Unknown;
 
 /// A table.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,8 +28,15 @@ pub enum Row {
 pub enum Label {
     /// In words.
     Text(String),
-    /// A coefficient; with its symbol where the medium can set it.
-    Gene(Coefficient),
+    /// An unknown of the case.
+    Unknown {
+        /// Its name.
+        name: String,
+        /// What it is, in words.
+        title: String,
+        /// Its symbol, set where the medium can; an index behind `_`.
+        symbol: String,
+    },
 }
 
 impl Table {
@@ -73,11 +80,18 @@ impl Row {
         Self::Values(Label::Text(label.into()), cells.into_iter().collect())
     }
 
-    /// A row about a gene; a parameter of an effect has no symbol.
-    pub(in crate::report) fn of(gene: &Gene, cells: impl IntoIterator<Item = String>) -> Self {
-        let label = match gene.quantity {
-            Quantity::Coefficient { name, .. } => Label::Gene(name),
-            Quantity::Effect { .. } => Label::Text(gene.label()),
+    /// A row about an unknown; of a parameter of an effect the name says it all.
+    pub(in crate::report) fn of(
+        unknown: &Unknown,
+        cells: impl IntoIterator<Item = String>,
+    ) -> Self {
+        let label = match unknown.of_effect() {
+            Some(_) => Label::Text(unknown.name.clone()),
+            None => Label::Unknown {
+                name: unknown.name.clone(),
+                title: unknown.title.clone(),
+                symbol: unknown.symbol.clone(),
+            },
         };
         Self::Values(label, cells.into_iter().collect())
     }

@@ -1,7 +1,6 @@
 //! A report as plain text, for a terminal and for `tables.txt`: everything but its pictures.
 use super::block::{Block, Report, Section};
 use super::table::{Label, Row, Table};
-use crate::report::words::meaning;
 use comfy_table::{Attribute, Cell, CellAlignment, LineStyle, presets};
 
 /// The whole report; `styled` where the terminal shows bold.
@@ -104,7 +103,7 @@ pub fn set_table(table: &Table, styled: bool) -> String {
             Row::Values(label, cells) => {
                 let label = match label {
                     Label::Text(text) => format!("  {text}"),
-                    Label::Gene(gene) => format!("  {:<5} {}", gene.as_str(), meaning(*gene)),
+                    Label::Unknown { name, title, .. } => format!("  {name:<5} {title}"),
                 };
                 let cells = cells.iter().enumerate();
                 let cells =

@@ -3,8 +3,9 @@ use crate::report::data::{Calibration, ConditionResult};
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, fixed, percent, ratio, squared, unit};
 use crate::report::words::{self, condition_name};
-use protocol::case::{Case, Coefficient, Quantity};
+use protocol::case::Case;
 use protocol::job::{ChannelScore, Verdict};
+use protocol::pumping_unit::Coefficient;
 
 /// Definitions that stand under every table with errors.
 const DEFINITIONS: [&str; 3] = [
@@ -146,15 +147,13 @@ const HEAD: [&str; 5] = [
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     let mut rows = Vec::new();
     let mut group = "";
-    let genes = calibration.case.genes.iter().enumerate();
+    let genes = calibration.case.unknowns.iter().enumerate();
     for (index, gene) in genes {
-        let name = match gene.quantity {
-            Quantity::Coefficient {
-                name: Coefficient::Kc | Coefficient::Cc,
-                ..
-            } => "Contact",
-            Quantity::Coefficient { .. } => "Rope joints",
-            Quantity::Effect { .. } => "Effects",
+        let name = match Coefficient::named(&gene.name) {
+            _ if gene.of_effect().is_some() => "Effects",
+            Some(Coefficient::Kc | Coefficient::Cc) => "Contact",
+            Some(_) => "Rope joints",
+            None => "Unknowns",
         };
         if name != group {
             rows.push(Row::group(name));
@@ -170,7 +169,7 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         rows.push(Row::of(
             gene,
             [
-                unit(gene.unit()),
+                unit(&gene.unit),
                 figure(before),
                 optimised,
                 ratio(after, before),
@@ -187,11 +186,11 @@ pub fn table_3(calibration: &Calibration) -> Table {
         "Recommended and optimised parameters, calibrated condition {}",
         condition_name(case, case.objective.condition)
     );
-    let genes = case.genes.iter().zip(&calibration.optimised.genes);
+    let genes = case.unknowns.iter().zip(&calibration.optimised.genes);
     let bounds: Vec<String> = genes
         .filter_map(|(gene, &value)| {
             let bound = words::bound(gene, words::at_bound(gene, value)?);
-            Some(format!("{} at {bound}", gene.label()))
+            Some(format!("{} at {bound}", gene.name))
         })
         .collect();
     let marked =

@@ -44,16 +44,13 @@ pub(crate) fn work(counters: &Counters, wall_s: f64) -> Vec<Row> {
 
 /// The genes of one simulation beside the recommended ones.
 pub(in crate::report) fn genes(run: &SingleRun) -> Table {
-    let genes = run.case.genes.iter().zip(&run.genes);
+    let genes = run.case.unknowns.iter().zip(&run.genes);
     Table::new(
         format!("Parameters: {}", run.genes_name),
         ["", "unit", "value", "recommended"],
         genes
             .map(|(gene, &value)| {
-                Row::of(
-                    gene,
-                    [unit(gene.unit()), figure(value), figure(gene.recommended)],
-                )
+                Row::of(gene, [unit(&gene.unit), figure(value), figure(gene.start)])
             })
             .collect(),
     )

@@ -173,13 +173,13 @@ pub(in crate::report) fn warnings(calibration: &Calibration) -> Vec<String> {
             }
         }
     }
-    for (gene, &value) in case.genes.iter().zip(&calibration.optimised.genes) {
+    for (gene, &value) in case.unknowns.iter().zip(&calibration.optimised.genes) {
         if let Some(side) = at_bound(gene, value) {
             warnings.push(format!(
                 "{} ended at {} ({}): the optimum may lie outside.",
-                gene.label(),
+                gene.name,
                 bound(gene, side),
-                quantity(value, gene.unit())
+                quantity(value, &gene.unit)
             ));
         }
     }

@@ -10,7 +10,7 @@ mod name;
 
 pub(super) use calibration::{absolute_worse, channels, complete_objective, headline, warnings};
 pub use ending::{failure, verdict};
-pub(super) use gene::{at_bound, bound, meaning, symbol};
+pub(super) use gene::{at_bound, bound};
 pub(crate) use name::condition_name;
 pub(super) use name::{capitalised, channel_title, is_fitted, listed, lower};
 

@@ -3,10 +3,7 @@ use crate::store::{
     column::{Column, Columns},
     row::Fact,
 };
-use protocol::{
-    case::{Gene, Quantity},
-    unit::Unit,
-};
+use protocol::{case::Unknown, pumping_unit::Coefficient, unit::Unit};
 
 pub(super) fn run() -> Columns<Fact> {
     Columns::new()
@@ -17,8 +14,8 @@ pub(super) fn run() -> Columns<Fact> {
 }
 
 /// Name of the column of a gene, with its unit: `kb1_n_per_m`.
-pub(super) fn gene_column(gene: &Gene) -> String {
-    column(&gene.label().replace('.', "_"), gene.unit())
+pub(super) fn gene_column(gene: &Unknown) -> String {
+    column(&gene.name.replace('.', "_"), &gene.unit)
 }
 
 /// Name of a column of values in a unit: `mse_force_n2` in `N2`.
@@ -28,26 +25,23 @@ pub(super) fn column(name: &str, unit: &str) -> String {
     format!("{name}_{unit}")
 }
 
-const fn coefficient_unit(gene: &Gene) -> Option<Unit> {
-    match gene.quantity {
-        Quantity::Coefficient { unit, .. } => Some(unit),
-        Quantity::Effect { .. } => None,
-    }
+fn coefficient_unit(gene: &Unknown) -> Option<Unit> {
+    Coefficient::named(&gene.name).and_then(|_| Unit::named(&gene.unit))
 }
 
-pub(super) fn genes() -> Columns<Gene> {
+pub(super) fn genes() -> Columns<Unknown> {
     Columns::new()
-        .text("gene", "its name in the case", |gene: &Gene| {
-            Some(gene.label())
+        .text("gene", "its name in the case", |gene: &Unknown| {
+            Some(gene.name.clone())
         })
         .text("column", "its column in the table evaluations", |gene| {
             Some(gene_column(gene))
         })
         .text("unit", "unit that the case states it in", |gene| {
-            Some(gene.unit().to_owned())
+            Some(gene.unit.clone())
         })
         .real("recommended", "recommended value, in that unit", |gene| {
-            Some(gene.recommended)
+            Some(gene.start)
         })
         .real("lower", "smallest value to search", |gene| Some(gene.lower))
         .real("upper", "largest value to search", |gene| Some(gene.upper))

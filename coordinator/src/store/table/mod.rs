@@ -14,14 +14,14 @@ use super::{
 };
 use crate::journal::Damage;
 use protocol::{
-    case::{Case, Gene},
+    case::{Case, Unknown},
     event::WorkerAccount,
 };
 
 /// Every table of an export.
 pub(super) struct Tables {
     pub(super) run: Table<Fact>,
-    pub(super) genes: Table<Gene>,
+    pub(super) genes: Table<Unknown>,
     pub(super) evaluations: Table<Evaluated>,
     pub(super) effects: Table<Added>,
     pub(super) results: Table<Brief>,

@@ -31,8 +31,8 @@ pub(super) fn evaluations(case: &Case) -> Columns<Evaluated> {
             "effects beside those of the case; the table effects has them",
             |row| Some(row.effects as u64),
         );
-    for (place, gene) in case.genes.iter().enumerate() {
-        let about = format!("gene {} [{}]", gene.label(), gene.unit());
+    for (place, gene) in case.unknowns.iter().enumerate() {
+        let about = format!("gene {} [{}]", gene.name, gene.unit);
         columns = columns.real(&gene_column(gene), &about, move |row| {
             row.genes.get(place).copied()
         });

@@ -62,14 +62,14 @@ impl Codec {
         Chromosome((0..self.intervals.len()).map(code).collect())
     }
 
-    /// Gene values [declared units], inside the bounds.
+    /// Values of all unknowns [declared units], inside the bounds.
     pub(super) fn decode(&self, chromosome: &Chromosome) -> Vec<f64> {
         let genes = chromosome
             .0
             .iter()
             .zip(&self.intervals)
             .zip(self.space.axes());
-        genes
+        let own: Vec<f64> = genes
             .map(|((&code, interval), axis)| {
                 let number = if self.encoding == Encoding::Gray {
                     from_gray(code)
@@ -81,11 +81,13 @@ impl Codec {
                     Scale::Logarithmic => axis.value(interval.from + share * interval.length()),
                     Scale::Linear => {
                         let (low, high) = (axis.value(interval.from), axis.value(interval.to));
-                        (low + share * (high - low)).clamp(axis.lower, axis.upper)
+                        let bounds = &axis.unknown;
+                        (low + share * (high - low)).clamp(bounds.lower, bounds.upper)
                     }
                 }
             })
-            .collect()
+            .collect();
+        self.space.expand(&own)
     }
 
     /// The chromosome nearest to a point (coordinate).
@@ -195,7 +197,7 @@ mod tests {
         let (space, codec) = codec(Encoding::Binary, Scale::Linear);
         let half = Chromosome(vec![32768; space.dimension()]);
         for (value, axis) in codec.decode(&half).iter().zip(space.axes()) {
-            assert!((value / (0.5 * (axis.lower + axis.upper)) - 1.0).abs() < 1e-4);
+            assert!((value / (0.5 * (axis.unknown.lower + axis.unknown.upper)) - 1.0).abs() < 1e-4);
         }
     }
 }

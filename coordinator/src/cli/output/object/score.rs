@@ -38,17 +38,17 @@ pub(crate) struct Both<T> {
 
 /// Genes by name.
 pub(crate) fn genes(case: &Case, values: &[f64]) -> BTreeMap<String, GeneOutput> {
-    let pairs = case.genes.iter().zip(values);
+    let pairs = case.unknowns.iter().zip(values);
     pairs
         .map(|(gene, &value)| {
             let output = GeneOutput {
                 value,
-                unit: gene.unit().to_owned(),
-                recommended: gene.recommended,
+                unit: gene.unit.clone(),
+                recommended: gene.start,
                 lower: gene.lower,
                 upper: gene.upper,
             };
-            (gene.label(), output)
+            (gene.name.clone(), output)
         })
         .collect()
 }

@@ -31,7 +31,7 @@ fn curves(verdict: Verdict) -> Curves {
     let complete = verdict == Verdict::Complete;
     Curves {
         name: "recommended".to_owned(),
-        genes: case().recommended(),
+        genes: case().start(),
         evaluation: Some(Evaluation {
             verdict,
             fitness: 0.5,
@@ -167,7 +167,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
         evaluations: 900,
         failed_simulations: 44,
         wall_s: 1.5,
-        genes: genes(&case, &case.recommended()),
+        genes: genes(&case, &case.start()),
         objective: scores.objective,
         channels: scores.channels,
         other_conditions: BTreeMap::from([("4rpm".to_owned(), condition(&case, &before, &after))]),

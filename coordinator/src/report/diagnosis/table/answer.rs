@@ -80,17 +80,17 @@ pub(in crate::report::diagnosis) fn genes(subject: &Subject<'_>) -> Option<Table
         .as_ref()
         .map(|fit| fit.model.genes(fit.x()))?;
     let after = diagnosis.after.as_ref().map(|fit| fit.model.genes(fit.x()));
-    let rows = subject.case.genes.iter().enumerate().map(|(k, gene)| {
+    let rows = subject.case.unknowns.iter().enumerate().map(|(k, gene)| {
         let of = |value: Option<&f64>| value.map_or_else(|| NONE.to_owned(), |v| figure(*v));
         let last = after.as_ref().unwrap_or(&before).get(k);
         let edge = last.and_then(|v| at_bound(gene, *v));
         Row::of(
             gene,
             [
-                figure(gene.recommended),
+                figure(gene.start),
                 of(before.get(k)),
                 of(after.as_ref().and_then(|after| after.get(k))),
-                interval([gene.lower, gene.upper], gene.unit()),
+                interval([gene.lower, gene.upper], &gene.unit),
                 edge.map_or_else(String::new, |edge| format!("at its {edge} bound")),
             ],
         )

@@ -39,7 +39,7 @@ pub(in crate::report::diagnosis) fn wander(
     let head = head.chain(parts).chain(["takes up".to_owned()]);
     let rows = clear.iter().take(SHOWN).filter_map(|wander| {
         let k = wander.unknown;
-        let (gene, axis) = (subject.case.genes.get(k)?, fit.model.space.axes().get(k)?);
+        let axis = fit.model.space.axes().get(k)?;
         let at = |by: f64| figure(axis.value(fit.x()[k] + by));
         let moved = |shift: &Shift| {
             if shift.p_value <= CLEAR {
@@ -51,7 +51,7 @@ pub(in crate::report::diagnosis) fn wander(
         let mut cells = vec![at(0.0)];
         cells.extend(wander.shifts.iter().map(moved));
         cells.push(percent(wander.explained));
-        Some(Row::of(gene, cells))
+        Some(Row::of(&axis.unknown, cells))
     });
     let table = Table {
         head: head.collect(),

@@ -134,10 +134,10 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         numerical_error: numerical_error(diagnosis),
         genes: subject
             .case
-            .genes
+            .unknowns
             .iter()
             .zip(genes)
-            .map(|(gene, value)| (gene.label(), value))
+            .map(|(unknown, value)| (unknown.name.clone(), value))
             .collect(),
         stages: subject
             .diagnosed

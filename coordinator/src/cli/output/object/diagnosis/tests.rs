@@ -208,7 +208,7 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
 #[test]
 fn a_force_without_a_cause_is_printed_with_its_size() {
     let case = case();
-    let space = Space::new(&case.genes).unwrap();
+    let space = Space::new(&case.unknowns).unwrap();
     let model = Model::plain(space);
     let search = LeastSquares::new(model.variables(&[]), Settings::default());
     let found = Force {
@@ -247,7 +247,7 @@ fn a_force_without_a_cause_is_printed_with_its_size() {
 #[test]
 fn wandering_genes_have_their_values() {
     let case = case();
-    let model = Model::plain(Space::new(&case.genes).unwrap());
+    let model = Model::plain(Space::new(&case.unknowns).unwrap());
     let search = LeastSquares::new(model.variables(&[]), Settings::default());
     let sector = Part::Sector {
         from: 90.0,
@@ -272,14 +272,14 @@ fn wandering_genes_have_their_values() {
         ..full(Verdict::Named)
     });
     let first = &said["wander"]["before"][0];
-    assert_eq!(first["gene"], case.genes[1].label());
+    assert_eq!(first["gene"], case.unknowns[1].name);
     assert_eq!(first["explained"], 0.25);
     let [turn, speed] = [&first["parts"][0], &first["parts"][1]];
     assert_eq!(turn["sector_deg"], serde_json::json!([90.0, 180.0]));
     assert!(turn["condition"].is_null() && speed["sector_deg"].is_null());
     assert_eq!(speed["condition"], case.conditions[1].name);
     for (part, factor) in [(turn, 10.0), (speed, 0.1)] {
-        let ratio = part["value"].as_f64().unwrap() / case.genes[1].recommended;
+        let ratio = part["value"].as_f64().unwrap() / case.unknowns[1].start;
         assert!((ratio / factor - 1.0).abs() < 1e-12, "{ratio}");
     }
     assert_eq!(said["wander"]["after"], serde_json::json!([]));

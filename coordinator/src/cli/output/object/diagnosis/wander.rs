@@ -47,10 +47,9 @@ fn wanders(subject: &Subject<'_>, fit: Option<&Fit>, all: &[Wander]) -> Vec<Wand
     let Some(fit) = fit else {
         return Vec::new();
     };
-    let genes = subject.case.genes.iter().zip(fit.model.space.axes());
-    let genes: Vec<_> = genes.zip(fit.x()).collect();
+    let axes: Vec<_> = fit.model.space.axes().iter().zip(fit.x()).collect();
     let of_gene = |wander: &Wander| {
-        let ((gene, axis), x) = genes.get(wander.unknown)?;
+        let (axis, x) = axes.get(wander.unknown)?;
         let condition = |index: usize| {
             let of_case = subject.case.conditions.get(index);
             of_case.map(|condition| condition.name.clone())
@@ -68,7 +67,7 @@ fn wanders(subject: &Subject<'_>, fit: Option<&Fit>, all: &[Wander]) -> Vec<Wand
             p_value: shift.p_value,
         };
         Some(WanderOutput {
-            gene: gene.label(),
+            gene: axis.unknown.name.clone(),
             explained: wander.explained,
             parts: wander.shifts.iter().map(part).collect(),
         })
