@@ -1,7 +1,9 @@
 //! What is diagnosed, and by which thresholds.
+use crate::model::off::Off;
 use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
+use protocol::case::Unknown;
 use protocol::pumping_unit::Discretisation;
 use search::space::Space;
 
@@ -10,6 +12,8 @@ use search::space::Space;
 pub struct Inputs {
     /// The case's unknowns and their bounds.
     pub space: Space,
+    /// All unknowns of the case, of which those that are off are suspected.
+    pub unknowns: Vec<Unknown>,
     /// Records, the calibrated condition's first.
     pub records: Vec<Record>,
     /// What the workers can simulate.
@@ -28,11 +32,12 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The effects of the library that nobody has put aside.
-    pub(crate) fn considered(&self) -> impl Iterator<Item = &EffectDescriptor> {
+    /// The effects of the library, and the case's unknowns that are off, that nobody has put aside.
+    pub(crate) fn considered(&self) -> impl Iterator<Item = EffectDescriptor> {
         let without = &self.thresholds.without;
-        let kept = |effect: &&EffectDescriptor| !without.contains(&effect.id);
-        self.library.iter().filter(kept)
+        let off = Off::of(&self.unknowns).into_iter().map(|off| off.suspect);
+        let all = self.library.iter().cloned().chain(off);
+        all.filter(|suspect| !without.contains(&suspect.id))
     }
 
     /// Records of the other conditions that are not held out.

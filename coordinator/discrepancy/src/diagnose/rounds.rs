@@ -26,9 +26,8 @@ pub(crate) async fn rounds<L: Laboratory>(
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
-    let considered = inputs.considered().cloned();
     let (generic, mut open): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) =
-        considered.partition(|effect| effect.generic);
+        inputs.considered().partition(|effect| effect.generic);
     let mut current = base.fit.clone();
     let mut in_valley = false;
     for number in 0..inputs.thresholds.rounds {

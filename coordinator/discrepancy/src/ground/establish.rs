@@ -7,6 +7,7 @@ use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
+use crate::model::off::Off;
 use crate::model::unknowns::{Model, Point};
 use crate::record::basis::Group;
 use crate::record::measured::{Curves, Record};
@@ -93,7 +94,10 @@ async fn first_fit<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     inputs: &Inputs,
 ) -> Result<Option<Fit>, L::Error> {
-    let model = Model::plain(inputs.space.clone());
+    let model = Model {
+        off: Off::of(&inputs.unknowns),
+        ..Model::plain(inputs.space.clone())
+    };
     let starts = match &inputs.start {
         Some(x) => vec![Point {
             model,

@@ -2,10 +2,12 @@
 //! them to a record, and the experiments that a fit takes. What an effect does it does not know.
 pub mod experiments;
 pub(crate) mod fit;
+pub(crate) mod off;
 pub(crate) mod parameter;
 pub mod probe;
 pub(crate) mod unknowns;
 
 pub use fit::Fit;
+pub use off::Off;
 pub use parameter::{absent, at_typical, bounds, shapes, sizes};
 pub use unknowns::{Model, Point};

@@ -3,7 +3,8 @@
 //! A point is a vector: unknowns of the case by their coordinates in the space, then the parameters of
 //! each added effect in units of their physical scale, from their absent value. What an effect does is
 //! the workers' business; here it is a name with numbers.
-use crate::model::parameter::{setting, variable};
+use crate::model::off::{Off, apply};
+use crate::model::parameter::variable;
 use protocol::announce::EffectDescriptor;
 use protocol::{
     job::{Individual, Reply, SimulateSpec},
@@ -22,8 +23,10 @@ const STEP: f64 = 0.02;
 /// A case with added effects.
 #[derive(Clone, Debug)]
 pub struct Model {
-    /// Those of the case.
+    /// Those of the case that are searched.
     pub space: Space,
+    /// Those of the case that are off.
+    pub off: Vec<Off>,
     /// Added effects, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
 }
@@ -33,6 +36,7 @@ impl Model {
     pub const fn plain(space: Space) -> Self {
         Self {
             space,
+            off: Vec::new(),
             added: Vec::new(),
         }
     }
@@ -110,16 +114,14 @@ impl Point {
     /// The job that simulates it under a condition.
     pub fn experiment(&self, condition: usize, discretisation: Discretisation) -> SimulateSpec {
         let Self { model, x } = self;
-        let effects = model.added.iter().enumerate().map(|(position, effect)| {
+        let mut individual = Individual::new(condition, model.genes(x));
+        for (position, added) in model.added.iter().enumerate() {
             let first = model.first_of(position);
-            setting(effect, &x[first..first + effect.parameters.len()])
-        });
+            let own = &x[first..first + added.parameters.len()];
+            apply(&model.off, added, own, &mut individual);
+        }
         SimulateSpec {
-            individual: Individual {
-                condition,
-                genes: model.genes(x),
-                effects: effects.collect(),
-            },
+            individual,
             discretisation,
             reply: Reply::Channels,
         }

@@ -11,6 +11,9 @@ pub struct Estimate {
     pub id: String,
     /// In words.
     pub title: String,
+    /// The place in the case of the unknown that it is, if it is one that was off; its value is where to
+    /// start from. Nothing of an effect.
+    pub unknown: Option<usize>,
     /// Its parameters, in the effect's order.
     pub parameters: Vec<ParameterEstimate>,
     /// Family-wise p-value of its score test.
@@ -82,6 +85,12 @@ fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
     Estimate {
         id: refitted.id.clone(),
         title: effect.title.clone(),
+        unknown: fit
+            .model
+            .off
+            .iter()
+            .find(|off| off.suspect.id == refitted.id)
+            .map(|off| off.position),
         parameters: parameters.collect(),
         p_value: suspect.map_or(1.0, |s| family_wise(s.p_value(), round.suspects.len())),
         ln_evidence: round.nats(refitted.log_evidence),

@@ -269,13 +269,13 @@ fn curves(genes: &[f64], effects: &[(&str, f64)]) -> Curves {
         let own = effects.iter().find(|(name, _)| *name == id);
         own.map_or(0.0, |(_, amount)| *amount)
     };
-    let (frequency, damping) = (genes[0], genes[1]);
+    let (frequency, softening, damping) = (genes[0], genes[1], genes[2]);
     let at = |t: f64| {
         let t = t - amount("late");
         let hard = amount("hardening");
         let fade = (-damping * t).exp();
         // a hardening spring rings faster while it swings far
-        let phase = frequency * t + hard * (1.0 - fade * fade);
+        let phase = frequency * t + hard * (1.0 - fade * fade) + softening * fade * fade.sqrt();
         (
             fade * phase.cos(),
             8.0 * fade * phase.cos() * (1.0 + 0.5 * hard * fade),
@@ -334,19 +334,23 @@ fn library() -> Vec<EffectDescriptor> {
     ]
 }
 
-fn space() -> Space {
-    let unknown = |name, unit, value: f64| {
+/// Frequency and damping, and a detuning that is not there.
+fn unknowns() -> Vec<Unknown> {
+    let searched = |name: &str, value: f64| {
         let bounds = [0.1 * value, 10.0 * value];
-        Unknown {
-            trust: Some([-1.0, 1.5]),
-            ..Unknown::new(name, unit, Scale::Logarithmic, value, bounds)
-        }
+        Unknown::new(name, "1/s", Scale::Logarithmic, value, bounds)
     };
-    let unknowns = [
-        unknown("stiffness", "N/m", 9.0),
-        unknown("damping", "N.s/m", 0.4),
-    ];
-    Space::new(&unknowns).expect("positive and ordered")
+    let mut detuning = Unknown::new("softening", "1", Scale::Linear, 0.0, [0.0, 2.0]);
+    detuning.absent = Some(0.0);
+    vec![
+        searched("frequency", 9.0),
+        detuning,
+        searched("damping", 0.4),
+    ]
+}
+
+fn space() -> Space {
+    Space::new(&unknowns()).expect("positive and ordered")
 }
 
 /// A record of the truth with an effect.
@@ -363,6 +367,7 @@ fn hidden(effects: &[(&str, f64)], cycles: usize, stated: bool) -> Record {
 fn diagnosed(records: Vec<Record>) -> Diagnosis {
     let inputs = Inputs {
         space: space(),
+        unknowns: unknowns(),
         records,
         library: library(),
         start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
@@ -444,4 +449,29 @@ fn what_is_held_out_is_compared_at_the_end() {
     // four parts of the abscissa, and the other condition where it may be looked at
     let shifts = |answer: &Diagnosis| answer.wander[0].shifts.len();
     assert_eq!((shifts(&free), shifts(&held)), (5, 4));
+}
+
+/// An unknown of the case that stands where it does nothing is held there in every fit, and yet found: by its
+/// own name, with the value to start from.
+#[test]
+fn an_unknown_that_is_off_is_a_suspect() {
+    let mut values = space().values(&TRUTH);
+    assert_eq!(values[1].to_bits(), 0.0_f64.to_bits());
+    values[1] = 0.5;
+    let answer = diagnosed(vec![record(78, 8, &curves(&values, &[]), false)]);
+    let said = crate::trial::line(&answer);
+    assert_eq!(answer.verdict, Verdict::Named, "{said}");
+    let found = &answer.effects[0];
+    assert_eq!(
+        (found.id.as_str(), found.unknown),
+        ("softening", Some(1)),
+        "{said}"
+    );
+    assert!(
+        (found.parameters[0].value / 0.5 - 1.0).abs() < 0.2,
+        "{found:?}"
+    );
+    assert!(answer.limits.iter().any(|limit| limit.id == "softening"));
+    // held at nothing without it: only two are fitted
+    assert_eq!(answer.before.expect("a model").x().len(), 2);
 }

@@ -75,6 +75,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
     }
     let inputs = Inputs {
         space: space(),
+        unknowns: Vec::new(),
         records,
         library: setup.library.clone(),
         // a calibration has been there: it ends beside the truth, not on it

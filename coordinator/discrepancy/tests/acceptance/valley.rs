@@ -190,6 +190,7 @@ fn at(genes: [f64; 3]) -> Point {
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
         space: space(),
+        unknowns: Vec::new(),
         records: vec![record(truth)],
         library: library(),
         start: None,

@@ -153,6 +153,7 @@ fn inputs(
         ..finest
     };
     Ok(Inputs {
+        unknowns: case.unknowns.clone(),
         start: manifest.start_genes().map(|genes| space.point(genes)),
         space,
         records,
