@@ -6,7 +6,11 @@
     clippy::format_collect,
     reason = "small inputs of a test"
 )]
-#[expect(unreachable_pub, reason = "a module of the fuzz targets, too")]
+#[expect(
+    unreachable_pub,
+    dead_code,
+    reason = "a module of the fuzz targets, too, and of the tests of the wire"
+)]
 #[path = "../../tests/fuzz/targets/property/mod.rs"]
 mod property;
 

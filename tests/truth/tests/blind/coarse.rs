@@ -68,9 +68,16 @@ kc   = { value = 4.01e8, unit = "N/m^1.5" }
 cc   = { value = 1.02e3, unit = "N.s/m" }
 "#;
 
-/// What is considered of the library: pivot friction, what looks like it, and one of the load. Each that is
-/// considered costs a refit of some hundred simulations.
-const CONSIDERED: [&str; 3] = ["pivot_friction", "rope_bending_loss", "load_offset"];
+/// What is considered of the library: pivot friction, what looks like it, and others of load, crank and
+/// gauges.
+const CONSIDERED: [&str; 6] = [
+    "pivot_friction",
+    "rope_bending_loss",
+    "crank_speed_ripple",
+    "card_time_shift",
+    "load_offset",
+    "gauge_drift",
+];
 
 /// All other effects of the library, as `--without` takes them.
 fn without() -> String {
