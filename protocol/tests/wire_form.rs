@@ -8,11 +8,11 @@ use protocol::{
     case::{Case, Offset, Scale},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::{Answer, Failure, Job, Outcome, PhysicsFailure, Reached, Reply, Verdict},
+    job::{Answer, Failure, Job, Outcome, Reached, Reply, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
     pumping_unit::{
-        ElementKind, Integrator, Machine, ModeFamily, RopeEnds, Smoothing, StressRecovery,
-        TurnSense,
+        ElementKind, Integrator, Machine, ModeFamily, ReduceHeadSpec, ReducedHead, RopeEnds,
+        Simulation, Smoothing, StressRecovery, TurnSense,
     },
     wire::{self, Kind},
 };
@@ -30,7 +30,8 @@ fn form() -> String {
         };
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case Machine);
-    trace!(Job Reply Answer Outcome Failure Verdict PhysicsFailure Reached ModeFamily ElementKind);
+    trace!(Simulation ReduceHeadSpec ReducedHead);
+    trace!(Job Reply Answer Outcome Failure Verdict Reached ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense);
     let registry = tracer.registry().expect("every variant was seen");

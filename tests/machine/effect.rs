@@ -95,7 +95,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
     let of_whole = Observation {
         verdict: whole.verdict,
         counters: whole.counters,
-        curves: super::channels(&whole),
+        curves: whole.channels,
     };
     assert_eq!(of_whole.rounded(&case, 0), plain);
 

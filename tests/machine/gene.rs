@@ -110,9 +110,7 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let [scored, simulated] = jobs(at(1800.0));
     assert_eq!(with_gene.evaluate(&scored), fixed[1].evaluate(&score));
     let curves = |outcome: Outcome| match outcome {
-        Outcome::Done(Answer::Curves(simulation)) => {
-            (simulation.gauge_mpa, simulation.crank_torque_n_m)
-        }
+        Outcome::Done(Answer::Curves(curves)) => curves.channels,
         other => unreachable!("{other:?}"),
     };
     assert_eq!(

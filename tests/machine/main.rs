@@ -6,10 +6,7 @@ mod rounding;
 mod start;
 mod twins;
 
-use protocol::{
-    case::Case,
-    pumping_unit::{PumpingUnit, Sensor, Simulation},
-};
+use protocol::{case::Case, pumping_unit::PumpingUnit};
 use simulation::integrator::method::{CATALOGUE, Method};
 use simulation::integrator::tableau::ESDIRK4;
 use simulation::model::Machine;
@@ -31,12 +28,6 @@ fn case() -> Case {
 /// The same with its machine.
 fn unit() -> PumpingUnit {
     PumpingUnit::of(case()).unwrap()
-}
-
-/// The curves of the channels, in the order of a pumping unit's sensors.
-fn channels(simulation: &Simulation) -> Vec<Vec<f64>> {
-    let curve = |sensor: Sensor| simulation.channel(&sensor.name()).to_vec();
-    Sensor::ALL.map(curve).into()
 }
 
 /// Recommended and Table 3's optimised coefficients.

@@ -33,7 +33,7 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     let exact = Observation {
         verdict: whole.verdict,
         counters: whole.counters,
-        curves: super::channels(&whole),
+        curves: whole.channels,
     };
     [rounded.into_channels().unwrap(), exact]
 }

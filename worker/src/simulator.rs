@@ -5,10 +5,9 @@
 use protocol::{
     announce::{EffectDescriptor, ModelDescriptor},
     case::Case,
-    job::{Failure, Observation, SimulateSpec},
-    pumping_unit::Simulation,
+    job::{Curves, Failure, Observation, SimulateSpec},
 };
-use std::fmt;
+use std::{fmt, time::Instant};
 
 /// The kinds of model that a worker program simulates.
 pub type Simulators = &'static [&'static dyn Simulator];
@@ -51,11 +50,22 @@ pub trait Model: fmt::Debug + Send + Sync {
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure>;
 
     /// Simulates, and says everything that can be drawn; `motion_step_deg` is the spacing of snapshots
-    /// of what moves \[deg\], 0 for none.
+    /// of what moves \[deg\], 0 for none. A model that has nothing beside its channels need not say
+    /// anything here.
     ///
     /// # Errors
     /// As [`Self::observe`].
-    fn draw(&self, spec: &SimulateSpec, motion_step_deg: f64) -> Result<Simulation, Failure>;
+    fn draw(&self, spec: &SimulateSpec, _motion_step_deg: f64) -> Result<Curves, Failure> {
+        let began = Instant::now();
+        let seen = self.observe(spec, false)?;
+        Ok(Curves {
+            verdict: seen.verdict,
+            counters: seen.counters,
+            wall_s: began.elapsed().as_secs_f64(),
+            channels: seen.curves,
+            details: Vec::new(),
+        })
+    }
 }
 
 /// What a worker says of the models that it simulates.

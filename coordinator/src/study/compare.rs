@@ -7,8 +7,7 @@ use super::{
 use protocol::{
     case::Case,
     id::JobId,
-    job::{Evaluation, Individual, Job, Reply, SimulateSpec},
-    pumping_unit::Simulation,
+    job::{self, Evaluation, Individual, Job, Reply, SimulateSpec},
 };
 use std::collections::BTreeMap;
 
@@ -36,7 +35,7 @@ pub struct Curves {
     /// Agreement with the record; none where the condition has no record.
     pub evaluation: Option<Evaluation>,
     /// The curves, as far as the simulation got.
-    pub simulation: Simulation,
+    pub drawn: job::Curves,
 }
 
 /// All parameter sets under one condition.
@@ -52,7 +51,7 @@ pub struct Compared {
 #[derive(Default)]
 struct Pair {
     evaluation: Option<Evaluation>,
-    simulation: Option<Simulation>,
+    drawn: Option<job::Curves>,
 }
 
 /// Has every parameter set scored, where there is a record, and simulated. The id of each job
@@ -107,7 +106,7 @@ pub async fn compare<E: Evaluator>(
         if answer.evaluation().is_some() {
             pair.evaluation = Some(answer.into_scored().map_err(wrong)?);
         } else {
-            pair.simulation = Some(*answer.into_curves().map_err(wrong)?);
+            pair.drawn = Some(*answer.into_curves().map_err(wrong)?);
         }
     }
     let groups = wanted.iter().enumerate();
@@ -139,12 +138,12 @@ fn collect(
     for (position, (name, genes)) in one.individuals.iter().enumerate() {
         let pair = pairs.remove(&(group, position)).unwrap_or_default();
         let id = JobId(first_id(one.condition, position) + 1);
-        let simulation = pair.simulation.ok_or(StudyError::WrongKind { id })?;
+        let drawn = pair.drawn.ok_or(StudyError::WrongKind { id })?;
         individuals.push(Curves {
             name: name.clone(),
             genes: genes.clone(),
             evaluation: pair.evaluation,
-            simulation,
+            drawn,
         });
     }
     Ok(Compared {

@@ -1,7 +1,7 @@
 //! Why a study stopped without a result.
 use protocol::{
     id::JobId,
-    job::{Failure, PhysicsFailure},
+    job::{Failure, Word},
 };
 use search::strategy::SettingsError;
 use std::fmt;
@@ -55,7 +55,7 @@ pub enum StudyError {
         /// Which failures, the most frequent first.
         how: String,
         /// The most frequent failure of the physics, if any was.
-        physics: Option<PhysicsFailure>,
+        physics: Option<Word>,
     },
     /// A parameter set that is to be compared could not be evaluated.
     #[error("{what} could not be evaluated: {failure}")]

@@ -1,5 +1,5 @@
 //! The evaluation log: every individual of a run in index order, and its digest.
-use protocol::job::{Evaluation, Failure, PhysicsFailure, Verdict};
+use protocol::job::{Evaluation, Failure, Verdict, Word};
 use search::strategy::{Proposal, Purpose, Told};
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ pub enum Ending {
     /// The whole revolution was simulated.
     Complete,
     /// The machine failed on the way.
-    Physics(PhysicsFailure),
+    Physics(Word),
     /// It could not be computed.
     Infrastructure(Failure),
 }
@@ -19,7 +19,7 @@ impl Ending {
     pub fn failure(&self) -> Option<String> {
         match self {
             Self::Complete => None,
-            Self::Physics(kind) => Some(kind.as_str().replace('_', " ")),
+            Self::Physics(kind) => Some(kind.spoken()),
             Self::Infrastructure(failure) => Some(failure.to_string()),
         }
     }
@@ -131,8 +131,8 @@ impl EvaluationLog {
     }
 
     /// Failures by frequency, as `12 x load not lifted, 3 x budget`.
-    pub(super) fn failures(&self) -> (String, Option<PhysicsFailure>) {
-        let mut counts: BTreeMap<String, (usize, Option<PhysicsFailure>)> = BTreeMap::new();
+    pub(super) fn failures(&self) -> (String, Option<Word>) {
+        let mut counts: BTreeMap<String, (usize, Option<Word>)> = BTreeMap::new();
         for entry in self.entries() {
             let physics = match entry.ending {
                 Ending::Complete => continue,

@@ -1,11 +1,12 @@
 //! The loop against an evaluator that answers from a test function, in any order.
 use super::*;
+use protocol::pumping_unit::failure;
 use protocol::{
     case::Case,
     id::JobId,
     job::{
-        Answer, ChannelScore, Counters, Evaluation, Failure, Individual, Job, Outcome,
-        PhysicsFailure, Reached, Reply, Verdict,
+        Answer, ChannelScore, Counters, Evaluation, Failure, Individual, Job, Outcome, Reached,
+        Reply, Verdict,
     },
     message::Cost,
     pumping_unit::{Energy, Simulation},
@@ -77,7 +78,11 @@ impl Evaluator for Oracle {
             if matches!(spec.reply, Reply::Score { .. }) {
                 return (self.answer)(&self.space, id.0, &spec.individual);
             }
-            Outcome::Done(Answer::Curves(Box::new(curves(spec.individual.genes[0]))))
+            Outcome::Done(Answer::Curves(Box::new(
+                curves(spec.individual.genes[0])
+                    .into_curves(Vec::new())
+                    .unwrap(),
+            )))
         });
         self.answered.insert(id, outcome.clone());
         Ok(Completed {
@@ -156,7 +161,7 @@ fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
 
 pub(crate) fn physics(space: &Space, _id: u64, individual: &Individual) -> Outcome {
     let told = RESONANCE.tell(space, &individual.genes);
-    let kind = PhysicsFailure::LoadNotLifted;
+    let kind = failure::LOAD_NOT_LIFTED;
     let verdict = if told.complete {
         Verdict::Complete
     } else {
@@ -273,9 +278,9 @@ async fn if_the_whole_initial_population_fails_the_study_says_how() {
     let case = case();
     let answer = |_: &Space, id: u64, _: &Individual| {
         let kind = if id < 4 {
-            PhysicsFailure::Budget
+            failure::BUDGET
         } else {
-            PhysicsFailure::LoadNotLifted
+            failure::LOAD_NOT_LIFTED
         };
         let verdict = Verdict::Failed {
             kind,
@@ -351,7 +356,7 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
             for (curves, (name, genes)) in group.individuals.iter().zip(&individuals) {
                 assert_eq!(&curves.name, name);
                 assert_eq!(
-                    curves.simulation.gauge_mpa[0][0].to_bits(),
+                    Simulation::of(&curves.drawn).unwrap().gauge_mpa[0][0].to_bits(),
                     genes[0].to_bits()
                 );
                 assert!(curves.evaluation.is_some());
@@ -444,7 +449,7 @@ impl Strategy for OneByOne {
 fn failing_below(from: u64, id: u64) -> Outcome {
     let verdict = if id < from {
         Verdict::Failed {
-            kind: PhysicsFailure::LoadNotLifted,
+            kind: failure::LOAD_NOT_LIFTED,
             reached: Reached::LoadFraction(0.5),
         }
     } else {

@@ -10,7 +10,8 @@ use coordinator::pumping_unit::report::{balance, simulation};
 use coordinator::report::{
     self, Calibration, Figure, SingleRun, chart, table, write_calibration, write_simulation,
 };
-use protocol::job::{PhysicsFailure, Reached, Verdict};
+use protocol::job::{Reached, Verdict};
+use protocol::pumping_unit::failure;
 use roxmltree::{Document, ParsingOptions};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -401,7 +402,7 @@ fn nothing_at_all_still_makes_a_page() {
     let mut run: SingleRun = sample::single();
     run.simulation = sample::failed(run.simulation.clone(), 0);
     run.simulation.verdict = Verdict::Failed {
-        kind: PhysicsFailure::Budget,
+        kind: failure::BUDGET,
         reached: Reached::LoadFraction(0.5),
     };
     run.evaluation = None;

@@ -4,10 +4,11 @@ use coordinator::account::JobCost;
 use coordinator::report::{
     Calibration, ConditionResult, HistoryPoint, Individual, Origin, Run, SingleRun, WorkerUse,
 };
+use protocol::pumping_unit::failure;
 use protocol::{
     case::{Case, Channel, ChannelRecord, Condition, Objective, Offset, Term, Unknown},
     event::Spent,
-    job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
+    job::{ChannelScore, Counters, Evaluation, Reached, Verdict},
     pumping_unit::{
         BackHead, Beam, Coefficient, Contact, Crank, Energy, FrontHead, Influence, LoadCard,
         Machine, ModalHead, Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation, Smoothing,
@@ -349,7 +350,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
 /// Cuts a simulation off, as a failure in the revolution would.
 pub(crate) fn failed(mut simulation: Simulation, points: usize) -> Simulation {
     simulation.verdict = Verdict::Failed {
-        kind: PhysicsFailure::RopeThroughHead,
+        kind: failure::ROPE_THROUGH_HEAD,
         reached: Reached::TimeFraction(0.34),
     };
     simulation.turn_deg.truncate(points);

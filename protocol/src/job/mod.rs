@@ -11,18 +11,22 @@
 //! else lists the kinds. Another reply of a simulation is cheaper: a variant of [`Reply`] and of
 //! [`Answer`], and a file in `worker/src/handler`.
 mod channels;
+mod curves;
 mod failure;
 mod score;
 mod simulate;
 mod verdict;
+mod word;
 
 pub use channels::Observation;
+pub use curves::Curves;
 pub use failure::{Failure, WrongKind};
 pub use score::{ChannelScore, Evaluation};
 pub use simulate::{Individual, Reply, SimulateSpec};
-pub use verdict::{Counters, PhysicsFailure, Reached, Verdict};
+pub use verdict::{Counters, Reached, Verdict};
+pub use word::Word;
 
-use crate::{announce::EffectDescriptor, id::ContentHash, pumping_unit::Simulation, wire};
+use crate::{announce::EffectDescriptor, id::ContentHash, wire};
 use serde::{Deserialize, Serialize};
 
 /// Names of the kinds of jobs, simulations by their reply: what workers announce, what tables show,
@@ -110,7 +114,7 @@ pub enum Answer {
     /// Of [`Reply::Channels`].
     Channels(Observation),
     /// Of [`Reply::Curves`].
-    Curves(Box<Simulation>),
+    Curves(Box<Curves>),
     /// Of [`Job::Own`], as that kind writes it.
     Own(#[serde(with = "serde_bytes")] Vec<u8>),
     /// Of [`Job::Describe`].
@@ -139,7 +143,7 @@ impl Answer {
     taken! {
         into_scored: Scored -> Evaluation, "The answer to [`Reply::Score`].";
         into_channels: Channels -> Observation, "The answer to [`Reply::Channels`].";
-        into_curves: Curves -> Box<Simulation>, "The answer to [`Reply::Curves`].";
+        into_curves: Curves -> Box<Curves>, "The answer to [`Reply::Curves`].";
         into_own: Own -> Vec<u8>, "The answer to [`Job::Own`].";
         into_described: Described -> Vec<EffectDescriptor>, "The answer to [`Job::Describe`].";
         into_nothing: Nothing -> Vec<u8>, "The answer to [`Job::Nothing`].";
@@ -174,7 +178,7 @@ impl Answer {
         match self {
             Self::Scored(evaluation) => Some((evaluation.verdict, evaluation.counters)),
             Self::Channels(seen) => Some((seen.verdict, seen.counters)),
-            Self::Curves(simulation) => Some((simulation.verdict, simulation.counters)),
+            Self::Curves(curves) => Some((curves.verdict, curves.counters)),
             Self::Own(_) | Self::Described(_) | Self::Nothing(_) => None,
         }
     }

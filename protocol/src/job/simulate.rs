@@ -56,7 +56,7 @@ pub enum Reply {
     },
     /// The measured channels alone: an [`super::Observation`].
     Channels,
-    /// Everything that can be drawn: a [`crate::pumping_unit::Simulation`].
+    /// Everything that can be drawn: a [`super::Curves`].
     Curves {
         /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
         motion_step_deg: f64,

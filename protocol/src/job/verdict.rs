@@ -1,4 +1,5 @@
 //! How a simulation ended, and what it cost.
+use super::word::Word;
 use serde::{Deserialize, Serialize};
 
 /// How a simulation ended.
@@ -8,8 +9,8 @@ pub enum Verdict {
     Complete,
     /// The machine failed on the way; data for the search, never retried.
     Failed {
-        /// What happened.
-        kind: PhysicsFailure,
+        /// What happened, in the word of its model.
+        kind: Word,
         /// How far it got.
         reached: Reached,
     },
@@ -17,7 +18,7 @@ pub enum Verdict {
 
 impl Verdict {
     /// `complete`, or what ended it early, as written in tables.
-    pub const fn as_str(&self) -> &'static str {
+    pub fn as_str(&self) -> &str {
         match self {
             Self::Complete => "complete",
             Self::Failed { kind, .. } => kind.as_str(),
@@ -44,41 +45,6 @@ impl Verdict {
                 ..
             } => Some(*share),
             Self::Failed { .. } | Self::Complete => None,
-        }
-    }
-}
-
-/// What ended a simulation early.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum PhysicsFailure {
-    /// A rope joint stretched beyond its limit.
-    OverstretchedRope,
-    /// The rope sank through the surface of a head.
-    RopeThroughHead,
-    /// The beam left its working range.
-    BeamOvertravel,
-    /// The load stayed below its lowest design position.
-    LoadNotLifted,
-    /// A cylinder turned over, out of its chain.
-    TumbledCylinder,
-    /// The step size fell below its limit.
-    StepUnderflow,
-    /// The iteration budget was used up.
-    Budget,
-}
-
-impl PhysicsFailure {
-    /// As written in tables and JSON.
-    pub const fn as_str(self) -> &'static str {
-        match self {
-            Self::OverstretchedRope => "overstretched_rope",
-            Self::RopeThroughHead => "rope_through_head",
-            Self::BeamOvertravel => "beam_overtravel",
-            Self::LoadNotLifted => "load_not_lifted",
-            Self::TumbledCylinder => "tumbled_cylinder",
-            Self::StepUnderflow => "step_underflow",
-            Self::Budget => "budget",
         }
     }
 }

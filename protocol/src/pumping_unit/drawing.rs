@@ -1,6 +1,9 @@
 //! Everything of a simulation that can be drawn.
 use super::Sensor;
-use crate::job::{Counters, Verdict};
+use crate::{
+    job::{Counters, Curves, Verdict},
+    wire::{self, WireError},
+};
 use serde::{Deserialize, Serialize};
 
 /// Curves of one revolution; every vector has one entry per crank angle reached.
@@ -50,6 +53,30 @@ impl Simulation {
             Some(Sensor::Torque) => &self.crank_torque_n_m,
             None => &[],
         }
+    }
+}
+
+impl Simulation {
+    /// What the model of a pumping unit says beside the channels.
+    ///
+    /// # Errors
+    /// [`WireError`] where another model drew them.
+    pub fn of(curves: &Curves) -> Result<Self, WireError> {
+        wire::decode(&curves.details)
+    }
+
+    /// As it travels, with the curves of the channels.
+    ///
+    /// # Errors
+    /// [`WireError::TooLong`] beyond what a message may hold.
+    pub fn into_curves(self, channels: Vec<Vec<f64>>) -> Result<Curves, WireError> {
+        Ok(Curves {
+            verdict: self.verdict,
+            counters: self.counters,
+            wall_s: self.wall_s,
+            channels,
+            details: wire::encode(&self)?,
+        })
     }
 }
 

@@ -8,6 +8,7 @@ mod card;
 mod coefficient;
 mod discretisation;
 mod drawing;
+pub mod failure;
 mod head;
 mod machine;
 mod parts;

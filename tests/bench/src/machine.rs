@@ -73,6 +73,6 @@ impl Machine {
         let done = self.prepared.evaluate(&job).done();
         let answer = done.map_err(|failure| anyhow!("not simulated: {failure}"))?;
         let curves = answer.into_curves()?;
-        Ok(*curves)
+        Ok(Simulation::of(&curves)?)
     }
 }

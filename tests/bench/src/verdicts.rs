@@ -17,7 +17,7 @@ pub(crate) struct Ended {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct Class {
     /// `complete`, a kind of failure, or `failed` for all of them.
-    pub(crate) verdict: &'static str,
+    pub(crate) verdict: String,
     /// `under_load` or `in_motion`; none for complete runs and for all failures together.
     pub(crate) stage: Option<&'static str>,
     /// How many.
@@ -30,7 +30,7 @@ pub(crate) struct Class {
 
 /// The individuals by how they ended, the commonest first, then all that failed, if any did.
 pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
-    let mut kinds: Vec<(&str, Option<&str>)> = Vec::new();
+    let mut kinds: Vec<(&str, Option<&'static str>)> = Vec::new();
     for kind in individuals.iter().map(|one| kind(&one.verdict)) {
         if !kinds.contains(&kind) {
             kinds.push(kind);
@@ -54,7 +54,7 @@ pub(crate) fn classes(individuals: &[Ended]) -> Vec<Class> {
 }
 
 /// A verdict without how far it got.
-const fn kind(verdict: &Verdict) -> (&'static str, Option<&'static str>) {
+fn kind(verdict: &Verdict) -> (&str, Option<&'static str>) {
     match verdict {
         Verdict::Complete => ("complete", None),
         Verdict::Failed { kind, reached } => {
@@ -67,7 +67,7 @@ const fn kind(verdict: &Verdict) -> (&'static str, Option<&'static str>) {
     }
 }
 
-fn class((verdict, stage): (&'static str, Option<&'static str>), individuals: &[&Ended]) -> Class {
+fn class((verdict, stage): (&str, Option<&'static str>), individuals: &[&Ended]) -> Class {
     let mut newton_iterations: Vec<u64> = individuals
         .iter()
         .map(|one| one.counters.newton_iterations)
@@ -77,7 +77,7 @@ fn class((verdict, stage): (&'static str, Option<&'static str>), individuals: &[
     wall_s.sort_by(f64::total_cmp);
     let places = [5, 9, 10].map(|tenths| individuals.len().saturating_sub(1) * tenths / 10);
     Class {
-        verdict,
+        verdict: verdict.to_owned(),
         stage,
         runs: individuals.len(),
         newton_iterations: places.map(|at| newton_iterations.get(at).copied().unwrap_or_default()),
@@ -88,12 +88,12 @@ fn class((verdict, stage): (&'static str, Option<&'static str>), individuals: &[
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::job::PhysicsFailure;
+    use protocol::pumping_unit::failure;
 
     #[test]
     fn individuals_are_counted_by_how_they_ended() {
         let through = |reached| Verdict::Failed {
-            kind: PhysicsFailure::RopeThroughHead,
+            kind: failure::ROPE_THROUGH_HEAD,
             reached,
         };
         let individuals = [
@@ -115,7 +115,10 @@ mod tests {
         assert_eq!(runs, [2, 1, 1, 3]);
         assert_eq!(classes[0].newton_iterations, [0, 0, 10]);
         assert_eq!(classes[1].verdict, "complete");
-        assert_eq!((classes[3].verdict, classes[3].stage), ("failed", None));
+        assert_eq!(
+            (classes[3].verdict.as_str(), classes[3].stage),
+            ("failed", None)
+        );
         assert_eq!(classes[3].newton_iterations, [10, 10, 900]);
         assert!((classes[3].wall_s[2] - 0.09).abs() < 1e-12);
     }

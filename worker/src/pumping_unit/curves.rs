@@ -2,7 +2,7 @@
 use super::machines::Machines;
 use super::ran::Ran;
 use protocol::{
-    job::{Failure, SimulateSpec},
+    job::{Curves, Failure, SimulateSpec},
     pumping_unit::{Energy, Motion, Simulation},
 };
 use simulation::observe::{Recorder, Shape};
@@ -16,17 +16,18 @@ pub(super) fn run(
     machines: &Machines,
     spec: &SimulateSpec,
     motion_step_deg: f64,
-) -> Result<Simulation, Failure> {
+) -> Result<Curves, Failure> {
     let step_deg = machines.unit.machine.run.output_step_deg;
     let recorder = Recorder::everything(samples_apart(motion_step_deg, step_deg));
     let ran = Ran::new(machines, spec, recorder)?;
     let (gauge_mpa, suspension_m) = (ran.gauges_mpa(), ran.suspension_m());
+    let channels = ran.channels(&machines.unit.case, spec.individual.condition)?;
     let curves = ran.curves;
     let degrees = |values: &[f64]| values.iter().map(|x| x.to_degrees()).collect();
     let [_, velocity, acceleration] = curves.suspension;
     let turn_deg = (0..curves.beam.len()).map(|i| step_deg * i as f64);
     let shapes = curves.shapes.iter();
-    Ok(Simulation {
+    let simulation = Simulation {
         verdict: ran.verdict,
         counters: ran.counters,
         wall_s: ran.wall_s,
@@ -43,7 +44,9 @@ pub(super) fn run(
         modal: curves.modal,
         energy: energy(&ran.result),
         motion: shapes.map(|shape| motion(shape, step_deg)).collect(),
-    })
+    };
+    let drawn = simulation.into_curves(channels);
+    drawn.map_err(|error| Failure::misconfigured("motion_step_deg", error.to_string()))
 }
 
 /// How many samples lie between two shapes; 0 where none are wanted.

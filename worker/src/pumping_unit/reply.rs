@@ -1,5 +1,6 @@
 //! How a run ended and what it cost, as it travels.
 use protocol::job::{self, Counters};
+use protocol::pumping_unit::failure;
 use simulation::statistics::Statistics;
 use simulation::verdict;
 
@@ -9,13 +10,13 @@ pub(super) const fn verdict(verdict: &verdict::Verdict) -> job::Verdict {
         verdict::Verdict::Complete => job::Verdict::Complete,
         verdict::Verdict::Failed { kind, reached } => job::Verdict::Failed {
             kind: match kind {
-                verdict::Failure::OverstretchedRope => job::PhysicsFailure::OverstretchedRope,
-                verdict::Failure::RopeThroughHead => job::PhysicsFailure::RopeThroughHead,
-                verdict::Failure::BeamOvertravel => job::PhysicsFailure::BeamOvertravel,
-                verdict::Failure::LoadNotLifted => job::PhysicsFailure::LoadNotLifted,
-                verdict::Failure::TumbledCylinder => job::PhysicsFailure::TumbledCylinder,
-                verdict::Failure::StepUnderflow => job::PhysicsFailure::StepUnderflow,
-                verdict::Failure::Budget => job::PhysicsFailure::Budget,
+                verdict::Failure::OverstretchedRope => failure::OVERSTRETCHED_ROPE,
+                verdict::Failure::RopeThroughHead => failure::ROPE_THROUGH_HEAD,
+                verdict::Failure::BeamOvertravel => failure::BEAM_OVERTRAVEL,
+                verdict::Failure::LoadNotLifted => failure::LOAD_NOT_LIFTED,
+                verdict::Failure::TumbledCylinder => failure::TUMBLED_CYLINDER,
+                verdict::Failure::StepUnderflow => failure::STEP_UNDERFLOW,
+                verdict::Failure::Budget => failure::BUDGET,
             },
             reached: match reached {
                 verdict::Reached::LoadFraction(x) => job::Reached::LoadFraction(*x),

@@ -4,8 +4,8 @@ use crate::simulator::{Model, Simulator};
 use protocol::{
     announce::EffectDescriptor,
     case::Case,
-    job::{Failure, Observation, SimulateSpec},
-    pumping_unit::{Machine, REDUCE_HEAD, Simulation},
+    job::{Curves, Failure, Observation, SimulateSpec},
+    pumping_unit::{Machine, REDUCE_HEAD},
     wire,
 };
 use simulation::observe::Recorder;
@@ -60,7 +60,7 @@ impl Model for Machines {
         })
     }
 
-    fn draw(&self, spec: &SimulateSpec, motion_step_deg: f64) -> Result<Simulation, Failure> {
+    fn draw(&self, spec: &SimulateSpec, motion_step_deg: f64) -> Result<Curves, Failure> {
         curves::run(self, spec, motion_step_deg)
     }
 }

@@ -10,6 +10,7 @@ use crate::{
 };
 use anyhow::Context as _;
 use clap::Args;
+use protocol::pumping_unit::Simulation;
 use protocol::{case::Case, job::Verdict};
 use std::path::PathBuf;
 
@@ -57,7 +58,8 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let curves = first(groups).context("no result came back")?;
 
-    let verdict = curves.simulation.verdict;
+    let verdict = curves.drawn.verdict;
+    let drawing = Simulation::of(&curves.drawn)?;
     if verdict != Verdict::Complete {
         terminal::tell(&format!("the machine {}", words::verdict(&verdict)));
     }
@@ -71,14 +73,14 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             measured_name: loaded.measured.clone(),
             preset: None,
             seed: None,
-            digest: simulation_digest(&curves.simulation),
+            digest: simulation_digest(&drawing),
             synthetic: loaded.synthetic,
         },
         condition,
         genes_name: arguments.individual.genes.clone(),
         genes: curves.genes.clone(),
         evaluation: curves.evaluation.clone(),
-        simulation: curves.simulation.clone(),
+        simulation: drawing,
         notes,
     };
     if let Some(folder) = &arguments.out {
@@ -91,7 +93,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
     }
-    let object = simulation((case, condition), &curves);
+    let object = simulation((case, condition), &curves, &run.simulation);
     let tables = || {
         let ranges = report::ranges(&run);
         ranges.map_or_else(String::new, |ranges| {

@@ -22,6 +22,7 @@ use crate::{
     report::{self, Calibration, ConditionResult, HistoryPoint, Individual, Origin, WorkerUse},
     study::{self, Calibrated, Compared, Curves},
 };
+use protocol::pumping_unit::Simulation;
 use protocol::{
     event::WorkerAccount,
     job::{Counters, Evaluation},
@@ -36,23 +37,24 @@ pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
     };
     Some(ConditionResult {
         condition: compared.condition,
-        recommended: report_run(recommended),
-        optimised: report_run(optimised),
+        recommended: report_run(recommended)?,
+        optimised: report_run(optimised)?,
     })
 }
 
-fn report_run(curves: &Curves) -> report::Run {
+/// None where another model drew the curves.
+fn report_run(curves: &Curves) -> Option<report::Run> {
     let unscored = || Evaluation {
-        verdict: curves.simulation.verdict,
+        verdict: curves.drawn.verdict,
         fitness: f64::NAN,
         channels: Vec::new(),
         residual: Vec::new(),
         counters: Counters::default(),
     };
-    report::Run {
+    Some(report::Run {
         evaluation: curves.evaluation.clone().unwrap_or_else(unscored),
-        simulation: curves.simulation.clone(),
-    }
+        simulation: Simulation::of(&curves.drawn).ok()?,
+    })
 }
 
 /// Writes the files of a finished run and prints its result.

@@ -1,20 +1,13 @@
 //! How a simulation ended, in words.
 use crate::report::number::percent;
-use protocol::job::{PhysicsFailure, Reached, Verdict};
+use protocol::job::{Reached, Verdict, Word};
+use protocol::pumping_unit::failure;
 
 /// What ended a simulation, in words.
-pub fn failure(kind: PhysicsFailure) -> &'static str {
-    match kind {
-        PhysicsFailure::OverstretchedRope => "a rope joint was stretched beyond its limit",
-        PhysicsFailure::RopeThroughHead => "the rope sank through the surface of a head",
-        PhysicsFailure::BeamOvertravel => "the beam left its working range",
-        PhysicsFailure::LoadNotLifted => "the load was not lifted",
-        PhysicsFailure::TumbledCylinder => "a rope cylinder turned over",
-        PhysicsFailure::StepUnderflow => "the step size fell below its limit",
-        PhysicsFailure::Budget => {
-            "the iteration budget was used up; `iteration_budget` in [run] of case.toml raises it"
-        }
-    }
+pub fn failure(kind: Word) -> String {
+    let mut known = failure::ALL.iter();
+    let known = known.find(|(word, _)| *word == kind);
+    known.map_or_else(|| kind.spoken(), |(_, words)| (*words).to_owned())
 }
 
 /// How a simulation ended, in words, without a full stop.

@@ -12,7 +12,8 @@ use super::turn::Turn;
 use crate::case::{SAMPLES, SPEED, card, grid};
 use nalgebra::Vector3;
 use protocol::announce::EffectDescriptor;
-use protocol::job::{Counters, Observation, PhysicsFailure, Reached, SimulateSpec, Verdict};
+use protocol::job::{Counters, Observation, Reached, SimulateSpec, Verdict};
+use protocol::pumping_unit::failure;
 
 /// Stress per rope tension (MPa/kN), its change along the head, and its bending part, by gauge.
 const SENSITIVITY: [f64; 4] = [0.5, 0.35, 0.45, 0.3];
@@ -307,7 +308,7 @@ impl Machine {
 fn failed() -> Observation {
     Observation {
         verdict: Verdict::Failed {
-            kind: PhysicsFailure::OverstretchedRope,
+            kind: failure::OVERSTRETCHED_ROPE,
             reached: Reached::LoadFraction(0.1),
         },
         counters: Counters::default(),

@@ -3,7 +3,7 @@ use super::score::{GeneOutput, ScoreOutput, channels, genes, objective};
 use crate::study::{Curves, simulation_digest};
 use protocol::{
     case::Case,
-    job::{Counters, Reached, Verdict},
+    job::{Counters, Reached, Verdict, Word},
     pumping_unit::{Energy, Simulation},
 };
 use serde::Serialize;
@@ -67,14 +67,14 @@ pub(crate) enum VerdictOutput {
     /// It failed while the static load was applied.
     Settling {
         /// What happened.
-        kind: &'static str,
+        kind: Word,
         /// Share of the load that was applied.
         load_fraction: f64,
     },
     /// It failed in motion.
     Moving {
         /// What happened.
-        kind: &'static str,
+        kind: Word,
         /// Share of the simulated time that was reached.
         time_fraction: f64,
     },
@@ -88,14 +88,14 @@ impl From<Verdict> for VerdictOutput {
                 kind,
                 reached: Reached::LoadFraction(load_fraction),
             } => Self::Settling {
-                kind: kind.as_str(),
+                kind,
                 load_fraction,
             },
             Verdict::Failed {
                 kind,
                 reached: Reached::TimeFraction(time_fraction),
             } => Self::Moving {
-                kind: kind.as_str(),
+                kind,
                 time_fraction,
             },
         }
@@ -106,8 +106,8 @@ impl From<Verdict> for VerdictOutput {
 pub(crate) fn simulation<'a>(
     (case, condition): (&'a Case, usize),
     curves: &'a Curves,
+    simulation: &'a Simulation,
 ) -> SimulateOutput<'a> {
-    let simulation: &Simulation = &curves.simulation;
     let gauges = (1..).zip(&simulation.gauge_mpa);
     let [back, front] = &simulation.tension_difference_n;
     SimulateOutput {

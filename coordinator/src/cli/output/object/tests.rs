@@ -5,9 +5,10 @@ use super::{
     simulation::{VerdictOutput, simulation},
 };
 use crate::study::{Curves, simulation_digest};
+use protocol::pumping_unit::failure;
 use protocol::{
     case::Case,
-    job::{ChannelScore, Counters, Evaluation, PhysicsFailure, Reached, Verdict},
+    job::{ChannelScore, Counters, Evaluation, Reached, Verdict},
     pumping_unit::{Energy, Simulation},
 };
 use serde_json::Value;
@@ -43,30 +44,34 @@ fn curves(verdict: Verdict) -> Curves {
             residual: Vec::new(),
             counters: Counters::default(),
         }),
-        simulation: Simulation {
-            verdict,
-            counters: Counters {
-                steps: 300,
-                ..Counters::default()
-            },
-            wall_s: 0.25,
-            turn_deg: vec![0.0, 0.5],
-            gauge_mpa: [vec![1.0, 2.0], vec![3.0; 2], vec![4.0; 2], vec![5.0; 2]],
-            back_rope_tension_n: vec![1e5; 2],
-            front_rope_tension_n: vec![9e4; 2],
-            tension_difference_n: [Vec::new(), Vec::new()],
-            beam_deg: vec![6.0; 2],
-            suspension_m: vec![7.0; 2],
-            suspension_velocity_m_s: vec![8.0; 2],
-            suspension_acceleration_m_s2: vec![9.0; 2],
-            crank_torque_n_m: vec![10.0; 2],
-            modal: Vec::new(),
-            energy: Energy {
-                input_j: 11.0,
-                ..Energy::default()
-            },
-            motion: Vec::new(),
+        drawn: drawing(verdict).into_curves(Vec::new()).unwrap(),
+    }
+}
+
+fn drawing(verdict: Verdict) -> Simulation {
+    Simulation {
+        verdict,
+        counters: Counters {
+            steps: 300,
+            ..Counters::default()
         },
+        wall_s: 0.25,
+        turn_deg: vec![0.0, 0.5],
+        gauge_mpa: [vec![1.0, 2.0], vec![3.0; 2], vec![4.0; 2], vec![5.0; 2]],
+        back_rope_tension_n: vec![1e5; 2],
+        front_rope_tension_n: vec![9e4; 2],
+        tension_difference_n: [Vec::new(), Vec::new()],
+        beam_deg: vec![6.0; 2],
+        suspension_m: vec![7.0; 2],
+        suspension_velocity_m_s: vec![8.0; 2],
+        suspension_acceleration_m_s2: vec![9.0; 2],
+        crank_torque_n_m: vec![10.0; 2],
+        modal: Vec::new(),
+        energy: Energy {
+            input_j: 11.0,
+            ..Energy::default()
+        },
+        motion: Vec::new(),
     }
 }
 
@@ -84,7 +89,8 @@ fn fields(value: &Value) -> Vec<&str> {
 #[test]
 fn a_simulation_has_the_fields_that_programs_rely_on() {
     let (case, curves) = (case(), curves(Verdict::Complete));
-    let value = serde_json::to_value(simulation((&case, 0), &curves)).unwrap();
+    let drawn = drawing(Verdict::Complete);
+    let value = serde_json::to_value(simulation((&case, 0), &curves, &drawn)).unwrap();
     assert_eq!(
         fields(&value),
         [
@@ -135,13 +141,13 @@ fn a_simulation_has_the_fields_that_programs_rely_on() {
 
 #[test]
 fn a_failed_simulation_says_what_happened_and_how_far_it_got() {
-    let kind = PhysicsFailure::LoadNotLifted;
+    let kind = failure::LOAD_NOT_LIFTED;
     let verdict = Verdict::Failed {
         kind,
         reached: Reached::LoadFraction(0.75),
     };
     let (case, failed) = (case(), curves(verdict));
-    let value = serde_json::to_value(simulation((&case, 0), &failed)).unwrap();
+    let value = serde_json::to_value(simulation((&case, 0), &failed, &drawing(verdict))).unwrap();
     assert!(value["energy"].is_null());
     let expected = serde_json::json!({ "kind": "load_not_lifted", "load_fraction": 0.75 });
     assert_eq!(value["verdict"], expected);
@@ -226,7 +232,7 @@ fn a_calibration_has_the_fields_that_programs_rely_on() {
 
 #[test]
 fn the_digest_of_a_simulation_sees_its_curves_but_not_its_wall_time() {
-    let one = curves(Verdict::Complete).simulation;
+    let one = drawing(Verdict::Complete);
     let digest = simulation_digest(&one);
     assert_eq!(digest.len(), 64);
     let mut slower = one.clone();

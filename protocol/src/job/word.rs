@@ -1,0 +1,106 @@
+//! A model's own word for something, as short data that can be copied.
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use std::fmt;
+
+/// Up to 31 small letters, digits and `_`, as `step_underflow`.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Word {
+    letters: [u8; Self::MOST],
+    length: u8,
+}
+
+impl Word {
+    /// Most letters of a word.
+    pub const MOST: usize = 31;
+
+    /// A word; none of a text that is none.
+    pub const fn of(text: &str) -> Option<Self> {
+        let bytes = text.as_bytes();
+        if bytes.len() > Self::MOST {
+            return None;
+        }
+        let mut letters = [0; Self::MOST];
+        let mut at = 0;
+        while at < bytes.len() {
+            if !matches!(bytes[at], b'a'..=b'z' | b'0'..=b'9' | b'_') {
+                return None;
+            }
+            letters[at] = bytes[at];
+            at += 1;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            reason = "not above the length of a word"
+        )]
+        let length = bytes.len() as u8;
+        Some(Self { letters, length })
+    }
+
+    /// A word that a program states itself.
+    ///
+    /// # Panics
+    /// Where the text is none: of a constant, when it is compiled.
+    pub const fn new(text: &str) -> Self {
+        Self::of(text).expect("a word of small letters, digits and `_`")
+    }
+
+    /// As it was written.
+    pub fn as_str(&self) -> &str {
+        let letters = self
+            .letters
+            .get(..usize::from(self.length))
+            .unwrap_or_default();
+        std::str::from_utf8(letters).unwrap_or_default()
+    }
+
+    /// With spaces, as a sentence has it.
+    pub fn spoken(&self) -> String {
+        self.as_str().replace('_', " ")
+    }
+}
+
+impl fmt::Debug for Word {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str(self.as_str())
+    }
+}
+
+impl fmt::Display for Word {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        to.write_str(self.as_str())
+    }
+}
+
+impl Serialize for Word {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.serialize_str(self.as_str())
+    }
+}
+
+impl<'de> Deserialize<'de> for Word {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let text = String::deserialize(from)?;
+        Self::of(&text).ok_or_else(|| D::Error::custom(format!("\"{text}\" is no word")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Word;
+
+    #[test]
+    fn a_word_comes_back_and_anything_else_is_refused() {
+        let word = Word::new("step_underflow");
+        assert_eq!(
+            (word.as_str(), word.spoken().as_str()),
+            ("step_underflow", "step underflow")
+        );
+        let bytes = crate::wire::encode(&word).unwrap();
+        assert_eq!(crate::wire::decode::<Word>(&bytes), Ok(word));
+        for text in ["Two Words", "\u{1b}[2J", &"x".repeat(32)] {
+            assert_eq!(Word::of(text), None, "{text}");
+            let bytes = crate::wire::encode(&text).unwrap();
+            assert!(crate::wire::decode::<Word>(&bytes).is_err(), "{text}");
+        }
+    }
+}

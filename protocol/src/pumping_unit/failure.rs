@@ -1,0 +1,37 @@
+//! What ends a run of a pumping unit early.
+use crate::job::Word;
+
+/// A rope joint stretched beyond its limit.
+pub const OVERSTRETCHED_ROPE: Word = Word::new("overstretched_rope");
+/// The rope sank through the surface of a head.
+pub const ROPE_THROUGH_HEAD: Word = Word::new("rope_through_head");
+/// The beam left its working range.
+pub const BEAM_OVERTRAVEL: Word = Word::new("beam_overtravel");
+/// The load stayed below its lowest design position.
+pub const LOAD_NOT_LIFTED: Word = Word::new("load_not_lifted");
+/// A cylinder turned over, out of its chain.
+pub const TUMBLED_CYLINDER: Word = Word::new("tumbled_cylinder");
+/// The step size fell below its limit.
+pub const STEP_UNDERFLOW: Word = Word::new("step_underflow");
+/// The iteration budget was used up.
+pub const BUDGET: Word = Word::new("budget");
+
+/// Each of them with what it says, as a part of a sentence.
+pub const ALL: [(Word, &str); 7] = [
+    (
+        OVERSTRETCHED_ROPE,
+        "a rope joint was stretched beyond its limit",
+    ),
+    (
+        ROPE_THROUGH_HEAD,
+        "the rope sank through the surface of a head",
+    ),
+    (BEAM_OVERTRAVEL, "the beam left its working range"),
+    (LOAD_NOT_LIFTED, "the load was not lifted"),
+    (TUMBLED_CYLINDER, "a rope cylinder turned over"),
+    (STEP_UNDERFLOW, "the step size fell below its limit"),
+    (
+        BUDGET,
+        "the iteration budget was used up; `iteration_budget` in [run] of case.toml raises it",
+    ),
+];
