@@ -1,9 +1,7 @@
 //! Unknowns of the case that stand where they do nothing: held there in every fit, and suspected like the
 //! effects of the library, by their own name and with one size.
-use crate::model::parameter::setting;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Place, Role, Sign};
 use protocol::case::Unknown;
-use protocol::job::Individual;
 
 /// How large an unknown of which the case says nothing more commonly is, over its interval.
 const SHARE: f64 = 0.25;
@@ -64,21 +62,5 @@ impl Off {
             parameters: vec![parameter],
         };
         Some(Self { position, suspect })
-    }
-}
-
-/// Puts what was added to a model, at scaled values, into an individual: the value of an unknown that was
-/// off, else an effect beside the case's.
-pub(crate) fn apply(
-    off: &[Off],
-    added: &EffectDescriptor,
-    scaled: &[f64],
-    individual: &mut Individual,
-) {
-    let setting = setting(added, scaled);
-    let unknown = off.iter().find(|off| off.suspect.id == added.id);
-    match (unknown, setting.parameters.first()) {
-        (Some(off), Some((_, value))) => individual.genes[off.position] = *value,
-        _ => individual.effects.push(setting),
     }
 }

@@ -3,9 +3,10 @@
 //! A point is a vector: unknowns of the case by their coordinates in the space, then the parameters of
 //! each added effect in units of their physical scale, from their absent value. What an effect does is
 //! the workers' business; here it is a name with numbers.
-use crate::model::off::{Off, apply};
-use crate::model::parameter::variable;
+use crate::model::off::Off;
+use crate::model::parameter::{setting, variable};
 use protocol::announce::EffectDescriptor;
+use protocol::case::EffectSetting;
 use protocol::{
     job::{Individual, Reply, SimulateSpec},
     pumping_unit::Discretisation,
@@ -80,7 +81,24 @@ impl Model {
 
     /// Values of all unknowns of the case at a point, in declared units.
     pub fn genes(&self, x: &[f64]) -> Vec<f64> {
-        self.space.values(&x[..self.space.dimension()])
+        let mut values = self.space.values(&x[..self.space.dimension()]);
+        for (off, setting) in self.settings(x) {
+            if let (Some(off), Some((_, value))) = (off, setting.parameters.first()) {
+                values[off.position] = *value;
+            }
+        }
+        values
+    }
+
+    /// What was added, at a point; with the unknown that it is, if it is one.
+    fn settings(&self, x: &[f64]) -> impl Iterator<Item = (Option<&Off>, EffectSetting)> {
+        let added = self.added.iter().enumerate();
+        added.map(move |(position, added)| {
+            let first = self.first_of(position);
+            let own = &x[first..first + added.parameters.len()];
+            let off = self.off.iter().find(|off| off.suspect.id == added.id);
+            (off, setting(added, own))
+        })
     }
 }
 
@@ -114,12 +132,9 @@ impl Point {
     /// The job that simulates it under a condition.
     pub fn experiment(&self, condition: usize, discretisation: Discretisation) -> SimulateSpec {
         let Self { model, x } = self;
+        let effects = model.settings(x).filter(|(off, _)| off.is_none());
         let mut individual = Individual::new(condition, model.genes(x));
-        for (position, added) in model.added.iter().enumerate() {
-            let first = model.first_of(position);
-            let own = &x[first..first + added.parameters.len()];
-            apply(&model.off, added, own, &mut individual);
-        }
+        individual.effects = effects.map(|(_, setting)| setting).collect();
         SimulateSpec {
             individual,
             discretisation,

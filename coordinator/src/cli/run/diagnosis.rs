@@ -10,7 +10,7 @@ use crate::{
     cli::output::problem::Usage,
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
-use discrepancy::{diagnose::Inputs, thresholds::Thresholds};
+use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
 use protocol::{
     announce::EffectDescriptor,
     pumping_unit::{Discretisation, Machine},
@@ -44,7 +44,7 @@ impl manifest::Decides for Decides {
 pub(crate) struct Found {
     /// The answer and what it cost.
     pub(crate) diagnosed: Diagnosed,
-    /// Effects that the workers know and the case has not.
+    /// Effects that the workers know and the case has not, and unknowns of the case that are off.
     pub(crate) library: Vec<EffectDescriptor>,
 }
 
@@ -94,8 +94,10 @@ pub(crate) async fn diagnose<E: Evaluator>(
     stop: &mut Stop,
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
+    let off = Off::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {
-        if library.iter().all(|effect| effect.id != *id) {
+        let mut known = library.iter().chain(off.iter().map(|off| &off.suspect));
+        if known.all(|suspect| suspect.id != *id) {
             let names = library.iter().filter(|e| !e.generic).map(|e| e.id.as_str());
             let known: Vec<&str> = names.collect();
             return Err(Usage {
@@ -107,9 +109,10 @@ pub(crate) async fn diagnose<E: Evaluator>(
     }
     let inputs = inputs(loaded, manifest, library)?;
     let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
+    let off = off.into_iter().map(|off| off.suspect);
     Ok(Found {
         diagnosed,
-        library: inputs.library,
+        library: inputs.library.into_iter().chain(off).collect(),
     })
 }
 

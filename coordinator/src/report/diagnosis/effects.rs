@@ -12,13 +12,14 @@ pub fn effects_toml(subject: &Subject<'_>) -> Option<String> {
     (!effects.is_empty()).then(|| write_effects(&effects))
 }
 
-/// The added effects, with intervals and where they come from.
+/// The added effects, with intervals and where they come from; an unknown of the case that was off is none.
 pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
     let diagnosis = subject.diagnosis();
     let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
         let id = round.added.as_ref()?;
         let found = diagnosis.effects.iter().find(|effect| effect.id == *id)?;
-        Some(entry(subject, found, number, &round.set))
+        let effect = found.unknown.is_none();
+        effect.then(|| entry(subject, found, number, &round.set))
     });
     found.collect()
 }
