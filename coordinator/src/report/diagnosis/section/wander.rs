@@ -29,8 +29,8 @@ fn blocks(subject: &Subject<'_>) -> Vec<Block> {
         return Vec::new();
     };
     let mut blocks = vec![Block::Text(
-        "A parameter of the machine is the same at every crank angle and at every speed. One that \
-         would have to change from part to part makes up for something that the model lacks."
+        "A parameter is the same everywhere along a record and under every condition. One that would \
+         have to change from part to part makes up for something that the model lacks."
             .to_owned(),
     )];
     let none = [

@@ -36,7 +36,7 @@ pub(in crate::report::diagnosis) fn numerics(subject: &Subject<'_>) -> Option<Ta
     }
     notes.push(
         "What recalibration leaves of the difference counts as noise in every test, so that no effect is \
-         named for what a coarser rope does; a name must be believed with that of the answer as well."
+         named for what a coarser model does; a name must be believed with that of the answer as well."
             .to_owned(),
     );
     Table::new(

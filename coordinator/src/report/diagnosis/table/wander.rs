@@ -1,4 +1,4 @@
-//! Parameters that would have to wander along the turn or with the speed.
+//! Parameters that would have to wander along a record or from condition to condition.
 use crate::report::diagnosis::subject::Subject;
 use crate::report::document::{Row, Table};
 use crate::report::number::{figure, fixed, percent};
@@ -21,34 +21,41 @@ pub(in crate::report::diagnosis) struct Wandering<'a> {
     pub wander: &'a [Wander],
 }
 
-/// The genes that would have to wander under a model, with the values that they would take.
+/// The unknowns that would have to wander under a model, with the values that they would take.
 pub(in crate::report::diagnosis) fn wander(
     subject: &Subject<'_>,
     Wandering { title, fit, wander }: &Wandering<'_>,
 ) -> Option<Table> {
     let clear: Vec<&Wander> = clear(fit, wander).collect();
     let first = clear.first()?;
+    let channels = subject.calibrated().map(|record| &record.channels);
+    let axis_unit = channels.and_then(|all| Some(all.first()?.channel.abscissa.unit.as_str()));
+    let axis_unit = axis_unit.unwrap_or_default();
+    let at = |place| match axis_unit {
+        "deg" => fixed(place, 0),
+        _ => figure(place),
+    };
     let part = |shift: &Shift| match shift.part {
         Part::Sector { from, to } => {
-            format!("{} to {} deg", fixed(from, 0), fixed(to, 0))
+            format!("{} to {} {axis_unit}", at(from), at(to))
         }
         Part::Condition(index) => condition_name(subject.case, index),
     };
     let parts = first.shifts.iter().map(part);
-    let head = [String::new(), "whole turn".to_owned()].into_iter();
+    let head = [String::new(), "whole record".to_owned()].into_iter();
     let head = head.chain(parts).chain(["takes up".to_owned()]);
     let rows = clear.iter().take(SHOWN).filter_map(|wander| {
         let k = wander.unknown;
         let axis = fit.model.space.axes().get(k)?;
-        let at = |by: f64| figure(axis.value(fit.x()[k] + by));
+        let value = |by: f64| figure(axis.value(fit.x()[k] + by));
         let moved = |shift: &Shift| {
             if shift.p_value <= CLEAR {
-                at(shift.by)
+                value(shift.by)
             } else {
-                format!("({})", at(shift.by))
+                format!("({})", value(shift.by))
             }
         };
-        let mut cells = vec![at(0.0)];
+        let mut cells = vec![value(0.0)];
         cells.extend(wander.shifts.iter().map(moved));
         cells.push(percent(wander.explained));
         Some(Row::of(&axis.unknown, cells))
@@ -59,12 +66,12 @@ pub(in crate::report::diagnosis) fn wander(
     };
     Some(table.noted([
         "Each refitted alone, linearly, all others held; values in brackets lie within the scatter \
-         between cycles. The last column is the share of what is left along the turn that it would take \
+         between cycles. The last column is the share of what is left along the record that it would take \
          up.",
     ]))
 }
 
-/// Genes of which some part stands out of the noise.
+/// Unknowns of which some part stands out of the noise.
 fn clear<'a>(fit: &Fit, wander: &'a [Wander]) -> impl Iterator<Item = &'a Wander> {
     let genes = fit.model.space.dimension();
     wander.iter().filter(move |wander| {
