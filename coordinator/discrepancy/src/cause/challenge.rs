@@ -1,7 +1,7 @@
 //! Forces without a cause against the best name.
 //!
 //! The library cannot hold everything. A force of simple form across a joint (a constant, a sign, a
-//! power, a harmonic) knows no cause; where such a force, refitted with every gene free, explains much
+//! power, a harmonic) knows no cause; where such a force, refitted with every unknown free, explains much
 //! more than the best name does, or leaves nothing but noise where the name does not, the name is not
 //! believed. A form that a library effect *is* (its projected signature is nearly the same) is no
 //! challenger: then the name is the better word for it.

@@ -2,7 +2,7 @@
 //!
 //! Where two effects act, each alone may explain less than a force that resembles their sum. All pairs
 //! are tried on the projected linear system (a few hundred tiny solves); what it proposes, a refit
-//! with every gene free judges.
+//! with every unknown free judges.
 use crate::cause::suspect::{Suspect, joined};
 use crate::laboratory::Laboratory;
 use crate::linear::score::score;

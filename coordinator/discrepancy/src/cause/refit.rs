@@ -1,4 +1,4 @@
-//! The suspects switched on for real: every gene and every parameter of the effect free.
+//! The suspects switched on for real: every unknown and every parameter of the effect free.
 use crate::cause::suspect::Suspect;
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;

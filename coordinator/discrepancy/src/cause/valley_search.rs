@@ -22,7 +22,7 @@ const LEADERS: usize = 2;
 const SHARE: f64 = 0.3;
 /// Share of the best refit's gain of evidence from which a suspect is refitted from the deepest valley.
 const HOPEFUL: f64 = 0.1;
-/// Share of the misfit of a lost valley from which the genes of rivals are tried, and other stiffness and
+/// Share of the misfit of a lost valley from which the unknowns of rivals are tried, and other stiffness and
 /// contact: a contact that is too soft leaves as much.
 const LOOSE: f64 = 0.5;
 /// Looks for valleys in one round: each begins where the one before ended.
@@ -139,7 +139,7 @@ fn leaders(round: &Round, bound: f64) -> Vec<usize> {
         .collect()
 }
 
-/// A suspect's own effect with the genes of each other.
+/// A suspect's own effect with the unknowns of each other.
 fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
     let rivals = round.refits.iter().enumerate().filter(|(k, _)| *k != own);
     rivals
@@ -147,7 +147,7 @@ fn from_rivals(round: &Round, own: usize, genes: usize) -> Vec<Point> {
         .collect()
 }
 
-/// The genes of one fit with everything else of another.
+/// The unknowns of one fit with everything else of another.
 fn crossed(genes_of: &Fit, rest_of: &Fit, genes: usize) -> Point {
     let mut point = rest_of.point();
     point.x[..genes].copy_from_slice(&genes_of.x()[..genes]);

@@ -8,8 +8,8 @@ use crate::model::experiments::Experiments;
 use crate::model::unknowns::{Model, Point};
 use search::strategy::{Plan, Told, build, preset};
 
-/// Starts for the fit: points of the search's archive, best first, that differ in the scanned gene. The
-/// genes are searched; `rest` are the parameters of the model's effects, which stay.
+/// Starts for the fit: points of the search's archive, best first, that differ in the scanned unknown. The
+/// unknowns are searched; `rest` are the parameters of the model's effects, which stay.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -61,10 +61,10 @@ pub async fn enter<L: Laboratory>(
     Ok(best.map(point).collect())
 }
 
-/// The best points, no two of which lie within a few hundredths of a decade in every gene.
+/// The best points, no two of which lie within a few hundredths of a decade in every unknown.
 fn apart(ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     const STARTS: usize = 3;
-    /// Decades; the first gene is the one with the narrow valley.
+    /// Decades; the first unknown is the one with the narrow valley.
     const NEAR: [f64; 2] = [0.03, 0.15];
     let mut kept: Vec<Vec<f64>> = Vec::new();
     for x in ranked {

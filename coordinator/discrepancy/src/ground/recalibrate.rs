@@ -1,4 +1,4 @@
-//! Recalibration: all genes, in the metric of the tests, until the gradient vanishes.
+//! Recalibration: all unknowns, in the metric of the tests, until the gradient vanishes.
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;

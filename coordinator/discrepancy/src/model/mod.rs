@@ -1,4 +1,4 @@
-//! What is fitted, and how: the case's genes and the parameters of added effects as unknowns, fits of
+//! What is fitted, and how: the case's unknowns and the parameters of added effects, fits of
 //! them to a record, and the experiments that a fit takes. What an effect does it does not know.
 pub mod experiments;
 pub(crate) mod fit;

@@ -1,7 +1,7 @@
 //! The gap that is left, with its interval: on the cycles that were fitted, on those that were not,
 //! and under a condition that took no part.
 //!
-//! By channel `g = (MSE - se^2) / var`, both curves without their means; over the gauges the mean.
+//! By channel `g = (MSE - se^2) / var`, both curves without their means; over the scored channels the mean.
 //! `closed = 1 - g_after / g_before`; intervals by resampling the cycles, before and after on the
 //! same resample. A gap that closes does not prove a name: a wrong effect often closes most of it,
 //! which is why the best rejected rival is always shown beside.
@@ -23,7 +23,7 @@ pub struct Closed {
     pub interval: Option<[f64; 2]>,
 }
 
-/// The gap over the gauges of a record; the mean of the channels' gaps, not below 0.
+/// The gap over the scored channels of a record; the mean of the channels' gaps, not below 0.
 pub fn gap(record: &Record, simulated: &Curves) -> f64 {
     Ruler::new(record).gap(simulated)
 }

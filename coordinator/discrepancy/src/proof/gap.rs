@@ -1,5 +1,5 @@
 //! The gap between a record and a simulation at one channel, less what the record's own scatter
-//! explains, and where on the revolution and in which orders of the crank it lies.
+//! explains, and where on the period and in which of its orders it lies.
 //!
 //! With the mean over N cycles `y`, its standard error `se` from the scatter between cycles, and the
 //! simulated curve `s`, both without their means:
@@ -14,7 +14,7 @@ use std::ops::RangeInclusive;
 /// Width of a sector of the revolution (deg).
 pub const SECTOR_DEG: f64 = 30.0;
 
-/// Bands of orders of the crank, and what usually lives there.
+/// Bands of orders of the period, and what usually lives there.
 pub const BANDS: [(&str, RangeInclusive<usize>); 4] = [
     ("slow: lengths, weights, lever arms, zero drift", 1..=5),
     ("load and rod string", 6..=30),
@@ -31,7 +31,7 @@ pub struct Gap {
     pub noise: f64,
     /// Mean square of the measured curve about its mean.
     pub variance: f64,
-    /// Share of the squared residual per sector of [`SECTOR_DEG`], from bottom dead centre on.
+    /// Share of the squared residual per sector of [`SECTOR_DEG`], from the first sample on.
     pub sectors: Vec<f64>,
     /// Share of the squared residual per band of [`BANDS`].
     pub bands: [f64; BANDS.len()],

@@ -146,7 +146,7 @@ struct Seen {
     signatures: Vec<DMatrix<f64>>,
 }
 
-/// Differences of the genes and of all visible effects on another record; nothing if one of the
+/// Differences of the unknowns and of all visible effects on another record; nothing if one of the
 /// simulations failed.
 async fn linearized<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
