@@ -2,7 +2,7 @@
 //!
 //! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
 use crate::account::JobCost;
-use protocol::case::Case;
+use protocol::case::{Case, Channel};
 use protocol::event::Spent;
 use protocol::{job::Evaluation, pumping_unit::Simulation};
 
@@ -26,9 +26,9 @@ pub struct HistoryPoint {
     pub purpose: String,
     /// Gene values in declared units, in the case's order.
     pub genes: Vec<f64>,
-    /// Objective [MPa^2] if complete, a graded value above every complete one's otherwise.
+    /// Objective in its squared unit if complete, a graded value above every complete one's otherwise.
     pub fitness: f64,
-    /// Whether the whole revolution was simulated.
+    /// Whether it was simulated to its end.
     pub complete: bool,
     /// What ended it early, in words.
     pub failure: Option<String>,
@@ -82,6 +82,13 @@ pub struct Shown<'a> {
     pub condition: usize,
     /// Its curves, as far as it got.
     pub simulation: &'a Simulation,
+}
+
+impl Shown<'_> {
+    /// The curve of a channel, as far as the simulation got.
+    pub(crate) fn channel(&self, channel: &Channel) -> &[f64] {
+        self.simulation.channel(&channel.name)
+    }
 }
 
 /// Both parameter sets under one condition.

@@ -1,9 +1,8 @@
 //! What one kind of model shows in a report beside what all of them show.
 use super::data::{Shown, SingleRun};
-use super::document::{Figure, Table};
+use super::document::{Figure, Section, Table};
 use super::folder::ReportError;
-use maud::Markup;
-use protocol::case::Case;
+use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
 /// A kind of model as reports show it.
@@ -12,13 +11,20 @@ pub(crate) trait Drawing: Sync {
     fn kind(&self) -> &'static str;
 
     /// Its channels, drawn from all that was simulated.
-    fn channels(&self, of: &Shown<'_>) -> Figure;
+    fn channels(&self, of: &Shown<'_>) -> Vec<Figure>;
 
     /// Curves of what no channel holds.
     fn figures(&self, of: &Shown<'_>) -> Vec<Figure>;
 
-    /// The model in motion; none where the simulation left nothing to move.
-    fn moving(&self, of: &Shown<'_>) -> Option<Markup>;
+    /// Sections of its own, from a simulation if there is one, with the parameters that it is named
+    /// after.
+    fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section>;
+
+    /// Where its abscissas begin, behind their name; empty where that needs no words.
+    fn zero(&self) -> &'static str;
+
+    /// The group of a table that an unknown stands in; parameters of effects have their own.
+    fn group(&self, unknown: &Unknown) -> &'static str;
 
     /// One simulation in numbers: first the ranges of its curves, then everything else.
     fn tables(&self, run: &SingleRun) -> Vec<Table>;

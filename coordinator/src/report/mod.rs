@@ -6,14 +6,16 @@
 //!
 //! From below upwards: `number`, `color` and `words` say one thing each; `document` is what every report
 //! is made of, and its forms; `table` and `chart` fill it, and `drawing` is what a kind of model fills in,
-//! those of `kind`; `section` lists what a report says; `folder` and `write` make files of it.
+//! those of `kind`, else `general`; `section` lists what a report says; `folder` and `write` make files of it.
 pub mod chart;
 pub(crate) mod color;
+mod csv;
 pub(crate) mod data;
 pub mod diagnosis;
 pub(crate) mod document;
 pub(crate) mod drawing;
 pub(crate) mod folder;
+mod general;
 mod kind;
 pub(crate) mod number;
 mod section;

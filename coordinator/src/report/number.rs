@@ -65,6 +65,15 @@ pub(crate) fn figure(value: f64) -> String {
     fixed(value, decimals)
 }
 
+/// Without decimals where it has none, else three significant digits.
+pub(crate) fn plain(value: f64) -> String {
+    if (value - value.round()).abs() < 1e-9 {
+        fixed(value, 0)
+    } else {
+        figure(value)
+    }
+}
+
 /// A fixed number of decimals.
 pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if !value.is_finite() {

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// The report of a calibration.
 pub fn calibration(calibration: &Calibration) -> Report {
     let title = format!("Calibration of {}", calibration.case.name);
-    let sections = section::CALIBRATION.iter().map(|one| one(calibration));
+    let sections = section::calibration(calibration);
     Report::new(title, &calibration.origin.run, sections)
 }
 
@@ -20,13 +20,12 @@ pub fn parameters(calibration: &Calibration, styled: bool) -> String {
 /// The report of one simulation.
 pub fn simulation(run: &SingleRun) -> Report {
     let title = format!("Simulation of {}", run.case.name);
-    let sections = section::SIMULATION.iter().map(|one| one(run));
-    Report::new(title, &run.origin.run, sections)
+    Report::new(title, &run.origin.run, section::simulation(run))
 }
 
-/// The ranges of a simulation's curves; none for a kind of model that has no more than its channels.
+/// The ranges of a simulation's curves.
 pub fn ranges(run: &SingleRun) -> Option<Table> {
-    kind::of(&run.case)?.tables(run).into_iter().next()
+    kind::of(&run.case).tables(run).into_iter().next()
 }
 
 /// Writes the report of a calibration into a folder, which is made if it does not exist:
@@ -36,9 +35,7 @@ pub fn ranges(run: &SingleRun) -> Option<Table> {
 /// [`ReportError`] when a file cannot be written.
 pub fn write_calibration(folder: &Path, of: &Calibration) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = write_report(folder, &calibration(of))?;
-    if let Some(kind) = kind::of(&of.case) {
-        written.extend(kind.files(folder, &of.shown())?);
-    }
+    written.extend(kind::of(&of.case).files(folder, &of.shown())?);
     Ok(written)
 }
 
@@ -50,8 +47,7 @@ pub fn write_calibration(folder: &Path, of: &Calibration) -> Result<Vec<PathBuf>
 /// [`ReportError`] when a file cannot be written.
 pub fn write_simulation(folder: &Path, run: &SingleRun) -> Result<Vec<PathBuf>, ReportError> {
     let mut written = write_report(folder, &simulation(run))?;
-    if let Some(kind) = kind::of(&run.case) {
-        written.extend(kind.files(folder, &[(&run.genes_name, run.shown())])?);
-    }
+    let alone = [(run.genes_name.as_str(), run.shown())];
+    written.extend(kind::of(&run.case).files(folder, &alone)?);
     Ok(written)
 }

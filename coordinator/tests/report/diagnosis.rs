@@ -256,9 +256,7 @@ fn the_folder_holds_the_figures_and_the_data_behind_them() {
     let curves = read("curves.csv");
     // two conditions, four channels, 360 angles
     assert_eq!(curves.lines().count(), 1 + 2 * 4 * 360);
-    assert!(
-        curves.starts_with("condition,channel,unit,turn_deg,measured,spread,before,after,rival")
-    );
+    assert!(curves.starts_with("condition,channel,unit,at,measured,spread,before,after,rival"));
     let suspects = read("suspects.csv");
     assert_eq!(suspects.lines().count(), 1 + 8 + 1);
     let best = suspects.lines().nth(1).unwrap();

@@ -1,10 +1,11 @@
 //! Contact between back rope and head: force per length over crank angle and place on the arc.
+use super::revolution;
 use crate::quantile;
 use crate::report::chart::canvas::{Canvas, Lettering, WIDTH, render};
-use crate::report::chart::panel::{CRANK_TITLE, Panel};
+use crate::report::chart::panel::Panel;
 use crate::report::chart::points::thinned;
 use crate::report::chart::scale::Scale;
-use crate::report::color::{self, GREY, INK};
+use crate::report::color::{GREY, INK, STRENGTH};
 use crate::report::document::Figure;
 use protocol::pumping_unit::{Machine, Motion, Simulation};
 
@@ -81,12 +82,13 @@ pub(super) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figu
     let angles = cells
         .iter()
         .flat_map(|cell| [cell.psi_deg - half_deg, cell.psi_deg + half_deg]);
+    let axis = revolution::axis();
     let panel = Panel {
         left: 62.0,
         top: 14.0,
         width: WIDTH - 62.0 - 110.0,
         height: HEIGHT - 14.0 - 46.0,
-        x: Scale::crank(),
+        x: axis.scale,
         y: Scale::linear(angles, 6.0),
     };
     let title = "Contact of the back rope on its head";
@@ -98,11 +100,11 @@ pub(super) fn contact(machine: &Machine, simulation: &Simulation) -> Option<Figu
             canvas.rectangle(
                 (left, upper - OVERLAP),
                 ((right + OVERLAP).min(panel.right()), lower),
-                color::pressure(cell.force / top),
+                STRENGTH.at(cell.force / top),
             );
         }
         panel.left_axis(canvas, true, "angle on the arc, beam frame [deg]");
-        panel.lower_axis(canvas, true, CRANK_TITLE);
+        panel.lower_axis(canvas, true, &axis.title);
         ramp(canvas, &panel, top);
     });
     Some(Figure {
@@ -134,7 +136,7 @@ fn ramp(canvas: &mut Canvas, panel: &Panel, top: f64) {
         canvas.rectangle(
             (left, upper - OVERLAP),
             bar.at((1.0, share * top)),
-            color::pressure(share),
+            STRENGTH.at(share),
         );
     }
     let head = Lettering::new(10.5, GREY);

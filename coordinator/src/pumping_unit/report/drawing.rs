@@ -1,11 +1,12 @@
 //! The pumping unit's part of a report, as the report asks for it.
 use super::{animation, card::card, contact::contact, csv, revolution, single};
 use crate::report::data::{Shown, SingleRun};
-use crate::report::document::{Figure, Table};
+use crate::report::document::{Block, Figure, Section, Table};
 use crate::report::drawing::Drawing;
 use crate::report::folder::{ReportError, stream};
-use maud::Markup;
-use protocol::{case::Case, pumping_unit::Machine};
+use maud::html;
+use protocol::case::{Case, Unknown};
+use protocol::pumping_unit::{Coefficient, Machine};
 use std::path::{Path, PathBuf};
 
 /// The model of a pumping unit.
@@ -16,8 +17,8 @@ impl Drawing for Dhh {
         Machine::KIND
     }
 
-    fn channels(&self, of: &Shown<'_>) -> Figure {
-        revolution::gauges(of.case, of.condition, of.simulation)
+    fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
+        vec![revolution::gauges(of)]
     }
 
     fn figures(&self, of: &Shown<'_>) -> Vec<Figure> {
@@ -32,8 +33,34 @@ impl Drawing for Dhh {
         figures
     }
 
-    fn moving(&self, of: &Shown<'_>) -> Option<Markup> {
-        animation::machine(of.case, of.condition, of.simulation)
+    fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section> {
+        let moving = of.and_then(|of| {
+            let machine = animation::machine(of.case, of.condition, of.simulation)?;
+            Some(Block::Markup(html! {
+                p {
+                    "Side view with " (whose) " parameters. The well is on the right; the drawing \
+                     moves where JavaScript is allowed."
+                }
+                (machine)
+            }))
+        });
+        vec![Section {
+            id: "moving-machine",
+            title: "The machine in motion",
+            blocks: moving.into_iter().collect(),
+        }]
+    }
+
+    fn zero(&self) -> &'static str {
+        revolution::ZERO
+    }
+
+    fn group(&self, unknown: &Unknown) -> &'static str {
+        match Coefficient::named(&unknown.name) {
+            Some(Coefficient::Kc | Coefficient::Cc) => "Contact",
+            Some(_) => "Rope joints",
+            None => "Unknowns",
+        }
     }
 
     fn tables(&self, run: &SingleRun) -> Vec<Table> {

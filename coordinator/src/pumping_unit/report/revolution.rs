@@ -1,53 +1,29 @@
 //! The curves of one simulation over the crank angle: gauges, rope tensions, motion of the
 //! suspension, crank torque.
-use crate::report::chart::strip::{Curve, Strip, curve, span, stack, strip};
+use crate::report::chart::scale::Scale;
+use crate::report::chart::strip::{Curve, curve, span, stack, strip};
+use crate::report::chart::{Axis, strips};
 use crate::report::color::{BLUE, GREEN, INK, PURPLE, VERMILLION};
+use crate::report::data::Shown;
 use crate::report::document::Figure;
 use crate::report::words::condition_name;
 use protocol::case::Case;
 use protocol::pumping_unit::{Sensor, Simulation};
 
+/// Where the crank angle begins.
+pub(super) const ZERO: &str = " from bottom dead centre";
+
+/// The axis of every curve: one turn of the crank.
+pub(super) fn axis() -> Axis {
+    Axis {
+        scale: Scale::turn(),
+        title: format!("crank angle{ZERO} [deg]"),
+    }
+}
+
 /// Stress at all four gauges, with the measured mean and its spread where there is a record.
-pub(super) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> Figure {
-    let name = condition_name(case, condition);
-    let measured: Vec<_> = case.measured(condition).collect();
-    let strips: Vec<_> = (1_u8..)
-        .zip(&simulation.gauge_mpa)
-        .map(|(gauge, stress)| {
-            let named = Sensor::Gauge(gauge).name();
-            let found = measured
-                .iter()
-                .find(|(_, channel, _)| channel.name == named);
-            let label = if found.is_some() {
-                "simulated".to_owned()
-            } else {
-                format!("gauge {gauge}")
-            };
-            let mut curves = vec![curve(label, VERMILLION, &simulation.turn_deg, stress, 1.0)];
-            let mut band = Vec::new();
-            if let Some((_, channel, record)) = found {
-                let grid = &channel.abscissa.points;
-                curves.insert(0, curve("measured", INK, grid, &record.mean, 1.0));
-                let rows = record.mean.iter().zip(&record.spread);
-                let rows = grid.iter().zip(rows);
-                band = rows
-                    .map(|(&x, (&mean, &spread))| (x, mean - spread, mean + spread))
-                    .collect();
-            }
-            Strip {
-                title: [
-                    "gauge 1 [MPa]",
-                    "gauge 2 [MPa]",
-                    "gauge 3 [MPa]",
-                    "gauge 4 [MPa]",
-                ][usize::from(gauge - 1)],
-                height: 96.0,
-                curves,
-                band,
-                scale: None,
-            }
-        })
-        .collect();
+pub(super) fn gauges(of: &Shown<'_>) -> Figure {
+    let name = condition_name(of.case, of.condition);
     stack(
         format!("gauges_{name}"),
         &format!("Stress at the gauges, condition {name}"),
@@ -55,7 +31,8 @@ pub(super) fn gauges(case: &Case, condition: usize, simulation: &Simulation) -> 
             "Stress at the four gauges under condition {name}, absolute values: no curve is \
              shifted here."
         ),
-        &strips,
+        &axis(),
+        &strips(of, |channel| Sensor::gauge(&channel.name).is_some()),
     )
 }
 
@@ -80,6 +57,7 @@ pub(super) fn tension(simulation: &Simulation) -> Figure {
         "Rope tension",
         "Axial force in the back rope at the crossbeam and in the front rope at the suspension."
             .to_owned(),
+        &axis(),
         &strips,
     )
 }
@@ -122,6 +100,7 @@ pub(super) fn motion(simulation: &Simulation) -> Figure {
         "Position above the lowest design position, velocity and acceleration of the suspension \
          point, upwards positive."
             .to_owned(),
+        &axis(),
         &strips,
     )
 }
@@ -145,6 +124,7 @@ pub(super) fn torque(simulation: &Simulation) -> Figure {
         "Net torque at the crank shaft, counterweight included; below zero the machine drives the \
          gear."
             .to_owned(),
+        &axis(),
         &strips,
     )
 }
@@ -186,6 +166,7 @@ pub(super) fn player(case: &Case, simulation: &Simulation) -> (Figure, [f64; 4])
         "Curves beside the moving machine",
         "Simulated stress, rope tension and crank torque; the vertical line follows the machine."
             .to_owned(),
+        &axis(),
         &strips,
     );
     (figure, span(&strips))

@@ -2,35 +2,15 @@
 use crate::report::data::SingleRun;
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, fixed, range};
-use crate::report::table::{agreement, one, work};
-use crate::report::words::{self, condition_name};
+use crate::report::table::{self, agreement, one, range_row, sums, work};
 use protocol::pumping_unit::Energy;
-
-/// Cells of a range: smallest, largest, half the range.
-fn range_cells(values: &[f64], factor: f64, unit: &str) -> [String; 4] {
-    match range(values.iter().map(|value| factor * value)) {
-        Some((low, high)) => [
-            unit.to_owned(),
-            fixed(low, 2),
-            fixed(high, 2),
-            fixed(0.5 * (high - low), 2),
-        ],
-        None => [
-            unit.to_owned(),
-            NONE.to_owned(),
-            NONE.to_owned(),
-            NONE.to_owned(),
-        ],
-    }
-}
 
 /// Verdict, and the range of every curve.
 pub fn simulation(run: &SingleRun) -> Table {
     let simulation = &run.simulation;
     let mut rows = vec![Row::group("Stress")];
     for (gauge, values) in (1..).zip(&simulation.gauge_mpa) {
-        let label = format!("gauge {gauge}");
-        rows.push(Row::new(label, range_cells(values, 1.0, "MPa")));
+        rows.push(range_row(&format!("gauge {gauge}"), values, 1.0, "MPa"));
     }
     rows.push(Row::group("Machine"));
     let curves: [(&str, &[f64], f64, &str); 6] = [
@@ -62,18 +42,9 @@ pub fn simulation(run: &SingleRun) -> Table {
         ),
     ];
     for (label, values, factor, unit) in curves {
-        rows.push(Row::new(label, range_cells(values, factor, unit)));
+        rows.push(range_row(label, values, factor, unit));
     }
-    Table::new(
-        format!(
-            "Condition {}, {} parameters: {}",
-            condition_name(&run.case, run.condition),
-            run.genes_name,
-            words::verdict(&simulation.verdict)
-        ),
-        ["", "unit", "smallest", "largest", "half range"],
-        rows,
-    )
+    table::simulation(run, rows)
 }
 
 /// Stroke, agreement with the record, energy balance and work of a run.
@@ -86,12 +57,7 @@ pub fn balance(run: &SingleRun) -> Table {
     rows.extend(agreement(run));
     rows.extend(energy(&simulation.energy));
     rows.extend(work(&simulation.counters, simulation.wall_s));
-    Table::new(
-        "Stroke, agreement, energy and work",
-        ["", "unit", "value"],
-        rows,
-    )
-    .noted([
+    sums("Stroke, agreement, energy and work", rows).noted([
         "Error of the balance: what it leaves over, relative to the larger of input and \
              output work.",
     ])

@@ -1,23 +1,26 @@
 //! One channel before and after: the measured mean, both simulated curves, and the residuals of
 //! before, after and the best rejected rival on one scale.
+use super::axis::Axis;
 use super::scale::Scale;
 use super::strip::{Curve, Strip, curve, stack, strip};
 use crate::report::color::{BLUE, GREEN, INK, VERMILLION};
 use crate::report::document::Figure;
-use crate::report::number::{figure, range};
-use crate::report::words::capitalised;
+use crate::report::number::{figure, range, unit};
+use crate::report::words::{capitalised, headed};
 
-/// What is compared of one channel under one condition; all curves on the grid of `turn_deg`.
+/// What is compared of one channel under one condition; all curves on the grid of `at`.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::report) struct Closing<'a> {
     /// Condition, as `5rpm`.
     pub condition: &'a str,
-    /// Channel, as `gauge 1`.
+    /// Channel, as `force`.
     pub channel: &'a str,
     /// Unit of its values.
     pub unit: &'a str,
-    /// Crank angle from bottom dead centre (deg).
-    pub turn_deg: &'a [f64],
+    /// Where the values stand.
+    pub at: &'a [f64],
+    /// The axis along which they do.
+    pub axis: &'a Axis,
     /// Mean of the measured cycles.
     pub measured: &'a [f64],
     /// Standard deviation of one cycle about it; empty where there is one cycle only.
@@ -71,21 +74,15 @@ pub(in crate::report) fn closing(of: &Closing<'_>) -> Option<Figure> {
         simulated.iter().map(|s| s + shift).collect()
     };
     let mut curves = vec![
-        curve("measured", INK, of.turn_deg, of.measured, 1.0),
-        curve("before", BLUE, of.turn_deg, &shifted(of.before), 1.0),
+        curve("measured", INK, of.at, of.measured, 1.0),
+        curve("before", BLUE, of.at, &shifted(of.before), 1.0),
     ];
     if let Some(after) = of.after {
-        curves.push(curve(
-            "after",
-            VERMILLION,
-            of.turn_deg,
-            &shifted(after),
-            1.0,
-        ));
+        curves.push(curve("after", VERMILLION, of.at, &shifted(after), 1.0));
     }
-    let rows = of.turn_deg.iter().zip(of.measured.iter().zip(of.spread));
+    let rows = of.at.iter().zip(of.measured.iter().zip(of.spread));
     let mut strips = vec![Strip {
-        title: axis(of.unit),
+        title: headed("value", &unit(of.unit)),
         height: 170.0,
         curves,
         band: rows.map(|(&x, (m, s))| (x, m - s, m + s)).collect(),
@@ -97,29 +94,25 @@ pub(in crate::report) fn closing(of: &Closing<'_>) -> Option<Figure> {
         format!("proof_{}_{}", of.condition, of.channel.replace(' ', "_")),
         &title,
         caption(of, &title),
+        of.axis,
         &strips,
     ))
 }
 
 /// Strips of the residuals, on one scale, over the standard error of the measured mean.
-fn residuals(of: &Closing<'_>) -> Vec<Strip<'static>> {
+fn residuals(of: &Closing<'_>) -> Vec<Strip> {
     let mut all = vec![("without it", BLUE, of.before)];
     all.extend(of.after.map(|after| ("with it", VERMILLION, after)));
     all.extend(of.rival.map(|(_, rival)| ("with the rival", GREEN, rival)));
     let values: Vec<Vec<f64>> = all.iter().map(|(.., s)| of.residual(s)).collect();
     let error = (of.cycles.max(1) as f64).sqrt();
     let errors = of.spread.iter().map(|s| s / error);
-    let band: Vec<(f64, f64, f64)> = of
-        .turn_deg
-        .iter()
-        .zip(errors)
-        .map(|(&x, e)| (x, -e, e))
-        .collect();
+    let band: Vec<(f64, f64, f64)> = of.at.iter().zip(errors).map(|(&x, e)| (x, -e, e)).collect();
     let scale = Scale::symmetric(values.iter().flatten().copied());
     all.iter()
         .zip(&values)
         .map(|((label, color, _), values)| {
-            let curves: Vec<Curve> = vec![curve(*label, *color, of.turn_deg, values, 1.0)];
+            let curves: Vec<Curve> = vec![curve(*label, *color, of.at, values, 1.0)];
             Strip {
                 band: band.clone(),
                 scale: Some(scale),
@@ -127,16 +120,6 @@ fn residuals(of: &Closing<'_>) -> Vec<Strip<'static>> {
             }
         })
         .collect()
-}
-
-/// Title of the upper scale.
-const fn axis(unit: &str) -> &'static str {
-    match unit.as_bytes() {
-        b"MPa" => "stress [MPa]",
-        b"m" => "position [m]",
-        b"N.m" => "torque [N·m]",
-        _ => "",
-    }
 }
 
 fn caption(of: &Closing<'_>, title: &str) -> String {

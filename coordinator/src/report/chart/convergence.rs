@@ -4,9 +4,10 @@ use super::panel::{Panel, spread};
 use super::scale::Scale;
 use crate::quantile;
 use crate::report::color::{BAND, GREY, INK, VERMILLION};
-use crate::report::data::HistoryPoint;
+use crate::report::data::{Calibration, HistoryPoint};
 use crate::report::document::Figure;
 use crate::report::number::{count, figure, percent};
+use crate::report::words::objective_heading;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 120.0;
@@ -85,7 +86,10 @@ fn best_so_far(history: &[HistoryPoint]) -> Vec<(f64, f64)> {
 
 /// Draws the convergence of a search whose starting point had the fitness `recommended` (none if
 /// it was not complete).
-pub(in crate::report) fn convergence(history: &[HistoryPoint], recommended: Option<f64>) -> Figure {
+pub(in crate::report) fn convergence(
+    Calibration { case, history, .. }: &Calibration,
+    recommended: Option<f64>,
+) -> Figure {
     let generations = generations(history, 400);
     let best = best_so_far(history);
     let quantiles = generations.iter().filter_map(|g| g.quantiles).flatten();
@@ -114,9 +118,9 @@ pub(in crate::report) fn convergence(history: &[HistoryPoint], recommended: Opti
         panel.curve(canvas, &best, Pen::new(VERMILLION, 1.8));
         labels(canvas, &panel, &generations, &best, recommended);
         if best.is_empty() {
-            panel.remark(canvas, "no individual completed a revolution");
+            panel.remark(canvas, "no individual completed");
         }
-        panel.left_axis(canvas, true, "objective [MPa²]");
+        panel.left_axis(canvas, true, &objective_heading(case));
         panel.lower_axis(canvas, false, "");
         for generation in &generations {
             canvas.rectangle(
@@ -141,7 +145,7 @@ pub(in crate::report) fn convergence(history: &[HistoryPoint], recommended: Opti
         caption: format!(
             "{title} over {} evaluations: best individual so far, and per generation or stage of the search the median \
              of the complete individuals with the band from their 10 % to their 90 % quantile. \
-             Below, the share of each that did not complete a revolution.",
+             Below, the share of each that did not complete.",
             count(history.len() as u64)
         ),
         svg,

@@ -7,6 +7,7 @@ use crate::report::color::{AXIS, Color, GREY, INK, VERMILLION};
 use crate::report::data::Calibration;
 use crate::report::document::Figure;
 use crate::report::number::{figure, unit};
+use crate::report::words::objective_heading;
 use protocol::case;
 
 const COLUMNS: usize = 5;
@@ -148,7 +149,8 @@ fn small(
     let text = best.map_or_else(String::new, figure);
     canvas.text((panel.right(), panel.top - 7.0), &text, right);
     let first = index.is_multiple_of(COLUMNS);
-    panel.left_axis(canvas, first, if first { "objective [MPa²]" } else { "" });
+    let objective = objective_heading(&calibration.case);
+    panel.left_axis(canvas, first, if first { &objective } else { "" });
     let title = format!("{about} [{}]", unit(&gene.unit));
     panel.lower_axis(canvas, true, &title);
 }

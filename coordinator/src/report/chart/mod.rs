@@ -4,7 +4,9 @@
 //! `strip` and `rows` are layouts that several figures share; every other file draws one figure. Text
 //! is text. Knows the report's data; knows nothing of HTML.
 mod angle_map;
+mod axis;
 pub(crate) mod canvas;
+mod channels;
 mod closing;
 mod convergence;
 mod gene;
@@ -20,6 +22,8 @@ pub(crate) mod strip;
 mod worker;
 
 pub(super) use angle_map::angle_map;
+pub(crate) use axis::Axis;
+pub(crate) use channels::{channels, strips};
 pub(super) use closing::{Closing, closing};
 pub(super) use convergence::convergence;
 pub use gene::genes;

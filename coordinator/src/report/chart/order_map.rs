@@ -1,8 +1,8 @@
-//! Channel x order of the crank: which coefficients of the residual are no noise.
+//! Channel x order of the period: which coefficients of the residual are no noise.
 use super::canvas::{WIDTH, render};
 use super::rows::{self, Key};
 use super::scale::Scale;
-use crate::report::color::{self, Color, INK};
+use crate::report::color::{Color, INK, STRENGTH};
 use crate::report::document::Figure;
 use crate::report::number::{figure, range};
 use discrepancy::place::order::OrderMap;
@@ -10,12 +10,12 @@ use discrepancy::place::order::OrderMap;
 /// The colour scale ends here at the earliest: noise stays pale.
 const LEAST: f64 = 10.0;
 
-/// Draws the map; rows are `channels`, in the map's order; `hertz`, the frequency of
-/// order 1, turns orders into frequencies. None of an empty map.
+/// Draws the map; rows are `channels`, in the map's order; orders are those of the `period`, and
+/// `hertz`, the frequency of the first, turns them into frequencies. None of an empty map.
 pub(in crate::report) fn order_map(
     map: &OrderMap,
     channels: &[String],
-    hertz: Option<f64>,
+    (period, hertz): (&str, Option<f64>),
 ) -> Option<Figure> {
     let orders = map.ratio.iter().map(Vec::len).max().unwrap_or(0);
     if orders == 0 || map.ratio.len() != channels.len() {
@@ -23,8 +23,8 @@ pub(in crate::report) fn order_map(
     }
     let end = range(map.ratio.iter().flatten().copied()).map_or(LEAST, |(_, r)| r.max(LEAST));
     let height = rows::height(channels.len());
-    let title = "Residual over its uncertainty, by channel and order of the crank";
-    let svg = render((WIDTH, height), title, |canvas| {
+    let title = format!("Residual over its uncertainty, by channel and order of the {period}");
+    let svg = render((WIDTH, height), &title, |canvas| {
         let panel = rows::panel(
             channels.len(),
             Scale::between(0.5, orders as f64 + 0.5, 8.0),
@@ -36,7 +36,7 @@ pub(in crate::report) fn order_map(
             behind: &high,
             room: 70.0,
         };
-        rows::key(canvas, color::pressure, &key);
+        rows::key(canvas, &STRENGTH, &key);
         for (row, ratios) in map.ratio.iter().enumerate() {
             let (top, bottom) = (panel.at_y(row as f64), panel.at_y(row as f64 + 1.0));
             for (k, ratio) in ratios.iter().enumerate() {
@@ -44,7 +44,7 @@ pub(in crate::report) fn order_map(
                 canvas.rectangle(
                     (from, top),
                     ((to + rows::OVERLAP).min(panel.right()), bottom),
-                    color::pressure(share(*ratio, end)),
+                    STRENGTH.at(share(*ratio, end)),
                 );
             }
         }
@@ -54,7 +54,7 @@ pub(in crate::report) fn order_map(
             canvas.dot(at, 1.9, mark(share(peak.ratio, end)));
         }
         let hertz = hertz.map(|hertz| format!(" (order 60 is {} Hz)", figure(60.0 * hertz)));
-        let title = format!("order of the crank{}", hertz.unwrap_or_default());
+        let title = format!("order of the {period}{}", hertz.unwrap_or_default());
         panel.lower_axis(canvas, true, &title);
     });
     Some(Figure {

@@ -1,7 +1,8 @@
 //! Measured against simulated curves of one channel, recommended beside optimised on shared scales,
 //! with the residual below (paper, Figs. 7, 9 and 10).
+use super::axis::Axis;
 use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
-use super::panel::{CRANK_TITLE, Panel};
+use super::panel::Panel;
 use super::points::points;
 use super::scale::Scale;
 use crate::line::interpolated;
@@ -9,15 +10,15 @@ use crate::report::color::{BAND, GREY, INK, VERMILLION};
 use crate::report::data::{ConditionResult, Run};
 use crate::report::document::Figure;
 use crate::report::number::{fixed, percent, unit};
-use crate::report::words;
+use crate::report::{kind, words};
 use protocol::case::{Case, Channel, ChannelRecord, Offset};
 use protocol::job::{ChannelScore, Verdict};
 
 const LEFT: f64 = 58.0;
 const BETWEEN: f64 = 26.0;
 const TOP: f64 = 62.0;
-const STRESS_HEIGHT: f64 = 200.0;
-const RESIDUAL_TOP: f64 = TOP + STRESS_HEIGHT + 16.0;
+const VALUES_HEIGHT: f64 = 200.0;
+const RESIDUAL_TOP: f64 = TOP + VALUES_HEIGHT + 16.0;
 const RESIDUAL_HEIGHT: f64 = 62.0;
 const HEIGHT: f64 = RESIDUAL_TOP + RESIDUAL_HEIGHT + 42.0;
 
@@ -45,21 +46,20 @@ impl Side {
         (at, channel): (usize, &Channel),
         record: &ChannelRecord,
     ) -> Self {
-        let turn = &run.simulation.turn_deg;
+        let grid = &channel.abscissa.points;
         let values = run.simulation.channel(&channel.name);
         let mut scores = run.evaluation.channels.iter();
         let score = scores.find(|score| score.channel == at);
         let shift = shift(offset, score);
-        let simulated = points(turn, values)
+        let simulated = points(grid, values)
             .into_iter()
             .map(|(x, y)| (x, y + shift))
             .collect();
-        let grid = &channel.abscissa.points;
         let residual = grid
             .iter()
             .zip(&record.mean)
             .map(|(&x, &measured)| {
-                let simulated = interpolated(turn, values, x).unwrap_or(f64::NAN);
+                let simulated = interpolated(grid, values, x).unwrap_or(f64::NAN);
                 (x, measured - simulated - shift)
             })
             .collect();
@@ -122,6 +122,7 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
         band,
         values,
         residuals,
+        axis: kind::axis(case, &channel.abscissa),
         unit: unit(&channel.unit),
     };
     let svg = render((WIDTH, HEIGHT), &title, |canvas| {
@@ -140,7 +141,7 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
     Some(Figure {
         name: format!("overlay_{}_{}", condition.name, channel.name),
         caption: format!(
-            "{title}: measured and simulated over one crank revolution, on shared scales; below, \
+            "{title}: measured and simulated, on shared scales; below, \
              measured minus simulated.{free}"
         ),
         svg,
@@ -150,10 +151,11 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
 /// The measured side of both columns, and the scales they share.
 struct Measured {
     mean: Vec<(f64, f64)>,
-    /// Rows of (crank angle, low, high).
+    /// Rows of (abscissa, low, high).
     band: Vec<(f64, f64, f64)>,
     values: Scale,
     residuals: Scale,
+    axis: Axis,
     unit: String,
 }
 
@@ -165,8 +167,8 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
         left,
         top: TOP,
         width,
-        height: STRESS_HEIGHT,
-        x: Scale::crank(),
+        height: VALUES_HEIGHT,
+        x: measured.axis.scale,
         y: measured.values,
     };
     let title = |what: &str| match first {
@@ -194,7 +196,7 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
     strip.guides(canvas);
     strip.curve(canvas, &side.residual, RESIDUAL);
     strip.left_axis(canvas, first, &title("residual"));
-    strip.lower_axis(canvas, true, CRANK_TITLE);
+    strip.lower_axis(canvas, true, &measured.axis.title);
 }
 
 const MEASURED: Pen = Pen::new(INK, 1.3);

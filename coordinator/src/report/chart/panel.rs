@@ -137,9 +137,6 @@ impl Panel {
     }
 }
 
-/// Title of every crank-angle axis.
-pub(crate) const CRANK_TITLE: &str = "crank angle from bottom dead centre [deg]";
-
 const fn axis_pen() -> Pen {
     Pen::new(AXIS, 0.8)
 }

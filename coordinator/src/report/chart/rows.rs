@@ -2,7 +2,7 @@
 use super::canvas::{Canvas, Lettering, WIDTH};
 use super::panel::Panel;
 use super::scale::Scale;
-use crate::report::color::{Color, GREY, INK};
+use crate::report::color::{GREY, INK, Ramp};
 
 const LEFT: f64 = 104.0;
 const RIGHT: f64 = 20.0;
@@ -47,8 +47,8 @@ pub(super) struct Key<'a> {
     pub room: f64,
 }
 
-/// The colour scale above the map: colours by the share of its length, and what stands beside it.
-pub(super) fn key(canvas: &mut Canvas, color: impl Fn(f64) -> Color, key: &Key<'_>) {
+/// The colour scale above the map: and what stands beside it.
+pub(super) fn key(canvas: &mut Canvas, ramp: &Ramp, key: &Key<'_>) {
     const BAR: f64 = 180.0;
     const STEPS: usize = 60;
     let y = 15.0;
@@ -58,7 +58,7 @@ pub(super) fn key(canvas: &mut Canvas, color: impl Fn(f64) -> Color, key: &Key<'
         canvas.rectangle(
             (x, y - 5.0),
             (x + BAR / STEPS as f64 + OVERLAP, y + 5.0),
-            color((step as f64 + 0.5) / STEPS as f64),
+            ramp.at((step as f64 + 0.5) / STEPS as f64),
         );
     }
     let text = Lettering::new(10.5, GREY);

@@ -16,7 +16,7 @@ pub(crate) struct Tick {
 enum Spacing {
     Linear { step: f64 },
     Logarithmic,
-    Crank,
+    Turn,
 }
 
 /// One axis.
@@ -39,12 +39,12 @@ fn round_step(span: f64, parts: f64) -> f64 {
 }
 
 impl Scale {
-    /// One crank revolution: 0 to 360 degrees, a label every 60, a tick every 30.
-    pub(crate) const fn crank() -> Self {
+    /// A turn: 0 to 360 degrees, a label every 60, a tick every 30.
+    pub(crate) const fn turn() -> Self {
         Self {
             low: 0.0,
             high: 360.0,
-            spacing: Spacing::Crank,
+            spacing: Spacing::Turn,
         }
     }
 
@@ -113,7 +113,7 @@ impl Scale {
     /// frame. Not finite for values that have no place.
     pub(crate) fn share(&self, value: f64) -> f64 {
         let share = match self.spacing {
-            Spacing::Linear { .. } | Spacing::Crank => (value - self.low) / (self.high - self.low),
+            Spacing::Linear { .. } | Spacing::Turn => (value - self.low) / (self.high - self.low),
             Spacing::Logarithmic if value > 0.0 => {
                 (value / self.low).ln() / (self.high / self.low).ln()
             }
@@ -130,7 +130,7 @@ impl Scale {
     /// Marks from low to high.
     pub(crate) fn ticks(&self) -> Vec<Tick> {
         match self.spacing {
-            Spacing::Crank => (0..=12)
+            Spacing::Turn => (0..=12)
                 .map(|index| Tick {
                     value: 30.0 * f64::from(index),
                     label: if index % 2 == 0 {
@@ -265,10 +265,10 @@ mod tests {
     }
 
     #[test]
-    fn the_crank_axis_has_a_tick_every_30_and_a_label_every_60_degrees() {
-        assert_eq!(Scale::crank().ticks().len(), 13);
+    fn a_turn_has_a_tick_every_30_and_a_label_every_60_degrees() {
+        assert_eq!(Scale::turn().ticks().len(), 13);
         assert_eq!(
-            labels(Scale::crank()),
+            labels(Scale::turn()),
             ["0", "60", "120", "180", "240", "300", "360"]
         );
     }

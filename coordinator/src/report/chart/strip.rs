@@ -1,7 +1,8 @@
-//! Curves over the crank angle in strips one above the other on one axis, labelled at their right
+//! Curves over one abscissa in strips one above the other on one axis, labelled at their right
 //! ends. What is drawn in them is not known here.
+use super::axis::Axis;
 use super::canvas::{Lettering, Pen, WIDTH, render};
-use super::panel::{CRANK_TITLE, Panel, spread};
+use super::panel::{Panel, spread};
 use super::points::points;
 use super::scale::Scale;
 use crate::report::color::{BAND, Color};
@@ -21,31 +22,31 @@ pub(crate) struct Curve {
 }
 
 /// One strip.
-pub(crate) struct Strip<'a> {
+pub(crate) struct Strip {
     /// Title of its scale, with the unit.
-    pub title: &'a str,
+    pub title: String,
     /// Height [px].
     pub height: f64,
     /// Curves, drawn in this order.
     pub curves: Vec<Curve>,
-    /// Rows of (crank angle, low, high) behind the curves.
+    /// Rows of (abscissa, low, high) behind the curves.
     pub band: Vec<(f64, f64, f64)>,
     /// Its scale, where it is not the curves' own.
     pub scale: Option<Scale>,
 }
 
-/// A curve over the crank angle, its values times a factor.
+/// A curve, its values times a factor.
 pub(crate) fn curve(
     label: impl Into<String>,
     color: Color,
-    turn_deg: &[f64],
+    at: &[f64],
     values: &[f64],
     factor: f64,
 ) -> Curve {
     Curve {
         label: label.into(),
         color,
-        points: points(turn_deg, values)
+        points: points(at, values)
             .into_iter()
             .map(|(x, y)| (x, factor * y))
             .collect(),
@@ -53,9 +54,9 @@ pub(crate) fn curve(
 }
 
 /// A strip without a band.
-pub(crate) const fn strip(title: &str, height: f64, curves: Vec<Curve>) -> Strip<'_> {
+pub(crate) fn strip(title: impl Into<String>, height: f64, curves: Vec<Curve>) -> Strip {
     Strip {
-        title,
+        title: title.into(),
         height,
         curves,
         band: Vec::new(),
@@ -64,14 +65,14 @@ pub(crate) const fn strip(title: &str, height: f64, curves: Vec<Curve>) -> Strip
 }
 
 /// Height of the whole figure [px].
-fn height(strips: &[Strip<'_>]) -> f64 {
+fn height(strips: &[Strip]) -> f64 {
     let heights: f64 = strips.iter().map(|strip| strip.height + GAP).sum();
     TOP + heights - GAP + FOOT
 }
 
-/// Left, right, upper and lower end of the crank axis, as shares of the figure's width and height:
+/// Left, right, upper and lower end of the axis, as shares of the figure's width and height:
 /// the place for a cursor.
-pub(crate) fn span(strips: &[Strip<'_>]) -> [f64; 4] {
+pub(crate) fn span(strips: &[Strip]) -> [f64; 4] {
     let height = height(strips);
     [
         LEFT / WIDTH,
@@ -86,7 +87,8 @@ pub(crate) fn stack(
     name: impl Into<String>,
     title: &str,
     caption: String,
-    strips: &[Strip<'_>],
+    axis: &Axis,
+    strips: &[Strip],
 ) -> Figure {
     let width = WIDTH - LEFT - RIGHT;
     let svg = render((WIDTH, height(strips)), title, |canvas| {
@@ -99,7 +101,7 @@ pub(crate) fn stack(
                 top,
                 width,
                 height: strip.height,
-                x: Scale::crank(),
+                x: axis.scale,
                 y: strip.scale.unwrap_or_else(|| {
                     Scale::linear(
                         curves.map(|&(_, y)| y).chain(band),
@@ -129,8 +131,8 @@ pub(crate) fn stack(
                 panel.remark(canvas, "nothing was simulated");
             }
             let last = index + 1 == strips.len();
-            panel.left_axis(canvas, true, strip.title);
-            panel.lower_axis(canvas, last, if last { CRANK_TITLE } else { "" });
+            panel.left_axis(canvas, true, &strip.title);
+            panel.lower_axis(canvas, last, if last { &axis.title } else { "" });
             top = panel.bottom() + GAP;
         }
     });

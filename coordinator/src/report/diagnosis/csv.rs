@@ -11,7 +11,7 @@ const CURVES: [&str; 9] = [
     "condition",
     "channel",
     "unit",
-    "turn_deg",
+    "at",
     "measured",
     "spread",
     "before",
@@ -19,7 +19,7 @@ const CURVES: [&str; 9] = [
     "rival",
 ];
 
-/// Writes the curves: one row per condition, channel and crank angle; absolute values, in the
+/// Writes the curves: one row per condition, channel and point; absolute values, in the
 /// channel's unit.
 ///
 /// # Errors
@@ -32,13 +32,13 @@ pub(super) fn curves(to: impl Write, subject: &Subject<'_>) -> Result<(), csv::E
             let Some(of) = shown.channel(c) else {
                 continue;
             };
-            for (i, &turn) in of.turn_deg.iter().enumerate() {
+            for (i, &at_point) in of.at.iter().enumerate() {
                 let at = |values: Option<&[f64]>| field(values.and_then(|v| v.get(i).copied()));
                 writer.write_record([
                     of.condition.to_owned(),
                     of.channel.to_owned(),
                     of.unit.to_owned(),
-                    field(Some(turn)),
+                    field(Some(at_point)),
                     at(Some(of.measured)),
                     at(Some(of.spread)),
                     at(Some(of.before)),

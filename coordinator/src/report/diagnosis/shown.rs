@@ -1,6 +1,7 @@
 //! The curves of a diagnosis condition by condition: measured, before, after, best rejected rival.
 use super::subject::Subject;
-use crate::report::chart::Closing;
+use crate::report::chart::{Axis, Closing};
+use crate::report::kind;
 use crate::report::words::condition_name;
 use discrepancy::record::{Curves, Record};
 use protocol::case::Offset;
@@ -12,8 +13,8 @@ pub(super) struct Shown<'a> {
     pub condition: String,
     /// What was measured.
     pub record: &'a Record,
-    /// Crank angle (deg).
-    pub turn_deg: Vec<f64>,
+    /// The axes of the channels.
+    pub axes: Vec<Axis>,
     /// Mean over all cycles, by channel.
     pub mean: Curves,
     /// Standard deviation of one cycle, by channel; empty lists where there is one cycle only.
@@ -36,7 +37,8 @@ impl Shown<'_> {
             condition: &self.condition,
             channel: &channel.title,
             unit: &channel.unit,
-            turn_deg: &self.turn_deg,
+            at: &channel.abscissa.points,
+            axis: self.axes.get(c)?,
             measured: self.mean.get(c)?,
             spread: self.spread.get(c).map_or(&[], Vec::as_slice),
             cycles: self.record.cycles.len(),
@@ -92,10 +94,11 @@ pub(super) fn shown<'a>(subject: &Subject<'a>) -> Vec<Shown<'a>> {
 fn before<'a>(subject: &Subject<'a>, condition: usize, curves: &'a Curves) -> Option<Shown<'a>> {
     let record = subject.record(condition)?;
     let mean = record.mean();
-    let n = record.samples();
+    let channels = record.channels.iter();
+    let axes = channels.map(|own| kind::axis(subject.case, &own.channel.abscissa));
     Some(Shown {
         condition: condition_name(subject.case, condition),
-        turn_deg: (0..n).map(|i| 360.0 * i as f64 / n as f64).collect(),
+        axes: axes.collect(),
         spread: spread(record, &mean),
         mean,
         record,

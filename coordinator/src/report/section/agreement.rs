@@ -1,4 +1,4 @@
-//! Measured against simulated stress, gauge by gauge, condition by condition.
+//! Measured against simulated curves, channel by channel, condition by condition.
 use crate::report::chart;
 use crate::report::data::Calibration;
 use crate::report::document::{Block, Section, figures};

@@ -6,7 +6,7 @@ use crate::report::{chart, words};
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let recommended = calibration.calibrated().and_then(words::complete_objective);
     let searched = !calibration.history.is_empty();
-    let drawn = searched.then(|| chart::convergence(&calibration.history, recommended));
+    let drawn = searched.then(|| chart::convergence(calibration, recommended));
     Section {
         id: "convergence",
         title: "Convergence of the population",

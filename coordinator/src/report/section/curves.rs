@@ -7,20 +7,20 @@ use maud::html;
 /// With the optimised parameters; their channels are in the overlays.
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = Vec::new();
-    if let (Some(kind), Some(optimum)) = (kind::of(&calibration.case), calibration.optimum()) {
+    if let Some(optimum) = calibration.optimum() {
+        blocks.extend(figures(kind::of(optimum.case).figures(&optimum)));
+    }
+    if !blocks.is_empty() {
         let whose = html! { p { "With the optimised parameters, calibrated condition." } };
-        blocks.push(Block::Markup(whose));
-        blocks.extend(figures(kind.figures(&optimum)));
+        blocks.insert(0, Block::Markup(whose));
     }
     section(blocks)
 }
 
 pub(super) fn simulation(run: &SingleRun) -> Section {
-    let shown = kind::of(&run.case).map(|kind| {
-        let channels = kind.channels(&run.shown());
-        std::iter::once(channels).chain(kind.figures(&run.shown()))
-    });
-    section(figures(shown.into_iter().flatten()))
+    let (kind, shown) = (kind::of(&run.case), run.shown());
+    let channels = kind.channels(&shown).into_iter();
+    section(figures(channels.chain(kind.figures(&shown))))
 }
 
 const fn section(blocks: Vec<Block>) -> Section {

@@ -7,7 +7,6 @@ mod convergence;
 mod curves;
 mod gap;
 mod gene;
-mod machine;
 mod notes;
 pub(super) mod origin;
 mod parameters;
@@ -17,31 +16,38 @@ mod worker;
 
 use super::data::{Calibration, SingleRun};
 use super::document::Section;
+use super::kind;
 
 pub(super) use parameters::calibration as parameters;
 
 /// Every section about a calibration, in the order of the page.
-pub(super) const CALIBRATION: &[fn(&Calibration) -> Section] = &[
-    summary::calibration,
-    parameters::calibration,
-    agreement::calibration,
-    gap::calibration,
-    curves::calibration,
-    convergence::calibration,
-    gene::calibration,
-    worker::calibration,
-    slowest::calibration,
-    machine::calibration,
-    notes::calibration,
-    origin::calibration,
-];
+pub(super) fn calibration(all: &Calibration) -> Vec<Section> {
+    let mut sections = vec![
+        summary::calibration(all),
+        parameters::calibration(all),
+        agreement::calibration(all),
+        gap::calibration(all),
+        curves::calibration(all),
+        convergence::calibration(all),
+        gene::calibration(all),
+        worker::calibration(all),
+        slowest::calibration(all),
+    ];
+    let own = kind::of(&all.case).sections("the optimised", all.optimum().as_ref());
+    sections.extend(own);
+    sections.extend([notes::calibration(all), origin::calibration(all)]);
+    sections
+}
 
 /// Every section about one simulation, in the order of the page.
-pub(super) const SIMULATION: &[fn(&SingleRun) -> Section] = &[
-    summary::simulation,
-    parameters::simulation,
-    curves::simulation,
-    machine::simulation,
-    notes::simulation,
-    origin::simulation,
-];
+pub(super) fn simulation(run: &SingleRun) -> Vec<Section> {
+    let mut sections = vec![
+        summary::simulation(run),
+        parameters::simulation(run),
+        curves::simulation(run),
+    ];
+    let own = kind::of(&run.case).sections(&run.genes_name, Some(&run.shown()));
+    sections.extend(own);
+    sections.extend([notes::simulation(run), origin::simulation(run)]);
+    sections
+}

@@ -12,8 +12,7 @@ pub(in crate::report) fn calibration(calibration: &Calibration) -> Section {
 }
 
 pub(super) fn simulation(run: &SingleRun) -> Section {
-    let own = kind::of(&run.case).map(|kind| kind.tables(run));
-    let own = own.into_iter().flatten();
+    let own = kind::of(&run.case).tables(run).into_iter();
     section(own.chain([table::genes(run)]))
 }
 

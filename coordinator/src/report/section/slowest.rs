@@ -3,6 +3,7 @@ use crate::account::JobCost;
 use crate::report::data::{Calibration, HistoryPoint};
 use crate::report::document::{Block, Row, Section, Table};
 use crate::report::number::{count, duration, figure, fixed};
+use crate::report::words::objective_heading;
 
 /// How many are listed.
 const LISTED: usize = 10;
@@ -25,7 +26,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
             "processor time",
             "wall time",
             "Newton iterations",
-            "objective [MPa²]",
+            &objective_heading(&calibration.case),
             "how it ended",
         ],
         rows.map(|(point, cost)| row(point, *cost)).collect(),

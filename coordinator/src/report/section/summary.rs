@@ -13,7 +13,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     let history = &calibration.history;
     let failed = history.iter().filter(|point| !point.complete).count();
     blocks.push(Block::Text(format!(
-        "{} evaluations, {} of which did not complete a revolution, in {}. The search ended because {}.",
+        "{} evaluations, {} of which did not complete, in {}. The search ended because {}.",
         count(history.len() as u64),
         count(failed as u64),
         duration(calibration.wall_s),
@@ -26,7 +26,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     section(blocks)
 }
 
-/// What became of each gauge, condition by condition.
+/// What became of each channel, condition by condition.
 fn conditions(calibration: &Calibration) -> Vec<Block> {
     let case = &calibration.case;
     let mut blocks = Vec::new();
@@ -64,7 +64,8 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
         blocks.push(Block::Text(if evaluation.channels.is_empty() {
             "There is no score: no record, or no complete run.".to_owned()
         } else {
-            format!("The objective is {} MPa².", figure(evaluation.fitness))
+            let unit = words::square_after(run.case.objective_unit());
+            format!("The objective is {}{unit}.", figure(evaluation.fitness))
         }));
     }
     section(blocks)

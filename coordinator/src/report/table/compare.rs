@@ -1,11 +1,11 @@
 //! Recommended against optimised parameters (paper, Tables 3 and 4).
 use crate::report::data::{Calibration, ConditionResult};
 use crate::report::document::{Row, Table};
+use crate::report::kind;
 use crate::report::number::{NONE, figure, fixed, percent, ratio, squared, unit};
 use crate::report::words::{self, condition_name};
 use protocol::case::Case;
 use protocol::job::{ChannelScore, Verdict};
-use protocol::pumping_unit::Coefficient;
 
 /// Definitions that stand under every table with errors.
 const DEFINITIONS: [&str; 3] = [
@@ -146,14 +146,12 @@ const HEAD: [&str; 5] = [
 /// Rows of both gene vectors.
 fn gene_rows(calibration: &Calibration) -> Vec<Row> {
     let mut rows = Vec::new();
-    let mut group = "";
+    let (mut group, kind) = ("", kind::of(&calibration.case));
     let genes = calibration.case.unknowns.iter().enumerate();
     for (index, gene) in genes {
-        let name = match Coefficient::named(&gene.name) {
-            _ if gene.of_effect().is_some() => "Effects",
-            Some(Coefficient::Kc | Coefficient::Cc) => "Contact",
-            Some(_) => "Rope joints",
-            None => "Unknowns",
+        let name = match gene.of_effect() {
+            Some(_) => "Effects",
+            None => kind.group(gene),
         };
         if name != group {
             rows.push(Row::group(name));

@@ -8,7 +8,7 @@ pub use super::document::{Table, set_table as text};
 pub use compare::{table_3, table_4};
 pub(super) use gap::gap;
 pub(super) use single::genes;
-pub(crate) use single::{agreement, one, work};
+pub(crate) use single::{agreement, one, range_row, ranges, simulation, sums, work};
 pub use worker::slot_time;
 pub(super) use worker::workers;
 pub use worker::{hosts, jobs};

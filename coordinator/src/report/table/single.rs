@@ -1,13 +1,50 @@
 //! One simulation in numbers: what every model has of it.
-use crate::report::data::SingleRun;
+use crate::report::data::{Shown, SingleRun};
 use crate::report::document::{Row, Table};
-use crate::report::number::{count, duration, figure, percent, squared, unit};
-use crate::report::words::channel_title;
+use crate::report::number::{NONE, count, duration, figure, fixed, percent, range, squared, unit};
+use crate::report::words::{channel_title, condition_name, verdict};
+use protocol::case::Channel;
 use protocol::job::Counters;
 
 /// A row with one value.
 pub(crate) fn one(label: &str, unit: &str, value: String) -> Row {
     Row::new(label, [unit.to_owned(), value])
+}
+
+/// A row with the range of a curve: smallest, largest, half the range; its values times a factor.
+pub(crate) fn range_row(label: &str, values: &[f64], factor: f64, unit: &str) -> Row {
+    let ends = range(values.iter().map(|value| factor * value));
+    let cells = ends.map_or([NONE; 3].map(str::to_owned), |(low, high)| {
+        [low, high, 0.5 * (high - low)].map(|value| fixed(value, 2))
+    });
+    Row::new(label, std::iter::once(unit.to_owned()).chain(cells))
+}
+
+/// The range of every channel.
+pub(crate) fn ranges(of: &Shown<'_>) -> Vec<Row> {
+    let channels = of.case.channels_of(of.condition);
+    let row = |(_, channel): (usize, &Channel)| {
+        let unit = unit(&channel.unit);
+        range_row(&channel.title, of.channel(channel), 1.0, &unit)
+    };
+    channels.map(row).collect()
+}
+
+/// Verdict of a simulation over rows of ranges.
+pub(crate) fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
+    let title = format!(
+        "Condition {}, {} parameters: {}",
+        condition_name(&run.case, run.condition),
+        run.genes_name,
+        verdict(&run.simulation.verdict)
+    );
+    let head = ["", "unit", "smallest", "largest", "half range"];
+    Table::new(title, head, ranges)
+}
+
+/// A table of rows with one value each.
+pub(crate) fn sums(title: &str, rows: Vec<Row>) -> Table {
+    Table::new(title, ["", "unit", "value"], rows)
 }
 
 /// Agreement with the record, as far as it was scored.

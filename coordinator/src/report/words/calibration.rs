@@ -48,7 +48,7 @@ pub(in crate::report) fn headline(calibration: &Calibration) -> String {
 }
 
 /// The square of a unit behind a number, with the space between them.
-fn square_after(unit: Option<&str>) -> String {
+pub(in crate::report) fn square_after(unit: Option<&str>) -> String {
     match squared(unit).as_str() {
         "" => String::new(),
         square => format!(" {square}"),

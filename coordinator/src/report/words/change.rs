@@ -33,8 +33,8 @@ mod tests {
     #[test]
     fn changes_are_said_with_their_direction() {
         assert_eq!(
-            change(6.8, 0.75, " MPa²"),
-            "fell from 6.80 to 0.750 MPa² (−89.0\u{a0}%)"
+            change(6.8, 0.75, " mm²"),
+            "fell from 6.80 to 0.750 mm² (−89.0\u{a0}%)"
         );
         assert_eq!(
             change(1.0, 1.5, ""),

@@ -8,12 +8,16 @@ mod ending;
 mod gene;
 mod name;
 
-pub(super) use calibration::{absolute_worse, channels, complete_objective, headline, warnings};
+pub(super) use calibration::{
+    absolute_worse, channels, complete_objective, headline, square_after, warnings,
+};
 pub use ending::{failure, verdict};
 pub(super) use gene::{at_bound, bound};
 pub(crate) use name::condition_name;
-pub(super) use name::{capitalised, channel_title, is_fitted, listed, lower};
+pub(super) use name::{
+    capitalised, channel_title, counted, headed, is_fitted, listed, lower, objective_heading,
+};
 
 /// What to know of records that come from no test.
-pub(super) const SYNTHETIC: &str = "The gauge records of this case are synthetic: they were \
+pub(super) const SYNTHETIC: &str = "The records of this case are synthetic: they were \
     computed, not measured on a machine, and say nothing about how well a real one is met.";

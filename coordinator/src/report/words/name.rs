@@ -1,5 +1,6 @@
 //! Names of things as people call them, and lists of names as a sentence has them.
-use protocol::case::Case;
+use crate::report::number::squared;
+use protocol::case::{Abscissa, Case};
 
 /// Name of a condition; its number where the case does not have it.
 pub(crate) fn condition_name(case: &Case, condition: usize) -> String {
@@ -13,6 +14,25 @@ pub(crate) fn channel_title(case: &Case, channel: usize) -> String {
     case.channels
         .get(channel)
         .map_or_else(|| format!("#{channel}"), |found| found.title.clone())
+}
+
+/// What is counted along an abscissa.
+pub(crate) fn counted(abscissa: &Abscissa) -> String {
+    let angle = if abscissa.unit == "deg" { " angle" } else { "" };
+    format!("{}{angle}", abscissa.name)
+}
+
+/// A quantity with its unit in brackets behind it, where it has one.
+pub(crate) fn headed(what: &str, unit: &str) -> String {
+    match unit {
+        "" => what.to_owned(),
+        _ => format!("{what} [{unit}]"),
+    }
+}
+
+/// The objective as scales and columns are headed.
+pub(in crate::report) fn objective_heading(case: &Case) -> String {
+    headed("objective", &squared(case.objective_unit()))
 }
 
 /// Whether the objective sums a channel.

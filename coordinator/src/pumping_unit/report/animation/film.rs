@@ -2,6 +2,7 @@
 //!
 //! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, small in a file.
 use crate::quantile;
+use crate::report::color::{Color, Ramp};
 use crate::report::number::{NONE, fixed};
 use maud::{Markup, html};
 use protocol::{
@@ -9,6 +10,15 @@ use protocol::{
     pumping_unit::{Machine, Motion, Sensor, Simulation},
 };
 use serde::Serialize;
+
+/// The scale of tension, low to high: deep blue over violet and rose to orange.
+pub(super) const TENSION: Ramp = Ramp([
+    Color(0x1c, 0x2a, 0x7c),
+    Color(0x5b, 0x1f, 0x9b),
+    Color(0xa6, 0x2a, 0x8e),
+    Color(0xdd, 0x51, 0x66),
+    Color(0xf4, 0x92, 0x3a),
+]);
 
 /// Millimetres per unit of the drawing, a centimetre.
 pub(super) const MM: f64 = 10.0;
@@ -226,7 +236,7 @@ impl Film {
                 phase,
             ],
             tension_range: [low, if high > low { high } else { low + 50.0 }],
-            stops: crate::report::color::tension_stops(),
+            stops: TENSION.0.map(|stop| stop.to_string()).to_vec(),
             pressure_kn_per_m: 1e-3 * strong_n / machine.ropes.cylinder_length_m / 0.35,
             readouts: readouts(case, simulation, &frames),
         })

@@ -1,7 +1,6 @@
 //! Ropes and contact force in the drawing, of the first frame; the player does the same for the
 //! others.
-use super::film::{Film, MM, RopeFrame};
-use crate::report::color;
+use super::film::{Film, MM, RopeFrame, TENSION};
 use maud::{Markup, html};
 
 /// Both ropes.
@@ -40,7 +39,7 @@ fn rope(id: &str, frame: &RopeFrame, ends: &[[f64; 2]; 2], film: &Film) -> Marku
             @for (index, pair) in points.windows(2).enumerate() {
                 line x1=(format!("{:.1}", pair[0][0] / MM)) y1=(format!("{:.1}", -pair[0][1] / MM))
                     x2=(format!("{:.1}", pair[1][0] / MM)) y2=(format!("{:.1}", -pair[1][1] / MM))
-                    stroke=(color::tension(tension(index))) {}
+                    stroke=(TENSION.at(tension(index))) {}
             }
         }
     }

@@ -1,12 +1,13 @@
-//! Where the recalibrated simulation and the record part: crank angle, order, joint.
+//! Where the recalibrated simulation and the record part: abscissa, order, joint.
 use crate::report::diagnosis::subject::{Subject, channels};
 use crate::report::document::{Block, Figure, Section, figures};
-use crate::report::number::{figure, fixed};
-use crate::report::words::listed;
+use crate::report::number::{figure, fixed, plain, unit};
+use crate::report::words::{counted, listed};
 use crate::report::{chart, kind};
 use discrepancy::place::along::Window;
 use discrepancy::place::whereabouts::Where;
 use discrepancy::record::Record;
+use protocol::case::Abscissa;
 
 /// Windows and entries that are named in words.
 const NAMED: usize = 6;
@@ -14,17 +15,16 @@ const NAMED: usize = 6;
 pub(super) fn section(subject: &Subject<'_>) -> Section {
     let mut blocks = Vec::new();
     if let Some(seen) = &subject.diagnosis().whereabouts {
-        let record = subject.calibrated();
-        let names = record.map(channels).unwrap_or_default();
         blocks.push(Block::Text(
             "Everything here is what the recalibrated model, without any further effect, leaves of \
              the record; what another set of parameters could take up does not show."
                 .to_owned(),
         ));
-        blocks.extend(windows(seen, &names));
-        blocks.push(Block::Text(peaks(seen, &names)));
-        let maps = record.map(|record| maps(subject, seen, record));
-        blocks.extend(figures(maps.into_iter().flatten()));
+        if let Some(record) = subject.calibrated() {
+            blocks.extend(windows(seen, record));
+            blocks.extend(peaks(seen, record).map(Block::Text));
+            blocks.extend(figures(maps(subject, seen, record)));
+        }
     }
     Section {
         id: "where",
@@ -35,36 +35,45 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
 
 fn maps(subject: &Subject<'_>, seen: &Where, record: &Record) -> Vec<Figure> {
     let names = channels(record);
-    let kind = kind::of(subject.case);
-    let hertz = kind.and_then(|kind| kind.frequency_hz(subject.case, record.condition));
+    let Some(first) = record.channels.first() else {
+        return Vec::new();
+    };
+    let abscissa = &first.channel.abscissa;
+    let axis = kind::axis(subject.case, abscissa);
+    let hertz = kind::of(subject.case).frequency_hz(subject.case, record.condition);
     let all = [
-        chart::angle_map(&seen.along, &names),
-        chart::order_map(&seen.order, &names, hertz),
+        chart::angle_map(&seen.along, &names, (abscissa, &axis)),
+        chart::order_map(&seen.order, &names, (&abscissa.name, hertz)),
         chart::joints(&seen.joints, seen.equivalent),
-        chart::latent_forces(&seen.joints, seen.equivalent),
+        chart::latent_forces(&seen.joints, seen.equivalent, (abscissa, &axis)),
     ];
     all.into_iter().flatten().collect()
 }
 
-fn windows(seen: &Where, channels: &[String]) -> Vec<Block> {
+fn windows(seen: &Where, record: &Record) -> Vec<Block> {
     let all = &seen.along.windows;
     let item = |window: &Window| {
-        format!(
-            "{}, {} to {} deg: the simulation is too {} by {} standard deviations",
-            channels.get(window.channel).map_or("", String::as_str),
-            fixed(window.from, 0),
-            fixed(end_deg(window), 0),
+        let channel = record.channels.get(window.channel).map(|own| &own.channel);
+        let channel = channel?;
+        Some(format!(
+            "{}, {} to {} {}: the simulation is too {} by {} standard deviations",
+            channel.title,
+            plain(window.from),
+            plain(end(window, &channel.abscissa)),
+            unit(&channel.abscissa.unit),
             if window.strength > 0.0 { "low" } else { "high" },
             fixed(window.strength.abs(), 1)
-        )
+        ))
     };
+    let first = record.channels.first();
+    let by = first.map_or_else(String::new, |first| counted(&first.channel.abscissa));
     if all.is_empty() {
-        let none = "By crank angle: no window of the revolution stands out of the noise.";
-        return vec![Block::Text(none.to_owned())];
+        let none = format!("By {by}: no window stands out of the noise.");
+        return vec![Block::Text(none)];
     }
     let mut blocks = vec![
-        Block::Text("By crank angle, the strongest first:".to_owned()),
-        Block::List(all.iter().take(NAMED).map(item).collect()),
+        Block::Text(format!("By {by}, the strongest first:")),
+        Block::List(all.iter().take(NAMED).filter_map(item).collect()),
     ];
     if all.len() > NAMED {
         let more = format!("and {} more windows.", all.len() - NAMED);
@@ -73,28 +82,31 @@ fn windows(seen: &Where, channels: &[String]) -> Vec<Block> {
     blocks
 }
 
-/// Where a window ends, within the revolution.
-fn end_deg(window: &Window) -> f64 {
-    if window.to > 360.0 {
-        window.to - 360.0
-    } else {
-        window.to
-    }
+/// Where a window ends, within the period.
+fn end(window: &Window, abscissa: &Abscissa) -> f64 {
+    let period = abscissa.period.filter(|period| window.to > *period);
+    window.to - period.unwrap_or(0.0)
 }
 
-fn peaks(seen: &Where, channels: &[String]) -> String {
+/// What stands out by order; none where nothing is periodic.
+fn peaks(seen: &Where, record: &Record) -> Option<String> {
+    let mut abscissas = record.channels.iter().map(|own| &own.channel.abscissa);
+    let of = &abscissas.find(|abscissa| abscissa.period.is_some())?.name;
     let all = &seen.order.peaks;
     if all.is_empty() {
-        return "By order of the crank: no entry stands out of the noise.".to_owned();
+        return Some(format!(
+            "By order of the {of}: no entry stands out of the noise."
+        ));
     }
     let named = all.iter().take(NAMED).map(|peak| {
         let (order, ratio) = (peak.order, figure(peak.ratio));
-        let channel = channels.get(peak.channel).map_or("", String::as_str);
+        let channel = record.channels.get(peak.channel);
+        let channel = channel.map_or("", |own| own.channel.title.as_str());
         format!("order {order} at {channel} ({ratio}\u{a0}× noise)")
     });
-    format!(
-        "By order of the crank, {} entries stand out, most of all {}.",
+    Some(format!(
+        "By order of the {of}, {} entries stand out, most of all {}.",
         all.len(),
         listed(&named.collect::<Vec<_>>(), "and")
-    )
+    ))
 }

@@ -3,9 +3,10 @@ use crate::report::diagnosis::shown::{Shown, shown};
 use crate::report::diagnosis::subject::Subject;
 use crate::report::diagnosis::words;
 use crate::report::document::{Row, Table};
-use crate::report::number::{NONE, figure, percent};
-use crate::report::words::condition_name;
+use crate::report::number::{NONE, figure, percent, squared};
+use crate::report::words::{condition_name, headed};
 use discrepancy::proof::compare;
+use std::collections::BTreeSet;
 
 /// The gap before and after, of the answer and of the best rejected rival.
 pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table> {
@@ -37,7 +38,7 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
             ["", "before", "after", "closed", "95\u{a0}% interval"],
             rows,
         ).noted([
-            "Gap: mean over the gauges of the squared residual above the noise of the averaged record, \
+            "Gap: mean over the channels of the squared residual above the noise of the averaged record, \
              over the variance of the measured curve; means removed. Interval: the cycles drawn again \
              1000 times, before and after on the same draw, less the scatter of the draws themselves.",
             "A gap that closes does not prove a name: a wrong effect often closes most of it, which is \
@@ -92,17 +93,25 @@ fn gap(subject: &Subject<'_>, of: &compare::Row, changed: bool) -> Row {
 
 /// The paper's two error measures, channel by channel.
 pub(in crate::report::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table> {
+    let all = shown(subject);
+    let scored = all.iter().flat_map(|shown| {
+        let scored = shown.record.scored().into_iter();
+        scored.map(|c| shown.record.channels[c].channel.unit.as_str())
+    });
+    let units: BTreeSet<&str> = scored.collect();
+    // a unit that all have stands above them, others stand in their rows
+    let common = units.first().copied().filter(|_| units.len() == 1);
     let mut rows = Vec::new();
-    for shown in shown(subject) {
-        let order: Vec<usize> = shown.record.scored();
+    for shown in &all {
         rows.push(Row::group(format!("condition {}", shown.condition)));
-        rows.extend(order.into_iter().filter_map(|c| errors(&shown, c)));
+        let scored = shown.record.scored().into_iter();
+        rows.extend(scored.filter_map(|c| errors(shown, c, common.is_none())));
     }
     Table::new(
             "The same in the reference paper's measures",
             [
                 "",
-                "MSE before [MPa²]",
+                &headed("MSE before", &squared(common)),
                 "after",
                 "rival",
                 "relative error before",
@@ -116,7 +125,7 @@ pub(in crate::report::diagnosis) fn paper(subject: &Subject<'_>) -> Option<Table
              over the mean absolute deviation of the measured curve from its own mean.",]).unless_empty()
 }
 
-fn errors(shown: &Shown<'_>, c: usize) -> Option<Row> {
+fn errors(shown: &Shown<'_>, c: usize, with_unit: bool) -> Option<Row> {
     let of = shown.channel(c)?;
     let n = of.measured.len() as f64;
     let mean = of.measured.iter().sum::<f64>() / n;
@@ -134,5 +143,13 @@ fn errors(shown: &Shown<'_>, c: usize) -> Option<Row> {
         .map(|s| s.map_or_else(|| NONE.to_owned(), square))
         .into_iter()
         .chain(all.map(|s| s.map_or_else(|| NONE.to_owned(), relative)));
-    Some(Row::new(of.channel, cells.collect::<Vec<_>>()))
+    let unit = if with_unit {
+        squared(Some(of.unit))
+    } else {
+        String::new()
+    };
+    Some(Row::new(
+        headed(of.channel, &unit),
+        cells.collect::<Vec<_>>(),
+    ))
 }

@@ -1,0 +1,58 @@
+//! The channels of simulations as CSV: one row per channel and point.
+//!
+//! An empty field is a value that does not exist; numbers are written with all their digits.
+use super::data::Shown;
+use super::number::field;
+use super::words::condition_name;
+use std::io::Write;
+
+const COLUMNS: [&str; 10] = [
+    "condition",
+    "parameters",
+    "channel",
+    "unit",
+    "abscissa",
+    "abscissa_unit",
+    "at",
+    "measured",
+    "spread",
+    "simulated",
+];
+
+/// Writes the channels of named parameter sets of one case; a failed simulation has values as far as it
+/// got.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub(super) fn curves(to: impl Write, runs: &[(&str, Shown<'_>)]) -> Result<(), csv::Error> {
+    let mut writer = csv::Writer::from_writer(to);
+    writer.write_record(COLUMNS)?;
+    for (parameters, run) in runs {
+        let condition = condition_name(run.case, run.condition);
+        for (_, channel) in run.case.channels_of(run.condition) {
+            let (record, simulated) = (channel.record.as_ref(), run.channel(channel));
+            let abscissa = &channel.abscissa;
+            for (index, &at) in abscissa.points.iter().enumerate() {
+                let value = |values: Option<&[f64]>| {
+                    field(values.and_then(|values| values.get(index).copied()))
+                };
+                let numbers = [
+                    field(Some(at)),
+                    value(record.map(|record| record.mean.as_slice())),
+                    value(record.map(|record| record.spread.as_slice())),
+                    value(Some(simulated)),
+                ];
+                let names = [
+                    condition.as_str(),
+                    parameters,
+                    &channel.name,
+                    &channel.unit,
+                    &abscissa.name,
+                    &abscissa.unit,
+                ];
+                writer.write_record(names.into_iter().chain(numbers.iter().map(String::as_str)))?;
+            }
+        }
+    }
+    Ok(writer.flush()?)
+}
