@@ -198,11 +198,13 @@ fn record(condition: usize, cycles: usize) -> Record {
         }
         all
     });
+    let turn_deg = (0..GRID).map(|i| 360.0 * i as f64 / GRID as f64);
+    let turn_deg: Vec<f64> = turn_deg.collect();
     let recorded = |(curve, sensor): (usize, Sensor)| Recorded {
         curve,
         scored: matches!(sensor, Sensor::Gauge(_)),
         held_out: false,
-        channel: sensor.channel(condition, Vec::new()),
+        channel: sensor.channel(condition, turn_deg.clone()),
     };
     Record {
         condition,
