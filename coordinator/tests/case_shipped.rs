@@ -174,8 +174,7 @@ fn the_envelope_is_that_of_the_design_kinematics() {
             values.fold(f64::NEG_INFINITY, f64::max),
         ]
     };
-    let loaded = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();
-    let envelope = loaded.envelope;
+    let envelope = case::check(&shipped()).unwrap().envelope;
     let near = |ours: [f64; 2], theirs: [f64; 2], tolerance: f64| {
         for (ours, theirs) in ours.into_iter().zip(theirs) {
             assert!((ours - theirs).abs() < tolerance, "{ours} {theirs}");

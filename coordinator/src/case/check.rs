@@ -1,5 +1,8 @@
 //! What `horsehead case check` tells about a case that is in order.
-use super::{CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts, load::load_machine};
+use super::{
+    CaseEffect, CaseError, Envelope, Note, Overrides, RecordFacts,
+    load::{Resolved, load_machine},
+};
 use protocol::{
     case::{Case, Term, Unknown},
     pumping_unit::Machine,
@@ -74,12 +77,17 @@ pub fn check(folder: &Path) -> Result<Summary, CaseError> {
 /// # Errors
 /// As [`super::load`].
 pub fn check_with(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseError> {
-    let (loaded, machine) = load_machine(folder, overrides)?;
+    let Resolved {
+        loaded,
+        envelope,
+        machine,
+        ..
+    } = load_machine(folder, overrides)?;
     let case = loaded.case;
     let rope = |count: usize| (count as f64 * machine.ropes.cylinder_length_m, count);
     let calibrated = case.conditions.get(case.objective.condition);
     Ok(Summary {
-        envelope: loaded.envelope,
+        envelope,
         back_rope: rope(machine.ropes.back_cylinders),
         front_rope: rope(machine.ropes.front_cylinders),
         modes_hz: machine

@@ -24,30 +24,70 @@ pub fn write_effects(effects: &[CaseEffect]) -> String {
 /// # Errors
 /// A file that is missing or no TOML, whose `effects` are no tables, or that cannot be replaced.
 pub fn append_effects(path: &Path, effects: &[CaseEffect]) -> Result<(), CaseError> {
-    let text = file::text(
-        path,
-        file::read(path, "the case that effects are added to")?,
-    )?;
+    edit(path, |document| {
+        // removed and put back: the order in the text is kept by the tables themselves
+        let there = match document.remove("effects") {
+            None => ArrayOfTables::new(),
+            Some(Item::Value(Value::Array(none))) if none.is_empty() => ArrayOfTables::new(),
+            Some(there) => there.into_array_of_tables().map_err(|other| {
+                damaged(
+                    path,
+                    format!("`effects` is {}, not a list of tables", other.type_name()),
+                    "write every effect as a table [[effects]], or remove `effects`",
+                )
+            })?,
+        };
+        document.insert("effects", tables(there, effects));
+        Ok(())
+    })
+}
+
+/// Has unknowns of a case file start from other values, by name, in one step.
+///
+/// # Errors
+/// A file that is missing or no TOML, that has no such unknown, or that cannot be replaced.
+pub fn write_starts(path: &Path, starts: &[(String, f64)]) -> Result<(), CaseError> {
+    edit(path, |document| {
+        let tables = document
+            .get_mut("unknowns")
+            .and_then(Item::as_array_of_tables_mut);
+        let mut tables: Vec<&mut Table> =
+            tables.into_iter().flat_map(|all| all.iter_mut()).collect();
+        for (name, start) in starts {
+            let is_it =
+                |table: &&mut &mut Table| table.get("name").and_then(Item::as_str) == Some(name);
+            let Some(table) = tables.iter_mut().find(is_it) else {
+                return Err(damaged(
+                    path,
+                    format!("there is no [[unknowns]] table of the name `{name}`"),
+                    "add it with `start`, or diagnose the case as it is now",
+                ));
+            };
+            let mut new = Value::from(*start);
+            if let Some(old) = table.get("start").and_then(Item::as_value) {
+                // comments behind it stay
+                *new.decor_mut() = old.decor().clone();
+            }
+            table.insert("start", Item::Value(new));
+        }
+        Ok(())
+    })
+}
+
+/// Changes a case file in one step; comments and layout stay.
+fn edit(
+    path: &Path,
+    change: impl FnOnce(&mut DocumentMut) -> Result<(), CaseError>,
+) -> Result<(), CaseError> {
+    let text = file::text(path, file::read(path, "the case that is added to")?)?;
     let mut document: DocumentMut = text.parse().map_err(|error: toml_edit::TomlError| {
         damaged(
             path,
-            format!("the effects cannot be added: {}", error.message()),
-            "correct the file (`horsehead case check` shows the place), then add them again",
+            format!("nothing can be added: {}", error.message()),
+            "correct the file (`horsehead case check` shows the place), then add again",
         )
     })?;
-    // removed and put back: the order in the text is kept by the tables themselves
-    let there = match document.remove("effects") {
-        None => ArrayOfTables::new(),
-        Some(Item::Value(Value::Array(none))) if none.is_empty() => ArrayOfTables::new(),
-        Some(there) => there.into_array_of_tables().map_err(|other| {
-            damaged(
-                path,
-                format!("`effects` is {}, not a list of tables", other.type_name()),
-                "write every effect as a table [[effects]], or remove `effects`",
-            )
-        })?,
-    };
-    document.insert("effects", tables(there, effects));
+    change(&mut document)?;
     draft::replace(path, document.to_string().as_bytes()).map_err(|source| CaseError::Unwritable {
         path: path.into(),
         source,
@@ -107,7 +147,7 @@ fn present<const N: usize>(parts: [(&str, Option<Value>); N]) -> InlineTable {
 
 #[cfg(test)]
 mod tests {
-    use super::{append_effects, write_effects};
+    use super::{append_effects, write_effects, write_starts};
     use crate::case::effect::{CaseEffect, CaseParameter, Provenance};
     use serde::Deserialize;
     use std::{collections::BTreeMap, fs};
@@ -202,7 +242,7 @@ mod tests {
         let file = folder.path().join("case.toml");
         for (text, problem) in [
             ("effects = 3\n", "`effects` is integer"),
-            ("name = \n", "the effects cannot be added"),
+            ("name = \n", "nothing can be added"),
         ] {
             fs::write(&file, text).unwrap();
             let said = append_effects(&file, &effects()).unwrap_err().to_string();
@@ -217,5 +257,28 @@ mod tests {
         append_effects(&file, &effects()).unwrap();
         let back: File = toml::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
         assert_eq!(back.effects, effects());
+    }
+
+    /// What a diagnosis finds of an unknown becomes its start; everything else stays as it was written.
+    #[test]
+    fn a_start_is_replaced_where_it_stands() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("case.toml");
+        let text = "# mine\n[[unknowns]]\nname = \"a\"\nstart = 1.0 # as drawn\n\n[[unknowns]]\nname = \"b\"\n";
+        fs::write(&path, text).unwrap();
+        write_starts(
+            &path,
+            &[("a".to_owned(), 0.1 + 0.2), ("b".to_owned(), -2.5)],
+        )
+        .unwrap();
+        let expected = text.replace("1.0 #", "0.30000000000000004 #") + "start = -2.5\n";
+        assert_eq!(fs::read_to_string(&path).unwrap(), expected);
+        let refused = write_starts(&path, &[("c".to_owned(), 1.0)]).unwrap_err();
+        assert!(
+            refused
+                .to_string()
+                .contains("no [[unknowns]] table of the name `c`")
+        );
+        assert_eq!(fs::read_to_string(&path).unwrap(), expected);
     }
 }

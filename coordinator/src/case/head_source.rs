@@ -46,6 +46,7 @@ pub fn load_head(folder: &Path) -> Result<(PumpingUnit, HeadSource), CaseError> 
         head,
         flexible,
         twins,
+        ..
     } = resolve(folder, &Overrides::default())?;
     let (Some((mesh, mesh_blake3)), Some(source_blake3)) = (head.mesh, head.source_blake3) else {
         return Err(damaged(

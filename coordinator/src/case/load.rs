@@ -6,16 +6,15 @@ use super::{
     effect::{self, CaseEffect},
     error::{CaseError, damaged},
     flexible::{self, ReadHead},
-    genes,
+    general, genes,
     geometry::Envelope,
-    machine,
-    note::Note,
-    objective, ranges,
-    record::RecordFacts,
+    kind,
+    loaded::Loaded,
+    machine, objective, ranges,
     schema::{CaseFile, FlexibleHead, Records, TwinRopesEntry},
 };
 use discrepancy::record::Record;
-use protocol::{case::Case, pumping_unit::Machine};
+use protocol::{case::Case, pumping_unit::Machine, unit::EFFECT_UNITS};
 use std::path::{Path, PathBuf};
 
 /// What a command line may replace in a case.
@@ -23,48 +22,6 @@ use std::path::{Path, PathBuf};
 pub struct Overrides {
     /// Folder whose cards and records, of the same names, replace those of the case.
     pub measured: Option<PathBuf>,
-}
-
-/// A case with what was found on the way.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Loaded {
-    /// The case.
-    pub case: Case,
-    /// Remarks that are no errors.
-    pub notes: Vec<Note>,
-    /// Facts about each condition's record, in the order of the conditions.
-    pub records: Vec<Option<RecordFacts>>,
-    /// Every cycle of each record by itself, for a diagnosis; only conditions that have a record.
-    pub cycles: Vec<Record>,
-    /// Whether the case says that its gauge records were computed; never of replaced ones.
-    pub synthetic: bool,
-    /// Effects as the file states them, with intervals and provenance.
-    pub effects: Vec<CaseEffect>,
-    /// Where beam and ropes move.
-    pub envelope: Envelope,
-}
-
-impl Loaded {
-    /// The case as it was when effects were found in it: without those whose provenance names it, by its
-    /// content hash, as their dataset, and without their genes.
-    #[must_use]
-    pub fn without_found_in(mut self, dataset: &str) -> Self {
-        let found = |effect: &CaseEffect| {
-            let provenance = effect.provenance.as_ref();
-            provenance.and_then(|p| p.dataset.as_deref()) == Some(dataset)
-        };
-        self.effects.retain(|effect| !found(effect));
-        self.case.effects = self.effects.iter().map(CaseEffect::setting).collect();
-        self.case.effect_units = self.effects.iter().map(CaseEffect::units).collect();
-        let left = &self.case.effects;
-        self.case
-            .unknowns
-            .retain(|unknown| match unknown.of_effect() {
-                None => true,
-                Some((id, _)) => left.iter().any(|effect| effect.id == id),
-            });
-        self
-    }
 }
 
 /// Loads a case folder.
@@ -80,24 +37,47 @@ pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
-    load_machine(folder, overrides).map(|(loaded, _)| loaded)
+    let (document, measured) = document(folder, overrides)?;
+    if kind::of(&document)? == Machine::KIND {
+        return load_machine(folder, overrides).map(|resolved| resolved.loaded);
+    }
+    general::read(folder, measured, &document)
+}
+
+/// The case file, and the folder that replaces the records' own.
+fn document<'a>(
+    folder: &Path,
+    overrides: &'a Overrides,
+) -> Result<(Document, Option<&'a Path>), CaseError> {
+    let measured = overrides.measured.as_deref();
+    if let Some(absent) = measured.filter(|path| !path.is_dir()) {
+        return Err(damaged(
+            absent,
+            "there is no such folder; --measured names it",
+            "give the folder that holds the records of the test",
+        ));
+    }
+    let document = Document::read(
+        &folder.join("case.toml"),
+        "the description of the case; `horsehead case new` writes a template",
+    )?;
+    Ok((document, measured))
 }
 
 /// As [`load_with_notes`], with the machine.
-pub(super) fn load_machine(
-    folder: &Path,
-    overrides: &Overrides,
-) -> Result<(Loaded, Machine), CaseError> {
-    let resolved = resolve(folder, overrides)?;
-    match resolved.head.stale {
+pub(super) fn load_machine(folder: &Path, overrides: &Overrides) -> Result<Resolved, CaseError> {
+    let mut resolved = resolve(folder, overrides)?;
+    match resolved.head.stale.take() {
         Some(stale) => Err(stale),
-        None => Ok((resolved.loaded, resolved.machine)),
+        None => Ok(resolved),
     }
 }
 
 /// A case with what its file and the head's files say of the flexible head.
 pub(super) struct Resolved {
     pub(super) loaded: Loaded,
+    /// Where beam and ropes move.
+    pub(super) envelope: Envelope,
     /// That of the case.
     pub(super) machine: Machine,
     /// Tables of another mesh are no error yet.
@@ -111,25 +91,14 @@ pub(super) struct Resolved {
 /// # Errors
 /// As [`load`], but for tables of another mesh.
 pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, CaseError> {
-    let measured = overrides.measured.as_deref();
-    if let Some(absent) = measured.filter(|path| !path.is_dir()) {
-        return Err(damaged(
-            absent,
-            "there is no such folder; --measured names it",
-            "give the folder that holds the load cards and gauge records of the test",
-        ));
-    }
-    let document = Document::read(
-        &folder.join("case.toml"),
-        "the description of the case; `horsehead case new` writes a template",
-    )?;
+    let (document, measured) = document(folder, overrides)?;
     let file: CaseFile = document.parse()?;
     ranges::check(&document, &file)?;
     let envelope = machine::check(&document, &file)?;
     let head = flexible::read(folder, &document, &file)?;
     machine::check_arc(&document, &file, &head.head.arc_deg, &envelope)?;
     let objective = objective::read(&document, file.objective.as_ref(), &file.conditions)?;
-    effect::check(&document, &file.effects)?;
+    effect::check(&document, &file.effects, &EFFECT_UNITS)?;
     let source = Source {
         folder,
         measured,
@@ -187,10 +156,10 @@ pub(super) fn resolve(folder: &Path, overrides: &Overrides) -> Result<Resolved, 
         records,
         cycles,
         effects: file.effects,
-        envelope,
     };
     Ok(Resolved {
         loaded,
+        envelope,
         machine,
         head,
         flexible: file.flexible_head,

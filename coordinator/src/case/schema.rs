@@ -17,6 +17,12 @@ use std::{collections::BTreeMap, path::PathBuf};
 #[serde(deny_unknown_fields)]
 pub(super) struct CaseFile {
     pub(super) name: String,
+    /// Which kind of model it is of.
+    #[expect(
+        dead_code,
+        reason = "a key of the form; it was looked at before the rest was read"
+    )]
+    pub(super) model: ModelEntry,
     /// Where the gauge records come from; a test of the machine unless stated.
     #[serde(default)]
     pub(super) records: Records,
@@ -44,6 +50,17 @@ pub(super) struct CaseFile {
     /// What a calibration minimises; needed where there is a gauge record.
     pub(super) objective: Option<ObjectiveEntry>,
     pub(super) run: RunSettings,
+}
+
+/// The kind of model.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ModelEntry {
+    #[expect(
+        dead_code,
+        reason = "a key of the form; it was looked at before the rest was read"
+    )]
+    pub(super) kind: String,
 }
 
 /// Where gauge records come from.

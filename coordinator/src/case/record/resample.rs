@@ -8,7 +8,7 @@
 //! it. At the grid's Nyquist order (360 at 0.5 deg) half is kept, above it less, and a gauge
 //! amplifier leaves nothing there: nothing aliases that matters. Where a cycle has samples on one
 //! side only, or fewer than three, it has no value, and the other cycles stand for it.
-use super::samples::Samples;
+use super::{super::spread::mean_and_spread, samples::Samples};
 use discrepancy::record::Curves;
 use protocol::pumping_unit::Sensor;
 
@@ -127,22 +127,6 @@ pub(super) fn grid(step_deg: f64) -> Vec<f64> {
     (0..grid_count(step_deg))
         .map(|at| at as f64 * step_deg)
         .collect()
-}
-
-/// Mean and standard deviation (n - 1) of what there is; 0 deviation of fewer than two.
-fn mean_and_spread(values: impl Iterator<Item = f64> + Clone) -> (Option<f64>, f64, usize) {
-    let count = values.clone().count();
-    if count == 0 {
-        return (None, 0.0, 0);
-    }
-    let mean = values.clone().sum::<f64>() / count as f64;
-    let squares: f64 = values.map(|value| (value - mean) * (value - mean)).sum();
-    let spread = if count > 1 {
-        (squares / (count - 1) as f64).sqrt()
-    } else {
-        0.0
-    };
-    (Some(mean), spread, count)
 }
 
 /// What a grid value is made of: a run of samples with their regression weights.

@@ -1,0 +1,269 @@
+//! Channels and what was measured of them.
+use super::{
+    super::{
+        document::{Document, Step, nearest},
+        error::CaseError,
+        names,
+        spread::mean_and_spread,
+    },
+    file::{AbscissaEntry, ChannelEntry, ConditionEntry, PointsEntry},
+    record,
+};
+use protocol::case::{Abscissa, Channel, ChannelRecord};
+use std::path::{Path, PathBuf};
+
+/// Most places of a curve.
+const MOST_POINTS: u32 = 1_000_000;
+/// How far places may lie off an even spacing, as a share of it.
+const EVEN: f64 = 1e-6;
+/// Steps of a curve beside its noise, as a power of two: a thousandth.
+const BELOW_NOISE: f64 = 10.0;
+
+/// A channel with what was measured of it.
+pub(super) struct Read {
+    pub(super) channel: Channel,
+    /// Each cycle by itself; none where nothing was measured.
+    pub(super) cycles: Vec<Vec<f64>>,
+    /// Whether it takes no part in any fit.
+    pub(super) held_out: bool,
+    /// Record and condition that the replacing folder does not have.
+    pub(super) missing: Option<(String, String)>,
+}
+
+/// Where records are looked for.
+pub(super) struct Place<'a> {
+    /// Folder of the case.
+    pub(super) folder: &'a Path,
+    /// Folder that replaces the records' own.
+    pub(super) measured: Option<&'a Path>,
+    /// The condition whose records must be there.
+    pub(super) calibrated: Option<&'a str>,
+}
+
+impl Place<'_> {
+    /// A record's file: `--measured DIR` replaces the folder, not the name.
+    fn of(&self, named: &Path) -> PathBuf {
+        match (self.measured, named.file_name()) {
+            (Some(measured), Some(name)) => measured.join(name),
+            _ => self.folder.join(named),
+        }
+    }
+
+    /// Whether the replacing folder may do without this record, and does.
+    fn lacks(&self, named: &Path, condition: &str) -> bool {
+        let needed = self.calibrated == Some(condition);
+        self.measured.is_some() && !needed && !self.of(named).exists()
+    }
+}
+
+/// Reads every channel.
+///
+/// # Errors
+/// A condition that there is not, a noise or spacing that cannot be, and all that a record may have
+/// wrong.
+pub(super) fn read(
+    document: &Document,
+    entries: &[ChannelEntry],
+    conditions: &[ConditionEntry],
+    place: &Place<'_>,
+) -> Result<Vec<Read>, CaseError> {
+    let read = |(index, entry): (usize, &ChannelEntry)| {
+        let way = [Step::Key("channels"), Step::Index(index), Step::Key("name")];
+        let twin =
+            |other: &ChannelEntry| other.name == entry.name && other.condition == entry.condition;
+        let is_there = entries[..index].iter().any(twin);
+        let what = "channel of its condition";
+        names::check_one(document, &way, what, &entry.name, is_there)?;
+        let source = Source {
+            document,
+            index,
+            entry,
+        };
+        source.read(conditions, place)
+    };
+    entries.iter().enumerate().map(read).collect()
+}
+
+/// One entry of the file.
+struct Source<'a> {
+    document: &'a Document,
+    index: usize,
+    entry: &'a ChannelEntry,
+}
+
+impl Source<'_> {
+    /// An error about one of its fields.
+    fn refused(&self, keys: &[&str], value: String, allowed: &str, help: &str) -> CaseError {
+        let way = [Step::Key("channels"), Step::Index(self.index)].into_iter();
+        let way: Vec<Step<'_>> = way.chain(keys.iter().map(|key| Step::Key(key))).collect();
+        self.document.field(&way, value, allowed, help)
+    }
+
+    fn read(&self, conditions: &[ConditionEntry], place: &Place<'_>) -> Result<Read, CaseError> {
+        let entry = self.entry;
+        let names = conditions.iter().map(|condition| condition.name.as_str());
+        let Some(condition) = names.clone().position(|name| name == entry.condition) else {
+            let list: Vec<&str> = names.clone().collect();
+            let near = nearest(&entry.condition, names);
+            return Err(self.refused(
+                &["condition"],
+                format!("\"{}\"", entry.condition),
+                &format!("the name of a condition: {}", list.join(", ")),
+                &near.map_or("add it as [[conditions]]".to_owned(), |near| {
+                    format!("did you mean `{near}`?")
+                }),
+            ));
+        };
+        if entry
+            .noise
+            .is_some_and(|noise| !(noise > 0.0 && noise.is_finite()))
+        {
+            return Err(self.refused(
+                &["noise"],
+                entry.noise.unwrap_or_default().to_string(),
+                &format!("above 0 {}", entry.unit),
+                "give the standard deviation of one value, or leave it out",
+            ));
+        }
+        let (points, mut cycles) = self.places_and_cycles(place)?;
+        let file = entry.record.as_ref().map(|record| &record.file);
+        let missing = file
+            .filter(|file| place.lacks(file, &entry.condition))
+            .map(|file| {
+                // the places stand, the values are another test's
+                cycles.clear();
+                let name = file.file_name().unwrap_or_default().display().to_string();
+                (name, entry.condition.clone())
+            });
+        let record = (!cycles.is_empty()).then(|| averaged(&cycles));
+        let AbscissaEntry {
+            name, unit, period, ..
+        } = &entry.abscissa;
+        Ok(Read {
+            channel: Channel {
+                name: entry.name.clone(),
+                title: entry.title.clone().unwrap_or_else(|| entry.name.clone()),
+                unit: entry.unit.clone(),
+                condition,
+                abscissa: Abscissa {
+                    name: name.clone(),
+                    unit: unit.clone(),
+                    points,
+                    period: *period,
+                },
+                noise: entry.noise,
+                step: entry.noise.map(step),
+                record,
+            },
+            cycles,
+            held_out: entry.held_out,
+            missing,
+        })
+    }
+
+    /// Where the values stand, and what was measured there.
+    fn places_and_cycles(&self, place: &Place<'_>) -> Result<(Vec<f64>, Vec<Vec<f64>>), CaseError> {
+        let (points, cycles) = match (&self.entry.record, &self.entry.abscissa.points) {
+            (Some(entry), None) => {
+                let role = format!(
+                    "the record of channel `{}` in {}",
+                    self.entry.name,
+                    self.document.path.display()
+                );
+                let path = if place.lacks(&entry.file, &self.entry.condition) {
+                    place.folder.join(&entry.file)
+                } else {
+                    place.of(&entry.file)
+                };
+                let read = record::read(&path, entry, &role)?;
+                (read.places, read.cycles)
+            }
+            (None, Some(points)) => (self.spaced(*points)?, Vec::new()),
+            (record, _) => {
+                let both = record.is_some();
+                return Err(self.refused(
+                    &["abscissa", "points"],
+                    if both {
+                        "stated beside a record"
+                    } else {
+                        "absent"
+                    }
+                    .to_owned(),
+                    "a record, which states its own places, or points = { first, step, count }",
+                    if both {
+                        "remove one of them"
+                    } else {
+                        "add one of them"
+                    },
+                ));
+            }
+        };
+        self.check_period(&points)?;
+        Ok((points, cycles))
+    }
+
+    /// Equally spaced places.
+    fn spaced(&self, points: PointsEntry) -> Result<Vec<f64>, CaseError> {
+        let PointsEntry { first, step, count } = points;
+        if !(step > 0.0 && step.is_finite() && first.is_finite())
+            || !(2..=MOST_POINTS).contains(&count)
+        {
+            return Err(self.refused(
+                &["abscissa", "points"],
+                format!("{{ first = {first}, step = {step}, count = {count} }}"),
+                &format!("finite numbers, step above 0, count 2 to {MOST_POINTS}"),
+                "state where the curve is to be computed",
+            ));
+        }
+        Ok((0..count).map(|at| first + step * f64::from(at)).collect())
+    }
+
+    /// Places of one period are equally spaced and fill it.
+    fn check_period(&self, points: &[f64]) -> Result<(), CaseError> {
+        let Some(period) = self.entry.abscissa.period else {
+            return Ok(());
+        };
+        let step = period / points.len() as f64;
+        let first = points.first().copied().unwrap_or_default();
+        let off = |(at, point): (usize, &f64)| (point - first - step * at as f64).abs();
+        let furthest = points.iter().enumerate().map(off).fold(0.0, f64::max);
+        if period > 0.0 && furthest <= EVEN * step {
+            return Ok(());
+        }
+        let unit = &self.entry.abscissa.unit;
+        Err(self.refused(
+            &["abscissa", "period"],
+            format!("{period} {unit}"),
+            &format!(
+                "the span of {} equally spaced places from {first} {unit} on, without the one at which \
+                 the curve begins anew",
+                points.len()
+            ),
+            "interpolate the record to equal steps that divide the period, or leave `period` out",
+        ))
+    }
+}
+
+/// The greatest power of two that is no more than a thousandth of the noise.
+fn step(noise: f64) -> i32 {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the logarithm of a finite number"
+    )]
+    let power = (noise.log2() - BELOW_NOISE).floor() as i32;
+    power
+}
+
+/// Mean and spread of cycles at the same places.
+fn averaged(cycles: &[Vec<f64>]) -> ChannelRecord {
+    let places = 0..cycles.first().map_or(0, Vec::len);
+    let statistics = places.map(|at| mean_and_spread(cycles.iter().map(move |cycle| cycle[at])));
+    let (mean, spread) = statistics
+        .map(|(mean, spread, _)| (mean.unwrap_or_default(), spread))
+        .unzip();
+    ChannelRecord {
+        cycles: cycles.len(),
+        mean,
+        spread,
+    }
+}

@@ -1,0 +1,68 @@
+//! Cases of models that this program does not know: what is unknown and what is measured stands in
+//! one general form, everything else travels to the workers as it is.
+//!
+//! ```toml
+//! name = "test rig"                 # heads every report
+//! records = "measured"              # or "synthetic"; measured unless stated
+//!
+//! [model]
+//! kind = "oscillator"               # workers announce the kinds that they simulate
+//! stop_mm = 30.0                    # everything else here is the model's: it travels as it is
+//!
+//! [[unknowns]]                      # in the order of every table
+//! name = "stiffness"                # short, of letters, digits, `_` and `-`; typed on command lines
+//! title = "stiffness of the spring" # in words; the name unless stated
+//! symbol = "k"                      # the name unless stated
+//! unit = "N/mm"                     # a word: nothing converts it
+//! scale = "logarithmic"             # or "linear": what may be zero or negative
+//! start = 6.0                       # the best guess; where searches begin
+//! lower = 1.0                       # what is searched
+//! upper = 40.0
+//! trust = [-0.5, 0.5]               # optional: where models usually survive; decades about the start, on a
+//!                                   # linear scale halves of the interval
+//! prior = { value = 6.0, deviation = 0.2 }   # optional: the likeliest value, and its standard deviation in
+//!                                   # the same measure
+//! absent = 0.0                      # optional: the value at which it does nothing; `start = absent` leaves it
+//!                                   # out, for a diagnosis to suspect
+//! fixed = true                      # optional: known, and not searched; needs no bounds
+//! tie = { to = "other", ratio = 1.0 }   # optional: always so many times another one; needs no start, no bounds
+//!
+//! [[conditions]]
+//! name = "5hz"
+//! held_out = true                   # optional: takes no part in any fit, and judges it
+//! drive_hz = 5.0                    # everything else here is the model's
+//!
+//! [[channels]]                      # one per quantity and condition
+//! name = "force"
+//! title = "force on the foundation" # the name unless stated
+//! unit = "N"
+//! condition = "5hz"
+//! abscissa = { name = "phase", unit = "deg", period = 360.0 }   # period: only where the curve begins anew
+//! held_out = false                  # optional: as for a condition
+//! noise = 0.05                      # standard deviation of one value; needed where nothing was repeated
+//! record = { file = "measured/5hz.csv", at = "phase_deg", column = "force_n", cycle = "cycle" }
+//!
+//! [[channels]]                      # what is not measured says where it is computed
+//! name = "velocity"
+//! unit = "mm/s"
+//! condition = "5hz"
+//! abscissa = { name = "phase", unit = "deg", period = 360.0, points = { first = 0.0, step = 3.0, count = 120 } }
+//!
+//! [objective]                       # what a calibration minimises: weighted mean squared errors
+//! condition = "5hz"
+//! terms = [{ channel = "force", weight = 1.0 }]
+//! offset = "free"                   # sensors without an absolute zero; or "fixed"
+//! ```
+//!
+//! `[[effects]]` are those of every case. A record is a table in CSV, gzipped if it ends in `.gz`: one
+//! row per place, cycles one after the other, each at the same places, with their number in the column
+//! `cycle`; without that column there is one cycle.
+mod channels;
+mod conditions;
+mod file;
+mod objective;
+mod read;
+mod record;
+mod unknowns;
+
+pub(super) use read::read;

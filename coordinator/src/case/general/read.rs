@@ -1,0 +1,145 @@
+//! From a folder to a case: the file, then every record that it names.
+use super::{
+    super::{
+        document::{Document, Step},
+        effect::{self, CaseEffect},
+        error::CaseError,
+        loaded::Loaded,
+        note::Note,
+        schema::Records,
+    },
+    channels::{self, Place},
+    conditions,
+    file::{CaseFile, ConditionEntry},
+    objective, unknowns,
+};
+use discrepancy::record::{Curves, Record, Recorded, Stated};
+use protocol::case::Case;
+use std::path::Path;
+
+/// Reads a case of a model that nobody here knows.
+///
+/// # Errors
+/// The first thing that is wrong; see [`CaseError`].
+pub(in super::super) fn read(
+    folder: &Path,
+    measured: Option<&Path>,
+    document: &Document,
+) -> Result<Loaded, CaseError> {
+    let file: CaseFile = document.parse()?;
+    let conditions = conditions::read(document, &file.conditions)?;
+    let mut unknowns = unknowns::read(document, &file.unknowns)?;
+    effect::check(document, &file.effects, &[])?;
+    unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
+    let place = Place {
+        folder,
+        measured,
+        calibrated: file
+            .objective
+            .as_ref()
+            .map(|entry| entry.condition.as_str()),
+    };
+    let read = channels::read(document, &file.channels, &file.conditions, &place)?;
+    let objective = objective::read(document, file.objective.as_ref(), &file.conditions, &read)?;
+    let cycles = (0..conditions.len()).map(|at| cycles(document, &file.conditions, at, &read));
+    let cycles: Vec<Option<Record>> = cycles.collect::<Result<_, _>>()?;
+    let notes = not_repeated(measured, &read);
+    Ok(Loaded {
+        synthetic: file.records == Records::Synthetic && measured.is_none(),
+        case: Case {
+            name: file.name,
+            model: conditions::settings(&file.model, &file.conditions),
+            effects: file.effects.iter().map(CaseEffect::setting).collect(),
+            effect_units: file.effects.iter().map(CaseEffect::units).collect(),
+            unknowns,
+            conditions,
+            channels: read.into_iter().map(|read| read.channel).collect(),
+            objective,
+        },
+        notes,
+        records: vec![None; cycles.len()],
+        cycles: cycles
+            .into_iter()
+            .flatten()
+            .map(Record::held_out_last)
+            .collect(),
+        effects: file.effects,
+    })
+}
+
+/// The cycles of a condition, each by itself; none where nothing was measured.
+///
+/// # Errors
+/// Channels of one condition that stand at different places or have another number of cycles.
+fn cycles(
+    document: &Document,
+    entries: &[ConditionEntry],
+    condition: usize,
+    all: &[channels::Read],
+) -> Result<Option<Record>, CaseError> {
+    let own = all.iter().enumerate();
+    let own = own.filter(|(_, read)| read.channel.condition == condition);
+    let measured: Vec<(usize, usize, &channels::Read)> = own
+        .enumerate()
+        .map(|(curve, (at, read))| (curve, at, read))
+        .filter(|(_, _, read)| !read.cycles.is_empty())
+        .collect();
+    let Some((_, _, first)) = measured.first() else {
+        return Ok(None);
+    };
+    for (_, at, read) in &measured {
+        let same = read.channel.abscissa == first.channel.abscissa;
+        if same && read.cycles.len() == first.cycles.len() {
+            continue;
+        }
+        return Err(document.field(
+            &[Step::Key("channels"), Step::Index(*at), Step::Key("record")],
+            format!(
+                "{} cycles of {} values over {}",
+                read.cycles.len(),
+                read.channel.abscissa.points.len(),
+                read.channel.abscissa.name
+            ),
+            format!(
+                "as channel `{}` of the same condition: {} cycles of {} values at the same places",
+                first.channel.name,
+                first.cycles.len(),
+                first.channel.abscissa.points.len()
+            ),
+            "bring the channels of a condition to the same places and cycles",
+        ));
+    }
+    let recorded = |(curve, _, read): &(usize, usize, &channels::Read)| Recorded {
+        held_out: read.held_out,
+        ..Recorded::new(*curve, &read.channel)
+    };
+    let cycle = |at: usize| -> Curves {
+        let curves = measured.iter().map(|(_, _, read)| read.cycles[at].clone());
+        curves.collect()
+    };
+    Ok(Some(Record {
+        condition,
+        channels: measured.iter().map(recorded).collect(),
+        cycles: (0..first.cycles.len()).map(cycle).collect(),
+        held_out: entries[condition].held_out,
+        stated: Stated::default(),
+    }))
+}
+
+/// Remarks on records that `--measured DIR` does not repeat.
+fn not_repeated(measured: Option<&Path>, all: &[channels::Read]) -> Vec<Note> {
+    let Some(folder) = measured else {
+        return Vec::new();
+    };
+    let missing = all.iter().filter_map(|read| read.missing.as_ref());
+    let note = |(file, condition): &(String, String)| Note {
+        path: folder.to_owned(),
+        text: format!(
+            "{file} is not there: condition `{condition}` was not measured, and nothing is compared \
+             with it"
+        ),
+    };
+    let mut notes: Vec<Note> = missing.map(note).collect();
+    notes.dedup();
+    notes
+}

@@ -1,0 +1,128 @@
+//! The record of one channel: a table of places and values, cycle by cycle.
+use super::{
+    super::{
+        error::{CaseError, contradiction},
+        file,
+        table::Table,
+    },
+    file::RecordEntry,
+};
+use std::path::Path;
+
+/// What was measured of one channel.
+#[derive(Debug)]
+pub(super) struct Read {
+    /// Where the values stand; ascending.
+    pub(super) places: Vec<f64>,
+    /// Values, cycle by cycle.
+    pub(super) cycles: Vec<Vec<f64>>,
+}
+
+/// Reads a record.
+///
+/// # Errors
+/// A file or column that is not there, cells that are no numbers, places that do not ascend or differ
+/// between cycles, numbers of cycles that are not whole or fall, a sensor that never moves.
+pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read, CaseError> {
+    let packed = path.extension().is_some_and(|end| end == "gz");
+    let bytes = if packed {
+        file::read_gzip(path, role)?
+    } else {
+        file::read(path, role)?
+    };
+    let named = [entry.at.as_str(), entry.column.as_str()].into_iter();
+    let named: Vec<&str> = named.chain(entry.cycle.as_deref()).collect();
+    let table = Table::read(path, &bytes, &named)?;
+    let [at, values, numbers @ ..] = table.columns.as_slice() else {
+        return Ok(Read {
+            places: Vec::new(),
+            cycles: Vec::new(),
+        });
+    };
+    let begins = begins(path, &table, numbers.first())?;
+    let ends = begins.iter().skip(1).copied().chain([at.len()]);
+    let spans: Vec<_> = begins
+        .iter()
+        .copied()
+        .zip(ends)
+        .map(|(from, to)| from..to)
+        .collect();
+    let places = at[spans[0].clone()].to_vec();
+    for span in &spans {
+        check_places(path, &table, &places, span.start, &at[span.clone()])?;
+    }
+    if values.iter().all(|value| *value == values[0]) {
+        return Err(contradiction(
+            path,
+            format!("column `{}`", entry.column),
+            format!("{} in every row", values[0]),
+            "a measured quantity moves",
+            "name the column that holds the measurement, or leave the record out",
+        ));
+    }
+    let cycles = spans
+        .into_iter()
+        .map(|span| values[span].to_vec())
+        .collect();
+    Ok(Read { places, cycles })
+}
+
+/// The rows in which cycles begin.
+fn begins(path: &Path, table: &Table, numbers: Option<&Vec<f64>>) -> Result<Vec<usize>, CaseError> {
+    let mut begins = vec![0];
+    let Some(numbers) = numbers else {
+        return Ok(begins);
+    };
+    for (row, number) in numbers.iter().enumerate() {
+        let before = numbers[row.saturating_sub(1)];
+        if number.fract() != 0.0 || *number < before {
+            return Err(table.cell(
+                path,
+                (row, 2),
+                number.to_string(),
+                format!("a whole number, {before} or above"),
+                "number the cycles from 1 on and write one after the other",
+            ));
+        }
+        if *number > before {
+            begins.push(row);
+        }
+    }
+    Ok(begins)
+}
+
+/// The places of a cycle ascend, and are those of the first one.
+fn check_places(
+    path: &Path,
+    table: &Table,
+    first: &[f64],
+    from: usize,
+    own: &[f64],
+) -> Result<(), CaseError> {
+    let falls = own.windows(2).position(|pair| pair[1] <= pair[0]);
+    if let Some(at) = falls {
+        return Err(table.cell(
+            path,
+            (from + at + 1, 0),
+            own[at + 1].to_string(),
+            format!("above {}, the place before it", own[at]),
+            "sort the rows of each cycle, and number the cycles in a column that `cycle` names",
+        ));
+    }
+    let other = (0..first.len().max(own.len())).find(|&at| first.get(at) != own.get(at));
+    let Some(at) = other else { return Ok(()) };
+    let row = from + at.min(own.len() - 1);
+    let said = own
+        .get(at)
+        .map_or("the end of the cycle".to_owned(), f64::to_string);
+    Err(table.cell(
+        path,
+        (row, 0),
+        said,
+        first
+            .get(at)
+            .map_or("the end of the cycle".to_owned(), f64::to_string)
+            + ", as in the first cycle",
+        "interpolate every cycle to the same places before it is written",
+    ))
+}

@@ -1,0 +1,72 @@
+//! The unknown numbers, and where in the file one stands that cannot be right.
+use super::{
+    super::{
+        document::{Document, Step},
+        error::CaseError,
+        names,
+    },
+    file::UnknownEntry,
+};
+use protocol::case::{Unknown, check_unknowns};
+
+/// Reads the unknowns.
+///
+/// # Errors
+/// A name that cannot be typed or is there twice, and all that [`check_unknowns`] refuses.
+pub(super) fn read(
+    document: &Document,
+    entries: &[UnknownEntry],
+) -> Result<Vec<Unknown>, CaseError> {
+    let all: Vec<&str> = entries.iter().map(|entry| entry.name.as_str()).collect();
+    names::check(document, "unknowns", "unknown", &all)?;
+    let way = |index, field| [Step::Key("unknowns"), Step::Index(index), Step::Key(field)];
+    if let Some(index) = all.iter().position(|name| name.contains('.')) {
+        return Err(document.field(
+            &way(index, "name"),
+            format!("\"{}\"", all[index]),
+            "a name without `.`",
+            "names with `.` are those of effects' parameters: write `_`",
+        ));
+    }
+    let unknowns: Vec<Unknown> = entries
+        .iter()
+        .map(|entry| unknown(entry, start(entry, entries, entries.len())))
+        .collect();
+    check_unknowns(&unknowns).map_err(|bad| {
+        let way = way(bad.position, bad.field);
+        document.field(&way, bad.found, bad.allowed, bad.remedy)
+    })?;
+    Ok(unknowns)
+}
+
+fn unknown(entry: &UnknownEntry, start: f64) -> Unknown {
+    let or_name = |text: &Option<String>| text.clone().unwrap_or_else(|| entry.name.clone());
+    Unknown {
+        name: entry.name.clone(),
+        title: or_name(&entry.title),
+        symbol: or_name(&entry.symbol),
+        unit: entry.unit.clone(),
+        scale: entry.scale,
+        start,
+        // what is held or follows needs no bounds
+        lower: entry.lower.unwrap_or(start),
+        upper: entry.upper.unwrap_or(start),
+        trust: entry.trust,
+        valley: entry.valley.clone(),
+        prior: entry.prior,
+        absent: entry.absent,
+        fixed: entry.fixed,
+        tie: entry.tie.clone(),
+    }
+}
+
+/// Where it starts: as stated, else where its tie puts it, over at most so many others.
+fn start(entry: &UnknownEntry, all: &[UnknownEntry], ties: usize) -> f64 {
+    let tie = entry.tie.as_ref().filter(|_| ties > 0);
+    let tied = || {
+        let tie = tie?;
+        let other = all.iter().find(|other| other.name == tie.to)?;
+        Some(tie.ratio * start(other, all, ties - 1))
+    };
+    entry.start.or_else(tied).unwrap_or(f64::NAN)
+}

@@ -1,0 +1,118 @@
+//! Which words belong to one machine, and where they may stand: the rest of the house is for any model.
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// Words that some folders do not know.
+struct Rule {
+    /// Folders and files, from the workspace's root.
+    within: &'static [&'static str],
+    /// Small letters stand for themselves and for capitals, others for themselves alone.
+    words: &'static [&'static str],
+    /// Folders and files inside those that may say them.
+    except: &'static [&'static str],
+}
+
+/// What was written for ten coefficients of ropes and four gauges is written for any unknowns and channels.
+const RULES: &[Rule] = &[Rule {
+    within: &[
+        "coordinator/search/src",
+        "coordinator/discrepancy/src",
+        "coordinator/src/core",
+        "coordinator/src/journal",
+    ],
+    words: &["kb1", "mpa", "mpa2", "Coefficient"],
+    except: &[],
+}];
+
+#[test]
+fn the_words_of_a_machine_stay_with_it() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let (mut said, mut read) = (String::new(), 0);
+    for rule in RULES {
+        for file in rule
+            .within
+            .iter()
+            .flat_map(|part| sources(&root.join(part)))
+        {
+            let place = file.strip_prefix(&root).expect("inside");
+            if rule.except.iter().any(|part| place.starts_with(part)) {
+                continue;
+            }
+            read += 1;
+            let text = fs::read_to_string(&file).expect("a source");
+            for (number, line) in text.lines().enumerate() {
+                if let Some(word) = words(line).find(|word| rule.forbids(word)) {
+                    said += &format!("\n{}:{}: {word}", place.display(), number + 1);
+                }
+            }
+        }
+    }
+    assert!(read > 100, "only {read} files were read");
+    assert!(said.is_empty(), "{said}");
+}
+
+impl Rule {
+    fn forbids(&self, word: &str) -> bool {
+        let lower = word.to_lowercase();
+        self.words.iter().any(|one| *one == word || *one == lower)
+    }
+}
+
+/// Words of a line, those inside identifiers by themselves: `GaugeTrace` and `gauge_mpa` are two each.
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split(|c: char| !c.is_ascii_alphanumeric())
+        .flat_map(|part| {
+            let capital = |at: &usize| {
+                let bytes = part.as_bytes();
+                bytes[*at].is_ascii_uppercase() && bytes[*at - 1].is_ascii_lowercase()
+            };
+            let cuts: Vec<usize> = (1..part.len()).filter(capital).collect();
+            let begins = [0].into_iter().chain(cuts.clone());
+            let ends = cuts.into_iter().chain([part.len()]);
+            begins.zip(ends).map(|(from, to)| &part[from..to])
+        })
+}
+
+/// Every Rust source of a folder, or the file itself.
+fn sources(at: &Path) -> Vec<PathBuf> {
+    if at.is_file() {
+        return vec![at.to_owned()];
+    }
+    let entries = fs::read_dir(at).unwrap_or_else(|error| panic!("{}: {error}", at.display()));
+    let inside = entries.flat_map(|entry| {
+        let path = entry.expect("an entry").path();
+        let is_source = path.extension().is_some_and(|end| end == "rs");
+        if path.is_dir() || is_source {
+            sources(&path)
+        } else {
+            Vec::new()
+        }
+    });
+    inside.collect()
+}
+
+#[test]
+fn words_are_found_inside_identifiers() {
+    let found: Vec<&str> =
+        words("let GaugeTrace { mean_mpa } = kb1[3]; // MPa, coefficient").collect();
+    let found: Vec<&str> = found.into_iter().filter(|word| !word.is_empty()).collect();
+    let expected = [
+        "let",
+        "Gauge",
+        "Trace",
+        "mean",
+        "mpa",
+        "kb1",
+        "3",
+        "MPa",
+        "coefficient",
+    ];
+    assert_eq!(found, expected);
+    let forbidden: Vec<&str> = found
+        .into_iter()
+        .filter(|word| RULES[0].forbids(word))
+        .collect();
+    assert_eq!(forbidden, ["mpa", "kb1", "MPa"]);
+}
