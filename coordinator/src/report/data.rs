@@ -4,7 +4,7 @@
 use crate::account::JobCost;
 use protocol::case::{Case, Channel};
 use protocol::event::Spent;
-use protocol::{job::Evaluation, pumping_unit::Simulation};
+use protocol::job::{Curves, Evaluation};
 
 /// One parameter set of a calibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,18 @@ pub struct Run {
     /// Agreement with the record; its channels are empty if there is no record or no complete run.
     pub evaluation: Evaluation,
     /// The curves, as far as the simulation got.
-    pub simulation: Simulation,
+    pub curves: Curves,
+}
+
+impl Run {
+    /// The simulation, under a condition of its case.
+    pub(crate) const fn shown<'a>(&'a self, case: &'a Case, condition: usize) -> Shown<'a> {
+        Shown {
+            case,
+            condition,
+            curves: &self.curves,
+        }
+    }
 }
 
 /// One simulation, to be shown.
@@ -81,13 +92,16 @@ pub struct Shown<'a> {
     /// Index of the condition in the case.
     pub condition: usize,
     /// Its curves, as far as it got.
-    pub simulation: &'a Simulation,
+    pub curves: &'a Curves,
 }
 
-impl Shown<'_> {
-    /// The curve of a channel, as far as the simulation got.
-    pub(crate) fn channel(&self, channel: &Channel) -> &[f64] {
-        self.simulation.channel(&channel.name)
+impl<'a> Shown<'a> {
+    /// The curve of a channel of its condition, as far as the simulation got.
+    pub(crate) fn channel(&self, channel: &Channel) -> &'a [f64] {
+        let mut all = self.case.channels_of(channel.condition);
+        let place = all.position(|(_, other)| other.name == channel.name);
+        let curve = place.and_then(|place| self.curves.channels.get(place));
+        curve.map_or(&[], Vec::as_slice)
     }
 }
 
@@ -156,11 +170,7 @@ impl Calibration {
     /// What the optimised parameters give under the calibrated condition.
     pub fn optimum(&self) -> Option<Shown<'_>> {
         let result = self.calibrated()?;
-        Some(Shown {
-            case: &self.case,
-            condition: result.condition,
-            simulation: &result.optimised.simulation,
-        })
+        Some(result.optimised.shown(&self.case, result.condition))
     }
 
     /// What was simulated, condition by condition, with the name of the parameters.
@@ -170,14 +180,7 @@ impl Calibration {
                 ("recommended", &result.recommended),
                 ("optimised", &result.optimised),
             ];
-            runs.map(|(who, run)| {
-                let shown = Shown {
-                    case: &self.case,
-                    condition: result.condition,
-                    simulation: &run.simulation,
-                };
-                (who, shown)
-            })
+            runs.map(|(who, run)| (who, run.shown(&self.case, result.condition)))
         });
         both.collect()
     }
@@ -206,7 +209,7 @@ pub struct SingleRun {
     /// Agreement with the record, where it was scored.
     pub evaluation: Option<Evaluation>,
     /// The curves.
-    pub simulation: Simulation,
+    pub curves: Curves,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }
@@ -217,7 +220,7 @@ impl SingleRun {
         Shown {
             case: &self.case,
             condition: self.condition,
-            simulation: &self.simulation,
+            curves: &self.curves,
         }
     }
 }

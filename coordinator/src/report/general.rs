@@ -38,7 +38,7 @@ impl Drawing for General {
 
     fn tables(&self, run: &SingleRun) -> Vec<Table> {
         let mut rows = agreement(run);
-        rows.extend(work(&run.simulation.counters, run.simulation.wall_s));
+        rows.extend(work(&run.curves.counters, run.curves.wall_s));
         let shown = run.shown();
         vec![
             simulation(run, ranges(&shown)),

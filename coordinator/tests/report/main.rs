@@ -11,7 +11,7 @@ use coordinator::report::{
     self, Calibration, Figure, SingleRun, chart, table, write_calibration, write_simulation,
 };
 use protocol::job::{Reached, Verdict};
-use protocol::pumping_unit::failure;
+use protocol::pumping_unit::{Simulation, failure};
 use roxmltree::{Document, ParsingOptions};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -133,8 +133,9 @@ fn words(page: &str) -> String {
 fn with_failed_recommended(points: usize) -> Calibration {
     let mut calibration = sample::calibration(800);
     let run = &mut calibration.conditions[0].recommended;
-    run.simulation = sample::failed(run.simulation.clone(), points);
-    run.evaluation = sample::score(&calibration.case, 0, &run.simulation);
+    sample::change(&calibration.case, run, |simulation| {
+        sample::fail(simulation, points)
+    });
     calibration
 }
 
@@ -290,8 +291,9 @@ fn a_simulation_that_differs_by_its_zero_only_lies_on_the_measured_curve() {
     let record = calibration.case.channels[0].record.clone();
     let measured = record.expect("a record").mean;
     let run = &mut calibration.conditions[0].optimised;
-    run.simulation.gauge_mpa[0] = measured.iter().map(|stress| stress - 5.0).collect();
-    run.evaluation = sample::score(&calibration.case, 0, &run.simulation);
+    sample::change(&calibration.case, run, |simulation| {
+        simulation.gauge_mpa[0] = measured.iter().map(|stress| stress - 5.0).collect();
+    });
     let overlay = chart::overlay(&calibration.case, &calibration.conditions[0], 0);
     let svg = overlay.expect("the record has gauge 1").svg;
     let (mean, simulated) = (curves(&svg, "#222222", "13"), curves(&svg, "#c84b11", "11"));
@@ -378,8 +380,9 @@ fn a_failed_recommended_run_draws_what_exists_and_says_so() {
 fn an_optimum_that_failed_is_not_sold_as_a_result() {
     let mut calibration = sample::calibration(50);
     let run = &mut calibration.conditions[0].optimised;
-    run.simulation = sample::failed(run.simulation.clone(), 0);
-    run.evaluation = sample::score(&calibration.case, 0, &run.simulation);
+    sample::change(&calibration.case, run, |simulation| {
+        sample::fail(simulation, 0)
+    });
     for point in &mut calibration.history {
         point.complete = false;
     }
@@ -400,11 +403,13 @@ fn nothing_at_all_still_makes_a_page() {
     check_page(&page_of(&calibration));
 
     let mut run: SingleRun = sample::single();
-    run.simulation = sample::failed(run.simulation.clone(), 0);
-    run.simulation.verdict = Verdict::Failed {
+    let mut simulation = Simulation::of(&run.curves).unwrap();
+    sample::fail(&mut simulation, 0);
+    simulation.verdict = Verdict::Failed {
         kind: failure::BUDGET,
         reached: Reached::LoadFraction(0.5),
     };
+    run.curves = sample::curves(&run.case, 0, simulation);
     run.evaluation = None;
     for channel in &mut run.case.channels {
         channel.record = None;
@@ -420,14 +425,17 @@ fn nothing_at_all_still_makes_a_page() {
 fn numbers_that_are_none_are_left_out() {
     let mut calibration = sample::calibration(60);
     let run = &mut calibration.conditions[0].optimised;
-    for curve in &mut run.simulation.gauge_mpa {
+    let mut simulation = Simulation::of(&run.curves).unwrap();
+    for curve in &mut simulation.gauge_mpa {
         curve[100..140].fill(f64::NAN);
     }
-    run.simulation.crank_torque_n_m.fill(f64::NAN);
-    run.simulation.suspension_m[0] = f64::INFINITY;
+    simulation.crank_torque_n_m.fill(f64::NAN);
+    simulation.suspension_m[0] = f64::INFINITY;
+    simulation.motion[3].back_tension_n.fill(f32::NAN);
+    simulation.motion[3].back_rope_m.fill([f32::NAN, 0.0]);
+    let snapshots = simulation.motion.len();
+    run.curves = sample::curves(&calibration.case, 0, simulation);
     run.evaluation.channels[0].relative_error = f64::NAN;
-    run.simulation.motion[3].back_tension_n.fill(f32::NAN);
-    run.simulation.motion[3].back_rope_m.fill([f32::NAN, 0.0]);
     calibration.history[7].fitness = f64::NAN;
     calibration.history[8].genes[2] = f64::NAN;
     calibration.history[9].genes.clear();
@@ -436,10 +444,9 @@ fn numbers_that_are_none_are_left_out() {
     check_page(&page);
     assert!(!words(&page).contains("NaN"));
     let frames = page.matches("\"path\":[").count();
-    let motion = &calibration.conditions[0].optimised.simulation.motion;
     assert_eq!(
         frames,
-        2 * (motion.len() - 1),
+        2 * (snapshots - 1),
         "a snapshot without places is left out"
     );
     let case = &calibration.case;
@@ -454,8 +461,9 @@ fn numbers_that_are_none_are_left_out() {
 fn huge_histories_stay_small() {
     let mut calibration = sample::calibration(100_000);
     let run = &mut calibration.conditions[0].optimised;
-    run.simulation = sample::simulation(&calibration.case, 0.08, 0.5);
-    assert_eq!(run.simulation.motion.len(), 720);
+    let simulation = sample::simulation(&calibration.case, 0.08, 0.5);
+    assert_eq!(simulation.motion.len(), 720);
+    run.curves = sample::curves(&calibration.case, 0, simulation);
     let page = page_of(&calibration);
     assert!(page.len() < 5_000_000, "{} bytes", page.len());
     check_page(&page);
@@ -477,7 +485,9 @@ fn terminal_tables_are_styled_only_on_demand() {
         assert!(plain.contains(part), "{part} is not in\n{plain}");
     }
     let run = sample::single();
-    let single = table::text(&simulation(&run), false) + &table::text(&balance(&run), false);
+    let drawn = Simulation::of(&run.curves).unwrap();
+    let single =
+        table::text(&simulation(&run, &drawn), false) + &table::text(&balance(&run, &drawn), false);
     for part in [
         "gauge 4",
         "stroke",
@@ -500,6 +510,7 @@ fn a_gene_at_its_bound_is_marked() {
 #[test]
 fn the_film_shows_the_machine_where_it_was() {
     let run = sample::single();
+    let simulation = Simulation::of(&run.curves).unwrap();
     let page = report::page(&report::simulation(&run));
     let xml = as_xml(&page);
     let options = ParsingOptions {
@@ -515,9 +526,9 @@ fn the_film_shows_the_machine_where_it_was() {
     let film: serde_json::Value = serde_json::from_str(film).unwrap();
     assert_eq!(
         film["turn"].as_array().unwrap().len(),
-        run.simulation.motion.len()
+        simulation.motion.len()
     );
-    let motion = &run.simulation.motion[40];
+    let motion = &simulation.motion[40];
     let frame = &film["back"][40];
     let path: Vec<i64> = serde_json::from_value(frame["path"].clone()).unwrap();
     let (mut x, mut y) = (0, 0);

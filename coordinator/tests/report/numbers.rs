@@ -1,7 +1,7 @@
 //! The numbers behind the figures, as CSV.
 use super::{sample, with_failed_recommended};
 use coordinator::pumping_unit::report::csv;
-use protocol::pumping_unit::Motion;
+use protocol::pumping_unit::{Motion, Simulation};
 
 #[test]
 fn the_curves_are_written_with_all_their_digits() {
@@ -14,7 +14,8 @@ fn the_curves_are_written_with_all_their_digits() {
     let column = |name: &str| head.iter().position(|column| column == name).unwrap();
     let rows: Vec<_> = reader.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 210 + 3 * 720);
-    let optimised = &calibration.conditions[0].optimised.simulation;
+    let optimised = &calibration.conditions[0].optimised.curves;
+    let optimised = Simulation::of(optimised).unwrap();
     let record = case.channels[0].record.as_ref().unwrap();
     for (index, row) in rows[210..210 + 720].iter().enumerate() {
         assert_eq!(&row[0], "5rpm");
@@ -39,7 +40,7 @@ fn the_curves_are_written_with_all_their_digits() {
 /// Every cylinder of every snapshot stands in a row of its own.
 #[test]
 fn ropes_are_written_cylinder_by_cylinder() {
-    let simulation = sample::single().simulation;
+    let simulation = Simulation::of(&sample::single().curves).unwrap();
     let mut bytes = Vec::new();
     csv::ropes(&mut bytes, &simulation).unwrap();
     let mut reader = ::csv::Reader::from_reader(bytes.as_slice());

@@ -8,7 +8,7 @@ use protocol::pumping_unit::failure;
 use protocol::{
     case::{Case, Channel, ChannelRecord, Condition, Objective, Offset, Term, Unknown},
     event::Spent,
-    job::{ChannelScore, Counters, Evaluation, Reached, Verdict},
+    job::{ChannelScore, Counters, Curves, Evaluation, Reached, Verdict},
     pumping_unit::{
         BackHead, Beam, Coefficient, Contact, Crank, Energy, FrontHead, Influence, LoadCard,
         Machine, ModalHead, Rod, RopeEnds, Ropes, RunSettings, Sensor, Simulation, Smoothing,
@@ -348,7 +348,7 @@ pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simul
 }
 
 /// Cuts a simulation off, as a failure in the revolution would.
-pub(crate) fn failed(mut simulation: Simulation, points: usize) -> Simulation {
+pub(crate) fn fail(simulation: &mut Simulation, points: usize) {
     simulation.verdict = Verdict::Failed {
         kind: failure::ROPE_THROUGH_HEAD,
         reached: Reached::TimeFraction(0.34),
@@ -367,7 +367,6 @@ pub(crate) fn failed(mut simulation: Simulation, points: usize) -> Simulation {
     }
     let last = simulation.turn_deg.last().copied().unwrap_or(-1.0);
     simulation.motion.retain(|motion| motion.turn_deg <= last);
-    simulation
 }
 
 /// Scores a simulation against the record of a condition, plainly.
@@ -422,11 +421,26 @@ fn channel_score(channel: usize, measured: &[f64], simulated: &[f64]) -> Channel
 
 pub(crate) fn run(case: &Case, condition: usize, error: f64) -> Run {
     let simulation = simulation(case, error, if condition == 0 { 2.0 } else { 0.0 });
-    let evaluation = score(case, condition, &simulation);
     Run {
-        evaluation,
-        simulation,
+        evaluation: score(case, condition, &simulation),
+        curves: curves(case, condition, simulation),
     }
+}
+
+/// A simulation as a worker sends it.
+pub(crate) fn curves(case: &Case, condition: usize, simulation: Simulation) -> Curves {
+    let channels = case.channels_of(condition);
+    let channels = channels.map(|(_, channel)| simulation.channel(&channel.name).to_vec());
+    let channels = channels.collect();
+    simulation.into_curves(channels).unwrap()
+}
+
+/// Changes what a run simulated under the calibrated condition, and scores it again.
+pub(crate) fn change(case: &Case, run: &mut Run, change: impl FnOnce(&mut Simulation)) {
+    let mut simulation = Simulation::of(&run.curves).unwrap();
+    change(&mut simulation);
+    run.evaluation = score(case, 0, &simulation);
+    run.curves = curves(case, 0, simulation);
 }
 
 /// What an individual cost: every hundredth twice as much as the others, the later the more.
@@ -576,7 +590,7 @@ pub(crate) fn single() -> SingleRun {
         genes_name: "recommended".to_owned(),
         genes: case.start(),
         evaluation: Some(score(&case, 0, &simulation)),
-        simulation,
+        curves: curves(&case, 0, simulation),
         notes: Vec::new(),
         case,
     }

@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         genes_name: arguments.individual.genes.clone(),
         genes: curves.genes.clone(),
         evaluation: curves.evaluation.clone(),
-        simulation: drawing,
+        curves: curves.drawn.clone(),
         notes,
     };
     if let Some(folder) = &arguments.out {
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
     }
-    let object = simulation((case, condition), &curves, &run.simulation);
+    let object = simulation((case, condition), &curves, &drawing);
     let tables = || {
         let ranges = report::ranges(&run);
         ranges.map_or_else(String::new, |ranges| {

@@ -22,7 +22,6 @@ use crate::{
     report::{self, Calibration, ConditionResult, HistoryPoint, Individual, Origin, WorkerUse},
     study::{self, Calibrated, Compared, Curves},
 };
-use protocol::pumping_unit::Simulation;
 use protocol::{
     event::WorkerAccount,
     job::{Counters, Evaluation},
@@ -37,13 +36,12 @@ pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {
     };
     Some(ConditionResult {
         condition: compared.condition,
-        recommended: report_run(recommended)?,
-        optimised: report_run(optimised)?,
+        recommended: report_run(recommended),
+        optimised: report_run(optimised),
     })
 }
 
-/// None where another model drew the curves.
-fn report_run(curves: &Curves) -> Option<report::Run> {
+fn report_run(curves: &Curves) -> report::Run {
     let unscored = || Evaluation {
         verdict: curves.drawn.verdict,
         fitness: f64::NAN,
@@ -51,10 +49,10 @@ fn report_run(curves: &Curves) -> Option<report::Run> {
         residual: Vec::new(),
         counters: Counters::default(),
     };
-    Some(report::Run {
+    report::Run {
         evaluation: curves.evaluation.clone().unwrap_or_else(unscored),
-        simulation: Simulation::of(&curves.drawn).ok()?,
-    })
+        curves: curves.drawn.clone(),
+    }
 }
 
 /// Writes the files of a finished run and prints its result.

@@ -68,9 +68,12 @@ fn rows(
     &Shown {
         case,
         condition,
-        simulation,
+        curves,
     }: &Shown<'_>,
 ) -> Result<(), csv::Error> {
+    let Ok(simulation) = Simulation::of(curves) else {
+        return Ok(());
+    };
     let name = condition_name(case, condition);
     let measured: Vec<_> = case.measured(condition).collect();
     for (index, &turn) in simulation.turn_deg.iter().enumerate() {

@@ -6,7 +6,7 @@ use crate::report::drawing::Drawing;
 use crate::report::folder::{ReportError, stream};
 use maud::html;
 use protocol::case::{Case, Unknown};
-use protocol::pumping_unit::{Coefficient, Machine};
+use protocol::pumping_unit::{Coefficient, Machine, Simulation};
 use std::path::{Path, PathBuf};
 
 /// The model of a pumping unit.
@@ -22,20 +22,21 @@ impl Drawing for Dhh {
     }
 
     fn figures(&self, of: &Shown<'_>) -> Vec<Figure> {
-        let Ok(unit) = Machine::of(of.case) else {
+        let (Ok(unit), Ok(drawn)) = (Machine::of(of.case), Simulation::of(of.curves)) else {
             return Vec::new();
         };
-        let mut figures = vec![revolution::tension(of.simulation)];
-        figures.extend(contact(&unit, of.simulation));
-        figures.push(revolution::motion(of.simulation));
-        figures.extend(card((of.case, &unit), of.condition, of.simulation));
-        figures.push(revolution::torque(of.simulation));
+        let mut figures = vec![revolution::tension(&drawn)];
+        figures.extend(contact(&unit, &drawn));
+        figures.push(revolution::motion(&drawn));
+        figures.extend(card((of.case, &unit), of.condition, &drawn));
+        figures.push(revolution::torque(&drawn));
         figures
     }
 
     fn sections(&self, whose: &str, of: Option<&Shown<'_>>) -> Vec<Section> {
         let moving = of.and_then(|of| {
-            let machine = animation::machine(of.case, of.condition, of.simulation)?;
+            let machine =
+                animation::machine(of.case, of.condition, &Simulation::of(of.curves).ok()?)?;
             Some(Block::Markup(html! {
                 p {
                     "Side view with " (whose) " parameters. The well is on the right; the drawing \
@@ -64,7 +65,15 @@ impl Drawing for Dhh {
     }
 
     fn tables(&self, run: &SingleRun) -> Vec<Table> {
-        vec![single::simulation(run), single::balance(run)]
+        Simulation::of(&run.curves).map_or_else(
+            |_| Vec::new(),
+            |drawn| {
+                vec![
+                    single::simulation(run, &drawn),
+                    single::balance(run, &drawn),
+                ]
+            },
+        )
     }
 
     fn files(
@@ -75,8 +84,10 @@ impl Drawing for Dhh {
         let mut written = vec![stream(folder, "curves.csv", |file| {
             csv::curves(file, runs)
         })?];
-        if let [(_, alone)] = runs {
-            let ropes = |file| csv::ropes(file, alone.simulation);
+        if let [(_, alone)] = runs
+            && let Ok(drawn) = Simulation::of(alone.curves)
+        {
+            let ropes = |file| csv::ropes(file, &drawn);
             written.push(stream(folder, "ropes.csv", ropes)?);
         }
         Ok(written)

@@ -3,11 +3,10 @@ use crate::report::data::SingleRun;
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, fixed, range};
 use crate::report::table::{self, agreement, one, range_row, sums, work};
-use protocol::pumping_unit::Energy;
+use protocol::pumping_unit::{Energy, Simulation};
 
 /// Verdict, and the range of every curve.
-pub fn simulation(run: &SingleRun) -> Table {
-    let simulation = &run.simulation;
+pub fn simulation(run: &SingleRun, simulation: &Simulation) -> Table {
     let mut rows = vec![Row::group("Stress")];
     for (gauge, values) in (1..).zip(&simulation.gauge_mpa) {
         rows.push(range_row(&format!("gauge {gauge}"), values, 1.0, "MPa"));
@@ -48,8 +47,7 @@ pub fn simulation(run: &SingleRun) -> Table {
 }
 
 /// Stroke, agreement with the record, energy balance and work of a run.
-pub fn balance(run: &SingleRun) -> Table {
-    let simulation = &run.simulation;
+pub fn balance(run: &SingleRun, simulation: &Simulation) -> Table {
     let mut rows = Vec::new();
     let stroke = range(simulation.suspension_m.iter().copied())
         .map_or_else(|| NONE.to_owned(), |(low, high)| fixed(high - low, 3));

@@ -5,7 +5,6 @@ use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::Panel;
 use super::points::points;
 use super::scale::Scale;
-use crate::line::interpolated;
 use crate::report::color::{BAND, GREY, INK, VERMILLION};
 use crate::report::data::{ConditionResult, Run};
 use crate::report::document::Figure;
@@ -42,12 +41,11 @@ impl Side {
     fn new(
         heading: &'static str,
         offset: Offset,
-        run: &Run,
+        (run, values): (&Run, &[f64]),
         (at, channel): (usize, &Channel),
         record: &ChannelRecord,
     ) -> Self {
         let grid = &channel.abscissa.points;
-        let values = run.simulation.channel(&channel.name);
         let mut scores = run.evaluation.channels.iter();
         let score = scores.find(|score| score.channel == at);
         let shift = shift(offset, score);
@@ -55,15 +53,12 @@ impl Side {
             .into_iter()
             .map(|(x, y)| (x, y + shift))
             .collect();
-        let residual = grid
-            .iter()
-            .zip(&record.mean)
-            .map(|(&x, &measured)| {
-                let simulated = interpolated(grid, values, x).unwrap_or(f64::NAN);
-                (x, measured - simulated - shift)
-            })
+        // measured and simulated values stand at the same places
+        let rows = grid.iter().zip(record.mean.iter().zip(values));
+        let residual = rows
+            .map(|(&x, (measured, simulated))| (x, measured - simulated - shift))
             .collect();
-        let remark = match (run.simulation.verdict, score) {
+        let remark = match (run.curves.verdict, score) {
             (verdict @ Verdict::Failed { .. }, _) => {
                 format!("{}; not shifted", words::verdict(&verdict))
             }
@@ -98,7 +93,10 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
         ("Recommended parameters", &result.recommended),
         ("Optimised parameters", &result.optimised),
     ]
-    .map(|(heading, run)| Side::new(heading, offset, run, (at, channel), record));
+    .map(|(heading, run)| {
+        let values = run.shown(case, result.condition).channel(channel);
+        Side::new(heading, offset, (run, values), (at, channel), record)
+    });
     let cycles = record.cycles;
     let grid = &channel.abscissa.points;
     let band: Vec<_> = grid

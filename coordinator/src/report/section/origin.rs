@@ -4,7 +4,7 @@ use crate::report::document::{Block, Fact, Section};
 use crate::report::number::{NONE, count, duration};
 use crate::report::words::listed;
 use protocol::case::{Case, Offset};
-use protocol::pumping_unit::Simulation;
+use protocol::job::Curves;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let optimum = calibration.optimised.id;
@@ -20,14 +20,14 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     ]);
     let mut blocks = vec![Block::Facts(facts)];
     let result = calibration.calibrated();
-    blocks.extend(result.map(|result| work(&result.optimised.simulation)));
+    blocks.extend(result.map(|result| work(&result.optimised.curves)));
     section(blocks)
 }
 
 pub(super) fn simulation(run: &SingleRun) -> Section {
     let mut facts = facts(&run.origin, &run.case);
     facts.push(Fact::code("digest of the result", &run.origin.digest));
-    section(vec![Block::Facts(facts), work(&run.simulation)])
+    section(vec![Block::Facts(facts), work(&run.curves)])
 }
 
 /// The section about it, in every report.
@@ -70,12 +70,12 @@ fn objective(case: &Case) -> String {
 }
 
 /// What one simulation took of the integrator.
-fn work(simulation: &Simulation) -> Block {
-    let counters = simulation.counters.named();
+fn work(curves: &Curves) -> Block {
+    let counters = curves.counters.named();
     let counted = counters.map(|(_, what, number)| format!("{} {what}", count(number)));
     Block::Text(format!(
         "One simulation with these parameters took {}, in {} on its worker.",
         listed(&counted, "and"),
-        duration(simulation.wall_s)
+        duration(curves.wall_s)
     ))
 }

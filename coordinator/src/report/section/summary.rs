@@ -55,7 +55,7 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
         "Condition {} with the {} parameters: {}.",
         words::condition_name(&run.case, run.condition),
         run.genes_name,
-        words::verdict(&run.simulation.verdict)
+        words::verdict(&run.curves.verdict)
     ))];
     if let Some(evaluation) = &run.evaluation {
         if run.origin.synthetic {

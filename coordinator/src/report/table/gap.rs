@@ -59,8 +59,9 @@ pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Ta
 
 /// Gaps of the measured channels.
 fn gaps<'a>(case: &'a Case, condition: usize, run: &Run) -> Vec<(&'a Channel, Gap)> {
+    let shown = run.shown(case, condition);
     let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
-        let gap = Gap::between(record, run.simulation.channel(&channel.name))?;
+        let gap = Gap::between(record, shown.channel(channel))?;
         Some((channel, gap))
     };
     case.measured(condition).filter_map(gap).collect()

@@ -36,7 +36,7 @@ pub(crate) fn simulation(run: &SingleRun, ranges: Vec<Row>) -> Table {
         "Condition {}, {} parameters: {}",
         condition_name(&run.case, run.condition),
         run.genes_name,
-        verdict(&run.simulation.verdict)
+        verdict(&run.curves.verdict)
     );
     let head = ["", "unit", "smallest", "largest", "half range"];
     Table::new(title, head, ranges)

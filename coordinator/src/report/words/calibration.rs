@@ -156,7 +156,7 @@ pub(in crate::report) fn warnings(calibration: &Calibration) -> Vec<String> {
             ("recommended", &result.recommended),
             ("optimised", &result.optimised),
         ] {
-            if let failed @ Verdict::Failed { .. } = run.simulation.verdict {
+            if let failed @ Verdict::Failed { .. } = run.curves.verdict {
                 warnings.push(format!(
                     "With the {who} parameters condition {name} {}; its curves end there.",
                     verdict(&failed)
