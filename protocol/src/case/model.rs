@@ -15,12 +15,11 @@ fn write<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {
     if !to.is_human_readable() {
         return to.serialize_bytes(bytes);
     }
-    to.serialize_str(
-        &bytes
-            .iter()
-            .map(|byte| format!("{byte:02x}"))
-            .collect::<String>(),
-    )
+    let digit = |half: u8| char::from_digit(u32::from(half), 16).unwrap_or('0');
+    let digits = bytes
+        .iter()
+        .flat_map(|byte| [digit(byte >> 4), digit(byte & 0xf)]);
+    to.serialize_str(&digits.collect::<String>())
 }
 
 fn read<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<u8>, D::Error> {

@@ -54,9 +54,7 @@ impl Simulation {
             None => &[],
         }
     }
-}
 
-impl Simulation {
     /// What the model of a pumping unit says beside the channels.
     ///
     /// # Errors

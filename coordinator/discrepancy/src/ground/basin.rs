@@ -6,6 +6,7 @@
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::{Model, Point};
+use search::space::Axis;
 use search::strategy::{Plan, Told, build, preset};
 
 /// Starts for the fit: points of the search's archive, best first, that differ in the scanned unknown. The
@@ -53,7 +54,7 @@ pub async fn enter<L: Laboratory>(
         }
     }
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let best = apart(found.into_iter().map(|(_, x)| x)).into_iter();
+    let best = apart(model.space.axes(), found.into_iter().map(|(_, x)| x)).into_iter();
     let point = |x| Point {
         model: model.clone(),
         x,
@@ -61,16 +62,22 @@ pub async fn enter<L: Laboratory>(
     Ok(best.map(point).collect())
 }
 
-/// The best points, no two of which lie within a few hundredths of a decade in every unknown.
-fn apart(ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
+/// The best points, no two of which lie near each other in every unknown.
+fn apart(axes: &[Axis], ranked: impl Iterator<Item = Vec<f64>>) -> Vec<Vec<f64>> {
     const STARTS: usize = 3;
-    /// Decades; the first unknown is the one with the narrow valley.
-    const NEAR: [f64; 2] = [0.03, 0.15];
+    /// What is near in an unknown with a narrow valley, and in any other (coordinates).
+    const NEAR_IN_VALLEY: f64 = 0.03;
+    const NEAR: f64 = 0.15;
+    let in_valley = |k: usize| {
+        axes.get(k)
+            .is_some_and(|axis| axis.unknown.valley.is_some())
+    };
+    let limit = |k| if in_valley(k) { NEAR_IN_VALLEY } else { NEAR };
     let mut kept: Vec<Vec<f64>> = Vec::new();
     for x in ranked {
         let near = |other: &Vec<f64>| {
             let mut pairs = other.iter().zip(&x).enumerate();
-            pairs.all(|(k, (a, b))| (a - b).abs() < NEAR[k.min(1)])
+            pairs.all(|(k, (a, b))| (a - b).abs() < limit(k))
         };
         if !kept.iter().any(near) {
             kept.push(x);

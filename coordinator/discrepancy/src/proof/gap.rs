@@ -11,16 +11,11 @@ use crate::record::spectrum::Orders;
 use protocol::case::ChannelRecord;
 use std::ops::RangeInclusive;
 
-/// Width of a sector of the revolution (deg).
-pub const SECTOR_DEG: f64 = 30.0;
+/// Equal sectors that an abscissa is divided into.
+pub const SECTORS: usize = 12;
 
-/// Bands of orders of the period, and what usually lives there.
-pub const BANDS: [(&str, RangeInclusive<usize>); 4] = [
-    ("slow: lengths, weights, lever arms, zero drift", 1..=5),
-    ("load and rod string", 6..=30),
-    ("rope's own modes", 31..=120),
-    ("noise and head modes", 121..=usize::MAX),
-];
+/// Bands of orders of the period.
+pub const BANDS: [RangeInclusive<usize>; 4] = [1..=5, 6..=30, 31..=120, 121..=usize::MAX];
 
 /// The remaining disagreement at one channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +26,7 @@ pub struct Gap {
     pub noise: f64,
     /// Mean square of the measured curve about its mean.
     pub variance: f64,
-    /// Share of the squared residual per sector of [`SECTOR_DEG`], from the first sample on.
+    /// Share of the squared residual per sector of [`SECTORS`], from the first sample on.
     pub sectors: Vec<f64>,
     /// Share of the squared residual per band of [`BANDS`].
     pub bands: [f64; BANDS.len()],
@@ -78,14 +73,15 @@ impl Gap {
         (self.noise > 0.0).then(|| (self.mse / self.noise).sqrt())
     }
 
-    /// The sector with the largest share: where it begins (deg), and the share.
-    pub fn worst_sector(&self) -> (f64, f64) {
-        largest(&self.sectors).map_or((0.0, 0.0), |(k, share)| (k as f64 * SECTOR_DEG, share))
+    /// The sector with the largest share: its number from 0, and the share.
+    pub fn worst_sector(&self) -> (usize, f64) {
+        largest(&self.sectors).unwrap_or_default()
     }
 
-    /// The band with the largest share: its name, and the share.
-    pub fn worst_band(&self) -> (&'static str, f64) {
-        largest(&self.bands).map_or(("", 0.0), |(k, share)| (BANDS[k].0, share))
+    /// The band with the largest share: its orders, and the share.
+    pub fn worst_band(&self) -> (RangeInclusive<usize>, f64) {
+        let (k, share) = largest(&self.bands).unwrap_or_default();
+        (BANDS[k].clone(), share)
     }
 }
 
@@ -105,15 +101,9 @@ fn shares(parts: &mut [f64]) {
 }
 
 fn sectors(residual: &[f64]) -> Vec<f64> {
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a constant that divides 360"
-    )]
-    let count = (360.0 / SECTOR_DEG) as usize;
-    let mut parts = vec![0.0; count];
+    let mut parts = vec![0.0; SECTORS];
     for (i, r) in residual.iter().enumerate() {
-        parts[i * count / residual.len()] += r * r;
+        parts[i * SECTORS / residual.len()] += r * r;
     }
     shares(&mut parts);
     parts
@@ -127,7 +117,7 @@ fn bands(residual: &[f64]) -> [f64; BANDS.len()] {
     for order in 1..=orders.highest() {
         // the last order of an even grid has no sine part and counts once
         let weight = if 2 * order == n { 0.5 } else { 1.0 };
-        if let Some(k) = BANDS.iter().position(|(_, orders)| orders.contains(&order)) {
+        if let Some(k) = BANDS.iter().position(|orders| orders.contains(&order)) {
             parts[k] += weight * orders.coefficient(residual, order).norm_sqr();
         }
     }
@@ -187,12 +177,8 @@ mod tests {
             }
         }
         let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
-        let (begin, share) = gap.worst_sector();
-        assert!(
-            (begin - 90.0).abs() < 1e-12 && share > 0.9,
-            "{:?}",
-            gap.sectors
-        );
+        let (sector, share) = gap.worst_sector();
+        assert!(sector == 3 && share > 0.9, "{:?}", gap.sectors);
 
         let measured: Vec<f64> = wave(1, 10.0)
             .iter()
@@ -200,7 +186,7 @@ mod tests {
             .map(|(a, b)| a + b)
             .collect();
         let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
-        assert_eq!(gap.worst_band().0, "rope's own modes");
+        assert_eq!(gap.worst_band().0, 31..=120);
         assert!(gap.worst_band().1 > 0.999);
         assert!((gap.share() - (0.125 - 0.008) / 50.0).abs() < 1e-3 * gap.share() + 1e-5);
     }

@@ -3,8 +3,8 @@
 //! Each round draws a batch about a mean, `x = m + s L z` with `C = L L^T`, and moves the mean and
 //! the covariance towards the better half (Hansen, "The CMA Evolution Strategy: A Tutorial",
 //! arXiv 1604.00772, equations 38 to 47; the whitened step of the mean is the weighted mean of the `z`, so no
-//! inverse is needed). It learns that a stiffer rope and a softer contact make up for each other,
-//! which no search along the axes does. It uses only the order of the results, so failures are
+//! inverse is needed). It learns which unknowns make up for each other, which no search along the
+//! axes does. It uses only the order of the results, so failures are
 //! merely last.
 use super::{
     archive::{Archive, Evaluated},

@@ -1,10 +1,10 @@
 //! What the parameters leave unexplained, channel by channel.
 use crate::report::data::{ConditionResult, Run};
 use crate::report::document::{Row, Table};
-use crate::report::number::{fixed, percent};
+use crate::report::number::{NONE, figure, fixed, percent, quantity};
 use crate::report::words::condition_name;
-use discrepancy::proof::gap::{Gap, SECTOR_DEG};
-use protocol::case::{Case, Channel, ChannelRecord};
+use discrepancy::proof::gap::{Gap, SECTORS};
+use protocol::case::{Abscissa, Case, Channel, ChannelRecord};
 
 /// The gap of both parameter sets under one condition, and where the optimised ones leave it;
 /// nothing without a record or without a complete run.
@@ -19,8 +19,6 @@ pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Ta
         .map(|(channel, gap)| {
             let mut before = before.iter();
             let earlier = before.find(|(before, _)| before.name == channel.name);
-            let (begin, of_sector) = gap.worst_sector();
-            let (band, of_band) = gap.worst_band();
             Row::new(
                 channel.title.as_str(),
                 [
@@ -30,12 +28,8 @@ pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Ta
                         || "unknown".to_owned(),
                         |ratio| format!("{} ×", fixed(ratio, 1)),
                     ),
-                    format!(
-                        "{begin:.0} to {:.0} deg: {}",
-                        begin + SECTOR_DEG,
-                        percent(of_sector)
-                    ),
-                    format!("{band}: {}", percent(of_band)),
+                    sector(&channel.abscissa, gap),
+                    band(&channel.abscissa, gap),
                 ],
             )
         })
@@ -49,12 +43,38 @@ pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Ta
             "gap, optimised",
             "residual over noise",
             "worst sector",
-            "worst band of crank orders",
+            "worst band of orders",
         ], rows).noted([
             "Gap: mean squared residual above the noise of the averaged record, over the variance of \
              the measured curve; means removed. A gap that stays far above the noise after a fit is a \
              sign of something the model lacks; this table says where to look, not what it is.",
         ]))
+}
+
+/// Where along its abscissa the largest share of a channel's residual lies.
+fn sector(along: &Abscissa, gap: &Gap) -> String {
+    let (number, share) = gap.worst_sector();
+    let (first, last) = match along.points.as_slice() {
+        [first, .., last] => (*first, *last),
+        _ => return NONE.to_owned(),
+    };
+    let width = along.period.unwrap_or(last - first) / SECTORS as f64;
+    let begin = first + number as f64 * width;
+    let (begin, end) = (figure(begin), quantity(begin + width, &along.unit));
+    format!("{begin} to {end}: {}", percent(share))
+}
+
+/// In which orders the largest share of a periodic channel's residual lies.
+fn band(along: &Abscissa, gap: &Gap) -> String {
+    if along.period.is_none() {
+        return NONE.to_owned();
+    }
+    let (orders, share) = gap.worst_band();
+    let orders = match *orders.end() {
+        usize::MAX => format!("from {}", orders.start()),
+        end => format!("{} to {end}", orders.start()),
+    };
+    format!("{orders}: {}", percent(share))
 }
 
 /// Gaps of the measured channels.

@@ -238,7 +238,7 @@ pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "threshold",
         Values::Real(0.0, f64::MAX),
-        "fitness at or below which the search ends [MPa^2]",
+        "fitness at or below which the search ends",
     )
     .or("none"),
     Setting::new(
