@@ -123,6 +123,11 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
         "the README's table of figures is\n{}",
         rows.join("\n")
     );
+}
+
+#[test]
+fn the_shipped_sheets_say_how_good_the_instruments_are() {
+    let loaded = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();
     let sheet = [
         ("gauge_factor", 0.005),
         ("index_deg", 0.06),

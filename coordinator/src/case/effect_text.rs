@@ -54,9 +54,10 @@ pub fn write_starts(path: &Path, starts: &[(String, f64)]) -> Result<(), CaseErr
         let mut tables: Vec<&mut Table> =
             tables.into_iter().flat_map(|all| all.iter_mut()).collect();
         for (name, start) in starts {
-            let is_it =
-                |table: &&mut &mut Table| table.get("name").and_then(Item::as_str) == Some(name);
-            let Some(table) = tables.iter_mut().find(is_it) else {
+            let place = tables
+                .iter()
+                .position(|table| table.get("name").and_then(Item::as_str) == Some(name));
+            let Some(table) = place.and_then(|place| tables.get_mut(place)) else {
                 return Err(damaged(
                     path,
                     format!("there is no [[unknowns]] table of the name `{name}`"),

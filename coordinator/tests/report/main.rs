@@ -134,7 +134,7 @@ fn with_failed_recommended(points: usize) -> Calibration {
     let mut calibration = sample::calibration(800);
     let run = &mut calibration.conditions[0].recommended;
     sample::change(&calibration.case, run, |simulation| {
-        sample::fail(simulation, points)
+        sample::fail(simulation, points);
     });
     calibration
 }
@@ -381,7 +381,7 @@ fn an_optimum_that_failed_is_not_sold_as_a_result() {
     let mut calibration = sample::calibration(50);
     let run = &mut calibration.conditions[0].optimised;
     sample::change(&calibration.case, run, |simulation| {
-        sample::fail(simulation, 0)
+        sample::fail(simulation, 0);
     });
     for point in &mut calibration.history {
         point.complete = false;

@@ -175,7 +175,7 @@ pub(crate) fn case() -> Case {
     let machine = machine();
     Case {
         name: "CYJS10-5-37HB <test & sample>".to_owned(),
-        model: machine.settings().unwrap(),
+        model: machine.settings().expect("settings that fit"),
         effects: Vec::new(),
         effect_units: Vec::new(),
         unknowns: genes(),
@@ -249,7 +249,7 @@ fn channels(machine: &Machine, condition: usize) -> Vec<Channel> {
 /// A complete simulation whose stress differs from the record by `error` (1 is a lot).
 #[expect(clippy::too_many_lines, reason = "one literal, field by field")]
 pub(crate) fn simulation(case: &Case, error: f64, motion_step_deg: f64) -> Simulation {
-    let machine = &Machine::of(case).unwrap();
+    let machine = &Machine::of(case).expect("a pumping unit");
     let poses = geometry::revolution(machine, GRID);
     let angular = |speed_rpm: f64| speed_rpm * 6.0;
     let per_second = angular(5.0) * GRID as f64 / 360.0;
@@ -432,12 +432,12 @@ pub(crate) fn curves(case: &Case, condition: usize, simulation: Simulation) -> C
     let channels = case.channels_of(condition);
     let channels = channels.map(|(_, channel)| simulation.channel(&channel.name).to_vec());
     let channels = channels.collect();
-    simulation.into_curves(channels).unwrap()
+    simulation.into_curves(channels).expect("curves that fit")
 }
 
 /// Changes what a run simulated under the calibrated condition, and scores it again.
 pub(crate) fn change(case: &Case, run: &mut Run, change: impl FnOnce(&mut Simulation)) {
-    let mut simulation = Simulation::of(&run.curves).unwrap();
+    let mut simulation = Simulation::of(&run.curves).expect("a pumping unit");
     change(&mut simulation);
     run.evaluation = score(case, 0, &simulation);
     run.curves = curves(case, 0, simulation);

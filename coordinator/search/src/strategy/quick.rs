@@ -208,14 +208,12 @@ fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
         apart: 0.3,
         lines,
     };
-    let fine = ScanSettings {
-        center: Center::Point,
-        below: 1.5 * valley.step,
-        above: 1.5 * valley.step,
-        step: 0.15 * valley.step,
-        lines: vec![Vec::new()],
-        ..coarse.clone()
-    };
+    let mut fine = coarse.clone();
+    fine.center = Center::Point;
+    fine.below = 1.5 * valley.step;
+    fine.above = fine.below;
+    fine.step = 0.15 * valley.step;
+    fine.lines = vec![Vec::new()];
     [coarse, fine]
 }
 

@@ -205,9 +205,8 @@ impl Source<'_> {
     /// Equally spaced places.
     fn spaced(&self, points: PointsEntry) -> Result<Vec<f64>, CaseError> {
         let PointsEntry { first, step, count } = points;
-        if !(step > 0.0 && step.is_finite() && first.is_finite())
-            || !(2..=MOST_POINTS).contains(&count)
-        {
+        let ascends = step > 0.0 && step.is_finite() && first.is_finite();
+        if !ascends || !(2..=MOST_POINTS).contains(&count) {
             return Err(self.refused(
                 &["abscissa", "points"],
                 format!("{{ first = {first}, step = {step}, count = {count} }}"),

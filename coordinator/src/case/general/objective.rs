@@ -5,7 +5,7 @@ use super::{
         error::CaseError,
     },
     channels::Read,
-    file::{ConditionEntry, ObjectiveEntry},
+    file::{ConditionEntry, ObjectiveEntry, TermEntry},
 };
 use protocol::case::{Objective, Offset, Term};
 
@@ -44,11 +44,6 @@ pub(super) fn read(
         let way = [Step::Key("objective"), Step::Key("condition")];
         unknown(document, &way, &entry.condition, "condition", &names)
     })?;
-    let own = || {
-        channels
-            .iter()
-            .filter(|read| read.channel.condition == condition)
-    };
     if entry.terms.is_empty() {
         return Err(document.field(
             &[Step::Key("objective"), Step::Key("terms")],
@@ -57,50 +52,12 @@ pub(super) fn read(
             "write terms = [{ channel = \"force\", weight = 1.0 }]",
         ));
     }
-    for (index, term) in entry.terms.iter().enumerate() {
-        let way = |key| {
-            let list = [Step::Key("objective"), Step::Key("terms")];
-            [list[0], list[1], Step::Index(index), Step::Key(key)]
-        };
-        let quoted = format!("\"{}\"", term.channel);
-        let found = own().find(|read| read.channel.name == term.channel);
-        let Some(found) = found else {
-            let names: Vec<&str> = own().map(|it| it.channel.name.as_str()).collect();
-            return Err(unknown(
-                document,
-                &way("channel"),
-                &term.channel,
-                "channel",
-                &names,
-            ));
-        };
-        if !measured(&found) {
-            return Err(document.field(
-                &way("channel"),
-                quoted,
-                "a channel with a record",
-                "there is nothing to compare with: add a record to it, or take another",
-            ));
-        }
-        if entry.terms[..index]
-            .iter()
-            .any(|other| other.channel == term.channel)
-        {
-            return Err(document.field(
-                &way("channel"),
-                quoted,
-                "each channel once",
-                "add the weights of the two",
-            ));
-        }
-        if !(term.weight > 0.0 && term.weight.is_finite()) {
-            return Err(document.field(
-                &way("weight"),
-                term.weight,
-                "above 0",
-                "leave a channel out that is not to count",
-            ));
-        }
+    let own: Vec<&Read> = channels
+        .iter()
+        .filter(|read| read.channel.condition == condition)
+        .collect();
+    for index in 0..entry.terms.len() {
+        check_term(document, &entry.terms, index, &own)?;
     }
     let terms = entry.terms.iter().map(|term| Term {
         channel: term.channel.clone(),
@@ -111,6 +68,60 @@ pub(super) fn read(
         terms: terms.collect(),
         offset: entry.offset,
     })
+}
+
+/// A term names a measured channel of the condition, once, with a weight.
+fn check_term(
+    document: &Document,
+    terms: &[TermEntry],
+    index: usize,
+    own: &[&Read],
+) -> Result<(), CaseError> {
+    let term = &terms[index];
+    let way = |key| {
+        let list = [Step::Key("objective"), Step::Key("terms")];
+        [list[0], list[1], Step::Index(index), Step::Key(key)]
+    };
+    let quoted = format!("\"{}\"", term.channel);
+    let found = own.iter().find(|read| read.channel.name == term.channel);
+    let Some(found) = found else {
+        let names: Vec<&str> = own.iter().map(|it| it.channel.name.as_str()).collect();
+        return Err(unknown(
+            document,
+            &way("channel"),
+            &term.channel,
+            "channel",
+            &names,
+        ));
+    };
+    if found.channel.record.is_none() {
+        return Err(document.field(
+            &way("channel"),
+            quoted,
+            "a channel with a record",
+            "there is nothing to compare with: add a record to it, or take another",
+        ));
+    }
+    if terms[..index]
+        .iter()
+        .any(|other| other.channel == term.channel)
+    {
+        return Err(document.field(
+            &way("channel"),
+            quoted,
+            "each channel once",
+            "add the weights of the two",
+        ));
+    }
+    if !(term.weight > 0.0 && term.weight.is_finite()) {
+        return Err(document.field(
+            &way("weight"),
+            term.weight,
+            "above 0",
+            "leave a channel out that is not to count",
+        ));
+    }
+    Ok(())
 }
 
 /// A name that nothing has.

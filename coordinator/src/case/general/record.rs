@@ -51,11 +51,12 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
     for span in &spans {
         check_places(path, &table, &places, span.start, &at[span.clone()])?;
     }
-    if values.iter().all(|value| *value == values[0]) {
+    let first = values.first().copied().unwrap_or_default();
+    if values.iter().all(|value| value.total_cmp(&first).is_eq()) {
         return Err(contradiction(
             path,
             format!("column `{}`", entry.column),
-            format!("{} in every row", values[0]),
+            format!("{first} in every row"),
             "a measured quantity moves",
             "name the column that holds the measurement, or leave the record out",
         ));

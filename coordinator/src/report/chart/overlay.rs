@@ -169,9 +169,12 @@ fn column(canvas: &mut Canvas, measured: &Measured, side: &Side, first: bool) {
         x: measured.axis.scale,
         y: measured.values,
     };
-    let title = |what: &str| match first {
-        true => format!("{what} [{}]", measured.unit),
-        false => String::new(),
+    let title = |what: &str| {
+        if first {
+            format!("{what} [{}]", measured.unit)
+        } else {
+            String::new()
+        }
     };
     panel.guides(canvas);
     panel.band(canvas, &measured.band, BAND);

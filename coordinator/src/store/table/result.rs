@@ -79,19 +79,7 @@ fn outcome(case: &Case) -> Columns<Brief> {
             &format!("objective if complete, a grade above every complete one's otherwise{of}"),
             |row| row.fitness,
         );
-    // a channel has one column, whatever the condition
-    let mut named: Vec<(&Channel, Vec<usize>)> = Vec::new();
-    let measured = (0..case.conditions.len()).flat_map(|condition| case.measured(condition));
-    for (at, channel, _) in measured {
-        match named
-            .iter_mut()
-            .find(|(known, _)| known.name == channel.name)
-        {
-            Some((_, places)) => places.push(at),
-            None => named.push((channel, vec![at])),
-        }
-    }
-    for (channel, places) in named {
+    for (channel, places) in measured(case) {
         let name = squared(&format!("mse_{}", channel.name), &channel.unit);
         let about = format!(
             "mean squared error of {} [{}^2]",
@@ -136,6 +124,22 @@ fn outcome(case: &Case) -> Columns<Brief> {
         });
     }
     columns
+}
+
+/// Measured channels, each name once whatever the condition, with their places among the case's.
+fn measured(case: &Case) -> Vec<(&Channel, Vec<usize>)> {
+    let mut named: Vec<(&Channel, Vec<usize>)> = Vec::new();
+    let all = (0..case.conditions.len()).flat_map(|condition| case.measured(condition));
+    for (at, channel, _) in all {
+        match named
+            .iter_mut()
+            .find(|(known, _)| known.name == channel.name)
+        {
+            Some((_, places)) => places.push(at),
+            None => named.push((channel, vec![at])),
+        }
+    }
+    named
 }
 
 /// Name of a column of squares of a unit.

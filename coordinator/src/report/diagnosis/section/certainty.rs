@@ -35,10 +35,10 @@ fn facts(subject: &Subject<'_>) -> Vec<Fact> {
     let Some(fit) = &diagnosis.before else {
         return Vec::new();
     };
-    let noise = if !diagnosis.noise.is_seen() {
-        "assumed from the data sheet and the highest orders: there was one cycle"
-    } else {
+    let noise = if diagnosis.noise.is_seen() {
         "seen: the scatter between the cycles, order by order"
+    } else {
+        "assumed from the data sheet and the highest orders: there was one cycle"
     };
     let recalibration = format!(
         "one more step promises to lower the misfit by {}; the tests look at the residual after that \
