@@ -23,6 +23,7 @@ const ARROWS: &[(&str, &str)] = &[
     // a model of the suites, which no program knows
     ("oscillator", "protocol"),
     ("oscillator", "search"),
+    ("oscillator", "worker"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),

@@ -16,8 +16,6 @@ pub struct Effects {
     pub base_mm: [f64; 2],
     /// Time constant of the force sensor \[ms\].
     pub lag_ms: f64,
-    /// By how much a newton on the foundation moves the reading of the displacement [mm/N].
-    pub crosstalk_mm_per_n: f64,
 }
 
 /// One number of an effect, for the table below: name, unit, sign, greatest value, typical value.
@@ -32,7 +30,7 @@ type Row = (
     &'static [Number],
 );
 
-const TABLE: [Row; 5] = [
+const TABLE: [Row; 4] = [
     (
         "dry_friction",
         "dry friction of the guide",
@@ -66,13 +64,6 @@ const TABLE: [Row; 5] = [
         "force_sensor",
         Place::Gauge,
         &[("time", "ms", Sign::Positive, 20.0, 1.0)],
-    ),
-    (
-        "crosstalk",
-        "force in the reading of the displacement",
-        "displacement_sensor",
-        Place::Gauge,
-        &[("share", "mm/N", Sign::Either, 0.05, 1e-3)],
     ),
 ];
 
@@ -156,7 +147,6 @@ impl Effects {
             ("base_motion", "cosine") => Some(base_cosine),
             ("base_motion", "sine") => Some(base_sine),
             ("force_lag", "time") => Some(&mut self.lag_ms),
-            ("crosstalk", "share") => Some(&mut self.crosstalk_mm_per_n),
             _ => None,
         }
     }

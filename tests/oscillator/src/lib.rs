@@ -6,11 +6,13 @@
 //! ```
 //!
 //! Between two standstills every motion is a [sum](sum::Sum) of exponentials; [`motion`] puts them
-//! together, so that nothing is integrated step by step. Five effects ([`effect`]) may be missing in it.
-//! [`record`] draws what a test rig would measure. Nothing here knows of searches, records or files.
+//! together, so that nothing is integrated step by step. Four effects ([`effect`]) and one unknown may be missing in it.
+//! [`record`] draws what a test rig would measure; [`simulator`] is how a worker sees it all. Nothing
+//! here knows of searches or of files.
 pub mod effect;
 pub mod motion;
 pub mod record;
 pub mod settings;
 pub mod simulate;
+pub mod simulator;
 pub mod sum;

@@ -25,6 +25,8 @@ pub struct Values {
     pub damping_n_s_per_m: f64,
     /// Lead of the shaker's force over the zero of its turn \[deg\].
     pub lead_deg: f64,
+    /// By how much a newton on the foundation moves the reading of the displacement [mm/N].
+    pub crosstalk_mm_per_n: f64,
 }
 
 /// A quantity that the rig measures.
@@ -105,7 +107,7 @@ pub fn run(
                 struck = true;
                 break;
             }
-            curve.push(reading(sensor, &state, effects));
+            curve.push(reading(sensor, &state, values));
         }
         curve
     };
@@ -118,9 +120,9 @@ pub fn run(
 }
 
 /// What a sensor shows of a state.
-fn reading(sensor: Sensor, state: &State, effects: &Effects) -> f64 {
+fn reading(sensor: Sensor, state: &State, values: &Values) -> f64 {
     match sensor {
-        Sensor::Displacement => 1e3 * state.x + effects.crosstalk_mm_per_n * state.reading,
+        Sensor::Displacement => 1e3 * state.x + values.crosstalk_mm_per_n * state.reading,
         Sensor::Force => state.reading,
     }
 }

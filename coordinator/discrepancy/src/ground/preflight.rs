@@ -41,7 +41,7 @@ impl Preflight {
 /// Simulates a fitted point more finely; what a fit (that one, or the one before an effect was added,
 /// for a size must not hide what it does not explain) can absorb is taken off. If the finer model
 /// fails, its parts are refined one at a time, and their differences added: so it is to first order.
-/// Nothing if that fails too.
+/// Nothing if that fails too. A model that has nothing to refine differs from itself by nothing.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -52,6 +52,10 @@ pub async fn check<L: Laboratory>(
     finer: &[Discretisation],
 ) -> Result<Option<Preflight>, L::Error> {
     let on = experiments.on;
+    if finer.is_empty() {
+        let none = difference(&fit.curves, &fit.curves, 1.0);
+        return Ok(Some(preflight(on, absorbing, none, true)));
+    }
     let (finest, parts) = finer.split_at(finer.len().min(1));
     let whole = differences(experiments, fit, finest).await?;
     if let Some(difference) = whole.into_iter().flatten().next() {

@@ -4,7 +4,7 @@ use super::{
     terminal,
 };
 use crate::{
-    case::{Loaded, append_effects, write_genes},
+    case::{CaseEffect, Loaded, append_effects, write_genes, write_starts},
     cli::{
         argument::output::Output,
         run::{
@@ -96,7 +96,21 @@ impl Answer<'_> {
         if found.is_empty() {
             return Ok(());
         }
-        append_effects(file, &found)?;
+        // what is an unknown of the case that was off starts from there; the rest is new to it
+        let unknowns = &self.loaded.case.unknowns;
+        let (off, new): (Vec<CaseEffect>, Vec<CaseEffect>) = found
+            .into_iter()
+            .partition(|one| unknowns.iter().any(|unknown| unknown.name == one.id));
+        if !new.is_empty() {
+            append_effects(file, &new)?;
+        }
+        if !off.is_empty() {
+            let start = |one: &CaseEffect| {
+                let size = one.parameters.values().next()?;
+                Some((one.id.clone(), size.value))
+            };
+            write_starts(file, &off.iter().filter_map(start).collect::<Vec<_>>())?;
+        }
         terminal::tell(&format!("added to {}", file.display()));
         terminal::tell(&format!(
             "to search it with everything else, from what was found:\n  horsehead calibrate {} --genes {}",

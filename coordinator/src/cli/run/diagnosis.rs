@@ -13,6 +13,7 @@ use crate::{
 use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
 use protocol::{
     announce::EffectDescriptor,
+    case::Case,
     pumping_unit::{Discretisation, Machine},
 };
 use search::space::Space;
@@ -133,9 +134,32 @@ fn inputs(
         .into_iter()
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
+    let thresholds = &manifest.settings.thresholds;
+    let (usual, finer) = discretisations(case, thresholds)?;
+    Ok(Inputs {
+        unknowns: case.unknowns.clone(),
+        start: manifest.start_genes().map(|genes| space.point(genes)),
+        space,
+        records,
+        library,
+        usual,
+        finer,
+        seed: manifest.seed,
+        thresholds: thresholds.clone(),
+    })
+}
+
+/// How experiments are discretised, and how they are for the numerical check; of a model that nobody
+/// here knows, as its case says.
+fn discretisations(
+    case: &Case,
+    thresholds: &Thresholds,
+) -> anyhow::Result<(Discretisation, Vec<Discretisation>)> {
+    if case.model.kind != Machine::KIND {
+        return Ok((Discretisation::OF_THE_CASE, Vec::new()));
+    }
     let machine = Machine::of(case)?;
     let available = machine.modal_head.frequencies_hz.len();
-    let thresholds = &manifest.settings.thresholds;
     let usual = Discretisation {
         longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
         ..Discretisation::default()
@@ -155,15 +179,5 @@ fn inputs(
         cylinder_length_m: usual.cylinder_length_m,
         ..finest
     };
-    Ok(Inputs {
-        unknowns: case.unknowns.clone(),
-        start: manifest.start_genes().map(|genes| space.point(genes)),
-        space,
-        records,
-        library,
-        usual,
-        finer: vec![finest, cylinders, rest],
-        seed: manifest.seed,
-        thresholds: thresholds.clone(),
-    })
+    Ok((usual, vec![finest, cylinders, rest]))
 }

@@ -43,13 +43,18 @@ pub(in crate::report::diagnosis) fn gaps(subject: &Subject<'_>) -> Option<Table>
              1000 times, before and after on the same draw, less the scatter of the draws themselves.",
             "A gap that closes does not prove a name: a wrong effect often closes most of it, which is \
              why the rival stands beside it.",
-        ]).noted(diagnosis.whiteness.map(whiteness)).unless_empty()
+        ]).noted(diagnosis.whiteness.map(|p| whiteness(subject, p))).unless_empty()
 }
 
 /// Whether what is left lies where noise lies.
-fn whiteness([before, after]: [f64; 2]) -> String {
+fn whiteness(subject: &Subject<'_>, [before, after]: [f64; 2]) -> String {
+    let channels = subject.records.iter().flat_map(|record| &record.channels);
+    let along = channels
+        .map(|own| own.channel.abscissa.name.as_str())
+        .next();
+    let along = along.unwrap_or("period");
     format!(
-        "Is what is left white, spread over the orders of the crank as noise is? p: {} before, {} after \
+        "Is what is left white, spread over the orders of the {along} as noise is? p: {} before, {} after \
          (calibration cycles, against their scatter).",
         words::p_value(before),
         words::p_value(after)

@@ -1,0 +1,199 @@
+//! A copy of the case with its records, and the programs that are run on it.
+use crate::words;
+use oscillator::{
+    effect::Effects,
+    record::Measurement,
+    settings::{Excitation, Order, Rig as Settings},
+    simulate::{Sensor, Values, run},
+};
+use serde_json::Value;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::{Command, Stdio},
+    thread,
+    time::{Duration, Instant},
+};
+use tempfile::TempDir;
+
+/// What the records hide, beside [`FRICTION_N`].
+pub(crate) const HIDDEN: Values = Values {
+    mass_kg: 2.13,
+    armature_kg: 0.4,
+    left_n_per_mm: 5.62,
+    right_n_per_mm: 5.62,
+    damping_n_s_per_m: 26.4,
+    lead_deg: 1.7,
+    crosstalk_mm_per_n: 0.0,
+};
+/// The dry friction that they hide \[N\].
+const FRICTION_N: f64 = 2.4;
+/// Force in the reading of the displacement that others hide [mm/N].
+pub(crate) const CROSSTALK: f64 = 4e-3;
+/// Noise of one value of the displacement \[mm\].
+pub(crate) const NOISE_MM: f64 = 0.02;
+/// Noise of one value of the force \[N\].
+const NOISE_N: f64 = 0.2;
+
+/// A scratch folder with the case.
+pub(crate) struct Rig(TempDir);
+
+impl Rig {
+    /// With records that hide dry friction.
+    pub(crate) fn new() -> Self {
+        let effects = Effects {
+            friction_n: FRICTION_N,
+            ..Effects::default()
+        };
+        Self::hiding(&HIDDEN, &effects)
+    }
+
+    /// With records that hide force in the reading of the displacement.
+    pub(crate) fn with_crosstalk() -> Self {
+        let values = Values {
+            crosstalk_mm_per_n: CROSSTALK,
+            ..HIDDEN
+        };
+        Self::hiding(&values, &Effects::default())
+    }
+
+    fn hiding(values: &Values, effects: &Effects) -> Self {
+        let rig = Self(TempDir::new().unwrap());
+        fs::create_dir_all(rig.file("case/measured")).unwrap();
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("case/case.toml");
+        fs::copy(shipped, rig.file("case/case.toml")).unwrap();
+        let order = |order, amplitude_n, phase_deg| Order {
+            order,
+            amplitude_n,
+            phase_deg,
+        };
+        let drive = [
+            order(1, 45.0, 0.0),
+            order(3, 12.0, 40.0),
+            order(5, 6.0, -70.0),
+        ];
+        let driven = |hz, orders: &[Order]| Excitation {
+            drive_hz: Some(hz),
+            drive: orders.to_vec(),
+            release_mm: 0.0,
+        };
+        let released = Excitation {
+            drive_hz: None,
+            drive: Vec::new(),
+            release_mm: 6.0,
+        };
+        let turn: Vec<f64> = (0..120).map(|at| 3.0 * f64::from(at)).collect();
+        let time: Vec<f64> = (0..150).map(|at| f64::from(at) / 200.0).collect();
+        rig.measure(
+            "steady_5hz",
+            &driven(5.0, &drive),
+            (values, effects),
+            ("phase_deg", &turn),
+        );
+        rig.measure(
+            "steady_7hz",
+            &driven(7.0, &drive[..2]),
+            (values, effects),
+            ("phase_deg", &turn),
+        );
+        rig.measure("release", &released, (values, effects), ("time_s", &time));
+        rig
+    }
+
+    /// Writes the record of a condition.
+    fn measure(
+        &self,
+        name: &str,
+        by: &Excitation,
+        hidden: (&Values, &Effects),
+        places: (&str, &[f64]),
+    ) {
+        let sensors = [(Sensor::Displacement, places.1), (Sensor::Force, places.1)];
+        let stop = Settings { stop_mm: 40.0 };
+        let mut seen = run(&stop, by, hidden.0, hidden.1, &sensors);
+        assert_eq!(seen.failed, None);
+        let force = seen.curves.pop().unwrap();
+        let displacement = seen.curves.pop().unwrap();
+        let channels = [
+            ("displacement_mm", displacement, NOISE_MM),
+            ("force_n", force, NOISE_N),
+        ];
+        let measurement = Measurement {
+            places,
+            channels: &channels,
+            repeats: 8,
+        };
+        let table = measurement.table(name.bytes().map(u64::from).sum());
+        fs::write(self.file(&format!("case/measured/{name}.csv")), table).unwrap();
+    }
+
+    /// A file of the scratch folder.
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// The same as a word of a command line.
+    pub(crate) fn path(&self, name: &str) -> String {
+        self.file(name).display().to_string()
+    }
+
+    /// The program with these words, two workers of our own kind, and nothing of the environment.
+    fn command(&self, words: &[&str]) -> Command {
+        let worker = Path::new(env!("CARGO_BIN_EXE_test-oscillator-worker"));
+        let mut command = Command::new(worker.with_file_name("horsehead"));
+        let case = self.path("case");
+        command
+            .args(
+                words
+                    .iter()
+                    .map(|word| if *word == "CASE" { &case } else { *word }),
+            )
+            .env("HORSEHEAD_WORKER", worker)
+            .env("HORSEHEAD_WORKERS", "2")
+            .current_dir(self.0.path());
+        command
+    }
+
+    /// Runs a command that must succeed; what it printed, each of its words looked at.
+    pub(crate) fn run(&self, words: &[&str]) -> String {
+        let output = self.command(words).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{words:?}: {said}");
+        let printed = String::from_utf8(output.stdout).unwrap();
+        words::check("standard error", &said);
+        words::check("standard output", &printed);
+        printed
+    }
+
+    /// The same with `--output json`: the object.
+    pub(crate) fn json(&self, words: &[&str]) -> Value {
+        serde_json::from_str(&self.run(&[words, &["--output", "json"]].concat())).unwrap()
+    }
+
+    /// Starts a command and kills it as soon as the journal in its run folder has so many bytes.
+    pub(crate) fn kill_at(&self, words: &[String], run: &Path, bytes: u64, limit: Duration) {
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let mut command = self.command(&words);
+        let mut child = command
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let journal = run.join(coordinator::journal::FILE);
+        let begun = Instant::now();
+        while fs::metadata(&journal).map_or(0, |file| file.len()) < bytes {
+            assert!(
+                begun.elapsed() < limit && child.try_wait().unwrap().is_none(),
+                "no {bytes} bytes"
+            );
+            thread::sleep(Duration::from_millis(1));
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+}
+
+/// A number of an object.
+pub(crate) fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap_or(f64::NAN)
+}
