@@ -24,6 +24,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("oscillator", "protocol"),
     ("oscillator", "search"),
     ("oscillator", "worker"),
+    ("oscillator", "coordinator"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),

@@ -364,7 +364,8 @@ const ANGLE_TOLERANCE_DEG: f64 = 0.1;
 pub(crate) const ALL: [usize; 6] = [0, 1, 2, 3, 4, 5];
 
 /// A channel of a record, with its noise; the gap is counted on gauges.
-pub(crate) fn recorded(curve: usize, noise: Option<f64>) -> Recorded {
+pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Recorded {
+    let step = 360.0 / samples as f64;
     let channel = Channel {
         name: format!("channel_{curve}"),
         title: format!("channel {curve}"),
@@ -373,7 +374,7 @@ pub(crate) fn recorded(curve: usize, noise: Option<f64>) -> Recorded {
         abscissa: Abscissa {
             name: "crank".to_owned(),
             unit: "deg".to_owned(),
-            points: crate::case::grid().map(f64::to_degrees).collect(),
+            points: (0..samples).map(|i| step * i as f64).collect(),
             period: Some(360.0),
         },
         noise,
@@ -399,7 +400,7 @@ pub(crate) fn record(truth: &Truth, condition: usize, channels: &[usize], cycles
             cycle(truth, condition, &mut stream, &zeros, channels)
         })
         .collect();
-    let wanted = |&c: &usize| recorded(c, Some(NOISE[c] * truth.noise));
+    let wanted = |&c: &usize| recorded(c, SAMPLES, Some(NOISE[c] * truth.noise));
     Record {
         condition,
         channels: channels.iter().map(wanted).collect(),

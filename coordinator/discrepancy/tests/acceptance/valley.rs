@@ -157,7 +157,7 @@ fn record(truth: Ringing) -> Record {
     };
     Record {
         condition: 0,
-        channels: (0..4).map(|c| recorded(c, None)).collect(),
+        channels: (0..4).map(|c| recorded(c, SAMPLES, None)).collect(),
         cycles: (0..8).map(|_| noisy()).collect(),
         held_out: false,
         stated: Stated::default(),

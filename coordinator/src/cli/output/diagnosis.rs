@@ -4,7 +4,7 @@ use super::{
     terminal,
 };
 use crate::{
-    case::{CaseEffect, Loaded, append_effects, write_genes, write_starts},
+    case::{Loaded, append_effects, write_genes, write_starts},
     cli::{
         argument::output::Output,
         run::{
@@ -90,26 +90,19 @@ impl Answer<'_> {
         terminal::print(output, whole, object)
     }
 
-    /// Appends what was found to a case file, if anything was.
+    /// Adds what was found to a case file, if anything was: an unknown of the case that was off starts from
+    /// there, the rest is new to it.
     pub(crate) fn add(&self, file: &Path) -> anyhow::Result<()> {
-        let found = report::effects(&self.subject()?);
-        if found.is_empty() {
+        let subject = self.subject()?;
+        let (new, starts) = (report::effects(&subject), report::starts(&subject));
+        if new.is_empty() && starts.is_empty() {
             return Ok(());
         }
-        // what is an unknown of the case that was off starts from there; the rest is new to it
-        let unknowns = &self.loaded.case.unknowns;
-        let (off, new): (Vec<CaseEffect>, Vec<CaseEffect>) = found
-            .into_iter()
-            .partition(|one| unknowns.iter().any(|unknown| unknown.name == one.id));
         if !new.is_empty() {
             append_effects(file, &new)?;
         }
-        if !off.is_empty() {
-            let start = |one: &CaseEffect| {
-                let size = one.parameters.values().next()?;
-                Some((one.id.clone(), size.value))
-            };
-            write_starts(file, &off.iter().filter_map(start).collect::<Vec<_>>())?;
+        if !starts.is_empty() {
+            write_starts(file, &starts)?;
         }
         terminal::tell(&format!("added to {}", file.display()));
         terminal::tell(&format!(

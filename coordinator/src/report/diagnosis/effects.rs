@@ -24,6 +24,16 @@ pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
     found.collect()
 }
 
+/// Unknowns of the case that were off and are not any more, with the values to start from.
+pub fn starts(subject: &Subject<'_>) -> Vec<(String, f64)> {
+    let found = subject.diagnosis().effects.iter();
+    let found = found.filter_map(|one| {
+        let name = &subject.case.unknowns.get(one.unknown?)?.name;
+        Some((name.clone(), one.parameters.first()?.value))
+    });
+    found.collect()
+}
+
 fn entry(subject: &Subject<'_>, found: &Estimate, round: u32, set: &[String]) -> CaseEffect {
     let descriptor = subject.library.iter().find(|effect| effect.id == found.id);
     let parameters = found.parameters.iter().map(|own| {

@@ -13,6 +13,6 @@ mod table;
 mod words;
 mod write;
 
-pub use effects::{effects, effects_toml};
+pub use effects::{effects, effects_toml, starts};
 pub use subject::Subject;
 pub use write::{report, write};

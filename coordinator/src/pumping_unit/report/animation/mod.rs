@@ -16,6 +16,8 @@ use protocol::{
 
 /// The player; reads the film, moves the parts.
 const PLAYER: &str = include_str!("player.js");
+/// How the parts look; no other section has any.
+const STYLE: &str = include_str!("film.css");
 
 /// Draws the machine with its player; none without snapshots.
 pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) -> Option<Markup> {
@@ -30,6 +32,7 @@ pub(super) fn machine(case: &Case, condition: usize, simulation: &Simulation) ->
     );
     Some(html! {
         div.machine id="machine" {
+            style { (PreEscaped(STYLE)) }
             div.stage {
                 (drawing::drawing(&machine, &film))
                 div.desk {
