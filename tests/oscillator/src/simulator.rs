@@ -164,9 +164,8 @@ impl Prepared {
                 .for_each(|(_, slot)| *slot = *value);
         }
         let all: Vec<EffectSetting> = merged(&own, &individual.effects);
-        Effects::read(&all).map_err(|(field, problem)| {
-            Failure::misconfigured(&format!("effects.{field}"), problem)
-        })
+        Effects::read(&all)
+            .map_err(|(field, problem)| Failure::misconfigured(format!("effects.{field}"), problem))
     }
 
     fn values(&self, individual: &Individual) -> Values {

@@ -22,7 +22,7 @@ pub(super) fn calibration(calibration: &Calibration) -> Section {
     }
     Section {
         id: "overlays",
-        title: "Measured and simulated stress",
+        title: "Measured and simulated curves",
         blocks,
     }
 }

@@ -26,7 +26,7 @@ pub(super) fn simulation(run: &SingleRun) -> Section {
 const fn section(blocks: Vec<Block>) -> Section {
     Section {
         id: "curves",
-        title: "Curves over the revolution",
+        title: "Simulated curves",
         blocks,
     }
 }
