@@ -1,5 +1,6 @@
 //! The case that is shipped loads, and its figures are those its README states.
-use coordinator::case::{self, Loaded, Overrides, RecordFacts, mesh};
+use coordinator::case::{self, Loaded, Overrides};
+use coordinator::pumping_unit::case::{self as unit, RecordFacts, mesh};
 use protocol::{
     case::{Case, ChannelRecord, Offset, Scale, Term, Unknown},
     pumping_unit::{Coefficient, Machine, Sensor},
@@ -32,12 +33,19 @@ fn gauges(case: &Case, condition: usize) -> Vec<&ChannelRecord> {
         .collect()
 }
 
+/// What is known of each record.
+fn facts() -> Vec<RecordFacts> {
+    let conditions = unit::figures(&shipped()).unwrap().conditions.into_iter();
+    let records = conditions.filter_map(|condition| condition.record);
+    records.map(|record| record.facts).collect()
+}
+
 /// The rows of the README's table of figures, as the records have them.
 fn figures(loaded: &Loaded) -> [String; 3] {
     let conditions = 0..loaded.case.conditions.len();
     let records = conditions.map(|condition| gauges(&loaded.case, condition));
     let records: Vec<Vec<&ChannelRecord>> = records.filter(|it| !it.is_empty()).collect();
-    let facts: Vec<&RecordFacts> = loaded.records.iter().flatten().collect();
+    let facts = facts();
     let ranges = records.iter().map(|gauges| {
         let half = gauges.iter().map(|record| half_range(&record.mean));
         half.map(|half| format!("{half:.2}"))
@@ -143,11 +151,7 @@ fn the_shipped_sheets_say_how_good_the_instruments_are() {
         let stated: Vec<(&str, f64)> = stated.map(|(name, of)| (name.as_str(), *of)).collect();
         assert_eq!(stated, sheet, "as the data sheets say");
     }
-    let lost: Vec<u64> = loaded
-        .records
-        .iter()
-        .map(|facts| facts.as_ref().unwrap().lost)
-        .collect();
+    let lost: Vec<u64> = facts().iter().map(|facts| facts.lost).collect();
     assert_eq!(lost, [30, 43], "as the data sheets say");
     assert_eq!(
         loaded.notes.len(),
@@ -179,7 +183,7 @@ fn the_envelope_is_that_of_the_design_kinematics() {
             values.fold(f64::NEG_INFINITY, f64::max),
         ]
     };
-    let envelope = case::check(&shipped()).unwrap().envelope;
+    let envelope = unit::figures(&shipped()).unwrap().envelope;
     let near = |ours: [f64; 2], theirs: [f64; 2], tolerance: f64| {
         for (ours, theirs) in ours.into_iter().zip(theirs) {
             assert!((ours - theirs).abs() < tolerance, "{ours} {theirs}");
@@ -388,7 +392,7 @@ fn the_mesh_is_read_as_by_another_reader() {
 
 #[test]
 fn the_summary_tells_what_a_user_asks_first() {
-    let summary = case::check(&shipped()).unwrap().to_string();
+    let summary = case::check(&shipped(), &Overrides::default()).unwrap().text;
     for expected in [
         "CYJS10-5-37HB",
         "stroke      4.000 m",
@@ -410,7 +414,7 @@ fn the_summary_tells_what_a_user_asks_first() {
 #[test]
 fn the_template_loads_beside_its_data() {
     let scratch = tempfile::tempdir().unwrap();
-    fs::write(scratch.path().join("case.toml"), case::template()).unwrap();
+    fs::write(scratch.path().join("case.toml"), unit::template()).unwrap();
     let message = case::load(scratch.path(), &Overrides::default())
         .unwrap_err()
         .to_string();
@@ -432,7 +436,7 @@ fn the_template_loads_beside_its_data() {
     let case = case::load(scratch.path(), &Overrides::default()).unwrap();
     assert_eq!(case.conditions.len(), 1);
     assert_eq!(case.unknowns.len(), 10);
-    for line in case::template().lines().filter(|line| line.contains(" = ")) {
+    for line in unit::template().lines().filter(|line| line.contains(" = ")) {
         let plain = [
             "gauges",
             "center_y_m",

@@ -9,9 +9,8 @@ use protocol::{
     case::EffectSetting,
     event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{Answer, Failure, Individual, Job, Outcome, Reply, SimulateSpec},
+    job::{Answer, Failure, Individual, Job, Numerics, Outcome, Reply, SimulateSpec},
     message::{Attempt, Beat, Cost, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
-    pumping_unit::Discretisation,
     wire::{self, Kind, WireError},
 };
 
@@ -57,25 +56,16 @@ fn job() -> impl Strategy<Value = Job> {
                     Reply::Score { with_residual },
                 ))
             }),
-        (
-            vec(effect(), 0..3),
-            option::of(1e-3..1.0),
-            option::of(0..9_usize)
-        )
-            .prop_map(|(effects, cylinder_length_m, modes)| {
-                Job::Simulate(SimulateSpec {
-                    individual: Individual {
-                        effects,
-                        ..Individual::default()
-                    },
-                    discretisation: Discretisation {
-                        cylinder_length_m,
-                        modes,
-                        ..Discretisation::OF_THE_CASE
-                    },
-                    reply: Reply::Channels,
-                })
-            }),
+        (vec(effect(), 0..3), vec(any::<u8>(), 0..9)).prop_map(|(effects, numerics)| {
+            Job::Simulate(SimulateSpec {
+                individual: Individual {
+                    effects,
+                    ..Individual::default()
+                },
+                numerics: Numerics(numerics),
+                reply: Reply::Channels,
+            })
+        }),
     ]
 }
 

@@ -11,8 +11,8 @@ use protocol::{
     job::{Answer, Failure, Job, Outcome, Reached, Reply, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
     pumping_unit::{
-        ElementKind, Integrator, Machine, ModeFamily, ReduceHeadSpec, ReducedHead, RopeEnds,
-        Simulation, Smoothing, StressRecovery, TurnSense,
+        Discretisation, ElementKind, Integrator, Machine, ModeFamily, ReduceHeadSpec, ReducedHead,
+        RopeEnds, Simulation, Smoothing, StressRecovery, TurnSense,
     },
     wire::{self, Kind},
 };
@@ -30,7 +30,7 @@ fn form() -> String {
         };
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case Machine);
-    trace!(Simulation ReduceHeadSpec ReducedHead);
+    trace!(Simulation Discretisation ReduceHeadSpec ReducedHead);
     trace!(Job Reply Answer Outcome Failure Verdict Reached ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense);

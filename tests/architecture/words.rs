@@ -76,7 +76,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Every Rust source of a folder, or the file itself.
-fn sources(at: &Path) -> Vec<PathBuf> {
+pub(crate) fn sources(at: &Path) -> Vec<PathBuf> {
     if at.is_file() {
         return vec![at.to_owned()];
     }

@@ -6,9 +6,9 @@
 )]
 mod tetrahedra;
 
-use coordinator::{
-    case::{self, mesh},
-    study,
+use coordinator::pumping_unit::{
+    self,
+    case::{QuasiStatic, load_head, mesh, quasi_static},
 };
 use protocol::pumping_unit::{ElementKind as ReadKind, Influence};
 use simulation::flexible::{
@@ -253,8 +253,8 @@ fn influence_lines_compliance_and_mass_are_those_of_the_other_program() {
 #[test]
 fn the_quasi_static_turn_is_the_published_one() {
     let case_folder = folder().join("..");
-    let (unit, _) = case::load_head(&case_folder).unwrap();
-    let turn = case::quasi_static(&unit.machine, &unit.machine.conditions[0]).unwrap();
+    let (unit, _) = load_head(&case_folder).unwrap();
+    let turn = quasi_static(&unit.machine, &unit.machine.conditions[0]).unwrap();
     let design = fs::read_to_string(case_folder.join("machine/kinematics_720.csv")).unwrap();
     let design: Vec<Vec<f64>> = design
         .lines()
@@ -276,7 +276,7 @@ fn the_quasi_static_turn_is_the_published_one() {
             row[13]
         );
     }
-    let wrapped = study::wrapped_turn(&turn, unit.machine.back_head.rope_anchor_deg);
+    let wrapped = pumping_unit::wrapped_turn(&turn, unit.machine.back_head.rope_anchor_deg);
     let stress = wrapped.exact(&unit.machine.modal_head.influence);
     let published = rows("back_head_quasistatic_5rpm.csv");
     for gauge in 0..4 {
@@ -291,11 +291,11 @@ fn the_quasi_static_turn_is_the_published_one() {
 }
 
 /// Place and tension of the rope over the turn, as the kinematics table states them.
-fn table_turn() -> case::QuasiStatic {
+fn table_turn() -> QuasiStatic {
     let path = folder().join("../machine/kinematics_720.csv");
     let text = fs::read_to_string(path).unwrap();
     let rows = text.lines().filter(|line| !line.starts_with('#'));
-    let mut turn = case::QuasiStatic::default();
+    let mut turn = QuasiStatic::default();
     for row in rows {
         let row: Vec<f64> = row.split(',').map(|x| x.parse().unwrap()).collect();
         turn.turn_deg.push(row[0]);
@@ -337,7 +337,7 @@ fn own_lines_and_own_modes_give_the_published_half_ranges() {
     let lowest: Vec<&Mode> = symmetric.take(6).collect();
     let arc_deg = numbers(&table("back_head_modes.json")["arc_deg"]);
     let turn = table_turn();
-    let wrapped = study::wrapped_turn(&turn, 125.0);
+    let wrapped = pumping_unit::wrapped_turn(&turn, 125.0);
     let exact = wrapped.exact(&lines(
         arc_deg.clone(),
         &reduction.normal_influence,

@@ -42,9 +42,7 @@ fn energy_ledger_closes_with_every_effect() {
 }
 
 /// Everything but the shapes of the moving machine.
-const CURVES: Reply = Reply::Curves {
-    motion_step_deg: 0.0,
-};
+const CURVES: Reply = Reply::Curves { pictures: 0 };
 
 fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisation) -> Observation {
     let spec = SimulateSpec {
@@ -52,7 +50,7 @@ fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisatio
             effects: effects.to_vec(),
             ..Individual::new(0, case.start())
         },
-        discretisation,
+        numerics: discretisation.numerics().unwrap(),
         reply: Reply::Channels,
     };
     match Prepared::new(worker::SIMULATORS, case)
@@ -213,7 +211,7 @@ fn what_the_model_does_not_have_is_refused_by_field() {
     ];
     for (expected, discretisation) in discretisations {
         let spec = SimulateSpec {
-            discretisation,
+            numerics: discretisation.numerics().unwrap(),
             ..SimulateSpec::new(plain.clone(), Reply::Channels)
         };
         assert_eq!(refused(spec).0, expected);

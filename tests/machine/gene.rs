@@ -98,9 +98,7 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
         let score = Reply::Score {
             with_residual: true,
         };
-        let curves = Reply::Curves {
-            motion_step_deg: 0.0,
-        };
+        let curves = Reply::Curves { pictures: 0 };
         [score, curves].map(|reply| {
             let individual = Individual::new(0, genes.clone());
             Job::Simulate(SimulateSpec::new(individual, reply))

@@ -25,9 +25,7 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
     let rounded = done(prepared, individual, Reply::Channels);
     let bytes = protocol::wire::encode(&Outcome::Done(rounded.clone())).unwrap();
     assert!(bytes.len() < MOST_BYTES);
-    let everything = Reply::Curves {
-        motion_step_deg: 0.0,
-    };
+    let everything = Reply::Curves { pictures: 0 };
     let whole = done(prepared, individual, everything).into_curves();
     let whole = whole.unwrap();
     let exact = Observation {

@@ -1,6 +1,6 @@
 //! The machine at rest at several crank angles: in equilibrium, and its gauges as statics have them.
 use super::{individuals, unit};
-use coordinator::{case::QuasiStatic, study};
+use coordinator::pumping_unit::{case::QuasiStatic, wrapped_turn};
 use protocol::pumping_unit;
 use simulation::{
     drive::Drive,
@@ -88,7 +88,7 @@ fn exact_statics(
         contact_deg: vec![at.tangent.to_degrees()],
         tension_n: vec![system.equations.base_tensions(0).sum()],
     };
-    let wrapped = study::wrapped_turn(&quasi_static, own.back_head.rope_anchor_deg);
+    let wrapped = wrapped_turn(&quasi_static, own.back_head.rope_anchor_deg);
     let rope = wrapped.exact(&own.modal_head.influence);
     let (s, c) = state.q[machine.layout.beam()].sin_cos();
     let [x, y, _] = own.modal_head.inertia_stress_mpa;

@@ -49,13 +49,13 @@ pub trait Model: fmt::Debug + Send + Sync {
     /// [`Failure::Misconfigured`] where the job does not fit the case.
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure>;
 
-    /// Simulates, and says everything that can be drawn; `motion_step_deg` is the spacing of snapshots
-    /// of what moves \[deg\], 0 for none. A model that has nothing beside its channels need not say
+    /// Simulates, and says everything that can be drawn; `pictures` is how many of what
+    /// moves are wanted over the whole run, 0 for none. A model that has nothing beside its channels need not say
     /// anything here.
     ///
     /// # Errors
     /// As [`Self::observe`].
-    fn draw(&self, spec: &SimulateSpec, _motion_step_deg: f64) -> Result<Curves, Failure> {
+    fn draw(&self, spec: &SimulateSpec, _pictures: u32) -> Result<Curves, Failure> {
         let began = Instant::now();
         let seen = self.observe(spec, false)?;
         Ok(Curves {

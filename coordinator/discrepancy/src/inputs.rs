@@ -4,7 +4,7 @@ use crate::record::measured::Record;
 use crate::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
 use protocol::case::Unknown;
-use protocol::pumping_unit::Discretisation;
+use protocol::job::Numerics;
 use search::space::Space;
 
 /// A case with its records, and what may be suspected.
@@ -20,11 +20,11 @@ pub struct Inputs {
     pub library: Vec<EffectDescriptor>,
     /// A calibrated point (coordinates of the space), if there is one.
     pub start: Option<Vec<f64>>,
-    /// Discretisation of all experiments but that of the numerical check.
-    pub usual: Discretisation,
-    /// Finer discretisations, for the numerical check: the finest, then what it is made of, one thing at a
+    /// Numerics of all experiments but that of the numerical check.
+    pub usual: Numerics,
+    /// Finer ones, for the numerical check: the finest, then what it is made of, one thing at a
     /// time, for where the finest does not complete.
-    pub finer: Vec<Discretisation>,
+    pub finer: Vec<Numerics>,
     /// Seed of the way into the valley.
     pub seed: u64,
     /// How it is decided.

@@ -13,15 +13,15 @@ use toml::de::{DeTable, DeValue};
 
 /// A TOML file that was read: its text is kept for the excerpts of later errors.
 #[derive(Debug)]
-pub(super) struct Document {
+pub(crate) struct Document {
     /// The file.
-    pub(super) path: PathBuf,
+    pub(crate) path: PathBuf,
     text: String,
 }
 
 /// One step of the way to a field.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Step<'a> {
+pub(crate) enum Step<'a> {
     /// A key of a table.
     Key(&'a str),
     /// An entry of an array.
@@ -33,7 +33,7 @@ impl Document {
     ///
     /// # Errors
     /// Missing, unreadable, empty or not text.
-    pub(super) fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
+    pub(crate) fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
         let text = file::text(path, file::read(path, role)?)?;
         Ok(Self {
             path: path.to_owned(),
@@ -45,7 +45,7 @@ impl Document {
     ///
     /// # Errors
     /// Syntax, unknown keys (with the nearest known one), missing keys, values of another type.
-    pub(super) fn parse<T: DeserializeOwned>(&self) -> Result<T, CaseError> {
+    pub(crate) fn parse<T: DeserializeOwned>(&self) -> Result<T, CaseError> {
         toml::from_str(&self.text).map_err(|error| {
             let message = error.message();
             CaseError::Toml {
@@ -62,7 +62,7 @@ impl Document {
     }
 
     /// An error about a field, with its source line.
-    pub(super) fn field(
+    pub(crate) fn field(
         &self,
         way: &[Step<'_>],
         value: impl Display,
@@ -87,7 +87,7 @@ impl Document {
     ///
     /// # Errors
     /// Names the field, its value and the interval with its unit.
-    pub(super) fn within(
+    pub(crate) fn within(
         &self,
         dotted: &str,
         value: f64,
@@ -183,7 +183,7 @@ fn dotted(way: &[Step<'_>]) -> String {
 }
 
 /// A number without needless digits.
-pub(super) fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
         format!("{value:e}")
     } else {
@@ -250,14 +250,14 @@ fn advice(message: &str) -> String {
 }
 
 /// Every unit a gene may have, for messages.
-pub(super) fn units() -> String {
+pub(crate) fn units() -> String {
     protocol::unit::Unit::ALL
         .map(protocol::unit::Unit::symbol)
         .join(", ")
 }
 
 /// The candidate that is most like a word, if any is much like it.
-pub(super) fn nearest<'a>(
+pub(crate) fn nearest<'a>(
     word: &str,
     candidates: impl Iterator<Item = &'a str>,
 ) -> Option<&'a str> {
@@ -277,7 +277,7 @@ pub(super) fn nearest<'a>(
 ///
 /// # Errors
 /// Names the line and column of the first problem.
-pub(super) fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseError> {
+pub(crate) fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseError> {
     serde_json::from_slice(bytes).map_err(|error| {
         damaged(
             path,

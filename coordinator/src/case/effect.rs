@@ -91,7 +91,7 @@ impl CaseEffect {
 ///
 /// # Errors
 /// The first identifier, unit or number that cannot be right.
-pub(super) fn check(
+pub(crate) fn check(
     document: &Document,
     effects: &[CaseEffect],
     units: &[&str],

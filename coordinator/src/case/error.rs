@@ -119,7 +119,7 @@ pub enum CaseError {
 }
 
 /// A problem of a whole file.
-pub(super) fn damaged(path: &Path, problem: impl Into<String>, help: &str) -> CaseError {
+pub(crate) fn damaged(path: &Path, problem: impl Into<String>, help: &str) -> CaseError {
     CaseError::Damaged {
         path: path.into(),
         problem: problem.into().into(),
@@ -128,7 +128,7 @@ pub(super) fn damaged(path: &Path, problem: impl Into<String>, help: &str) -> Ca
 }
 
 /// Two statements that exclude each other.
-pub(super) fn contradiction(
+pub(crate) fn contradiction(
     path: &Path,
     field: impl Into<String>,
     value: impl Into<String>,

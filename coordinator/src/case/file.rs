@@ -10,7 +10,7 @@ const LIMIT: u64 = 1 << 30;
 ///
 /// # Errors
 /// Missing (with `role`: what it is needed for), unreadable, empty or larger than 1 GiB.
-pub(super) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+pub(crate) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     // opening a pipe would wait for somebody to write into it
     let opened = fs::metadata(path).and_then(|there| {
         if there.is_file() {
@@ -56,7 +56,7 @@ pub(super) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
 ///
 /// # Errors
 /// As [`read`], and where the file is not gzip, is cut off or fails its checksum.
-pub(super) fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+pub(crate) fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
     let packed = read(path, role)?;
     if !packed.starts_with(&[0x1f, 0x8b]) {
         return Err(damaged(
@@ -106,7 +106,7 @@ fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, Cas
 ///
 /// # Errors
 /// Names the first line that is not UTF-8.
-pub(super) fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
+pub(crate) fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
     let text = String::from_utf8(bytes).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let start = error.as_bytes().get(..valid).unwrap_or_default();

@@ -5,11 +5,9 @@
 use super::{
     document::{Document, Step, nearest},
     error::CaseError,
-    genes::{check_unit, check_value},
 };
 use protocol::{
     case::{Case, Scale, Unknown},
-    pumping_unit::Coefficient,
     unit::Unit,
 };
 use serde::Deserialize;
@@ -62,24 +60,19 @@ pub fn read_genes(path: &Path, case: &Case) -> Result<Vec<f64>, CaseError> {
 fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f64, CaseError> {
     let way = |key| [Step::Key(unknown.name.as_str()), Step::Key(key)];
     let GeneValue { value, unit } = entry;
-    let own = Unit::named(&unknown.unit);
-    let coefficient = Coefficient::named(&unknown.name).zip(own);
-    if let Some(((name, own), stated)) = coefficient.zip(Unit::named(unit)) {
-        check_unit(document, &way("unit"), name, stated)?;
-        check_value(document, &way("value"), *value, stated)?;
-        // the same unit needs no conversion, which would cost the last digit
-        return Ok(if stated == own {
-            *value
-        } else {
-            stated.to_si(*value) / own.si_factor()
-        });
-    }
-    if *unit != unknown.unit {
+    let units = Unit::named(&unknown.unit).zip(Unit::named(unit));
+    let fitting = units.filter(|(own, stated)| own.si() == stated.si());
+    // the same unit needs no conversion, which would cost the last digit
+    let value = match fitting {
+        Some((own, stated)) if own != stated => &(stated.to_si(*value) / own.si_factor()),
+        _ => value,
+    };
+    if *unit != unknown.unit && fitting.is_none() {
         return Err(document.field(
             &way("unit"),
             format!("\"{unit}\""),
             format!("\"{}\", as in the case", unknown.unit),
-            "state the value in the case's unit: it is a word, and nothing is converted",
+            "state the value in the case's unit; only units of the same quantity that the program knows are converted",
         ));
     }
     let (sound, allowed) = match unknown.scale {

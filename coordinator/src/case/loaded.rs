@@ -1,7 +1,19 @@
 //! A case as it was read, with what was found on the way.
-use super::{effect::CaseEffect, note::Note, record::RecordFacts};
+use super::{effect::CaseEffect, note::Note};
 use discrepancy::record::Record;
 use protocol::case::Case;
+use serde::Deserialize;
+
+/// Where records come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Records {
+    /// A test.
+    #[default]
+    Measured,
+    /// A computation.
+    Synthetic,
+}
 
 /// A case with what was found on the way.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,11 +22,9 @@ pub struct Loaded {
     pub case: Case,
     /// Remarks that are no errors.
     pub notes: Vec<Note>,
-    /// Facts about each condition's record, in the order of the conditions.
-    pub records: Vec<Option<RecordFacts>>,
     /// Every cycle of each record by itself, for a diagnosis; only conditions that have a record.
     pub cycles: Vec<Record>,
-    /// Whether the case says that its gauge records were computed; never of replaced ones.
+    /// Whether the case says that its records were computed; never of replaced ones.
     pub synthetic: bool,
     /// Effects as the file states them, with intervals and provenance.
     pub effects: Vec<CaseEffect>,

@@ -9,7 +9,7 @@ use super::{
 /// # Errors
 /// Names the first that is empty, has other characters than command lines and file names bear, or is
 /// there twice; or the list, where it is empty.
-pub(super) fn check(
+pub(crate) fn check(
     document: &Document,
     list: &str,
     what: &str,
@@ -34,7 +34,7 @@ pub(super) fn check(
 ///
 /// # Errors
 /// As [`check`].
-pub(super) fn check_one(
+pub(crate) fn check_one(
     document: &Document,
     way: &[Step<'_>],
     what: &str,

@@ -1,7 +1,7 @@
 //! What repeated measurements of one value say of it.
 
 /// Mean and standard deviation (n - 1) of what there is; 0 deviation of fewer than two.
-pub(super) fn mean_and_spread(
+pub(crate) fn mean_and_spread(
     values: impl Iterator<Item = f64> + Clone,
 ) -> (Option<f64>, f64, usize) {
     let count = values.clone().count();

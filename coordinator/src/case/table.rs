@@ -4,13 +4,13 @@ use std::path::Path;
 
 /// A table that was read: the wanted columns, in the order in which they were asked for.
 #[derive(Debug)]
-pub(super) struct Table {
+pub(crate) struct Table {
     /// Numbers per wanted column.
-    pub(super) columns: Vec<Vec<f64>>,
+    pub(crate) columns: Vec<Vec<f64>>,
     /// Line of the file per row of numbers; the header is line 1.
-    pub(super) lines: Vec<u64>,
+    pub(crate) lines: Vec<u64>,
     /// The names of the wanted columns.
-    pub(super) names: Vec<String>,
+    pub(crate) names: Vec<String>,
 }
 
 impl Table {
@@ -19,7 +19,7 @@ impl Table {
     /// # Errors
     /// A missing or repeated column, a row of another length, a cell that is not a finite number,
     /// no rows at all.
-    pub(super) fn read(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Self, CaseError> {
+    pub(crate) fn read(path: &Path, bytes: &[u8], wanted: &[&str]) -> Result<Self, CaseError> {
         Self::read_with(path, bytes, wanted, &[])
     }
 
@@ -27,7 +27,7 @@ impl Table {
     ///
     /// # Errors
     /// As [`Self::read`].
-    pub(super) fn read_with(
+    pub(crate) fn read_with(
         path: &Path,
         bytes: &[u8],
         wanted: &[&str],
@@ -96,7 +96,7 @@ impl Table {
     }
 
     /// An error about one cell.
-    pub(super) fn cell(
+    pub(crate) fn cell(
         &self,
         path: &Path,
         (row, column): (usize, usize),
@@ -195,7 +195,7 @@ fn number(path: &Path, line: u64, name: &str, cell: &[u8]) -> Result<f64, CaseEr
 }
 
 /// At most `limit` characters of a text, for messages.
-pub(super) fn clip(text: &str, limit: usize) -> String {
+pub(crate) fn clip(text: &str, limit: usize) -> String {
     let mut clipped: String = text.chars().take(limit).collect();
     if clipped.len() < text.len() {
         clipped.push('…');

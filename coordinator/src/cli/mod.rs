@@ -4,9 +4,9 @@
 //! resumes and repeats runs of either kind, and holds their folders; `output` makes tables, files
 //! and JSON objects of what was found. Results go to standard output, everything else to standard
 //! error. `--output json` prints exactly one object.
-mod argument;
+pub(crate) mod argument;
 mod command;
-mod output;
-mod run;
+pub(crate) mod output;
+pub(crate) mod run;
 
 pub use command::main;

@@ -7,9 +7,6 @@ use std::path::{Path, PathBuf};
 
 /// A kind of model as reports show it.
 pub(crate) trait Drawing: Sync {
-    /// The kind, as cases name it.
-    fn kind(&self) -> &'static str;
-
     /// Its channels, drawn from all that was simulated.
     fn channels(&self, of: &Shown<'_>) -> Vec<Figure>;
 

@@ -9,13 +9,9 @@ use protocol::case::{Case, Unknown};
 use std::path::{Path, PathBuf};
 
 /// A model of which no more is known.
-pub(super) struct General;
+pub(crate) struct General;
 
 impl Drawing for General {
-    fn kind(&self) -> &'static str {
-        ""
-    }
-
     fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
         chart::channels(of, self.zero())
     }

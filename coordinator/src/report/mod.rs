@@ -28,5 +28,7 @@ pub use data::{
     WorkerUse,
 };
 pub use document::{Block, Figure, Report, Section, Table, page, text};
+pub(crate) use drawing::Drawing;
 pub use folder::ReportError;
+pub(crate) use general::General;
 pub use write::{calibration, parameters, ranges, simulation, write_calibration, write_simulation};

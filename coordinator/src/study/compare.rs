@@ -21,9 +21,12 @@ pub struct Wanted {
     pub condition: usize,
     /// Parameter sets, by name; gene values in declared units.
     pub individuals: Vec<(String, Vec<f64>)>,
-    /// Spacing of the returned rope shapes on crank angle (deg); 0 for none.
-    pub motion_step_deg: f64,
+    /// Pictures of what moves; 0 for none.
+    pub pictures: u32,
 }
+
+/// Pictures that show what moves without a jerk.
+pub const PICTURES: u32 = 120;
 
 /// One parameter set under one condition.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,7 +86,7 @@ pub async fn compare<E: Evaluator>(
                 open.insert(first, (group, position));
             }
             let reply = Reply::Curves {
-                motion_step_deg: one.motion_step_deg,
+                pictures: one.pictures,
             };
             evaluator.submit(JobId(first + 1), simulate(reply))?;
             open.insert(first + 1, (group, position));

@@ -32,7 +32,7 @@ impl Completed {
     ///
     /// # Errors
     /// If the job failed, or was answered as another kind of job.
-    pub(super) fn take<T>(
+    pub(crate) fn take<T>(
         self,
         take: impl FnOnce(Answer) -> Result<T, WrongKind>,
         what: impl FnOnce() -> String,

@@ -7,10 +7,8 @@
 mod calibrate;
 mod compare;
 mod diagnose;
-mod digest;
 mod error;
 mod evaluator;
-mod head;
 mod log;
 mod progress;
 mod recorded;
@@ -19,18 +17,15 @@ mod watch;
 
 pub use crate::core::Completed;
 pub use calibrate::{Calibrated, calibrate};
-pub use compare::{Compared, Curves, Wanted, compare};
+pub use compare::{Compared, Curves, PICTURES, Wanted, compare};
 pub use diagnose::{Diagnosed, StageCost, StageView, diagnose_on, library};
-pub use digest::simulation_digest;
 pub use error::{EvaluatorError, StudyError};
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
-pub use head::{
-    HalfRanges, HeadComparison, ModeMatch, WrappedTurn, compare_head, reduce_head, wrapped_turn,
-};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 pub use recorded::Recorded;
 pub use stop::Stop;
+pub(crate) use stop::or_stop;
 pub use watch::{View, Watch};
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use tokio::sync::watch;
 pub type Stop = watch::Receiver<bool>;
 
 /// A future's result, unless the user stops first.
-pub(super) async fn or_stop<T>(
+pub(crate) async fn or_stop<T>(
     future: impl Future<Output = T>,
     stop: &mut Stop,
 ) -> Result<T, StudyError> {

@@ -324,7 +324,7 @@ async fn the_user_can_stop_while_nothing_comes_back() {
     let case = case();
     let mut oracle = Oracle::new(&case, 1, physics);
     let (sender, mut stop) = watch::channel(false);
-    let stopped = async { stop::or_stop(oracle.next(), &mut stop).await.err() };
+    let stopped = async { or_stop(oracle.next(), &mut stop).await.err() };
     let stopper = async { sender.send(true).unwrap() };
     assert_eq!(
         tokio::join!(stopped, stopper).0,
@@ -343,7 +343,7 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     let wanted = |condition| Wanted {
         condition,
         individuals: individuals.clone(),
-        motion_step_deg: 0.0,
+        pictures: 0,
     };
     for order in 1..6 {
         let mut oracle = Oracle::new(&case, order, physics);
@@ -377,7 +377,7 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
     let wanted = [Wanted {
         condition: 0,
         individuals,
-        motion_step_deg: 0.0,
+        pictures: 0,
     }];
     let error = compare(&mut oracle, &case, &wanted, &mut stop)
         .await

@@ -11,6 +11,7 @@ mod spoilt;
 mod twins;
 
 use coordinator::case::{self, Overrides};
+use coordinator::pumping_unit::case::load_head;
 use protocol::{case::Scale, pumping_unit::Machine};
 use spoilt::{Copy, MODES, RECORD, SHEET, TOML, assert_each_is_named, scaled};
 use std::fs;
@@ -139,7 +140,9 @@ fn a_case_may_have_load_cards_alone() {
         let case = case::load(copy.folder.path(), &Overrides::default()).unwrap();
         assert!(case.channels.iter().all(|channel| channel.record.is_none()));
         assert_eq!(case.objective.condition, 0);
-        let summary = case::check(copy.folder.path()).unwrap().to_string();
+        let summary = case::check(copy.folder.path(), &Overrides::default())
+            .unwrap()
+            .text;
         assert_eq!(
             summary.matches("no record: simulated only").count(),
             2,
@@ -149,7 +152,7 @@ fn a_case_may_have_load_cards_alone() {
         let message = refused.unwrap_err().to_string();
         for expected in [
             "case.toml: `conditions[0].record_file` = absent",
-            "a gauge record of condition `5rpm`",
+            "a record of condition `5rpm`",
             "help: add record_file = \"measured/test_5rpm.csv.gz\"",
         ] {
             assert!(message.contains(expected), "no `{expected}` in\n{message}");
@@ -291,13 +294,13 @@ fn tables_of_the_head_know_what_they_were_computed_from() {
     ];
     for (number, change) in changes.iter().enumerate() {
         let copy = Copy::new();
-        let (_, source) = case::load_head(copy.folder.path()).unwrap();
+        let (_, source) = load_head(copy.folder.path()).unwrap();
         assert!(!source.stale);
         let own = format!("{{\"source_blake3\": \"{}\", ", source.source_blake3);
         copy.replace(MODES, "{", &own);
         change(&copy);
         let loaded = case::load(copy.folder.path(), &Overrides::default());
-        let (_, source) = case::load_head(copy.folder.path()).unwrap();
+        let (_, source) = load_head(copy.folder.path()).unwrap();
         assert_eq!(source.stale, number > 0, "change {number}");
         assert_eq!(loaded.is_err(), number > 0, "change {number}");
     }

@@ -22,7 +22,7 @@ pub use channels::Observation;
 pub use curves::Curves;
 pub use failure::{Failure, WrongKind};
 pub use score::{ChannelScore, Evaluation};
-pub use simulate::{Individual, Reply, SimulateSpec};
+pub use simulate::{Individual, Numerics, Reply, SimulateSpec};
 pub use verdict::{Counters, Reached, Verdict};
 pub use word::Word;
 
@@ -52,7 +52,7 @@ pub mod kind {
 /// One unit of work; a pure function of itself and the case it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Job {
-    /// Simulate a revolution.
+    /// Simulate an individual.
     Simulate(SimulateSpec),
     /// Do what only the kind of model knows that the case is of; the model's data play no part.
     Own {

@@ -1,30 +1,40 @@
 //! What to simulate, how finely, and what to say of it: the one job of all simulations.
-use crate::{case::EffectSetting, pumping_unit::Discretisation};
+use crate::case::EffectSetting;
 use serde::{Deserialize, Serialize};
 
-/// A simulation of one revolution.
+/// A simulation of an individual under one condition.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SimulateSpec {
     /// Of what.
     pub individual: Individual,
-    /// How finely.
-    pub discretisation: Discretisation,
+    /// How finely, and by what method.
+    pub numerics: Numerics,
     /// What is wanted of it.
     pub reply: Reply,
 }
 
 impl SimulateSpec {
-    /// A simulation that is discretised as the case says.
+    /// A simulation that is computed as the case says.
     pub const fn new(individual: Individual, reply: Reply) -> Self {
         Self {
             individual,
-            discretisation: Discretisation::OF_THE_CASE,
+            numerics: Numerics::OF_THE_CASE,
             reply,
         }
     }
 }
 
-/// A machine under a condition: values of the genes, and effects beside those of the case.
+/// How a model is computed where a job wants it otherwise than the case: bytes that the model alone
+/// understands, as its own part of the case is. Empty: as the case says.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Numerics(#[serde(with = "serde_bytes")] pub Vec<u8>);
+
+impl Numerics {
+    /// Nothing is computed otherwise than the case says.
+    pub const OF_THE_CASE: Self = Self(Vec::new());
+}
+
+/// What is simulated under a condition: values of the unknowns, and effects beside those of the case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Individual {
     /// Index of the condition in the case.
@@ -49,7 +59,7 @@ impl Individual {
 /// What is wanted of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Reply {
-    /// Agreement with the gauge record: an [`super::Evaluation`].
+    /// Agreement with the record: an [`super::Evaluation`].
     Score {
         /// Whether the residual vector is wanted too.
         with_residual: bool,
@@ -58,7 +68,7 @@ pub enum Reply {
     Channels,
     /// Everything that can be drawn: a [`super::Curves`].
     Curves {
-        /// Spacing of the returned rope shapes on crank angle \[deg\]; 0 for none.
-        motion_step_deg: f64,
+        /// Pictures of what moves, over the whole run; 0 for none.
+        pictures: u32,
     },
 }

@@ -1,5 +1,9 @@
 //! How space and time are divided where a job divides them otherwise than the case.
 use super::Integrator;
+use crate::{
+    job::Numerics,
+    wire::{self, WireError},
+};
 use serde::{Deserialize, Serialize};
 
 /// How space and time are divided; what is absent stays as the case has it.
@@ -37,4 +41,26 @@ impl Discretisation {
         tolerance: None,
         budget: None,
     };
+
+    /// That of a job.
+    ///
+    /// # Errors
+    /// [`WireError`] for bytes that say nothing of a pumping unit.
+    pub fn of(numerics: &Numerics) -> Result<Self, WireError> {
+        if numerics.0.is_empty() {
+            return Ok(Self::OF_THE_CASE);
+        }
+        wire::decode(&numerics.0)
+    }
+
+    /// As a job carries it.
+    ///
+    /// # Errors
+    /// [`WireError::TooLong`] beyond what a message may hold.
+    pub fn numerics(&self) -> Result<Numerics, WireError> {
+        if *self == Self::OF_THE_CASE {
+            return Ok(Numerics::OF_THE_CASE);
+        }
+        wire::encode(self).map(Numerics)
+    }
 }

@@ -65,10 +65,8 @@ impl Machine {
                 genes: genes.to_vec(),
                 effects: Vec::new(),
             },
-            discretisation,
-            reply: Reply::Curves {
-                motion_step_deg: 0.0,
-            },
+            numerics: discretisation.numerics()?,
+            reply: Reply::Curves { pictures: 0 },
         });
         let done = self.prepared.evaluate(&job).done();
         let answer = done.map_err(|failure| anyhow!("not simulated: {failure}"))?;

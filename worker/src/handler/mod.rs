@@ -55,8 +55,8 @@ impl Prepared {
                 let seen = self.model.observe(spec, false)?;
                 Answer::Channels(seen.rounded(case, condition))
             }
-            Reply::Curves { motion_step_deg } => {
-                Answer::Curves(Box::new(self.model.draw(spec, motion_step_deg)?))
+            Reply::Curves { pictures } => {
+                Answer::Curves(Box::new(self.model.draw(spec, pictures)?))
             }
         })
     }

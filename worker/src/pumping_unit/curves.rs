@@ -15,10 +15,10 @@ use simulation::run::RunResult;
 pub(super) fn run(
     machines: &Machines,
     spec: &SimulateSpec,
-    motion_step_deg: f64,
+    pictures: u32,
 ) -> Result<Curves, Failure> {
     let step_deg = machines.unit.machine.run.output_step_deg;
-    let recorder = Recorder::everything(samples_apart(motion_step_deg, step_deg));
+    let recorder = Recorder::everything(samples_apart(pictures, step_deg));
     let ran = Ran::new(machines, spec, recorder)?;
     let (gauge_mpa, suspension_m) = (ran.gauges_mpa(), ran.suspension_m());
     let channels = ran.channels(&machines.unit.case, spec.individual.condition)?;
@@ -46,18 +46,18 @@ pub(super) fn run(
         motion: shapes.map(|shape| motion(shape, step_deg)).collect(),
     };
     let drawn = simulation.into_curves(channels);
-    drawn.map_err(|error| Failure::misconfigured("motion_step_deg", error.to_string()))
+    drawn.map_err(|error| Failure::misconfigured("curves", error.to_string()))
 }
 
 /// How many samples lie between two shapes; 0 where none are wanted.
-fn samples_apart(motion_step_deg: f64, step_deg: f64) -> usize {
-    if motion_step_deg > 0.0 {
+fn samples_apart(pictures: u32, step_deg: f64) -> usize {
+    if pictures > 0 {
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
             reason = "clamped to the samples of one turn"
         )]
-        let apart = (motion_step_deg / step_deg)
+        let apart = (360.0 / f64::from(pictures) / step_deg)
             .round()
             .clamp(1.0, 360.0 / step_deg) as usize;
         apart

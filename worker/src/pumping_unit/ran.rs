@@ -3,7 +3,7 @@ use super::machines::Machines;
 use super::{genes::rope_law, reply, run::discretised_settings};
 use protocol::case::{Case, Channel};
 use protocol::job::{Counters, Failure, SimulateSpec, Verdict};
-use protocol::pumping_unit::Sensor;
+use protocol::pumping_unit::{Discretisation, Sensor};
 use simulation::observe::{Curves, Recorder};
 use simulation::run::{RunResult, simulate};
 use std::time::Instant;
@@ -30,9 +30,11 @@ impl Ran {
         spec: &SimulateSpec,
         mut recorder: Recorder,
     ) -> Result<Self, Failure> {
-        let unit = machines.discretised(&spec.discretisation)?;
+        let numerics = Discretisation::of(&spec.numerics)
+            .map_err(|error| Failure::misconfigured("numerics", error.to_string()))?;
+        let unit = machines.discretised(&numerics)?;
         let law = rope_law(&unit, &spec.individual.genes)?;
-        let settings = discretised_settings(&unit.machine, &spec.discretisation);
+        let settings = discretised_settings(&unit.machine, &numerics);
         let machine = machines.machine(&unit, &spec.individual)?;
         let started = Instant::now();
         let result = simulate(&machine, &law, &settings, &mut recorder);

@@ -60,7 +60,7 @@ impl Model for Machines {
         })
     }
 
-    fn draw(&self, spec: &SimulateSpec, motion_step_deg: f64) -> Result<Curves, Failure> {
-        curves::run(self, spec, motion_step_deg)
+    fn draw(&self, spec: &SimulateSpec, pictures: u32) -> Result<Curves, Failure> {
+        curves::run(self, spec, pictures)
     }
 }

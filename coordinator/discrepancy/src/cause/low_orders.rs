@@ -37,7 +37,8 @@ pub async fn likeliest<L: Laboratory>(
         return Ok(Vec::new());
     }
     let highest = HIGHEST.min(highest);
-    let low = WhitenedRecord::under_own_noise(whole.record.clone(), highest, whole.discretisation);
+    let low =
+        WhitenedRecord::under_own_noise(whole.record.clone(), highest, whole.numerics.clone());
     let mut experiments = experiments.with(&low);
     let mut recommended = current.point();
     recommended.x[..current.model.space.dimension()].fill(0.0);

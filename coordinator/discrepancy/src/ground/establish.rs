@@ -24,7 +24,7 @@ pub(crate) async fn establish<L: Laboratory>(
     record: Record,
 ) -> Result<Option<Base>, L::Error> {
     let highest = inputs.thresholds.orders;
-    let own = WhitenedRecord::under_own_noise(record.clone(), highest, inputs.usual);
+    let own = WhitenedRecord::under_own_noise(record.clone(), highest, inputs.usual.clone());
     let mut experiments = Experiments {
         lab: &mut *lab,
         on: &own,
@@ -45,7 +45,7 @@ pub(crate) async fn establish<L: Laboratory>(
             .map(|error| metric.whiten(&error.curves) * error.deviation)
             .collect();
         metric.marginalize(&directions);
-        WhitenedRecord::new(record.clone(), metric, inputs.usual)
+        WhitenedRecord::new(record.clone(), metric, inputs.usual.clone())
     };
     let on = weigh(&noise);
     let mut experiments = experiments.with(&on);

@@ -11,7 +11,7 @@ use crate::record::metric::Metric;
 use crate::record::spectrum::Spectra;
 use crate::record::whitened::WhitenedRecord;
 use nalgebra::DVector;
-use protocol::pumping_unit::Discretisation;
+use protocol::job::Numerics;
 
 /// What a finer model says.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ pub async fn check<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
     absorbing: &Fit,
-    finer: &[Discretisation],
+    finer: &[Numerics],
 ) -> Result<Option<Preflight>, L::Error> {
     let on = experiments.on;
     if finer.is_empty() {
@@ -71,17 +71,16 @@ pub async fn check<L: Laboratory>(
     Ok(sum.map(|difference| preflight(on, absorbing, difference, false)))
 }
 
-/// Curves of a fitted point in several discretisations less those of the fit; nothing where one failed.
+/// Curves of a fitted point in finer numerics less those of the fit; nothing where one failed.
 async fn differences<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    discretisations: &[Discretisation],
+    finer: &[Numerics],
 ) -> Result<Vec<Option<Curves>>, L::Error> {
     let record = &experiments.on.record;
     let point = fit.point();
-    let finer =
-        |discretisation: &Discretisation| point.experiment(record.condition, *discretisation);
-    let batch = discretisations.iter().map(finer).collect();
+    let experiment = |numerics: &Numerics| point.experiment(record.condition, numerics);
+    let batch = finer.iter().map(experiment).collect();
     let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
     let less = |fine: &Curves| difference(fine, &fit.curves, 1.0);
     Ok(seen.iter().map(|fine| fine.as_ref().map(less)).collect())

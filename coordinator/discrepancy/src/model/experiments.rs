@@ -35,8 +35,8 @@ impl<L: Laboratory> Experiments<'_, L> {
     /// # Errors
     /// Those of the laboratory.
     pub async fn curves(&mut self, points: &[Point]) -> Result<Vec<Option<Curves>>, L::Error> {
-        let (record, discretisation) = (&self.on.record, self.on.discretisation);
-        let experiment = |point: &Point| point.experiment(record.condition, discretisation);
+        let (record, numerics) = (&self.on.record, &self.on.numerics);
+        let experiment = |point: &Point| point.experiment(record.condition, numerics);
         let batch = points.iter().map(experiment).collect();
         curves(self.lab, self.stage, record, batch).await
     }

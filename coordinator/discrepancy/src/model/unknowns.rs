@@ -7,10 +7,7 @@ use crate::model::off::Off;
 use crate::model::parameter::{setting, variable};
 use protocol::announce::EffectDescriptor;
 use protocol::case::EffectSetting;
-use protocol::{
-    job::{Individual, Reply, SimulateSpec},
-    pumping_unit::Discretisation,
-};
+use protocol::job::{Individual, Numerics, Reply, SimulateSpec};
 use search::least_squares::{Prior, Variable};
 use search::space::Space;
 
@@ -130,14 +127,14 @@ impl Point {
     }
 
     /// The job that simulates it under a condition.
-    pub fn experiment(&self, condition: usize, discretisation: Discretisation) -> SimulateSpec {
+    pub fn experiment(&self, condition: usize, numerics: &Numerics) -> SimulateSpec {
         let Self { model, x } = self;
         let effects = model.settings(x).filter(|(off, _)| off.is_none());
         let mut individual = Individual::new(condition, model.genes(x));
         individual.effects = effects.map(|(_, setting)| setting).collect();
         SimulateSpec {
             individual,
-            discretisation,
+            numerics: numerics.clone(),
             reply: Reply::Channels,
         }
     }

@@ -49,13 +49,13 @@ pub(crate) async fn compare<L: Laboratory>(
     before: &Fit,
     after: &Fit,
 ) -> Result<Vec<Row>, L::Error> {
-    let discretisation = experiments.on.discretisation;
+    let numerics = &experiments.on.numerics;
     let points = [before, after].map(Fit::point);
     let both = |shown: &Shown<'_>| {
         let condition = shown.record.condition;
         points
             .each_ref()
-            .map(|point| point.experiment(condition, discretisation))
+            .map(|point| point.experiment(condition, numerics))
     };
     let batch = records.iter().flat_map(both).collect();
     let observed = experiments.lab.observe(experiments.stage, batch).await?;

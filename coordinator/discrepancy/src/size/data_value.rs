@@ -69,7 +69,7 @@ pub(crate) async fn weigh<L: Laboratory>(
     let (mut jacobian, mut signatures) = (at.jacobian.clone(), here);
     let mut joined = false;
     for record in others.filter(|record| !record.cycles.is_empty()) {
-        let other = WhitenedRecord::under_own_noise(record.clone(), highest, base.discretisation);
+        let other = WhitenedRecord::under_own_noise(record.clone(), highest, base.numerics.clone());
         let mut experiments = session.experiments(Stage::What);
         let Some(seen) = linearized(&mut experiments.with(&other), fit, &visible).await? else {
             continue;

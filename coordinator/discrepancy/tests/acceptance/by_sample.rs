@@ -18,8 +18,8 @@ use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::{EffectDescriptor, Place, Sign};
 use protocol::case::{Abscissa, Channel, Scale, Unknown};
+use protocol::job::Numerics;
 use protocol::job::{Counters, Individual, Observation, SimulateSpec, Verdict as Ended};
-use protocol::pumping_unit::Discretisation;
 use search::least_squares::Linearized;
 use search::random::{Phase, Stream, Streams};
 use search::space::Space;
@@ -371,8 +371,8 @@ fn diagnosed(records: Vec<Record>) -> Diagnosis {
         records,
         library: library(),
         start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
-        usual: Discretisation::default(),
-        finer: vec![Discretisation::default()],
+        usual: Numerics::OF_THE_CASE,
+        finer: vec![Numerics::OF_THE_CASE],
         seed: 1,
         thresholds: Thresholds {
             draws: 100,

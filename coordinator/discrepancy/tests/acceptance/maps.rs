@@ -16,11 +16,11 @@ use discrepancy::record::metric::Metric;
 use discrepancy::record::noise::Noise;
 use discrepancy::record::{Curves, Record, mean_of};
 use nalgebra::{DMatrix, DVector};
-use protocol::pumping_unit::Discretisation;
+use protocol::job::Numerics;
 use search::least_squares::{Linearized, Variable};
 
 fn simulate(point: &Point) -> Curves {
-    let spec = point.experiment(0, Discretisation::default());
+    let spec = point.experiment(0, &Numerics::OF_THE_CASE);
     MACHINE.observe(&spec).curves
 }
 

@@ -1,6 +1,6 @@
 //! What the discretisation of the tool's model does must not be named, must be said, and must not turn
 //! good answers over.
-use crate::machine::Numerics;
+use crate::machine::Roughness;
 use crate::strata::{named, planted};
 use crate::trial::{Setup, diagnosed, line};
 use crate::truth::Truth;
@@ -8,7 +8,7 @@ use discrepancy::diagnose::Diagnosis;
 use discrepancy::ground::preflight::Preflight;
 use discrepancy::verdict::Verdict;
 
-fn with(numerics: Numerics) -> Setup {
+fn with(numerics: Roughness) -> Setup {
     Setup {
         numerics,
         ..Setup::default()
@@ -23,7 +23,7 @@ fn says(answer: &Diagnosis, what: &str) -> bool {
 /// stays healthy, and a clear effect keeps its name.
 #[test]
 fn a_rough_model_is_said_to_be_rough_and_names_nothing() {
-    let rough = with(Numerics::Ripple(0.1));
+    let rough = with(Roughness::Ripple(0.1));
     let (healthy, _) = diagnosed(&Truth::healthy(8400), &rough);
     assert_eq!(
         healthy.verdict,
@@ -45,7 +45,7 @@ fn a_rough_model_is_said_to_be_rough_and_names_nothing() {
     assert!((0.4..1.5).contains(&after.ratio()), "{}", after.ratio());
 
     // and a model that is fine enough is not spoken of
-    let (fine, _) = diagnosed(&truth, &with(Numerics::Exact));
+    let (fine, _) = diagnosed(&truth, &with(Roughness::Exact));
     assert!(!says(&fine, "numerical error"), "{:?}", fine.notes);
 }
 
@@ -59,7 +59,7 @@ fn a_name_that_rests_on_a_coarse_model_is_withdrawn() {
         ripple_mpa: 0.6,
         ..Setup::default()
     };
-    let (answer, _) = diagnosed(&Truth::healthy(8410), &setup(Numerics::RippleOf(id, 10.0)));
+    let (answer, _) = diagnosed(&Truth::healthy(8410), &setup(Roughness::RippleOf(id, 10.0)));
     let said = line(&answer);
     let best = answer.rounds[0].refits.first();
     assert_eq!(best.map(|r| r.id.as_str()), Some(id), "{said}");
@@ -78,7 +78,7 @@ fn a_name_that_rests_on_a_coarse_model_is_withdrawn() {
 #[test]
 fn without_a_finer_model_nothing_is_named() {
     let truth = planted(Truth::healthy(8420), named()[1], 8.0);
-    let (blind, _) = diagnosed(&truth, &with(Numerics::NothingFiner));
+    let (blind, _) = diagnosed(&truth, &with(Roughness::NothingFiner));
     assert!(blind.preflight.is_none() && blind.preflight_after.is_none());
     assert_eq!(blind.verdict, Verdict::Unresolved, "{}", line(&blind));
     let reason = blind.reason.as_deref().unwrap_or_default();
@@ -94,13 +94,13 @@ fn without_a_finer_model_nothing_is_named() {
     let added = |d: &Diagnosis| d.rounds.iter().any(|round| round.added.is_some());
     assert!(!added(&blind));
 
-    let (partly, _) = diagnosed(&truth, &with(Numerics::NoShorterCylinders));
+    let (partly, _) = diagnosed(&truth, &with(Roughness::NoShorterCylinders));
     assert_eq!(partly.verdict, Verdict::Named, "{}", line(&partly));
     assert!(partly.preflight.as_ref().is_some_and(|p| !p.whole));
     assert!(says(&partly, "one at a time"), "{:?}", partly.notes);
 
     // where nothing is claimed nothing is withdrawn
-    let (healthy, _) = diagnosed(&Truth::healthy(8421), &with(Numerics::NothingFiner));
+    let (healthy, _) = diagnosed(&Truth::healthy(8421), &with(Roughness::NothingFiner));
     assert_eq!(
         healthy.verdict,
         Verdict::NothingDetected,

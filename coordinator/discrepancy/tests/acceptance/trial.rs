@@ -1,11 +1,11 @@
 //! One diagnosis of one truth, and what is asked of its answer.
 use crate::case::{ORDERS, space};
-use crate::machine::{AtOnce, Machine, Numerics, ripple};
+use crate::machine::{AtOnce, Machine, Roughness, finer, ripple};
 use crate::truth::{ALL, Truth, record};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::thresholds::Thresholds;
 use protocol::announce::EffectDescriptor;
-use protocol::pumping_unit::Discretisation;
+use protocol::job::Numerics;
 use std::convert::Infallible;
 use std::pin::pin;
 use std::sync::LazyLock;
@@ -30,7 +30,7 @@ pub(crate) struct Setup {
     /// Names of the library with the machine's own, where they differ.
     pub(crate) labels: Vec<(String, String)>,
     /// What discretisation does.
-    pub(crate) numerics: Numerics,
+    pub(crate) numerics: Roughness,
     /// A ripple of the gauges that the record has and nothing makes (MPa).
     pub(crate) ripple_mpa: f64,
     /// The noise that the data sheet states, over the true one.
@@ -50,7 +50,7 @@ impl Default for Setup {
             library: MACHINE.library().to_vec(),
             lost_every: 0,
             labels: Vec::new(),
-            numerics: Numerics::Exact,
+            numerics: Roughness::Exact,
             ripple_mpa: 0.0,
             stated: 1.0,
         }
@@ -87,18 +87,8 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
                 .map(|(k, x)| x + if k % 2 == 0 { 0.008 } else { -0.03 })
                 .collect(),
         ),
-        usual: Discretisation::default(),
-        finer: [
-            (Some(0.025), Some(0.01)),
-            (Some(0.025), None),
-            (None, Some(0.01)),
-        ]
-        .map(|(cylinder_length_m, longest_step_s)| Discretisation {
-            cylinder_length_m,
-            longest_step_s,
-            ..Discretisation::default()
-        })
-        .to_vec(),
+        usual: Numerics::OF_THE_CASE,
+        finer: finer(),
         seed: 1,
         thresholds: setup.thresholds.clone(),
     };

@@ -17,10 +17,7 @@ use discrepancy::verdict::Verdict;
 use discrepancy::{cause::low_orders, cause::signature, ground::valley};
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
-use protocol::{
-    job::{Counters, Observation, SimulateSpec, Verdict as Ended},
-    pumping_unit::Discretisation,
-};
+use protocol::job::{Counters, Numerics, Observation, SimulateSpec, Verdict as Ended};
 use search::least_squares;
 use search::random::{Phase, Streams};
 use search::space::Space;
@@ -166,7 +163,7 @@ fn record(truth: Ringing) -> Record {
 
 /// The record under a metric of its own noise.
 fn whole(truth: Ringing) -> WhitenedRecord {
-    WhitenedRecord::under_own_noise(record(truth), ORDERS, Discretisation::default())
+    WhitenedRecord::under_own_noise(record(truth), ORDERS, Numerics::OF_THE_CASE)
 }
 
 /// Experiments on it.
@@ -194,8 +191,8 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         records: vec![record(truth)],
         library: library(),
         start: None,
-        usual: Discretisation::default(),
-        finer: vec![Discretisation::default()],
+        usual: Numerics::OF_THE_CASE,
+        finer: vec![Numerics::OF_THE_CASE],
         seed: 1,
         thresholds: Thresholds {
             draws: 20,

@@ -1,5 +1,5 @@
 //! `case.toml` in the general form as it is written: keys and types.
-use super::super::{effect::CaseEffect, schema::Records};
+use super::super::{effect::CaseEffect, loaded::Records};
 use protocol::case::{Offset, Prior, Scale, Tie, Valley};
 use serde::Deserialize;
 use std::path::PathBuf;

@@ -65,4 +65,4 @@ mod read;
 mod record;
 mod unknowns;
 
-pub(super) use read::read;
+pub(crate) use read::read;

@@ -4,9 +4,9 @@ use super::{
         document::{Document, Step},
         effect::{self, CaseEffect},
         error::CaseError,
-        loaded::Loaded,
+        loaded::{Loaded, Records},
         note::Note,
-        schema::Records,
+        source::Source,
     },
     channels::{self, Place},
     conditions,
@@ -21,11 +21,12 @@ use std::path::Path;
 ///
 /// # Errors
 /// The first thing that is wrong; see [`CaseError`].
-pub(in super::super) fn read(
-    folder: &Path,
-    measured: Option<&Path>,
-    document: &Document,
-) -> Result<Loaded, CaseError> {
+pub(crate) fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
+    let Source {
+        folder,
+        measured,
+        document,
+    } = *source;
     let file: CaseFile = document.parse()?;
     let conditions = conditions::read(document, &file.conditions)?;
     let mut unknowns = unknowns::read(document, &file.unknowns)?;
@@ -57,7 +58,6 @@ pub(in super::super) fn read(
             objective,
         },
         notes,
-        records: vec![None; cycles.len()],
         cycles: cycles
             .into_iter()
             .flatten()

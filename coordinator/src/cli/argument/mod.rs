@@ -1,7 +1,7 @@
 //! Arguments that several commands share, one kind per file.
 pub(super) mod case;
 pub(super) mod door;
-pub(super) mod individual;
-pub(super) mod output;
+pub(crate) mod individual;
+pub(crate) mod output;
 pub(super) mod settings;
 pub(super) mod workers;

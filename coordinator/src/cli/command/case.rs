@@ -39,8 +39,8 @@ enum Action {
 #[derive(Debug, Serialize)]
 struct CheckOutput<'a> {
     case: &'a str,
-    conditions: Vec<&'a str>,
-    genes: Vec<String>,
+    conditions: &'a [String],
+    genes: &'a [String],
     notes: Vec<String>,
 }
 
@@ -56,18 +56,14 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
     let overrides = crate::case::Overrides {
         measured: choice.measured.clone(),
     };
-    let summary = crate::case::check_with(&choice.case, &overrides)?;
+    let summary = crate::case::check(&choice.case, &overrides)?;
     let object = CheckOutput {
         case: &summary.name,
-        conditions: summary.conditions.iter().map(|c| c.name.as_str()).collect(),
-        genes: summary
-            .genes
-            .iter()
-            .map(|unknown| unknown.name.clone())
-            .collect(),
+        conditions: &summary.conditions,
+        genes: &summary.unknowns,
         notes: summary.notes.iter().map(ToString::to_string).collect(),
     };
-    terminal::print(output.output, || format!("{summary}"), &object)
+    terminal::print(output.output, || summary.text.clone(), &object)
 }
 
 fn begin(folder: &std::path::Path) -> anyhow::Result<()> {
@@ -80,7 +76,7 @@ fn begin(folder: &std::path::Path) -> anyhow::Result<()> {
         .into());
     }
     std::fs::create_dir_all(folder)?;
-    std::fs::write(&file, crate::case::template())?;
+    std::fs::write(&file, crate::pumping_unit::case::template())?;
     terminal::tell(&format!(
         "wrote {}\nput the files it names beside it, then run `horsehead case check {}`",
         file.display(),

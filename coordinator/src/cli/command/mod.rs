@@ -10,7 +10,6 @@ mod completions;
 mod diagnose;
 mod explain;
 mod export;
-mod head;
 mod keys;
 #[cfg(test)]
 mod printed;
@@ -21,6 +20,7 @@ mod tests;
 mod verify;
 
 use super::output::{problem, terminal};
+use crate::pumping_unit::command as head;
 use clap::{CommandFactory as _, Parser, Subcommand};
 use std::process::ExitCode;
 

@@ -5,16 +5,16 @@ use crate::{
         output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
         run::{bus, command_line::command_line, once::compare_once},
     },
+    kind,
     report::{self, Origin, SingleRun, table, words},
-    study::{Compared, Curves, Wanted, simulation_digest},
+    study::{Compared, Curves, PICTURES, Wanted},
 };
 use anyhow::Context as _;
 use clap::Args;
-use protocol::pumping_unit::Simulation;
 use protocol::{case::Case, job::Verdict};
 use std::path::PathBuf;
 
-/// Simulate one revolution: curves, verdict, counters.
+/// Simulate once: curves, verdict, counters.
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.out {
         check_out(folder)?;
     }
-    let motion_step_deg = if arguments.out.is_some() { 3.0 } else { 0.0 };
+    let pictures = if arguments.out.is_some() { PICTURES } else { 0 };
     let mut notes = loaded.notes.clone();
     for note in outside_bounds(case, &genes) {
         terminal::tell(&format!("note: {note}"));
@@ -53,15 +53,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let wanted = Wanted {
         condition,
         individuals: vec![(arguments.individual.genes.clone(), genes)],
-        motion_step_deg,
+        pictures,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let curves = first(groups).context("no result came back")?;
 
     let verdict = curves.drawn.verdict;
-    let drawing = Simulation::of(&curves.drawn)?;
+    let digest = kind::of(case).digest(&curves.drawn)?;
     if verdict != Verdict::Complete {
-        terminal::tell(&format!("the machine {}", words::verdict(&verdict)));
+        terminal::tell(&format!("the simulation {}", words::verdict(&verdict)));
     }
     let run = SingleRun {
         case: case.clone(),
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             measured_name: loaded.measured.clone(),
             preset: None,
             seed: None,
-            digest: simulation_digest(&drawing),
+            digest: digest.clone(),
             synthetic: loaded.synthetic,
         },
         condition,
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
     }
-    let object = simulation((case, condition), &curves, &drawing);
+    let object = simulation((case, condition), &curves, digest)?;
     let tables = || {
         let ranges = report::ranges(&run);
         ranges.map_or_else(String::new, |ranges| {

@@ -76,7 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let wanted = Wanted {
         condition,
         individuals: pair(&case, &best),
-        motion_step_deg: 0.0,
+        pictures: 0,
     };
     let workers = arguments.workers.unwrap_or_else(|| cores().min(4)).max(1);
     let groups = compare_once("verify", &case, std::slice::from_ref(&wanted), workers)?;

@@ -2,7 +2,7 @@
 use super::{
     object::{
         calibration::CalibrateOutput,
-        score::{Both, ConditionOutput, condition, genes},
+        score::{Both, ConditionOutput, condition, unknowns},
     },
     terminal,
 };
@@ -118,7 +118,7 @@ fn result_object<'a>(
         evaluations: log.len(),
         failed_simulations: log.failed(),
         wall_s,
-        genes: genes(case, &found.calibrated.best.genes),
+        unknowns: unknowns(case, &found.calibrated.best.genes),
         objective: calibrated.objective,
         channels: calibrated.channels,
         other_conditions,

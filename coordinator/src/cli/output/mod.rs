@@ -2,8 +2,7 @@
 pub(super) mod calibration;
 pub(super) mod diagnosis;
 pub(super) mod files;
-pub(super) mod head_files;
-pub(super) mod object;
-pub(super) mod problem;
+pub(crate) mod object;
+pub(crate) mod problem;
 pub(super) mod progress;
-pub(super) mod terminal;
+pub(crate) mod terminal;

@@ -1,7 +1,7 @@
 //! The work of a calibration: the search, then recommended and best individual side by side.
 use super::begun::Run;
 use crate::study::{
-    self, Calibrated, Compared, Evaluator, ProgressView, Stop, StudyError, Wanted, Watch,
+    self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, Stop, StudyError, Wanted, Watch,
 };
 use protocol::case::Case;
 use search::strategy::{self, Settings};
@@ -53,7 +53,7 @@ fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
         .map(|condition| Wanted {
             condition,
             individuals: pair(case, best),
-            motion_step_deg: if condition == calibrated { 3.0 } else { 0.0 },
+            pictures: if condition == calibrated { PICTURES } else { 0 },
         })
         .collect()
 }

@@ -8,14 +8,11 @@ use super::{
 use crate::{
     case::{Loaded, Overrides, load_with_notes},
     cli::output::problem::Usage,
+    kind,
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
 use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
-use protocol::{
-    announce::EffectDescriptor,
-    case::Case,
-    pumping_unit::{Discretisation, Machine},
-};
+use protocol::announce::EffectDescriptor;
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -135,7 +132,7 @@ fn inputs(
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
     let thresholds = &manifest.settings.thresholds;
-    let (usual, finer) = discretisations(case, thresholds)?;
+    let (usual, finer) = kind::of(case).numerics(case, thresholds)?;
     Ok(Inputs {
         unknowns: case.unknowns.clone(),
         start: manifest.start_genes().map(|genes| space.point(genes)),
@@ -147,37 +144,4 @@ fn inputs(
         seed: manifest.seed,
         thresholds: thresholds.clone(),
     })
-}
-
-/// How experiments are discretised, and how they are for the numerical check; of a model that nobody
-/// here knows, as its case says.
-fn discretisations(
-    case: &Case,
-    thresholds: &Thresholds,
-) -> anyhow::Result<(Discretisation, Vec<Discretisation>)> {
-    if case.model.kind != Machine::KIND {
-        return Ok((Discretisation::OF_THE_CASE, Vec::new()));
-    }
-    let machine = Machine::of(case)?;
-    let available = machine.modal_head.frequencies_hz.len();
-    let usual = Discretisation {
-        longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
-        ..Discretisation::default()
-    };
-    let finest = Discretisation {
-        cylinder_length_m: Some(machine.ropes.cylinder_length_m * thresholds.refinement),
-        lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
-        modes: Some((machine.run.modes + 2).min(available)),
-        longest_step_s: Some(0.5 * thresholds.step * machine.run.longest_step_s),
-        ..Discretisation::OF_THE_CASE
-    };
-    let cylinders = Discretisation {
-        cylinder_length_m: finest.cylinder_length_m,
-        ..usual
-    };
-    let rest = Discretisation {
-        cylinder_length_m: usual.cylinder_length_m,
-        ..finest
-    };
-    Ok((usual, vec![finest, cylinders, rest]))
 }

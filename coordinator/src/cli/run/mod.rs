@@ -1,6 +1,6 @@
 //! Runs: their folders, what is remembered of them, and what opens, resumes and repeats them.
 pub(super) mod begun;
-pub(super) mod bus;
+pub(crate) mod bus;
 pub(super) mod calibration;
 pub(super) mod command_line;
 pub(super) mod diagnosis;
@@ -8,6 +8,6 @@ pub(super) mod folder;
 pub(super) mod interrupt;
 pub(super) mod kind;
 pub(super) mod manifest;
-pub(super) mod once;
+pub(crate) mod once;
 pub(super) mod session;
 pub(super) mod tables;

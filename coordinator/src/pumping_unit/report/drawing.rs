@@ -13,10 +13,6 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Dhh;
 
 impl Drawing for Dhh {
-    fn kind(&self) -> &'static str {
-        Machine::KIND
-    }
-
     fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
         vec![revolution::gauges(of)]
     }

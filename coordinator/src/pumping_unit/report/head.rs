@@ -2,8 +2,8 @@
 use super::name::mode_family;
 use crate::report::document::{Row, Table};
 use crate::{
+    pumping_unit::HeadComparison,
     report::number::{NONE, fixed, percent},
-    study::HeadComparison,
 };
 use protocol::pumping_unit::TwinHead;
 use protocol::pumping_unit::{LeftOutMode, ReducedHead};

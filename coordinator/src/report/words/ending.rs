@@ -1,13 +1,10 @@
 //! How a simulation ended, in words.
-use crate::report::number::percent;
+use crate::{kind, report::number::percent};
 use protocol::job::{Reached, Verdict, Word};
-use protocol::pumping_unit::failure;
 
 /// What ended a simulation, in words.
-pub fn failure(kind: Word) -> String {
-    let mut known = failure::ALL.iter();
-    let known = known.find(|(word, _)| *word == kind);
-    known.map_or_else(|| kind.spoken(), |(_, words)| (*words).to_owned())
+pub fn failure(word: Word) -> String {
+    kind::failure(word).map_or_else(|| word.spoken(), str::to_owned)
 }
 
 /// How a simulation ended, in words, without a full stop.

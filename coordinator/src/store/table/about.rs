@@ -3,7 +3,7 @@ use crate::store::{
     column::{Column, Columns},
     row::Fact,
 };
-use protocol::{case::Unknown, pumping_unit::Coefficient, unit::Unit};
+use protocol::{case::Unknown, unit::Unit};
 
 pub(super) fn run() -> Columns<Fact> {
     Columns::new()
@@ -25,10 +25,6 @@ pub(super) fn column(name: &str, unit: &str) -> String {
     format!("{name}_{unit}")
 }
 
-fn coefficient_unit(gene: &Unknown) -> Option<Unit> {
-    Coefficient::named(&gene.name).and_then(|_| Unit::named(&gene.unit))
-}
-
 pub(super) fn genes() -> Columns<Unknown> {
     Columns::new()
         .text("gene", "its name in the case", |gene: &Unknown| {
@@ -47,13 +43,13 @@ pub(super) fn genes() -> Columns<Unknown> {
         .real("upper", "largest value to search", |gene| Some(gene.upper))
         .text(
             "si_unit",
-            "its SI unit; none for a parameter of an effect",
-            |gene| Some(coefficient_unit(gene)?.si().symbol().to_owned()),
+            "its SI unit; none where the unit is a word that nothing converts",
+            |gene| Some(Unit::named(&gene.unit)?.si().symbol().to_owned()),
         )
         .real(
             "si_factor",
-            "what one of the unit is in SI; none for a parameter of an effect",
-            |gene| Some(coefficient_unit(gene)?.si_factor()),
+            "what one of the unit is in SI; none where nothing converts it",
+            |gene| Some(Unit::named(&gene.unit)?.si_factor()),
         )
 }
 

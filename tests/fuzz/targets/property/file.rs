@@ -2,8 +2,9 @@
 //! folder that is given to it.
 use super::wire::crc32;
 use coordinator::{
-    case::{self, read_card, read_genes, write_genes},
+    case::{self, Overrides, read_genes, write_genes},
     journal::{self, ReadReport},
+    pumping_unit::case::{count_samples, mesh, read_card},
 };
 use protocol::{case::Case, pumping_unit::Smoothing, wire};
 use std::{
@@ -52,7 +53,7 @@ pub fn is_read_or_reported(folder: &Path, bytes: &[u8]) -> ReadReport {
 /// A case, or refused in words.
 pub fn is_a_case_or_refused(folder: &Path, bytes: &[u8]) {
     file(folder, "case.toml", bytes);
-    if let Err(error) = case::check(folder) {
+    if let Err(error) = case::check(folder, &Overrides::default()) {
         assert!(!error.to_string().is_empty());
     }
 }
@@ -84,7 +85,7 @@ pub fn is_a_card_or_refused(folder: &Path, bytes: &[u8]) {
 
 /// A mesh whose elements have nodes, or refused.
 pub fn is_a_mesh_or_refused(folder: &Path, bytes: &[u8]) {
-    match case::mesh::read(&file(folder, "head.msh", bytes)) {
+    match mesh::read(&file(folder, "head.msh", bytes)) {
         Ok(mesh) => {
             let nodes = mesh.nodes_m.len();
             let solid = mesh.volumes.values().flatten();
@@ -97,7 +98,7 @@ pub fn is_a_mesh_or_refused(folder: &Path, bytes: &[u8]) {
 
 /// Samples of a gauge record, counted, or refused.
 pub fn are_samples_or_refused(bytes: &[u8]) {
-    match case::count_samples(Path::new("record.csv"), bytes) {
+    match count_samples(Path::new("record.csv"), bytes) {
         Ok(samples) => assert!(samples >= 4),
         Err(error) => names_the_file(&error, "record.csv"),
     }

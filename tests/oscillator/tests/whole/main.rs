@@ -76,7 +76,7 @@ fn a_run_is_verified_reported_and_exported() {
 fn ties_fixed_and_absent_unknowns_keep_their_values() {
     let rig = Rig::new();
     let object = rig.json(&["calibrate", "CASE", "--run", &rig.path("run")]);
-    let value = |name: &str| number(&object["genes"][name]["value"]);
+    let value = |name: &str| number(&object["unknowns"][name]["value"]);
     assert_eq!(value("left").to_bits(), value("right").to_bits());
     assert_eq!(value("armature").to_bits(), 0.4_f64.to_bits());
     assert_eq!(value("crosstalk").to_bits(), 0.0_f64.to_bits());

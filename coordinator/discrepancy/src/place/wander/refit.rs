@@ -39,8 +39,7 @@ async fn sheet<L: Laboratory>(
         return Ok(None);
     }
     let (steps, moved): (Vec<f64>, Vec<Point>) = fit.neighbours().unzip();
-    let experiment =
-        |point: Point| point.experiment(record.condition, experiments.on.discretisation);
+    let experiment = |point: Point| point.experiment(record.condition, &experiments.on.numerics);
     let batch = std::iter::once(fit.point())
         .chain(moved)
         .map(experiment)

@@ -1,16 +1,13 @@
 //! The machine as a laboratory.
-use super::stand_in::Machine;
+use super::{fineness::is_shorter, stand_in::Machine};
 use crate::case::grid;
 use discrepancy::laboratory::{Laboratory, Stage};
-use protocol::{
-    job::{Observation, SimulateSpec},
-    pumping_unit::Discretisation,
-};
+use protocol::job::{Numerics, Observation, SimulateSpec};
 use std::convert::Infallible;
 
 /// What discretisation does to the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Numerics {
+pub(crate) enum Roughness {
     /// Nothing.
     Exact,
     /// The usual one adds a ripple to every gauge (MPa).
@@ -44,7 +41,7 @@ pub(crate) struct AtOnce<'a> {
     lost_every: u64,
     /// Names that are used outside, with the machine's own.
     labels: &'a [(String, String)],
-    numerics: Numerics,
+    numerics: Roughness,
     runs: u64,
     /// Runs that were lost.
     pub(crate) lost: u64,
@@ -55,7 +52,7 @@ impl<'a> AtOnce<'a> {
         machine: &'a Machine,
         lost_every: u64,
         labels: &'a [(String, String)],
-        numerics: Numerics,
+        numerics: Roughness,
     ) -> Self {
         Self {
             machine,
@@ -79,22 +76,22 @@ impl<'a> AtOnce<'a> {
                 effect.id.clone_from(own);
             }
         }
-        let shorter = spec.discretisation.cylinder_length_m.is_some();
+        let shorter = is_shorter(&spec.numerics);
         let ripples = match self.numerics {
-            Numerics::NothingFiner if spec.discretisation != Discretisation::default() => {
+            Roughness::NothingFiner if spec.numerics != Numerics::OF_THE_CASE => {
                 return None;
             }
-            Numerics::NoShorterCylinders if shorter => return None,
-            Numerics::Ripple(size) if !shorter => size,
-            Numerics::RippleOf(id, size) if !shorter => {
+            Roughness::NoShorterCylinders if shorter => return None,
+            Roughness::Ripple(size) if !shorter => size,
+            Roughness::RippleOf(id, size) if !shorter => {
                 let own = spec.individual.effects.iter().find(|e| e.id == id);
                 size * own.map_or(0.0, |e| e.parameters[0].1)
             }
-            Numerics::Exact
-            | Numerics::Ripple(_)
-            | Numerics::RippleOf(..)
-            | Numerics::NothingFiner
-            | Numerics::NoShorterCylinders => 0.0,
+            Roughness::Exact
+            | Roughness::Ripple(_)
+            | Roughness::RippleOf(..)
+            | Roughness::NothingFiner
+            | Roughness::NoShorterCylinders => 0.0,
         };
         let mut seen = self.machine.observe(&spec);
         ripple(&mut seen.curves, ripples);

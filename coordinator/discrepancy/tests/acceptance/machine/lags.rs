@@ -1,5 +1,6 @@
 //! The masses' lags behind the drive, order by order, and the forces between them.
 use super::amounts::{C, HIGHEST, MASSES};
+use super::fineness::is_shorter;
 use crate::case::RECOMMENDED;
 use nalgebra::{Matrix3, Vector3};
 use protocol::job::SimulateSpec;
@@ -24,7 +25,11 @@ impl Genes {
     pub(super) fn new(spec: &SimulateSpec) -> Self {
         let g = &spec.individual.genes;
         // longer elements are a little too stiff
-        let length = spec.discretisation.cylinder_length_m.unwrap_or(0.05);
+        let length = if is_shorter(&spec.numerics) {
+            0.025
+        } else {
+            0.05
+        };
         let rough = 1.0 + 0.4 * length * length;
         Self {
             back: g[0] * rough,

@@ -2,10 +2,12 @@
 mod amounts;
 mod at_once;
 mod drive;
+mod fineness;
 mod lags;
 pub(crate) mod library;
 mod stand_in;
 mod turn;
 
-pub(crate) use at_once::{AtOnce, Numerics, ripple};
+pub(crate) use at_once::{AtOnce, Roughness, ripple};
+pub(crate) use fineness::finer;
 pub(crate) use stand_in::Machine;

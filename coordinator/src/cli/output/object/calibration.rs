@@ -1,5 +1,5 @@
 //! The objects of `horsehead calibrate` and `horsehead verify`.
-use super::score::{Both, ConditionOutput, GeneOutput, ScoreOutput};
+use super::score::{Both, ConditionOutput, ScoreOutput, Unknowns};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -21,7 +21,8 @@ pub(crate) struct CalibrateOutput<'a> {
     /// Wall time over all sessions (s).
     pub(crate) wall_s: f64,
     /// The identified parameters by name.
-    pub(crate) genes: BTreeMap<String, GeneOutput>,
+    #[serde(flatten)]
+    pub(crate) unknowns: Unknowns,
     /// Objective of both parameter sets, in the square of the unit that its channels share.
     pub(crate) objective: Both<Option<f64>>,
     /// Agreement by channel, of both parameter sets, at the calibrated condition.

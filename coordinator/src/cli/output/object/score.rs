@@ -1,14 +1,14 @@
-//! Genes and agreement with the record, alike in all objects.
-use crate::study::Curves;
+//! Unknowns and agreement with the record, alike in all objects.
+use crate::{kind, study::Curves};
 use protocol::{
     case::Case,
     job::{ChannelScore, Evaluation, Verdict},
-    pumping_unit::Sensor,
 };
 use serde::Serialize;
+use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A gene with its interval, in its declared unit.
+/// An unknown with its interval, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub(crate) struct GeneOutput {
     value: f64,
@@ -36,10 +36,13 @@ pub(crate) struct Both<T> {
     pub(crate) optimised: T,
 }
 
-/// Genes by name.
-pub(crate) fn genes(case: &Case, values: &[f64]) -> BTreeMap<String, GeneOutput> {
+/// The unknowns by name, under the key by which their kind of model calls them.
+pub(crate) type Unknowns = BTreeMap<&'static str, BTreeMap<String, GeneOutput>>;
+
+/// Values of all unknowns.
+pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
     let pairs = case.unknowns.iter().zip(values);
-    pairs
+    let named = pairs
         .map(|(gene, &value)| {
             let output = GeneOutput {
                 value,
@@ -50,7 +53,8 @@ pub(crate) fn genes(case: &Case, values: &[f64]) -> BTreeMap<String, GeneOutput>
             };
             (gene.name.clone(), output)
         })
-        .collect()
+        .collect();
+    BTreeMap::from([(kind::of(case).unknowns(), named)])
 }
 
 /// Agreement of one channel, in its unit.
@@ -63,20 +67,12 @@ pub(crate) struct ScoreOutput {
     rmse_over_half_range: f64,
     relative_error: f64,
     peak_to_peak_error: f64,
+    /// The same by keys of the kind of model.
     #[serde(flatten)]
-    gauge: Option<GaugeOutput>,
+    own: Map<String, Value>,
 }
 
-/// The same of a gauge by its number, with the unit in the names.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-struct GaugeOutput {
-    gauge: u8,
-    mse_mpa2: f64,
-    mse_fixed_offset_mpa2: f64,
-    offset_mpa: f64,
-}
-
-/// Agreement by channel: gauges by their numbers, others by their names.
+/// Agreement by channel, each by the key by which its kind of model calls it.
 pub(crate) fn channels(
     case: &Case,
     evaluation: Option<&Evaluation>,
@@ -84,7 +80,7 @@ pub(crate) fn channels(
     let scores = evaluation.map_or(&[][..], |evaluation| &evaluation.channels);
     let output = |score: &ChannelScore| {
         let channel = case.channels.get(score.channel)?;
-        let gauge = Sensor::gauge(&channel.name);
+        let (key, own) = kind::of(case).scored(channel, score);
         let output = ScoreOutput {
             unit: channel.unit.clone(),
             mse: score.mse,
@@ -93,14 +89,8 @@ pub(crate) fn channels(
             rmse_over_half_range: score.rmse_over_half_range,
             relative_error: score.relative_error,
             peak_to_peak_error: score.peak_to_peak_error,
-            gauge: gauge.map(|gauge| GaugeOutput {
-                gauge,
-                mse_mpa2: score.mse,
-                mse_fixed_offset_mpa2: score.mse_fixed_offset,
-                offset_mpa: score.offset,
-            }),
+            own,
         };
-        let key = gauge.map_or_else(|| channel.name.clone(), |gauge| gauge.to_string());
         Some((key, output))
     };
     scores.iter().filter_map(output).collect()

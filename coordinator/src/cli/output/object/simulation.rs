@@ -1,18 +1,19 @@
 //! The object of `horsehead simulate`.
-use super::score::{GeneOutput, ScoreOutput, channels, genes, objective};
-use crate::study::{Curves, simulation_digest};
+use super::score::{ScoreOutput, Unknowns, channels, objective, unknowns};
+use crate::{kind, study::Curves};
 use protocol::{
     case::Case,
     job::{Counters, Reached, Verdict, Word},
-    pumping_unit::{Energy, Simulation},
+    wire::WireError,
 };
 use serde::Serialize;
+use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 
 /// Of `horsehead simulate`.
 #[derive(Debug, Serialize)]
 pub(crate) struct SimulateOutput<'a> {
-    /// Name of the machine.
+    /// Name of the case.
     pub(crate) case: &'a str,
     /// Name of the condition.
     pub(crate) condition: &'a str,
@@ -22,40 +23,18 @@ pub(crate) struct SimulateOutput<'a> {
     pub(crate) wall_s: f64,
     /// Work that was done.
     pub(crate) counters: Counters,
-    /// Gene values by name.
-    pub(crate) genes: BTreeMap<String, GeneOutput>,
+    /// Values of the unknowns by name.
+    #[serde(flatten)]
+    pub(crate) unknowns: Unknowns,
     /// Objective, in the square of the unit that its channels share; null without a record or a complete run.
     pub(crate) objective: Option<f64>,
-    /// Agreement by gauge number; empty without a record.
+    /// Agreement by channel; empty without a record.
     pub(crate) channels: BTreeMap<String, ScoreOutput>,
-    /// Crank angle from bottom dead centre (deg).
-    pub(crate) crank_deg: &'a [f64],
-    /// Stress by gauge number `MPa`.
-    pub(crate) gauge_mpa: BTreeMap<String, &'a [f64]>,
-    /// Tension of the back rope at the crossbeam (N).
-    pub(crate) rope_tension_n: &'a [f64],
-    /// Tension of the front rope at the suspension (N).
-    pub(crate) front_rope_tension_n: &'a [f64],
-    /// By how much of twin ropes the one at +z pulls more (N); absent where there is one rope.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) twin_tension_difference_n: Option<TwinTensionOutput<'a>>,
-    /// Beam angle (deg).
-    pub(crate) beam_deg: &'a [f64],
-    /// Suspension height above its lowest design position (m).
-    pub(crate) suspension_m: &'a [f64],
-    /// Net torque at the crank shaft (N m).
-    pub(crate) crank_torque_nm: &'a [f64],
-    /// Energy of the revolution; null unless it was completed.
-    pub(crate) energy: Option<Energy>,
+    /// The curves and what else the kind of model shows, by keys of its own.
+    #[serde(flatten)]
+    pub(crate) drawn: Map<String, Value>,
     /// Hash of all result bits.
     pub(crate) digest: String,
-}
-
-/// A difference of tensions over the revolution (N).
-#[derive(Debug, Serialize)]
-pub(crate) struct TwinTensionOutput<'a> {
-    back: &'a [f64],
-    front: &'a [f64],
 }
 
 /// How a simulation ended.
@@ -102,37 +81,26 @@ impl From<Verdict> for VerdictOutput {
     }
 }
 
-/// Everything about one simulation.
+/// Everything about one simulation, of the bits that `digest` stands for.
+///
+/// # Errors
+/// If the answer says nothing of this kind of model.
 pub(crate) fn simulation<'a>(
     (case, condition): (&'a Case, usize),
     curves: &'a Curves,
-    simulation: &'a Simulation,
-) -> SimulateOutput<'a> {
-    let gauges = (1..).zip(&simulation.gauge_mpa);
-    let [back, front] = &simulation.tension_difference_n;
-    SimulateOutput {
+    digest: String,
+) -> Result<SimulateOutput<'a>, WireError> {
+    let found = case.conditions.get(condition);
+    Ok(SimulateOutput {
         case: &case.name,
-        condition: case
-            .conditions
-            .get(condition)
-            .map_or("", |condition| &condition.name),
-        verdict: simulation.verdict.into(),
-        wall_s: simulation.wall_s,
-        counters: simulation.counters,
-        genes: genes(case, &curves.genes),
+        condition: found.map_or("", |condition| &condition.name),
+        verdict: curves.drawn.verdict.into(),
+        wall_s: curves.drawn.wall_s,
+        counters: curves.drawn.counters,
+        unknowns: unknowns(case, &curves.genes),
         objective: objective(curves.evaluation.as_ref()),
         channels: channels(case, curves.evaluation.as_ref()),
-        crank_deg: &simulation.turn_deg,
-        gauge_mpa: gauges
-            .map(|(gauge, curve)| (gauge.to_string(), &curve[..]))
-            .collect(),
-        rope_tension_n: &simulation.back_rope_tension_n,
-        front_rope_tension_n: &simulation.front_rope_tension_n,
-        twin_tension_difference_n: (!back.is_empty()).then_some(TwinTensionOutput { back, front }),
-        beam_deg: &simulation.beam_deg,
-        suspension_m: &simulation.suspension_m,
-        crank_torque_nm: &simulation.crank_torque_n_m,
-        energy: (simulation.verdict == Verdict::Complete).then_some(simulation.energy),
-        digest: simulation_digest(simulation),
-    }
+        drawn: kind::of(case).drawn(case, condition, &curves.drawn)?,
+        digest,
+    })
 }

@@ -1,0 +1,29 @@
+//! Whether there is anything to compare with.
+use super::error::CaseError;
+use protocol::case::Case;
+use std::path::Path;
+
+/// Whether a condition has a record, which calibration, diagnosis and comparison need.
+///
+/// # Errors
+/// Names the case file, the condition and what to do.
+pub fn require_record(folder: &Path, case: &Case, condition: usize) -> Result<(), CaseError> {
+    if case.is_measured(condition) {
+        return Ok(());
+    }
+    let found = case.conditions.get(condition);
+    let name = found.map_or("?", |condition| condition.name.as_str());
+    let (field, remedy) = crate::kind::of(case).missing_record(condition, name);
+    Err(CaseError::Field {
+        path: folder.join("case.toml").into(),
+        field: field.into(),
+        value: "absent".into(),
+        excerpt: "".into(),
+        allowed: format!("a record of condition `{name}`: there is nothing to compare with").into(),
+        help: format!(
+            "{remedy}, or give --measured DIR; `horsehead simulate` and `horsehead case check` need no \
+             record"
+        )
+        .into(),
+    })
+}

@@ -1,0 +1,85 @@
+//! What `horsehead case check` tells about a case that is in order.
+use super::{loaded::Loaded, note::Note};
+use std::fmt::Write as _;
+
+/// A case in short.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Its name.
+    pub name: String,
+    /// Names of its conditions.
+    pub conditions: Vec<String>,
+    /// Names of its unknowns.
+    pub unknowns: Vec<String>,
+    /// Remarks.
+    pub notes: Vec<Note>,
+    /// All of it, for people.
+    pub text: String,
+}
+
+impl Summary {
+    /// Of a case, with what is said of it.
+    pub(crate) fn new(loaded: &Loaded, text: String) -> Self {
+        let case = &loaded.case;
+        Self {
+            name: case.name.clone(),
+            conditions: case.conditions.iter().map(|one| one.name.clone()).collect(),
+            unknowns: case.unknowns.iter().map(|one| one.name.clone()).collect(),
+            notes: loaded.notes.clone(),
+            text,
+        }
+    }
+}
+
+/// What a case says itself, of whatever kind its model is.
+pub(crate) fn text(loaded: &Loaded) -> String {
+    let case = &loaded.case;
+    let mut text = format!("model       {} ({})\n", case.name, case.model.kind);
+    let names = case.unknowns.iter().map(|unknown| unknown.name.len());
+    let width = names.fold(6, usize::max);
+    text.push_str("unknowns    start (lower .. upper)\n");
+    for unknown in &case.unknowns {
+        let (name, unit, start) = (&unknown.name, &unknown.unit, unknown.start);
+        let searched = match &unknown.tie {
+            Some(tie) => format!("always {} of {}", tie.ratio, tie.to),
+            None if unknown.fixed => "known".to_owned(),
+            None => format!("{:.2e} .. {:.2e}", unknown.lower, unknown.upper),
+        };
+        let off = if unknown.is_off() { ", off" } else { "" };
+        let _infallible = writeln!(
+            text,
+            "  {name:<width$} {start:>10.3e} ({searched}{off}) {unit}"
+        );
+    }
+    for effect in &loaded.effects {
+        let numbers = effect.parameters.iter();
+        let numbers = numbers.map(|(name, p)| format!("{name} {} {}", p.value, p.unit));
+        let numbers: Vec<String> = numbers.collect();
+        let _infallible = writeln!(text, "effect      {}: {}", effect.id, numbers.join(", "));
+    }
+    for (index, condition) in case.conditions.iter().enumerate() {
+        let _infallible = writeln!(text, "condition   {}", condition.name);
+        for (_, channel) in case.channels_of(index) {
+            let places = channel.abscissa.points.len();
+            let recorded = channel.record.as_ref().map_or_else(
+                || "not measured".to_owned(),
+                |record| format!("measured in {} cycles", record.cycles),
+            );
+            let _infallible = writeln!(
+                text,
+                "  {}: {places} values over {} [{}], {recorded}",
+                channel.title, channel.abscissa.name, channel.unit
+            );
+        }
+    }
+    let terms = case.objective.terms.iter();
+    let terms = terms.map(|term| format!("{} (weight {})", term.channel, term.weight));
+    let terms: Vec<String> = terms.collect();
+    let condition = case.conditions.get(case.objective.condition);
+    let condition = condition.map_or("", |condition| &condition.name);
+    let _infallible = write!(text, "objective   {condition}: {}", terms.join(", "));
+    for note in &loaded.notes {
+        let _infallible = write!(text, "\nnote: {note}");
+    }
+    text
+}

@@ -1,0 +1,47 @@
+//! The digest of a simulation: two runs with the same digest have the same bits.
+use protocol::job::{Counters, Reached, Verdict};
+
+/// BLAKE3 over how a simulation ended, what it cost, and every number of its curves, little endian.
+#[derive(Debug)]
+pub(crate) struct Digest(blake3::Hasher);
+
+impl Digest {
+    /// Begins with how far it got.
+    pub(crate) fn of(verdict: Verdict) -> Self {
+        let mut digest = Self(blake3::Hasher::new());
+        if let Verdict::Failed { reached, .. } = verdict {
+            let (Reached::LoadFraction(share) | Reached::TimeFraction(share)) = reached;
+            digest.number(share);
+        }
+        digest
+    }
+
+    /// Adds a number.
+    pub(crate) fn number(&mut self, value: f64) {
+        self.bytes(&value.to_bits().to_le_bytes());
+    }
+
+    /// Adds a curve, with its length before it.
+    pub(crate) fn curve(&mut self, curve: &[f64]) {
+        self.number(curve.len() as f64);
+        curve.iter().for_each(|value| self.number(*value));
+    }
+
+    /// Adds bytes as they are.
+    pub(crate) fn bytes(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
+    /// Ends with what it cost and what ended it; 64 hexadecimal digits.
+    pub(crate) fn end(mut self, verdict: Verdict, counters: &Counters) -> String {
+        for (_, _, count) in counters.named() {
+            self.bytes(&count.to_le_bytes());
+        }
+        let word = match &verdict {
+            Verdict::Complete => "complete",
+            Verdict::Failed { kind, .. } => kind.as_str(),
+        };
+        self.bytes(word.as_bytes());
+        self.0.finalize().to_hex().to_string()
+    }
+}

@@ -1,0 +1,114 @@
+//! What the coordinator may know of a kind of model beside what its cases say: all that the general form
+//! says already stands here.
+use crate::case::{CaseError, Loaded, Summary, general, source::Source, summary};
+use crate::digest::Digest;
+use crate::report::{Drawing, General};
+use discrepancy::thresholds::Thresholds;
+use protocol::{
+    case::{Case, Channel},
+    job::{ChannelScore, Curves, Numerics},
+    wire::WireError,
+};
+use serde_json::{Map, Value, json};
+
+/// A kind of model as the coordinator knows it.
+pub(crate) trait Kind: Sync {
+    /// As cases name it.
+    fn name(&self) -> &'static str;
+
+    /// Reads a case.
+    ///
+    /// # Errors
+    /// The first thing that is wrong; see [`CaseError`].
+    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
+        general::read(source)
+    }
+
+    /// Reads a case and says what is in it.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    fn check(&self, source: &Source<'_>) -> Result<Summary, CaseError> {
+        let loaded = self.read(source)?;
+        Ok(Summary::new(&loaded, summary::text(&loaded)))
+    }
+
+    /// Which field of a case is missing where a condition has no record, and what to do.
+    fn missing_record(&self, condition: usize, name: &str) -> (String, String) {
+        (
+            format!("conditions[{condition}]"),
+            format!("state `record` for a [[channels]] table of condition `{name}`"),
+        )
+    }
+
+    /// How a diagnosis has its experiments computed, and how more finely, for the numerical check: the
+    /// finest, then what it is made of, one thing at a time. Nothing where nothing can be finer.
+    ///
+    /// # Errors
+    /// If the case says nothing of this kind.
+    fn numerics(&self, _: &Case, _: &Thresholds) -> Result<(Numerics, Vec<Numerics>), WireError> {
+        Ok((Numerics::OF_THE_CASE, Vec::new()))
+    }
+
+    /// What it shows in reports.
+    fn drawing(&self) -> &'static dyn Drawing {
+        &General
+    }
+
+    /// Hash of all result bits: 64 hexadecimal digits. Wall time is left out.
+    ///
+    /// # Errors
+    /// If the answer says nothing of this kind.
+    fn digest(&self, drawn: &Curves) -> Result<String, WireError> {
+        let mut digest = Digest::of(drawn.verdict);
+        drawn.channels.iter().for_each(|curve| digest.curve(curve));
+        digest.bytes(&drawn.details);
+        Ok(digest.end(drawn.verdict, &drawn.counters))
+    }
+
+    /// What `simulate --output json` says of the curves.
+    ///
+    /// # Errors
+    /// If the answer says nothing of this kind.
+    fn drawn(
+        &self,
+        case: &Case,
+        condition: usize,
+        drawn: &Curves,
+    ) -> Result<Map<String, Value>, WireError> {
+        let channels = case.channels_of(condition).zip(&drawn.channels);
+        let curves = channels.map(|((_, channel), values)| {
+            let abscissa = &channel.abscissa;
+            // a run that failed has no values behind that
+            let points = abscissa.points.iter().take(values.len());
+            let points: Vec<f64> = points.copied().collect();
+            let curve = json!({
+                "unit": channel.unit,
+                "abscissa": {"name": abscissa.name, "unit": abscissa.unit, "points": points},
+                "values": values,
+            });
+            (channel.name.clone(), curve)
+        });
+        let curves = Value::Object(curves.collect());
+        Ok(Map::from_iter([("curves".to_owned(), curves)]))
+    }
+
+    /// Key of the unknowns in objects.
+    fn unknowns(&self) -> &'static str {
+        "unknowns"
+    }
+
+    /// Key of a channel's agreement in objects, and what stands there beside it.
+    fn scored(&self, channel: &Channel, _: &ChannelScore) -> (String, Map<String, Value>) {
+        (channel.name.clone(), Map::new())
+    }
+}
+
+/// A kind of which no more is known.
+pub(super) struct AnyKind;
+
+impl Kind for AnyKind {
+    fn name(&self) -> &'static str {
+        ""
+    }
+}

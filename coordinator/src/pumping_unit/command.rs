@@ -1,0 +1,303 @@
+//! `horsehead head`: the flexible back head from its mesh.
+use super::{
+    case::{HeadSource, QuasiStatic, load_head, mesh, quasi_static},
+    head_comparison::{compare_head, reduce_head, wrapped_turn},
+    output::{self, files},
+    report::{HeadPicture, head_mode_table, head_pair, head_statics, write_head_modes},
+};
+use crate::{
+    cli::{
+        argument::{individual::condition, output::OutputChoice},
+        output::{
+            problem::{EXIT_CODES, Usage},
+            terminal,
+        },
+        run::once::in_scratch,
+    },
+    report::table,
+};
+use anyhow::Context as _;
+use clap::{Args, ValueEnum};
+use protocol::{
+    pumping_unit::{
+        HeadMesh, Machine, ModeFamily, PumpingUnit, ReduceHeadSpec, ReducedHead, RopePair, RopeWrap,
+    },
+    wire,
+};
+use std::path::PathBuf;
+
+/// Reduce the flexible back head from its mesh: modes, influence lines, gauge stress.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead head cases/cyjs10-5-37hb --out pictures
+  horsehead head cases/cyjs10-5-37hb --family both --modes 24 --vtu pictures
+  horsehead head my-case --write
+
+{EXIT_CODES}"))]
+pub(crate) struct Arguments {
+    /// Case folder, with `case.toml` in it.
+    #[arg(value_name = "CASE")]
+    case: PathBuf,
+    /// How many modes; as many as the case simulates by default.
+    #[arg(long, value_name = "N", env = "HORSEHEAD_MODES")]
+    modes: Option<usize>,
+    /// Which modes: those that couple most to the loads of a turn, or the lowest of a family. A rope
+    /// over the whole width drives only symmetric ones.
+    #[arg(long, value_enum, default_value = "coupled", env = "HORSEHEAD_FAMILY")]
+    family: FamilyChoice,
+    /// Condition whose load stands for the quasi-static turn; that of the objective by default.
+    #[arg(long, value_name = "NAME", env = "HORSEHEAD_CONDITION")]
+    condition: Option<String>,
+    /// Replace the case's modes file and influence file, and of a case with twin ropes the head's
+    /// tables for them.
+    #[arg(long, env = "HORSEHEAD_WRITE")]
+    write: bool,
+    /// Folder for `head.vtu`: all modes, and displacement and stress under the largest tension.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_VTU")]
+    vtu: Option<PathBuf>,
+    /// Folder for `head_modes.svg`: the rope arc's deflection in every mode.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Families of modes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FamilyChoice {
+    /// Of both, those that couple most to the wrapped rope and to the beam's motion.
+    Coupled,
+    /// Sideways displacement changes sign across the middle.
+    Symmetric,
+    /// Displacement in the plane of motion changes sign.
+    Antisymmetric,
+    /// The lowest of both.
+    Both,
+}
+
+impl FamilyChoice {
+    fn families(self) -> Vec<ModeFamily> {
+        match self {
+            Self::Symmetric => vec![ModeFamily::Symmetric],
+            Self::Antisymmetric => vec![ModeFamily::Antisymmetric],
+            Self::Coupled | Self::Both => vec![ModeFamily::Symmetric, ModeFamily::Antisymmetric],
+        }
+    }
+}
+
+/// Most modes: beyond, a mesh of this kind no longer resolves them.
+const MOST_MODES: usize = 40;
+
+/// Reduces, compares, writes.
+pub(crate) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let (unit, source) = load_head(&arguments.case)?;
+    let PumpingUnit { case, machine } = &unit;
+    if source.stale {
+        terminal::tell("note: tables of the case are missing or were computed for something else");
+    }
+    let modes = arguments.modes.unwrap_or(machine.run.modes);
+    if !(1..=MOST_MODES).contains(&modes) {
+        return Err(Usage {
+            message: format!("{modes} modes cannot be computed"),
+            help: format!("ask for 1 to {MOST_MODES}"),
+        }
+        .into());
+    }
+    if arguments.write && modes < machine.run.modes {
+        return Err(Usage {
+            message: format!("the case simulates {} modes", machine.run.modes),
+            help: "write at least as many, or lower run.modes in case.toml first".to_owned(),
+        }
+        .into());
+    }
+    let chosen = condition(case, arguments.condition.as_deref())?;
+    let name = case.conditions[chosen].name.clone();
+    let turn = quasi_static(machine, &machine.conditions[chosen])
+        .context("the crank of this case cannot turn through")?;
+    let mut spec = spec(machine, &source, modes, arguments.family.families());
+    if arguments.family == FamilyChoice::Coupled {
+        spec.patterns = patterns(machine, &turn);
+    }
+    if arguments.vtu.is_some() {
+        spec.fields = Some(hardest(machine, &turn));
+    }
+    check_size(&spec)?;
+    let head = reduce_once(unit.clone(), &spec)?;
+    let wrapped = wrapped_turn(&turn, machine.back_head.rope_anchor_deg);
+    let comparison = compare_head(&head, &machine.modal_head, &wrapped, machine.run.modes);
+    let mut written = Vec::new();
+    if let Some(folder) = &arguments.vtu {
+        written.push(files::write_vtu(folder, &spec.mesh, &head)?);
+    }
+    if let Some(folder) = &arguments.out {
+        let picture = picture(machine, &source, &head);
+        written.push(write_head_modes(folder, &picture)?);
+    }
+    if arguments.write {
+        written.extend(files::write_tables(machine, &source, &head)?);
+    }
+    for path in &written {
+        terminal::tell(&format!("wrote {}", path.display()));
+    }
+    let object = output::head::head((case, &name), &source.mesh_blake3, &head, &comparison);
+    let tables = || {
+        let styled = terminal::styled();
+        let modes = table::text(&head_mode_table(&head, &comparison), styled);
+        let statics = head_statics(&comparison, &name, machine.run.modes);
+        let pair = head.twin.iter().zip(&machine.twin_ropes);
+        let pair = pair.map(|(twin, ropes)| head_pair(twin, ropes.offset_m));
+        let pair = pair.map(|table| format!("\n{}", table::text(&table, styled)));
+        let pair: String = pair.collect();
+        format!("{modes}\n{}{pair}", table::text(&statics, styled))
+    };
+    terminal::print(arguments.output.output, tables, &object)
+}
+
+/// What is drawn of a reduced head.
+fn picture<'a>(
+    machine: &Machine,
+    source: &'a HeadSource,
+    head: &'a ReducedHead,
+) -> HeadPicture<'a> {
+    HeadPicture {
+        center_m: [machine.back_head.center_x_m, machine.back_head.center_y_m],
+        radius_m: machine.back_head.radius_m,
+        nodes_m: &source.mesh.nodes_m,
+        pins: ["pin_a", "pin_b"].map(|pin| surface(&source.mesh, pin)),
+        gauges: &source.gauges,
+        arc_deg: &head.influence.psi_deg,
+        modes: &head.modes,
+    }
+}
+
+/// Nodes of a mesh's surface; none of one that it lacks.
+fn surface<'a>(read: &'a mesh::Mesh, name: &str) -> &'a [usize] {
+    read.surfaces.get(name).map_or(&[], Vec::as_slice)
+}
+
+/// The rope at its largest tension.
+fn hardest(machine: &Machine, turn: &QuasiStatic) -> RopeWrap {
+    let wraps = wraps(machine, turn);
+    let most = wraps.max_by(|a, b| a.tension_n.total_cmp(&b.tension_n));
+    most.unwrap_or(RopeWrap {
+        tension_n: 0.0,
+        anchor_deg: machine.back_head.rope_anchor_deg,
+        leaves_deg: machine.back_head.rope_anchor_deg,
+    })
+}
+
+/// The rope where it covers least, half and most of the arc that it ever covers.
+fn patterns(machine: &Machine, turn: &QuasiStatic) -> Vec<RopeWrap> {
+    let mut wraps: Vec<RopeWrap> = wraps(machine, turn).collect();
+    wraps.sort_by(|a, b| a.leaves_deg.total_cmp(&b.leaves_deg));
+    let last = wraps.len().saturating_sub(1);
+    let places = [0, last / 2, last];
+    places
+        .iter()
+        .filter_map(|k| wraps.get(*k))
+        .copied()
+        .collect()
+}
+
+/// The rope at every crank angle.
+fn wraps(machine: &Machine, turn: &QuasiStatic) -> impl Iterator<Item = RopeWrap> {
+    let anchor_deg = machine.back_head.rope_anchor_deg;
+    let places = turn.tension_n.iter().zip(&turn.contact_deg);
+    places.map(move |(&tension_n, &leaves_deg)| RopeWrap {
+        tension_n,
+        anchor_deg,
+        leaves_deg,
+    })
+}
+
+/// The job that reduces a case's head at the stations of its present tables.
+fn spec(
+    machine: &Machine,
+    source: &HeadSource,
+    modes: usize,
+    families: Vec<ModeFamily>,
+) -> ReduceHeadSpec {
+    ReduceHeadSpec {
+        mesh: mesh(&source.mesh),
+        young_pa: source.young_pa,
+        poisson: source.poisson,
+        density_kg_m3: source.density_kg_m3,
+        gauges: source.gauges,
+        center_m: [machine.back_head.center_x_m, machine.back_head.center_y_m],
+        arc_deg: machine.modal_head.arc_deg.clone(),
+        probes_deg: Vec::new(),
+        modes,
+        families,
+        patterns: Vec::new(),
+        pair: machine.twin_ropes.as_ref().map(|twins| RopePair {
+            offset_m: twins.offset_m,
+            modes: twins.modes,
+        }),
+        fields: None,
+    }
+}
+
+/// A mesh as it travels.
+fn mesh(read: &mesh::Mesh) -> HeadMesh {
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a mesh of four billion nodes does not fit into memory"
+    )]
+    let indices = |nodes: &[usize]| nodes.iter().map(|&node| node as u32).collect::<Vec<u32>>();
+    let mut held = [surface(read, "pin_a"), surface(read, "pin_b")].concat();
+    held.sort_unstable();
+    held.dedup();
+    let elements = read.volumes.get(mesh::VOLUME);
+    HeadMesh {
+        nodes_m: read.nodes_m.clone(),
+        kind: read.kind,
+        elements: indices(elements.map_or(&[], Vec::as_slice)),
+        held: indices(&held),
+        rope_surface: indices(surface(read, "rope_surface")),
+        half: read.half,
+    }
+}
+
+/// A job and its answer each travel in one message.
+fn check_size(spec: &ReduceHeadSpec) -> Result<(), Usage> {
+    const MEBIBYTE: usize = 1 << 20;
+    // what is not the fields of the answer is small beside this
+    const ROOM: usize = wire::BODY_LIMIT - MEBIBYTE;
+    let (nodes, elements) = (
+        spec.mesh.nodes_m.len(),
+        spec.mesh.elements.len() / spec.mesh.kind.nodes(),
+    );
+    let too_long = |what: &str, help: String| Usage {
+        message: format!(
+            "{what} of a mesh of {nodes} nodes and {elements} elements is more than the {} MiB \
+             that travel in one message",
+            ROOM / MEBIBYTE
+        ),
+        help,
+    };
+    // positions of 24 bytes, numbers of at most 5
+    let there = 24 * nodes + 5 * (spec.mesh.elements.len() + spec.mesh.rope_surface.len());
+    if there > ROOM {
+        let half = "mesh the half z >= 0 alone (physical group `symmetry`), or more coarsely";
+        return Err(too_long("the description", half.to_owned()));
+    }
+    let field = size_of::<[f32; 3]>() * nodes;
+    let stress = size_of::<[f32; 6]>() * elements;
+    let fields = (spec.modes + 1) * field + stress;
+    if spec.fields.is_some() && fields > ROOM {
+        let most = ROOM.saturating_sub(stress + field) / field.max(1);
+        let help = format!("ask for at most {most} modes with --vtu (--modes {most})");
+        return Err(too_long(&format!("--vtu with {} modes", spec.modes), help));
+    }
+    Ok(())
+}
+
+/// Reduces on one local worker, without a run folder that outlives the command.
+fn reduce_once(mut unit: PumpingUnit, spec: &ReduceHeadSpec) -> anyhow::Result<ReducedHead> {
+    // a worker builds the machine first: not with tables that are yet to come
+    unit.machine.twin_ropes = None;
+    in_scratch(&unit.into_case()?, "head", 1, async |bus, stop| {
+        reduce_head(bus, spec, stop).await
+    })
+}

@@ -1,0 +1,45 @@
+//! How a diagnosis divides space and time.
+use discrepancy::thresholds::Thresholds;
+use protocol::{
+    case::Case,
+    job::Numerics,
+    pumping_unit::{Discretisation, Machine},
+    wire::WireError,
+};
+
+/// As experiments are computed, and as they are for the numerical check: everything finer, the cylinders
+/// alone, everything else alone.
+///
+/// # Errors
+/// For a case of another kind.
+pub(super) fn numerics(
+    case: &Case,
+    thresholds: &Thresholds,
+) -> Result<(Numerics, Vec<Numerics>), WireError> {
+    let machine = Machine::of(case)?;
+    let available = machine.modal_head.frequencies_hz.len();
+    let usual = Discretisation {
+        longest_step_s: Some(thresholds.step * machine.run.longest_step_s),
+        ..Discretisation::default()
+    };
+    let finest = Discretisation {
+        cylinder_length_m: Some(machine.ropes.cylinder_length_m * thresholds.refinement),
+        lead_in_deg: Some(machine.run.lead_in_deg + 180.0),
+        modes: Some((machine.run.modes + 2).min(available)),
+        longest_step_s: Some(0.5 * thresholds.step * machine.run.longest_step_s),
+        ..Discretisation::OF_THE_CASE
+    };
+    let cylinders = Discretisation {
+        cylinder_length_m: finest.cylinder_length_m,
+        ..usual
+    };
+    let rest = Discretisation {
+        cylinder_length_m: usual.cylinder_length_m,
+        ..finest
+    };
+    let finer = [finest, cylinders, rest].map(|one| one.numerics());
+    Ok((
+        usual.numerics()?,
+        finer.into_iter().collect::<Result<_, _>>()?,
+    ))
+}

@@ -1,0 +1,59 @@
+//! The revolution in the object of `horsehead simulate`.
+use protocol::{
+    job::Verdict,
+    pumping_unit::{Energy, Simulation},
+};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The curves of a revolution, and its energy.
+#[derive(Debug, Serialize)]
+pub(in crate::pumping_unit) struct CurvesOutput<'a> {
+    /// Crank angle from bottom dead centre (deg).
+    crank_deg: &'a [f64],
+    /// Stress by gauge number `MPa`.
+    gauge_mpa: BTreeMap<String, &'a [f64]>,
+    /// Tension of the back rope at the crossbeam (N).
+    rope_tension_n: &'a [f64],
+    /// Tension of the front rope at the suspension (N).
+    front_rope_tension_n: &'a [f64],
+    /// By how much of twin ropes the one at +z pulls more (N); absent where there is one rope.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    twin_tension_difference_n: Option<TwinTensionOutput<'a>>,
+    /// Beam angle (deg).
+    beam_deg: &'a [f64],
+    /// Suspension height above its lowest design position (m).
+    suspension_m: &'a [f64],
+    /// Net torque at the crank shaft (N m).
+    crank_torque_nm: &'a [f64],
+    /// Energy of the revolution; null unless it was completed.
+    energy: Option<Energy>,
+}
+
+/// A difference of tensions over the revolution (N).
+#[derive(Debug, Serialize)]
+struct TwinTensionOutput<'a> {
+    back: &'a [f64],
+    front: &'a [f64],
+}
+
+impl<'a> From<&'a Simulation> for CurvesOutput<'a> {
+    fn from(simulation: &'a Simulation) -> Self {
+        let gauges = (1..).zip(&simulation.gauge_mpa);
+        let [back, front] = &simulation.tension_difference_n;
+        let twins = || TwinTensionOutput { back, front };
+        Self {
+            crank_deg: &simulation.turn_deg,
+            gauge_mpa: gauges
+                .map(|(gauge, curve)| (gauge.to_string(), &curve[..]))
+                .collect(),
+            rope_tension_n: &simulation.back_rope_tension_n,
+            front_rope_tension_n: &simulation.front_rope_tension_n,
+            twin_tension_difference_n: (!back.is_empty()).then(twins),
+            beam_deg: &simulation.beam_deg,
+            suspension_m: &simulation.suspension_m,
+            crank_torque_nm: &simulation.crank_torque_n_m,
+            energy: (simulation.verdict == Verdict::Complete).then_some(simulation.energy),
+        }
+    }
+}

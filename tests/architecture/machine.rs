@@ -1,0 +1,51 @@
+//! Who may know the pumping unit: it is one model among others, and the rest of the house is for any.
+use crate::words::sources;
+use std::{fs, path::Path};
+
+/// Sources of the product.
+const HOUSE: [&str; 7] = [
+    "protocol/src",
+    "protocol/link/src",
+    "worker/src",
+    "coordinator/src",
+    "coordinator/search/src",
+    "coordinator/discrepancy/src",
+    "tests/oscillator",
+];
+
+/// Its own folders, and the lines that register it.
+const KNOW_IT: [&str; 9] = [
+    "protocol/src/pumping_unit",
+    "worker/src/pumping_unit",
+    "coordinator/src/pumping_unit",
+    // the folders' names
+    "protocol/src/lib.rs",
+    "worker/src/lib.rs",
+    "coordinator/src/lib.rs",
+    // the list of kinds, the command that reduces its head, the template that `case new` writes
+    "coordinator/src/kind",
+    "coordinator/src/cli/command/mod.rs",
+    "coordinator/src/cli/command/case.rs",
+];
+
+#[test]
+fn only_its_own_folders_know_the_pumping_unit() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let (mut said, mut known) = (Vec::new(), 0);
+    for file in HOUSE.iter().flat_map(|part| sources(&root.join(part))) {
+        let place = file.strip_prefix(&root).expect("inside");
+        let text = fs::read_to_string(&file).expect("a source");
+        // tests of the general parts take the shipped case for an example
+        let product = text.split("#[cfg(test)]").next().unwrap_or_default();
+        let is_test = place.file_name().is_some_and(|name| name == "tests.rs");
+        if is_test || !product.contains("pumping_unit") {
+            continue;
+        }
+        known += 1;
+        if !KNOW_IT.iter().any(|part| place.starts_with(part)) {
+            said.push(place.display().to_string());
+        }
+    }
+    assert!(known > 50, "only {known} files name it");
+    assert!(said.is_empty(), "{}", said.join("\n"));
+}
