@@ -24,7 +24,9 @@ impl Digest {
     /// Adds a curve, with its length before it.
     pub(crate) fn curve(&mut self, curve: &[f64]) {
         self.number(curve.len() as f64);
-        curve.iter().for_each(|value| self.number(*value));
+        for value in curve {
+            self.number(*value);
+        }
     }
 
     /// Adds bytes as they are.

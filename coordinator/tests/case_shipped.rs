@@ -35,7 +35,10 @@ fn gauges(case: &Case, condition: usize) -> Vec<&ChannelRecord> {
 
 /// What is known of each record.
 fn facts() -> Vec<RecordFacts> {
-    let conditions = unit::figures(&shipped()).unwrap().conditions.into_iter();
+    let conditions = unit::figures(&shipped())
+        .expect("the shipped case")
+        .conditions
+        .into_iter();
     let records = conditions.filter_map(|condition| condition.record);
     records.map(|record| record.facts).collect()
 }

@@ -40,7 +40,7 @@ pub struct EffectDescriptor {
     pub id: String,
     /// In words.
     pub title: String,
-    /// Joint or part of the machine that it acts at, as `saddle` or `back_rope`.
+    /// Joint or part of the model that it acts at, as `saddle` or `guide`.
     pub joint: String,
     /// What of the model it changes.
     pub place: Place,
@@ -54,14 +54,14 @@ pub struct EffectDescriptor {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
-    /// Geometry, inertia or forces of the machine.
+    /// Geometry, inertia or forces.
     Dynamics,
-    /// The motion of the crank, or where its angle is zero.
+    /// The motion that drives it, or where its angle is zero.
     Drive,
-    /// The load at the suspension point.
+    /// The load that is applied.
     Load,
-    /// The chain from strain to reading.
-    Gauge,
+    /// The chain from what is measured to the reading.
+    Sensor,
 }
 
 /// One free number of an effect.

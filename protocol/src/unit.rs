@@ -1,11 +1,11 @@
 //! Units that case files may state, and the only conversion to SI in the workspace.
 //!
 //! A [`Unit`] is data: it travels with the value it belongs to. It knows nothing of what the
-//! value means. Rotational coefficients of the reference paper are given per degree
+//! value means. Rotational stiffness of the reference paper is given per degree
 //! (`N m/deg`), so `value_si = value * 180 / pi` for those.
 use serde::{Deserialize, Serialize};
 
-/// A unit a coefficient may be declared in.
+/// A unit that the program can convert.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unit {
     /// Translational stiffness [N/m].
@@ -94,27 +94,3 @@ impl Unit {
         value * self.si_factor()
     }
 }
-
-/// Units that parameters of effects may have, as written; what they measure is the effect's
-/// business.
-pub const EFFECT_UNITS: [&str; 19] = [
-    "1",
-    "m",
-    "s",
-    "deg",
-    "N",
-    "N.m",
-    "N.s/m",
-    "N.m.s/rad",
-    "m/N",
-    "m/s",
-    "rad/s",
-    "Hz",
-    "1/s",
-    "kg",
-    "kg.m2",
-    "MPa",
-    "MPa/rev",
-    "MPa/m",
-    "N/kg^0.5",
-];

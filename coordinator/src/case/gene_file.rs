@@ -1,6 +1,6 @@
 //! Files that give the unknowns of a case values, as `calibrated.toml` of a run.
 //!
-//! A line per unknown, `kb1 = { value = 7.81e8, unit = "N/m" }`; a name with a point is quoted, as that
+//! A line per unknown, `stiffness = { value = 6.2, unit = "N/mm" }`; a name with a point is quoted, as that
 //! of an effect's parameter: `"pin_clearance.force" = { value = 1500.0, unit = "N" }`.
 use super::{
     document::{Document, Step, nearest},

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 /// What a command line may replace in a case.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Overrides {
-    /// Folder whose cards and records, of the same names, replace those of the case.
+    /// Folder whose files, of the same names, replace what was measured of the case.
     pub measured: Option<PathBuf>,
 }
 

@@ -9,6 +9,8 @@ pub struct Summary {
     pub name: String,
     /// Names of its conditions.
     pub conditions: Vec<String>,
+    /// Key of the unknowns in objects.
+    pub key: &'static str,
     /// Names of its unknowns.
     pub unknowns: Vec<String>,
     /// Remarks.
@@ -19,9 +21,10 @@ pub struct Summary {
 
 impl Summary {
     /// Of a case, with what is said of it.
-    pub(crate) fn new(loaded: &Loaded, text: String) -> Self {
+    pub(crate) fn new(loaded: &Loaded, key: &'static str, text: String) -> Self {
         let case = &loaded.case;
         Self {
+            key,
             name: case.name.clone(),
             conditions: case.conditions.iter().map(|one| one.name.clone()).collect(),
             unknowns: case.unknowns.iter().map(|one| one.name.clone()).collect(),

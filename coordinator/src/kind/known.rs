@@ -30,7 +30,11 @@ pub(crate) trait Kind: Sync {
     /// As [`Self::read`].
     fn check(&self, source: &Source<'_>) -> Result<Summary, CaseError> {
         let loaded = self.read(source)?;
-        Ok(Summary::new(&loaded, summary::text(&loaded)))
+        Ok(Summary::new(
+            &loaded,
+            self.unknowns(),
+            summary::text(&loaded),
+        ))
     }
 
     /// Which field of a case is missing where a condition has no record, and what to do.
@@ -61,7 +65,9 @@ pub(crate) trait Kind: Sync {
     /// If the answer says nothing of this kind.
     fn digest(&self, drawn: &Curves) -> Result<String, WireError> {
         let mut digest = Digest::of(drawn.verdict);
-        drawn.channels.iter().for_each(|curve| digest.curve(curve));
+        for curve in &drawn.channels {
+            digest.curve(curve);
+        }
         digest.bytes(&drawn.details);
         Ok(digest.end(drawn.verdict, &drawn.counters))
     }

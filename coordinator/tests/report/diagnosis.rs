@@ -4,7 +4,7 @@ use crate::{check_page, names, words};
 use coordinator::case::CaseEffect;
 use coordinator::report::{self, diagnosis};
 use discrepancy::verdict::Verdict;
-use protocol::unit::EFFECT_UNITS;
+use protocol::pumping_unit::EFFECT_UNITS;
 use roxmltree::Document;
 use std::path::Path;
 

@@ -8,6 +8,7 @@ mod card;
 mod coefficient;
 mod discretisation;
 mod drawing;
+mod effect_unit;
 pub mod failure;
 mod head;
 mod machine;
@@ -21,6 +22,7 @@ pub use card::{LoadCard, Smoothing};
 pub use coefficient::Coefficient;
 pub use discretisation::Discretisation;
 pub use drawing::{Energy, Motion, Simulation};
+pub use effect_unit::EFFECT_UNITS;
 pub use head::{Influence, ModalHead, StressRecovery};
 pub use machine::{Machine, PumpingUnit, WorkingCondition};
 pub use parts::{

@@ -62,7 +62,7 @@ const TABLE: [Row; 4] = [
         "force_lag",
         "a slow force sensor",
         "force_sensor",
-        Place::Gauge,
+        Place::Sensor,
         &[("time", "ms", Sign::Positive, 20.0, 1.0)],
     ),
 ];

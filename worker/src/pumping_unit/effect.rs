@@ -15,7 +15,7 @@ pub(super) fn descriptors() -> Vec<EffectDescriptor> {
             effect::Place::Dynamics => announce::Place::Dynamics,
             effect::Place::Drive => announce::Place::Drive,
             effect::Place::Load => announce::Place::Load,
-            effect::Place::Gauge => announce::Place::Gauge,
+            effect::Place::Gauge => announce::Place::Sensor,
         },
         generic: d.generic,
         parameters: d.parameters.iter().map(parameter).collect(),
@@ -244,7 +244,7 @@ mod tests {
         assert_eq!(field, "effects[0].parameters.moment.unit");
         assert_eq!(problem, "is \"N\"; `pivot_friction` takes it in N.m");
         for p in catalogue().iter().flat_map(|d| d.parameters.iter()) {
-            assert!(protocol::unit::EFFECT_UNITS.contains(&p.unit.symbol()));
+            assert!(protocol::pumping_unit::EFFECT_UNITS.contains(&p.unit.symbol()));
         }
     }
 
@@ -253,7 +253,7 @@ mod tests {
         let announced = descriptors();
         assert_eq!(announced.len(), catalogue().len());
         let one = announced.iter().find(|d| d.id == "gauge_drift").unwrap();
-        assert_eq!(one.place, announce::Place::Gauge);
+        assert_eq!(one.place, announce::Place::Sensor);
         assert_eq!(one.parameters[2].unit, "MPa/rev");
         assert_eq!(one.parameters[2].sign, announce::Sign::Either);
         let friction = announced.iter().find(|d| d.id == "pivot_friction").unwrap();

@@ -98,7 +98,7 @@ fn refuse(preset: &Preset, error: SettingsError) -> Usage {
 /// The table of all settings for the help: what each may be, its value in every preset that has it,
 /// and what it means.
 pub(crate) fn table() -> String {
-    // a case with the ten coefficients; no default of the table depends on more
+    // of a function that has everything on which a default of the table depends
     let space = RESONANCE.space();
     let plan = Plan {
         space: &space,

@@ -8,7 +8,7 @@ use crate::cli::{
 };
 use clap::{Args, Subcommand};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::{collections::BTreeMap, path::PathBuf};
 
 /// Check a case folder, or begin a new one.
 #[derive(Debug, Args)]
@@ -40,7 +40,8 @@ enum Action {
 struct CheckOutput<'a> {
     case: &'a str,
     conditions: &'a [String],
-    genes: &'a [String],
+    #[serde(flatten)]
+    unknowns: BTreeMap<&'static str, &'a [String]>,
     notes: Vec<String>,
 }
 
@@ -60,7 +61,7 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
     let object = CheckOutput {
         case: &summary.name,
         conditions: &summary.conditions,
-        genes: &summary.unknowns,
+        unknowns: BTreeMap::from([(summary.key, &summary.unknowns[..])]),
         notes: summary.notes.iter().map(ToString::to_string).collect(),
     };
     terminal::print(output.output, || summary.text.clone(), &object)

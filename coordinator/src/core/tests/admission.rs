@@ -104,7 +104,7 @@ fn absurd_announcements_are_refused_by_the_name_of_the_field() {
 
 #[test]
 fn whoever_differs_is_refused_by_the_name_of_the_field() {
-    let both = || vec![effect("pivot_friction"), effect("rope_toe")];
+    let both = || vec![effect("pivot_friction"), effect("base_motion")];
     let first = || with(announcement("m"), both());
     let others = [
         (
@@ -140,7 +140,7 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
             },
         ),
         (
-            "effects has no rope_toe",
+            "effects has no base_motion",
             with(first(), vec![effect("pivot_friction")]),
         ),
         (

@@ -93,6 +93,7 @@ pub(in crate::pumping_unit) fn summary(source: &Source<'_>) -> Result<Summary, C
     let figures = of(source)?;
     let (text, conditions) = (figures.to_string(), figures.conditions.iter());
     Ok(Summary {
+        key: "genes",
         text,
         conditions: conditions.map(|one| one.name.clone()).collect(),
         unknowns: figures.genes.iter().map(|one| one.name.clone()).collect(),

@@ -16,7 +16,10 @@ use crate::case::{
     source::Source,
 };
 use discrepancy::record::Record;
-use protocol::{case::Case, pumping_unit::Machine, unit::EFFECT_UNITS};
+use protocol::{
+    case::Case,
+    pumping_unit::{EFFECT_UNITS, Machine},
+};
 
 /// Reads a case with its machine.
 ///

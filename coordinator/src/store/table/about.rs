@@ -13,7 +13,7 @@ pub(super) fn run() -> Columns<Fact> {
         .text("value", "its value", |fact| Some(fact.value.clone()))
 }
 
-/// Name of the column of a gene, with its unit: `kb1_n_per_m`.
+/// Name of the column of a gene, with its unit: `stiffness_n_per_m`.
 pub(super) fn gene_column(gene: &Unknown) -> String {
     column(&gene.name.replace('.', "_"), &gene.unit)
 }

@@ -44,6 +44,31 @@ fn every_preset_calibrates() {
     }
 }
 
+/// The case is checked and simulated, with its own units and abscissas.
+#[test]
+fn the_case_is_checked_and_simulated() {
+    let rig = Rig::new();
+    let text = rig.run(&["case", "check", "CASE"]);
+    for said in ["always 1 of left", "known", "off", "measured in 8 cycles"] {
+        assert!(text.contains(said), "{said}: {text}");
+    }
+    let object = rig.json(&["case", "check", "CASE"]);
+    assert_eq!(object["unknowns"][0], "mass", "{object}");
+    let simulate = ["simulate", "CASE", "--condition", "release"];
+    let object = rig.json(&simulate);
+    assert_eq!(object["verdict"], "complete", "{object}");
+    assert_eq!(object["unknowns"]["mass"]["unit"], "kg", "{object}");
+    let curve = &object["curves"]["displacement"];
+    assert_eq!(
+        (&curve["unit"], &curve["abscissa"]["unit"]),
+        (&"mm".into(), &"s".into())
+    );
+    assert_eq!(curve["values"].as_array().unwrap().len(), 150);
+    assert_eq!(rig.json(&simulate)["digest"], object["digest"]);
+    rig.run(&[&simulate[..], &["--out", &rig.path("simulated")]].concat());
+    words::check_folder(&rig.file("simulated"));
+}
+
 /// One calibration through all that can be done with it.
 #[test]
 fn a_run_is_verified_reported_and_exported() {

@@ -25,7 +25,7 @@ fn shape(name: &str, unit: &str, typical: f64, range: [f64; 2], scale: f64) -> P
 
 /// The named effects.
 pub(crate) fn named() -> Vec<EffectDescriptor> {
-    use Place::{Drive, Dynamics, Gauge, Load};
+    use Place::{Drive, Dynamics, Load, Sensor};
     use Sign::{Either, Positive};
     let four = |unit: &str, typical: f64| -> Vec<ParameterDescriptor> {
         (1..=4)
@@ -96,12 +96,12 @@ pub(crate) fn named() -> Vec<EffectDescriptor> {
             Drive,
             vec![size("phase", "deg", 1.0, Either)],
         ),
-        effect("gauge_gain", "gauge", Gauge, four("1", 0.02)),
-        effect("gauge_drift", "gauge", Gauge, four("MPa", 0.5)),
+        effect("gauge_gain", "gauge", Sensor, four("1", 0.02)),
+        effect("gauge_drift", "gauge", Sensor, four("MPa", 0.5)),
         effect(
             "amplifier_lag",
             "gauge",
-            Gauge,
+            Sensor,
             vec![size("lag", "t", 0.01, Positive)],
         ),
         effect(

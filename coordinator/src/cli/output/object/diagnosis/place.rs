@@ -1,4 +1,4 @@
-//! Where simulation and record part: windows of the turn, orders of the crank, joints.
+//! Where simulation and record part: windows of the abscissa, orders of the period, joints.
 use crate::report::diagnosis::Subject;
 use discrepancy::place::joint::Harmonic;
 use serde::Serialize;
