@@ -26,6 +26,7 @@ pub mod observe;
 pub mod reference;
 pub mod rig;
 pub mod run;
+pub mod sensitivity;
 pub mod settle;
 mod state;
 pub mod statistics;

@@ -7,7 +7,7 @@ use crate::element::{
     bushing::{Bushing, Marker},
     impact::Impact,
 };
-use crate::linear::{BLOCK, Bordered};
+use crate::linear::{BLOCK, Bordered, Entry};
 use crate::math::rotation::about_z;
 use crate::model::chain::{Chain, ChainState, Held, Joints};
 use crate::model::contact::Surface;
@@ -236,7 +236,7 @@ impl Equations for Rig {
         }
     }
 
-    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         self.setup.chain.subtract_inertia(q, a, out);
     }
 

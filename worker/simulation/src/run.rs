@@ -3,6 +3,7 @@ use crate::drive::Drive;
 use crate::integrator::adaptive::{Adaptive, StepUnderflow};
 use crate::integrator::dense::interpolate;
 use crate::integrator::method::Method;
+use crate::integrator::stepper::Stages;
 use crate::integrator::tableau::ESDIRK4;
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine};
@@ -65,6 +66,21 @@ impl Default for RunSettings {
 }
 
 impl RunSettings {
+    /// How a machine's crank is brought to full speed.
+    pub(crate) fn drive(&self, machine: &Machine) -> Drive {
+        Drive {
+            start: -self.lead_in + machine.hooks.index_offset().min(0.0),
+            ramp: self.ramp,
+            speed: machine.description.crank.speed,
+        }
+    }
+
+    /// Time of a sample of the recorded revolution \[s\].
+    pub(crate) fn sampled(&self, machine: &Machine, drive: &Drive, sample: usize) -> f64 {
+        let turn = TAU * sample as f64 / self.samples as f64;
+        drive.time_at(machine.hooks.index_offset() + turn)
+    }
+
     /// Newton iterations that a run may have taken when it has simulated a `fraction` of its time.
     fn allowed(&self, fraction: f64) -> f64 {
         let (all, first) = (self.budget as f64, self.head_start as f64);
@@ -72,8 +88,21 @@ impl RunSettings {
     }
 }
 
-/// Receives what happens at each sample of the recorded revolution.
+/// Receives what happens in a run: at each step, and at each sample of the recorded revolution.
 pub trait Observe {
+    /// The machine stands in equilibrium, and nothing has moved yet.
+    fn begin(&mut self, _system: &mut System<Individual<'_>>, _state: &State) {}
+
+    /// A step was accepted; laws with a past do not know of it yet. Whose loads `system` keeps is not
+    /// said.
+    fn step(
+        &mut self,
+        _system: &mut System<Individual<'_>>,
+        _ends: [&State; 2],
+        _stages: Option<Stages<'_>>,
+    ) {
+    }
+
     /// `state` is the interpolated state at sample `index`; whose loads `system` keeps is not said.
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State);
 
@@ -101,11 +130,35 @@ pub fn simulate(
     settings: &RunSettings,
     observer: &mut dyn Observe,
 ) -> RunResult {
-    let drive = Drive {
-        start: -settings.lead_in + machine.hooks.index_offset().min(0.0),
-        ramp: settings.ramp,
-        speed: machine.description.crank.speed,
+    run((machine, law), settings, None, observer)
+}
+
+/// Simulates one individual on the steps of another run, whose ends are given \[s\]: differences of
+/// such runs contain no step control, and no iteration that stopped early: stages are solved to
+/// rounding.
+pub fn simulate_on(
+    machine: &Machine,
+    law: &RopeLaw,
+    settings: &RunSettings,
+    steps: &[f64],
+    observer: &mut dyn Observe,
+) -> RunResult {
+    let exhausted = RunSettings {
+        tolerance: 0.0,
+        budget: u64::MAX,
+        head_start: u64::MAX,
+        ..*settings
     };
+    run((machine, law), &exhausted, Some(steps), observer)
+}
+
+fn run(
+    (machine, law): (&Machine, &RopeLaw),
+    settings: &RunSettings,
+    steps: Option<&[f64]>,
+    observer: &mut dyn Observe,
+) -> RunResult {
+    let drive = settings.drive(machine);
     let mut system = System::new(Individual::new(machine, machine.ropes(law), drive));
     let swing = machine.swing();
     let start = match settle(&mut system, settings, None) {
@@ -122,7 +175,7 @@ pub fn simulate(
             };
         }
     };
-    revolve(&mut system, settings, swing, start, observer)
+    revolve(&mut system, settings, (swing, steps), start, observer)
 }
 
 /// Static equilibrium at time 0; `start` may hint at it and changes nothing but the work.
@@ -165,7 +218,7 @@ pub fn settle(
 fn revolve(
     system: &mut System<Individual<'_>>,
     settings: &RunSettings,
-    swing: [f64; 2],
+    (swing, steps): ([f64; 2], Option<&[f64]>),
     start: Vec<f64>,
     observer: &mut dyn Observe,
 ) -> RunResult {
@@ -179,11 +232,14 @@ fn revolve(
     let drive = system.equations.drive;
     let zero = system.equations.machine.hooks.index_offset();
     let (begin, end) = (drive.time_at(zero), drive.time_at(TAU + zero));
+    observer.begin(system, &from);
     system.equations.remember(&from);
+    let mut given = steps.map(<[f64]>::iter);
     let mut sample = 0;
     let mut ledger = Ledger::default();
     let verdict = loop {
-        if from.t >= end - 1e-9 {
+        let next = given.as_mut().map(Iterator::next);
+        if from.t >= end - 1e-9 || next == Some(None) {
             break Verdict::Complete;
         }
         let fraction = from.t / end;
@@ -194,7 +250,11 @@ fn revolve(
         }
         // stop exactly where the recorded revolution begins and ends
         let stop = if from.t < begin - 1e-9 { begin } else { end };
-        let done = match method.attempt(system, &from, stop, &mut to) {
+        let tried = match next.flatten() {
+            Some(&given) => method.forced(system, &from, given, &mut to).map(Some),
+            None => method.attempt(system, &from, stop, &mut to),
+        };
+        let done = match tried {
             Err(StepUnderflow) => break failed(Failure::StepUnderflow),
             Ok(None) => continue,
             Ok(Some(done)) => done,
@@ -208,9 +268,9 @@ fn revolve(
             &done.work,
             [begin, end],
         );
+        observer.step(system, [&from, &to], method.stages());
         while sample < settings.samples {
-            let turn = TAU * sample as f64 / settings.samples as f64;
-            let t = drive.time_at(zero + turn);
+            let t = settings.sampled(system.equations.machine, &drive, sample);
             if t > to.t + 1e-9 {
                 break;
             }

@@ -4,7 +4,7 @@
 //! of. [`System::forces`] gives [`Loads`], the only way to ask for these: it holds both the state and the
 //! equations, so that neither can change while it is there, and what it answers belongs to the state
 //! that it was made for.
-use crate::linear::{Bordered, SingularPivot};
+use crate::linear::{Bordered, Entry, SingularPivot};
 pub use crate::state::{Powers, Shift, State, StateRef};
 use crate::statistics::Statistics;
 
@@ -16,8 +16,8 @@ pub trait Equations {
     /// Generalised forces `Q(q, v, t)`; their loads are kept.
     fn forces(&mut self, at: StateRef<'_>, force: &mut [f64]);
 
-    /// `out -= M(q) a`.
-    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]);
+    /// `out -= M(q) a`, of one column or of several side by side.
+    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]);
 
     /// Fills `matrix` with `mass M - damping D - K`.
     fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered);

@@ -73,6 +73,8 @@ pub struct Parameter {
     pub lower: f64,
     /// Greatest value.
     pub upper: f64,
+    /// Whether its effect rounds it to a whole number: then nothing has a derivative by it.
+    pub whole: bool,
 }
 
 /// What a parameter does for its effect.
@@ -160,6 +162,7 @@ impl Descriptor {
             scale: typical.abs(),
             lower,
             upper,
+            whole: false,
         }));
         self
     }
@@ -181,7 +184,16 @@ impl Descriptor {
             scale: 0.5 * (upper - lower),
             lower,
             upper,
+            whole: false,
         });
+        self
+    }
+
+    /// The parameter that was added last is rounded to a whole number.
+    pub(super) fn whole(mut self) -> Self {
+        if let Some(last) = self.parameters.last_mut() {
+            last.whole = true;
+        }
         self
     }
 

@@ -26,5 +26,6 @@ pub use crate::model::hook::{
 pub use catalogue::catalogue;
 pub use descriptor::{Descriptor, Parameter, Place, Role};
 pub use selection::{Asked, Refused, Selection};
+pub(crate) use selection::{Chosen, chosen};
 pub use unit::Unit;
 pub use value::Values;

@@ -1,5 +1,6 @@
 //! Effects that were asked for by name, checked against the catalogue and put in its order.
 use super::catalogue::catalogue;
+use super::descriptor::Descriptor;
 use crate::model::hook::Effect;
 use std::sync::Arc;
 
@@ -94,30 +95,10 @@ impl Selection {
     /// # Errors
     /// The first thing that is wrong; see [`Refused`].
     pub fn new(asked: &[Asked<'_>]) -> Result<Self, Refused> {
-        let catalogue = catalogue();
-        let mut chosen: Vec<(usize, Vec<f64>)> = Vec::new();
-        for (effect, one) in asked.iter().enumerate() {
-            let Some(at) = catalogue.iter().position(|d| d.id == one.id) else {
-                return Err(Refused::UnknownEffect {
-                    effect,
-                    id: one.id.to_owned(),
-                });
-            };
-            if chosen.iter().any(|(other, _)| *other == at) {
-                return Err(Refused::Twice {
-                    effect,
-                    name: one.id.to_owned(),
-                });
-            }
-            chosen.push((at, values(effect, at, one)?));
-        }
-        chosen.sort_by_key(|(at, _)| *at);
-        let present = chosen.into_iter().filter_map(|(at, values)| {
-            let descriptor = &catalogue[at];
-            (!descriptor.is_absent(&values)).then(|| descriptor.build(&values))
-        });
+        let chosen = chosen(asked)?;
+        let present = chosen.iter().filter(|one| !one.is_absent());
         Ok(Self {
-            effects: present.collect(),
+            effects: present.map(Chosen::build).collect(),
         })
     }
 
@@ -130,6 +111,63 @@ impl Selection {
     pub fn is_empty(&self) -> bool {
         self.effects.is_empty()
     }
+}
+
+/// An effect of the catalogue with a value for each of its parameters, in declared units.
+#[derive(Clone, Debug)]
+pub(crate) struct Chosen {
+    /// Place in the catalogue.
+    at: usize,
+    /// Values of all parameters, absent or not.
+    pub(crate) values: Vec<f64>,
+}
+
+impl Chosen {
+    /// What it says of itself.
+    pub(crate) fn descriptor(&self) -> &'static Descriptor {
+        &catalogue()[self.at]
+    }
+
+    /// Place in the catalogue, which is the order in which effects act.
+    pub(crate) const fn place(&self) -> usize {
+        self.at
+    }
+
+    /// Whether its values leave it absent.
+    pub(crate) fn is_absent(&self) -> bool {
+        self.descriptor().is_absent(&self.values)
+    }
+
+    /// The effect, be it absent or not.
+    pub(crate) fn build(&self) -> Arc<dyn Effect> {
+        self.descriptor().build(&self.values)
+    }
+}
+
+/// Checks what was asked for, and puts it in the order of the catalogue; what is absent stays.
+///
+/// # Errors
+/// The first thing that is wrong; see [`Refused`].
+pub(crate) fn chosen(asked: &[Asked<'_>]) -> Result<Vec<Chosen>, Refused> {
+    let mut chosen: Vec<Chosen> = Vec::new();
+    for (effect, one) in asked.iter().enumerate() {
+        let Some(at) = catalogue().iter().position(|d| d.id == one.id) else {
+            return Err(Refused::UnknownEffect {
+                effect,
+                id: one.id.to_owned(),
+            });
+        };
+        if chosen.iter().any(|other| other.at == at) {
+            return Err(Refused::Twice {
+                effect,
+                name: one.id.to_owned(),
+            });
+        }
+        let values = values(effect, at, one)?;
+        chosen.push(Chosen { at, values });
+    }
+    chosen.sort_by_key(|one| one.at);
+    Ok(chosen)
 }
 
 /// Values of all parameters, in declared units.

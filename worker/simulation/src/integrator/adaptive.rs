@@ -1,7 +1,7 @@
 //! Steps of a size that follows the local error: tries one after the other, counts what fails.
 use super::method::Method;
 use super::step_control::StepControl;
-use super::stepper::{Step, Stepper};
+use super::stepper::{Stages, Step, Stepper};
 use crate::system::{Equations, State, System};
 
 /// A method with its step size.
@@ -46,6 +46,31 @@ impl<E: Equations> Adaptive<E> {
             trusted: longest,
             since: LONG_AGO,
         }
+    }
+
+    /// One step from `from` to a time that is given, whatever it errs: what differences of whole runs
+    /// are taken on, so that no controller's decision is differenced.
+    ///
+    /// # Errors
+    /// [`StepUnderflow`] when the step could not be made.
+    pub fn forced(
+        &mut self,
+        system: &mut System<E>,
+        from: &State,
+        end: f64,
+        to: &mut State,
+    ) -> Result<Step, StepUnderflow> {
+        let made = self.method.step(system, from, end - from.t, to);
+        let step = made.map_err(|_| StepUnderflow)?;
+        to.t = end;
+        system.statistics.steps += 1;
+        self.method.accept(&system.equations, to);
+        Ok(step)
+    }
+
+    /// The stages of the last step, of a method that has such.
+    pub fn stages(&self) -> Option<Stages<'_>> {
+        self.method.stages()
     }
 
     /// Tries one step from `from` towards `stop`, which is met exactly; a failed try gives `None`

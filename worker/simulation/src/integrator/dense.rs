@@ -1,16 +1,41 @@
 //! Dense output: cubic Hermite interpolation between two accepted states.
 use crate::system::State;
 
+/// Weights with which a step's two ends enter a state between them.
+#[derive(Clone, Copy, Debug)]
+pub struct Weights {
+    /// Of what is interpolated, at either end.
+    pub value: [f64; 2],
+    /// Of its derivatives by time, at either end \[s\].
+    pub slope: [f64; 2],
+    /// Of what is linear between the ends.
+    pub linear: [f64; 2],
+}
+
+impl Weights {
+    /// At time `t` of a step between two times.
+    pub fn at([from, to]: [f64; 2], t: f64) -> Self {
+        let h = to - from;
+        let s = (t - from) / h;
+        let r = 1.0 - s;
+        Self {
+            value: [r * r * (1.0 + 2.0 * s), s * s * (1.0 + 2.0 * r)],
+            slope: [s * r * r * h, -s * s * r * h],
+            linear: [r, s],
+        }
+    }
+}
+
 /// Interpolates at time `t` between `from` and `to` into `out`.
 ///
 /// Coordinates use coordinates and rates of both ends, rates use rates and accelerations,
 /// accelerations are linear.
 pub fn interpolate(from: &State, to: &State, t: f64, out: &mut State) {
-    let h = to.t - from.t;
-    let s = (t - from.t) / h;
-    let r = 1.0 - s;
-    let (f0, f1) = (r * r * (1.0 + 2.0 * s), s * s * (1.0 + 2.0 * r));
-    let (g0, g1) = (s * r * r * h, -s * s * r * h);
+    let Weights {
+        value: [f0, f1],
+        slope: [g0, g1],
+        linear: [r, s],
+    } = Weights::at([from.t, to.t], t);
     out.t = t;
     for i in 0..out.q.len() {
         out.q[i] = f0 * from.q[i] + f1 * to.q[i] + g0 * from.v[i] + g1 * to.v[i];

@@ -4,7 +4,7 @@
 //! Every implicit stage is `q = base_q + c v`, `v = base_v + c a`, `M a = Q(q, v, t)` with the same
 //! `c`, so one factorisation of `M / c^2 - D / c - K` serves all of them.
 use super::newton::{Newton, Stage};
-use super::stepper::{Step, Stepper, Tried};
+use super::stepper::{Stages, Step, Stepper, Tried};
 use super::tableau::Tableau;
 use crate::system::{Equations, Powers, State, System};
 
@@ -127,6 +127,13 @@ impl<E: Equations> Stepper<E> for Esdirk {
     fn accept(&mut self, _: &E, _: &State) {
         // the powers at this step's end are those at the next one's start
         self.powers[0] = self.powers[self.tableau.stages() - 1];
+    }
+
+    fn stages(&self) -> Option<Stages<'_>> {
+        Some(Stages {
+            tableau: self.tableau,
+            rates: &self.stages,
+        })
     }
 
     fn error_order(&self) -> f64 {

@@ -76,10 +76,15 @@ pub struct Newton {
 /// Accuracy of a stage in units of the Newton norm, at a tolerance of 1.
 const ACCURACY: f64 = 0.3;
 const ITERATIONS: u32 = 10;
+/// Iterations of a stage that is solved to rounding; a change beyond which the next one is rounding,
+/// where each is the square of the last; and what rounding may leave.
+const EXHAUSTED: u32 = 40;
+const QUADRATIC: f64 = 1e-7;
+const ROUNDING: f64 = 1e-4;
 
 impl Newton {
     /// For `n` coordinates and a step tolerance: what Newton's method leaves must stay below what
-    /// a step may err.
+    /// a step may err. At a tolerance of 0 stages are solved to rounding.
     pub fn new(n: usize, tolerance: f64) -> Self {
         Self {
             policy: RefactorPolicy::default(),
@@ -101,6 +106,9 @@ impl Newton {
         stage: &Stage<'_>,
         (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
     ) -> Result<Powers, NotConverged> {
+        if self.accuracy == 0.0 {
+            return self.exhaust(system, stage, (q, v, a));
+        }
         let Shift { mass, damping } = stage.shift();
         let mut fresh = false;
         predict(stage, q, v, a);
@@ -158,6 +166,37 @@ impl Newton {
             loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
         }
         self.policy.spoiled();
+        Err(NotConverged)
+    }
+
+    /// Solves a stage to rounding, with a factorisation per iteration.
+    fn exhaust<E: Equations>(
+        &mut self,
+        system: &mut System<E>,
+        stage: &Stage<'_>,
+        (q, v, a): (&mut [f64], &mut [f64], &mut [f64]),
+    ) -> Result<Powers, NotConverged> {
+        let Shift { mass, damping } = stage.shift();
+        predict(stage, q, v, a);
+        let mut last = f64::INFINITY;
+        for _ in 0..EXHAUSTED {
+            let mut loads = system.residual(StateRef { t: stage.t, q, v }, a, &mut self.change);
+            loads.statistics().newton_iterations += 1;
+            self.factorize(&mut loads, stage)?;
+            loads.solve(&mut self.change);
+            let norm = loads.equations().newton_norm(&self.change);
+            let kept = loads.keep();
+            for (i, change) in self.change.iter().enumerate() {
+                q[i] += change;
+                v[i] += damping * change;
+                a[i] += mass * change;
+            }
+            // below, the next change would be rounding; or it is already, and shrinks no more
+            if norm < QUADRATIC || (norm < ROUNDING && norm > 0.5 * last) {
+                return Ok(kept.powers(StateRef { t: stage.t, q, v }, a));
+            }
+            last = norm;
+        }
         Err(NotConverged)
     }
 

@@ -1,5 +1,5 @@
 //! What all methods of integration have in common: a step of a given size, and what it may be told.
-use super::{newton::NotConverged, step_control::StepControl};
+use super::{newton::NotConverged, step_control::StepControl, tableau::Tableau};
 use crate::system::{Equations, Powers, State, System};
 use std::fmt::Debug;
 
@@ -10,6 +10,16 @@ pub struct Step {
     pub error: f64,
     /// Work done during the step: input, output, dissipated \[J\].
     pub work: Powers,
+}
+
+/// The stages of a step with an explicit first stage: what the discrete trajectory is differentiated
+/// through.
+#[derive(Clone, Copy, Debug)]
+pub struct Stages<'a> {
+    /// The method.
+    pub tableau: &'static Tableau,
+    /// Rates and accelerations of the stages but the last, which is where the step ended.
+    pub rates: &'a [(Vec<f64>, Vec<f64>)],
 }
 
 /// A step that was made, or could not be.
@@ -34,6 +44,11 @@ pub trait Stepper<E: Equations>: Debug {
 
     /// The last step failed or erred too much: another one from the same state will follow.
     fn reject(&mut self) {}
+
+    /// The stages of the last step, of a method that has such.
+    fn stages(&self) -> Option<Stages<'_>> {
+        None
+    }
 
     /// Order of the last step's error estimate in its size.
     fn error_order(&self) -> f64;

@@ -6,6 +6,7 @@
 //! The border has two parts: unknowns of bodies that more than one chain hangs on (the lead), then
 //! those of whatever carries the chains' other ends, which are counted from there.
 use super::block::{Block, Column, invert, product, subtract_product};
+use super::entry::Entry;
 
 /// A pivot vanished: the matrix is singular or holds a value that is not finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,25 +18,25 @@ pub struct SingularPivot {
 /// A square matrix of `blocks * N + border` unknowns: chains one after the other, border last.
 #[derive(Clone, Debug)]
 pub struct Blocks<const N: usize> {
-    chains: Vec<usize>,
+    pub(super) chains: Vec<usize>,
     /// Unknowns of the border, and how many of them come before those that are counted.
-    border: usize,
+    pub(super) border: usize,
     lead: usize,
-    diagonal: Vec<Block<N>>,
+    pub(super) diagonal: Vec<Block<N>>,
     /// Coupling of block i (row) with block i + 1 (column).
-    upper: Vec<Block<N>>,
+    pub(super) upper: Vec<Block<N>>,
     /// Coupling of block i + 1 (row) with block i (column).
-    lower: Vec<Block<N>>,
+    pub(super) lower: Vec<Block<N>>,
     /// Border columns of block rows: `blocks * border` columns of N.
-    right: Vec<Column<N>>,
+    pub(super) right: Vec<Column<N>>,
     /// Border rows of block columns: `blocks * border` rows of N.
-    bottom: Vec<Column<N>>,
+    pub(super) bottom: Vec<Column<N>>,
     /// Border by border, column-major.
-    corner: Vec<f64>,
+    pub(super) corner: Vec<f64>,
     /// Per block, how many of the border's first unknowns it touches.
-    touches: Vec<usize>,
+    pub(super) touches: Vec<usize>,
     /// Per block, how many of them fill it: as many as it or a block before it in its chain touches.
-    filled: Vec<usize>,
+    pub(super) filled: Vec<usize>,
     corner_pivots: Vec<usize>,
 }
 
@@ -357,20 +358,22 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    fn solve_corner(&self, x: &mut [f64]) {
+    pub(super) fn solve_corner<T: Entry>(&self, x: &mut [T]) {
         let m = self.border;
         for k in 0..m {
             x.swap(k, self.corner_pivots[k]);
         }
         for k in 0..m {
             for i in k + 1..m {
-                x[i] -= self.corner[k * m + i] * x[k];
+                let known = x[k] * self.corner[k * m + i];
+                x[i] -= known;
             }
         }
         for k in (0..m).rev() {
-            x[k] /= self.corner[k * m + k];
+            x[k] = x[k] / self.corner[k * m + k];
             for i in 0..k {
-                x[i] -= self.corner[k * m + i] * x[k];
+                let known = x[k] * self.corner[k * m + i];
+                x[i] -= known;
             }
         }
     }

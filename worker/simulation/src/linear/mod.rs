@@ -3,7 +3,10 @@
 mod block;
 mod blocks;
 mod bordered;
+mod entry;
+mod lanes;
 
 pub use block::{BLOCK, Block};
 pub use blocks::{Blocks, SingularPivot};
 pub use bordered::Bordered;
+pub use entry::{Entry, LANES, Lanes};

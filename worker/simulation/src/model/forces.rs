@@ -1,6 +1,7 @@
 //! Generalised forces, inertia, and the powers that the energy ledger adds up.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
+use crate::linear::Entry;
 use crate::math::elementary::sin_cos;
 use crate::math::spline::sum::Sum;
 use crate::model::chain::parts::Joints;
@@ -176,19 +177,19 @@ impl Machine {
     }
 
     /// `out -= M(q) a`.
-    pub(super) fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+    pub(super) fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let d = &self.description;
         let rod = self.layout.rod();
-        out[rod] -= self.rod_inertia() * a[rod];
+        out[rod] -= a[rod] * self.rod_inertia();
         let at = self.layout.suspension();
-        out[at] -= d.suspension_mass * a[at];
+        out[at] -= a[at] * d.suspension_mass;
         let beam = self.layout.beam();
-        out[beam] -= d.beam_inertia * a[beam];
+        out[beam] -= a[beam] * d.beam_inertia;
         for k in 0..self.layout.modes {
             let i = self.layout.mode(k);
             let coupling = d.head.participation[k][2];
-            out[i] -= a[i] + coupling * a[beam];
-            out[beam] -= coupling * a[i];
+            out[i] -= a[i] + a[beam] * coupling;
+            out[beam] -= a[i] * coupling;
         }
         for chain in &self.chains {
             chain.subtract_inertia(q, a, out);

@@ -1,6 +1,6 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
-use crate::linear::Bordered;
+use crate::linear::{Bordered, Entry};
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
 use crate::model::ropes::Ropes;
@@ -26,11 +26,21 @@ pub struct Individual<'a> {
 impl<'a> Individual<'a> {
     /// Joins machine, ropes and drive; allocates the loads.
     pub fn new(machine: &'a Machine, ropes: Ropes, drive: Drive) -> Self {
+        Self::within(machine, ropes, drive, Scratch::new(machine))
+    }
+
+    /// The same with the loads of another of the same layout, which are given back by the field.
+    pub(crate) fn within(
+        machine: &'a Machine,
+        ropes: Ropes,
+        drive: Drive,
+        scratch: Scratch,
+    ) -> Self {
         Self {
             machine,
             ropes,
             drive,
-            scratch: Scratch::new(machine),
+            scratch,
             load_share: 1.0,
             at: (0.0, machine.drive_state(&drive, 0.0)),
         }
@@ -98,6 +108,20 @@ impl<'a> Individual<'a> {
         let scratch = &mut self.scratch;
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine.back_head_loads(&instant, scratch, force);
+        BackHeadLoads {
+            individual: self,
+            at,
+        }
+    }
+
+    /// Fills all loads, those among them that the back head's stress asks for; `force` gets the
+    /// generalised forces.
+    pub(crate) fn all_loads<'s>(
+        &'s mut self,
+        at: StateRef<'s>,
+        force: &mut [f64],
+    ) -> BackHeadLoads<'s, 'a> {
+        self.forces(at, force);
         BackHeadLoads {
             individual: self,
             at,
@@ -175,7 +199,7 @@ impl Equations for Individual<'_> {
         self.machine.forces(&instant, &mut self.scratch, force);
     }
 
-    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         self.machine.subtract_inertia(q, a, out);
     }
 

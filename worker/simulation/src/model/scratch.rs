@@ -4,7 +4,7 @@ use crate::model::chain::state::ChainState;
 use crate::model::machine::Machine;
 
 /// Buffers of a simulation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Scratch {
     /// Poses and loads of the back ropes, then of the front ropes.
     pub chains: Vec<ChainState>,

@@ -1,5 +1,6 @@
 //! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
 mod curves;
+mod readings;
 mod recorder;
 mod shape;
 mod stress;
@@ -7,5 +8,6 @@ mod stress;
 mod tests;
 
 pub use curves::{Curves, Shape};
+pub(crate) use readings::readings;
 pub use recorder::Recorder;
 pub use stress::gauge_stress;

@@ -1,12 +1,11 @@
 //! Records a run: the gauges alone for a score, or everything.
 use super::curves::Curves;
+use super::readings::readings;
 use super::shape::shape;
-use super::stress::gauge_stress;
 use crate::drive::DriveState;
 use crate::math::elementary::sin_cos;
-use crate::model::hook::Sampled;
 use crate::model::strand::{BACK, FRONT};
-use crate::model::{BackHeadLoads, Individual, Instant, Machine};
+use crate::model::{Individual, Instant, Machine};
 use crate::run::Observe;
 use crate::system::{State, System};
 
@@ -41,16 +40,17 @@ impl Recorder {
 impl Observe for Recorder {
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
         self.force.resize(state.q.len(), 0.0);
-        // stress of the head asks for less than all loads; what readings and curves ask for is unknown
         let part = self.gauges_only && !system.equations.machine.hooks.has_readings();
-        let mut stress = if part {
-            let at = state.motion();
-            let loads = system.equations.back_head_loads(at, &mut self.force);
-            gauge_stress(&loads, &state.a)
-        } else {
-            let loads = system.forces(state.motion(), &mut self.force);
-            gauge_stress(&BackHeadLoads::of(&loads), &state.a)
-        };
+        if !part {
+            system.statistics.force_evaluations += 1;
+        }
+        let stress = readings(&mut system.equations, state, &mut self.force, part);
+        for (curve, stress) in self.curves.gauge.iter_mut().zip(stress) {
+            curve.push(stress);
+        }
+        if self.gauges_only {
+            return;
+        }
         let system = &mut system.equations;
         let drive = system.drive_state(state.t);
         let at = Instant {
@@ -60,22 +60,6 @@ impl Observe for Recorder {
             v: &state.v,
         };
         let machine = system.machine;
-        let hooks = &machine.hooks;
-        let recorded = system.drive.turn(state.t)[0] - hooks.index_offset();
-        let sampled = Sampled {
-            head_push: system.head_push(),
-            back_tension: system.base_tensions(BACK).sum(),
-            joint_stiffness: system.ropes.joint.stiffness[0],
-            beam: state.q[machine.layout.beam()],
-            elapsed: recorded / std::f64::consts::TAU,
-        };
-        hooks.read(&sampled, &mut stress);
-        for (curve, stress) in self.curves.gauge.iter_mut().zip(stress) {
-            curve.push(stress);
-        }
-        if self.gauges_only {
-            return;
-        }
         let layout = machine.layout;
         let c = &mut self.curves;
         c.back_tension.push(system.base_tensions(BACK).sum());

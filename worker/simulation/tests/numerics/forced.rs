@@ -1,5 +1,5 @@
 //! Forced nonlinear equations of motion with a known solution, for orders of convergence.
-use simulation::linear::{BLOCK, Bordered};
+use simulation::linear::{BLOCK, Bordered, Entry};
 use simulation::system::{Equations, Loaded, Powers, Shift, State, StateRef};
 
 /// `m(q) a = m(x) x'' + k (x - q) + l (x^3 - q^3) + c (x' - v)` in six coordinates, with
@@ -44,10 +44,10 @@ impl Equations for Forced {
         }
     }
 
-    fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+    fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let m = inertia(q);
         for (out, a) in out.iter_mut().zip(a) {
-            *out -= m * a;
+            *out -= *a * m;
         }
     }
 

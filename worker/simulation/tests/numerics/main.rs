@@ -20,6 +20,7 @@ mod order;
 mod plane;
 mod reference;
 mod rope;
+mod sensitivity;
 mod statics;
 mod swing;
 mod tangent;

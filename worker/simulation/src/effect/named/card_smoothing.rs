@@ -26,6 +26,7 @@ pub(super) fn descriptor() -> Descriptor {
     .size("ring_sine", Unit::Newton, 1500.0, [-2e4, 2e4])
     .size("ring_cosine", Unit::Newton, 1500.0, [-2e4, 2e4])
     .shape("harmonics", Unit::One, 8.0, [3.0, 60.0])
+    .whole()
     .shape("frequency", Unit::Hertz, 0.739, [0.2, 3.0])
     .shape("decay", Unit::PerSecond, 0.3, [0.05, 3.0])
     .builds(|v| Smoothing {

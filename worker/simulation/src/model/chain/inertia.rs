@@ -1,6 +1,6 @@
 //! Inertia of the cylinders of a chain.
 use super::parts::Chain;
-use crate::linear::{BLOCK, Bordered};
+use crate::linear::{BLOCK, Bordered, Entry};
 use crate::math::elementary::sin_cos;
 use crate::model::layout::Motion;
 use crate::state::StateRef;
@@ -11,15 +11,15 @@ use crate::state::StateRef;
 )]
 impl Chain {
     /// `out -= M(q) a` of the cylinders.
-    pub(crate) fn subtract_inertia(&self, q: &[f64], a: &[f64], out: &mut [f64]) {
+    pub(crate) fn subtract_inertia<T: Entry>(&self, q: &[f64], a: &[T], out: &mut [T]) {
         let [along, across] = self.inertia;
         let of = self.range();
         let (q, a, out) = (&q[of.clone()], &a[of.clone()], &mut out[of]);
         if self.motion == Motion::Plane {
             for (a, out) in a.chunks_exact(3).zip(out.chunks_exact_mut(3)) {
-                out[0] -= self.mass * a[0];
-                out[1] -= self.mass * a[1];
-                out[2] -= across * a[2];
+                out[0] -= a[0] * self.mass;
+                out[1] -= a[1] * self.mass;
+                out[2] -= a[2] * across;
             }
             return;
         }
@@ -27,12 +27,12 @@ impl Chain {
         for ((q, a), out) in cylinders.zip(out.chunks_exact_mut(6)) {
             let (s, _) = sin_cos(q[4]);
             for k in 0..3 {
-                out[k] -= self.mass * a[k];
+                out[k] -= a[k] * self.mass;
             }
             let (a1, a2, a3) = (a[3], a[4], a[5]);
-            out[3] -= along * (a1 - s * a3);
-            out[4] -= across * a2;
-            out[5] -= (across + (along - across) * s * s) * a3 - along * s * a1;
+            out[3] -= (a1 - a3 * s) * along;
+            out[4] -= a2 * across;
+            out[5] -= a3 * (across + (along - across) * s * s) - a1 * (along * s);
         }
     }
 

@@ -1,0 +1,81 @@
+//! Entries of vectors of unknowns: of one column, or of eight side by side.
+use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
+
+/// Columns that are solved side by side.
+pub const LANES: usize = 8;
+
+/// One unknown of [`LANES`] columns.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Lanes(pub [f64; LANES]);
+
+/// What the terms that are linear in a vector of unknowns ask of its entries: a number of one column,
+/// or those of several.
+pub trait Entry:
+    Copy
+    + Add<Output = Self>
+    + AddAssign
+    + SubAssign
+    + Sub<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+}
+
+impl Entry for f64 {}
+impl Entry for Lanes {}
+
+impl AddAssign for Lanes {
+    #[inline]
+    fn add_assign(&mut self, other: Self) {
+        for k in 0..LANES {
+            self.0[k] += other.0[k];
+        }
+    }
+}
+
+impl SubAssign for Lanes {
+    #[inline]
+    fn sub_assign(&mut self, other: Self) {
+        for k in 0..LANES {
+            self.0[k] -= other.0[k];
+        }
+    }
+}
+
+impl Add for Lanes {
+    type Output = Self;
+
+    #[inline]
+    fn add(mut self, other: Self) -> Self {
+        self += other;
+        self
+    }
+}
+
+impl Sub for Lanes {
+    type Output = Self;
+
+    #[inline]
+    fn sub(mut self, other: Self) -> Self {
+        self -= other;
+        self
+    }
+}
+
+impl Mul<f64> for Lanes {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, factor: f64) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+impl Div<f64> for Lanes {
+    type Output = Self;
+
+    #[inline]
+    fn div(self, divisor: f64) -> Self {
+        Self(self.0.map(|x| x / divisor))
+    }
+}

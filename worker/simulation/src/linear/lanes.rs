@@ -1,0 +1,144 @@
+//! Many right-hand sides side by side: what is done for one vector of unknowns, done for eight.
+//!
+//! A factor is read once for eight columns, and what waits for itself along a chain in one column waits
+//! no longer in eight. No lane knows of its neighbours: a column has the same bits whatever stands
+//! beside it.
+use super::block::Block;
+use super::blocks::Blocks;
+use super::bordered::Bordered;
+use super::entry::Lanes;
+
+/// The entries of one block of unknowns.
+type Part<const N: usize> = [Lanes; N];
+
+/// `y -= A x`.
+#[inline]
+fn subtract_product<const N: usize>(a: &Block<N>, x: &Part<N>, y: &mut Part<N>) {
+    for (k, x) in x.iter().enumerate() {
+        for (i, y) in y.iter_mut().enumerate() {
+            *y -= *x * a[(i, k)];
+        }
+    }
+}
+
+/// `A x`.
+#[inline]
+fn product<const N: usize>(a: &Block<N>, x: &Part<N>) -> Part<N> {
+    let mut y = [Lanes::default(); N];
+    for (k, x) in x.iter().enumerate() {
+        for (i, y) in y.iter_mut().enumerate() {
+            *y += *x * a[(i, k)];
+        }
+    }
+    y
+}
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "what is done for many columns is a file of its own"
+)]
+impl<const N: usize> Blocks<N> {
+    /// [`Blocks::solve`] for [`LANES`] columns.
+    pub fn solve_lanes(&self, x: &mut [Lanes]) {
+        let m = self.border;
+        let (blocks, border) = x.split_at_mut(self.diagonal.len() * N);
+        let (blocks, _) = blocks.as_chunks_mut::<N>();
+        for [first, count] in self.spans() {
+            let mut carried = [Lanes::default(); N];
+            for b in first..first + count {
+                let mut right = blocks[b];
+                for (right, carried) in right.iter_mut().zip(carried) {
+                    *right -= carried;
+                }
+                let y = product(&self.diagonal[b], &right);
+                blocks[b] = y;
+                for (k, x) in border[..self.filled[b]].iter_mut().enumerate() {
+                    for (i, y) in y.iter().enumerate() {
+                        *x -= *y * self.bottom[b * m + k][i];
+                    }
+                }
+                carried = product(&self.lower[b], &y);
+            }
+        }
+        self.solve_corner(border);
+        for [first, count] in self.spans() {
+            let mut next = [Lanes::default(); N];
+            for b in (first..first + count).rev() {
+                let mut y = blocks[b];
+                subtract_product(&self.upper[b], &next, &mut y);
+                for (k, x) in border[..self.filled[b]].iter().enumerate() {
+                    for (i, y) in y.iter_mut().enumerate() {
+                        *y -= *x * self.right[b * m + k][i];
+                    }
+                }
+                blocks[b] = y;
+                next = y;
+            }
+        }
+    }
+
+    /// `y -= A x` of the assembled (not factorised) matrix for [`LANES`] columns.
+    pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
+        let m = self.border;
+        let base = self.diagonal.len() * N;
+        let (blocks, edge) = x.split_at(base);
+        let (blocks, _) = blocks.as_chunks::<N>();
+        let (out, out_edge) = y.split_at_mut(base);
+        let (out, _) = out.as_chunks_mut::<N>();
+        for [first, count] in self.spans() {
+            for b in first..first + count {
+                let mut y = out[b];
+                subtract_product(&self.diagonal[b], &blocks[b], &mut y);
+                if b + 1 < first + count {
+                    subtract_product(&self.upper[b], &blocks[b + 1], &mut y);
+                }
+                if b > first {
+                    subtract_product(&self.lower[b - 1], &blocks[b - 1], &mut y);
+                }
+                for k in 0..self.touches[b] {
+                    for i in 0..N {
+                        y[i] -= edge[k] * self.right[b * m + k][i];
+                        out_edge[k] -= blocks[b][i] * self.bottom[b * m + k][i];
+                    }
+                }
+                out[b] = y;
+            }
+        }
+        for (k, x) in edge.iter().enumerate() {
+            for (row, y) in out_edge.iter_mut().enumerate() {
+                *y -= *x * self.corner[k * m + row];
+            }
+        }
+    }
+
+    /// First block and length of every chain.
+    fn spans(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
+        self.chains.iter().scan(0, |first, &count| {
+            let span = [*first, count];
+            *first += count;
+            Some(span)
+        })
+    }
+}
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "what is done for many columns is a file of its own"
+)]
+impl Bordered {
+    /// [`Bordered::solve`] for [`LANES`] columns.
+    pub fn solve_lanes(&self, x: &mut [Lanes]) {
+        match self {
+            Self::Plane(blocks) => blocks.solve_lanes(x),
+            Self::Space(blocks) => blocks.solve_lanes(x),
+        }
+    }
+
+    /// `y -= A x` of the assembled matrix for [`LANES`] columns.
+    pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
+        match self {
+            Self::Plane(blocks) => blocks.subtract_product_lanes(x, y),
+            Self::Space(blocks) => blocks.subtract_product_lanes(x, y),
+        }
+    }
+}

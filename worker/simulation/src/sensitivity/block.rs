@@ -1,0 +1,145 @@
+//! Columns of the state, eight side by side, through the stages of a step.
+use super::tangents::Tangents;
+use crate::integrator::dense::Weights;
+use crate::integrator::tableau::Tableau;
+use crate::linear::Lanes;
+use crate::system::{Equations, State};
+
+/// Derivatives of coordinates, rates and accelerations; n each.
+#[derive(Clone, Debug)]
+pub(super) struct Motion {
+    pub(super) q: Vec<Lanes>,
+    pub(super) v: Vec<Lanes>,
+    pub(super) a: Vec<Lanes>,
+}
+
+/// Columns of a state and of the stages of the step that begins there.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    /// Where the step began, and where it ended.
+    pub(super) ends: [Motion; 2],
+    /// Rates and accelerations of the stages between.
+    stages: Vec<[Vec<Lanes>; 2]>,
+}
+
+/// Room for what a stage is without its own acceleration, and for a product.
+#[derive(Clone, Debug)]
+pub(super) struct Bases {
+    q: Vec<Lanes>,
+    v: Vec<Lanes>,
+    scaled: Vec<Lanes>,
+}
+
+impl Motion {
+    fn new(n: usize) -> Self {
+        let zeros = || vec![Lanes::default(); n];
+        Self {
+            q: zeros(),
+            v: zeros(),
+            a: zeros(),
+        }
+    }
+}
+
+impl Bases {
+    /// For `n` coordinates.
+    pub(super) fn new(n: usize) -> Self {
+        let Motion { q, v, a } = Motion::new(n);
+        Self { q, v, scaled: a }
+    }
+}
+
+impl Block {
+    /// Zeros for `n` coordinates and a method of so many stages.
+    pub(super) fn new(n: usize, stages: usize) -> Self {
+        let zeros = || vec![Lanes::default(); n];
+        Self {
+            ends: [Motion::new(n), Motion::new(n)],
+            stages: (0..stages).map(|_| [zeros(), zeros()]).collect(),
+        }
+    }
+
+    /// Columns of an equilibrium, whose `dR/dp` is in `right`.
+    pub(super) fn rest(&mut self, tangents: &Tangents, right: &mut [Lanes]) {
+        tangents.factor.solve_lanes(right);
+        self.ends[0].q.copy_from_slice(right);
+    }
+
+    /// Columns of stage `i` of a step of size `h`, whose `dR/dp` is in `right`.
+    pub(super) fn stage<E: Equations>(
+        &mut self,
+        equations: &E,
+        tangents: &Tangents,
+        (tableau, i, h): (&Tableau, usize, f64),
+        right: &mut [Lanes],
+        bases: &mut Bases,
+    ) {
+        let Self {
+            ends: [from, to],
+            stages,
+        } = self;
+        bases.q.copy_from_slice(&from.q);
+        bases.v.copy_from_slice(&from.v);
+        for (j, weight) in tableau.rows[i].iter().enumerate() {
+            let weight = h * weight;
+            let (v, a) = match j {
+                0 => (&from.v, &from.a),
+                j => (&stages[j - 1][0], &stages[j - 1][1]),
+            };
+            for (k, base) in bases.q.iter_mut().enumerate() {
+                *base += v[k] * weight;
+            }
+            for (k, base) in bases.v.iter_mut().enumerate() {
+                *base += a[k] * weight;
+            }
+        }
+        let shift = 1.0 / (tableau.diagonal * h);
+        tangents.stiffness.subtract_product_lanes(&bases.q, right);
+        for (scaled, v) in bases.scaled.iter_mut().zip(&bases.v) {
+            *scaled = *v * -shift;
+        }
+        equations.subtract_inertia(&tangents.state.q, &bases.scaled, right);
+        tangents.factor.solve_lanes(right);
+        let last = i + 1 == tableau.stages();
+        let (v, a) = if last {
+            for (k, q) in to.q.iter_mut().enumerate() {
+                *q = bases.q[k] + right[k];
+            }
+            (&mut to.v, &mut to.a)
+        } else {
+            let [v, a] = &mut stages[i - 1];
+            (v, a)
+        };
+        for (k, w) in right.iter().enumerate() {
+            v[k] = *w * shift;
+            a[k] = (v[k] - bases.v[k]) * shift;
+        }
+    }
+
+    /// The step is over: it ended where the next one begins.
+    pub(super) const fn accept(&mut self) {
+        let [from, to] = &mut self.ends;
+        std::mem::swap(from, to);
+    }
+}
+
+/// Adds `step` times a column to a state: at a place between two ends.
+pub(super) fn add_column(
+    [from, to]: [&Motion; 2],
+    lane: usize,
+    weights: &Weights,
+    step: f64,
+    out: &mut State,
+) {
+    let [f0, f1] = weights.value.map(|weight| step * weight);
+    let [g0, g1] = weights.slope.map(|weight| step * weight);
+    let [r, s] = weights.linear.map(|weight| step * weight);
+    for i in 0..out.q.len() {
+        let of = |x: &[Lanes]| x[i].0[lane];
+        let [a0, a1] = [of(&from.a), of(&to.a)];
+        let [v0, v1] = [of(&from.v), of(&to.v)];
+        out.q[i] += f0 * of(&from.q) + f1 * of(&to.q) + g0 * v0 + g1 * v1;
+        out.v[i] += f0 * v0 + f1 * v1 + g0 * a0 + g1 * a1;
+        out.a[i] += r * a0 + s * a1;
+    }
+}

@@ -1,0 +1,413 @@
+//! A run with its columns: what a run reports of its steps and samples, differentiated behind it.
+use super::block::{Bases, Block, add_column};
+use super::column::{Columns, Derivative, Missing};
+use super::differences::Difference;
+use super::plan::{Plan, Way};
+use super::side::Side;
+use super::tangents::Tangents;
+use crate::integrator::dense::{Weights, interpolate};
+use crate::integrator::method::Method;
+use crate::integrator::stepper::Stages;
+use crate::linear::{LANES, Lanes};
+use crate::model::description::RopeLaw;
+use crate::model::{Individual, Machine, Scratch};
+use crate::run::{Observe, RunResult, RunSettings};
+use crate::system::{State, System};
+use crate::verdict::Verdict;
+
+/// Simulates one individual and differentiates the run; verdict, samples and counters are those of
+/// [`run::simulate`](crate::run::simulate), bit for bit. A run that fails has no columns.
+pub fn simulate(
+    machine: &Machine,
+    law: &RopeLaw,
+    settings: &RunSettings,
+    plan: &Plan,
+    observer: &mut dyn Observe,
+) -> (RunResult, Option<Columns>) {
+    follow((machine, law), settings, plan, observer, |follower| {
+        crate::run::simulate(machine, law, settings, follower)
+    })
+}
+
+/// The same on the steps of another run, with stages that are solved to rounding; see
+/// [`run::simulate_on`](crate::run::simulate_on).
+pub fn simulate_on(
+    (machine, law): (&Machine, &RopeLaw),
+    settings: &RunSettings,
+    steps: &[f64],
+    plan: &Plan,
+    observer: &mut dyn Observe,
+) -> (RunResult, Option<Columns>) {
+    follow((machine, law), settings, plan, observer, |follower| {
+        crate::run::simulate_on(machine, law, settings, steps, follower)
+    })
+}
+
+fn follow<'a>(
+    subject: (&'a Machine, &'a RopeLaw),
+    settings: &RunSettings,
+    plan: &'a Plan,
+    observer: &mut dyn Observe,
+    run: impl FnOnce(&mut Follower<'a, '_>) -> RunResult,
+) -> (RunResult, Option<Columns>) {
+    let mut follower = Follower::new(subject, settings, plan, observer);
+    let result = run(&mut follower);
+    let columns = (result.verdict == Verdict::Complete).then(|| follower.columns(plan));
+    (result, columns)
+}
+
+/// A column that is worked out.
+struct Active<'a> {
+    sides: [Side<'a>; 2],
+    difference: Difference,
+    curves: [Vec<f64>; 4],
+}
+
+/// Follows a run.
+struct Follower<'a, 'o> {
+    observer: &'o mut dyn Observe,
+    settings: RunSettings,
+    /// The machine that runs.
+    own: Side<'a>,
+    active: Vec<Active<'a>>,
+    blocks: Vec<Block>,
+    /// Begins with the run.
+    room: Option<Room>,
+    /// Why nothing is followed any more.
+    missing: Option<Missing>,
+    /// The last step.
+    ends: [State; 2],
+    /// What the gauges read at each sample, before what filters whole curves.
+    read: [Vec<f64>; 4],
+}
+
+/// Buffers.
+struct Room {
+    tangents: Tangents,
+    bases: Bases,
+    scratch: Scratch,
+    right: Vec<Lanes>,
+    force: [Vec<f64>; 3],
+    state: State,
+}
+
+impl<'a, 'o> Follower<'a, 'o> {
+    fn new(
+        (machine, law): (&'a Machine, &'a RopeLaw),
+        settings: &RunSettings,
+        plan: &'a Plan,
+        observer: &'o mut dyn Observe,
+    ) -> Self {
+        let side = |machine: &'a Machine, law: &RopeLaw| {
+            Side::new(machine, machine.ropes(law), settings.drive(machine))
+        };
+        let active = plan.ways.iter().filter_map(|way| {
+            let (sides, difference) = match way {
+                Way::Coefficient(coefficient) => {
+                    let difference = Difference::decades();
+                    let moved = |step| side(machine, &coefficient.moved(law, step));
+                    (difference.steps.map(moved), difference)
+                }
+                Way::Beside {
+                    machines,
+                    difference,
+                } => (
+                    machines.each_ref().map(|machine| side(machine, law)),
+                    *difference,
+                ),
+                Way::Nothing | Way::Missing(_) => return None,
+            };
+            Some(Active {
+                sides,
+                difference,
+                curves: [const { Vec::new() }; 4],
+            })
+        });
+        let missing = match settings.method {
+            Method::RungeKutta(_) => None,
+            Method::Rosenbrock | Method::GeneralizedAlpha { .. } | Method::Bdf { .. } => {
+                Some(Missing::Method)
+            }
+        };
+        Self {
+            own: side(machine, law),
+            active: active.collect(),
+            settings: *settings,
+            observer,
+            blocks: Vec::new(),
+            room: None,
+            missing,
+            ends: std::array::from_fn(|_| State::at_rest(0.0, Vec::new())),
+            read: [const { Vec::new() }; 4],
+        }
+    }
+
+    /// Each column in the order of the plan.
+    fn columns(self, plan: &Plan) -> Columns {
+        let missing = self.missing;
+        let mut active = self.active.into_iter();
+        let one = |way: &Way| match way {
+            Way::Nothing => Derivative::Nothing,
+            Way::Missing(missing) => Derivative::Missing(*missing),
+            Way::Coefficient(_) | Way::Beside { .. } => {
+                let curves = active.next().map(|active| active.curves);
+                match (missing, curves) {
+                    (Some(missing), _) => Derivative::Missing(missing),
+                    (None, curves) => curves.map_or(Derivative::Nothing, judged),
+                }
+            }
+        };
+        Columns {
+            columns: plan.ways.iter().map(one).collect(),
+            factorizations: self.room.map_or(0, |room| room.tangents.factorizations),
+        }
+    }
+
+    /// `dR/dp` of the columns of one block at a stage into `room.right`.
+    fn right(&mut self, block: usize) {
+        let Some(Room {
+            tangents,
+            scratch,
+            right,
+            force: [own, one, sum],
+            ..
+        }) = &mut self.room
+        else {
+            return;
+        };
+        right.fill(Lanes::default());
+        let State { a, .. } = &tangents.state;
+        let at = tangents.state.motion();
+        let columns = self.active.chunks_mut(LANES).nth(block);
+        for (lane, active) in columns.into_iter().flatten().enumerate() {
+            let difference = active.difference;
+            sum.fill(0.0);
+            if difference.own != 0.0 {
+                self.own.residual(scratch, at, a, own);
+                add(sum, difference.own, own);
+            }
+            for (side, weight) in active.sides.iter_mut().zip(difference.weights) {
+                side.residual(scratch, at, a, one);
+                add(sum, weight, one);
+            }
+            for (right, sum) in right.iter_mut().zip(&*sum) {
+                right.0[lane] = *sum;
+            }
+        }
+    }
+
+    /// Lets laws with a past remember where the columns stand now.
+    fn remember(&mut self, state: &State) {
+        let Some(Room {
+            scratch,
+            state: beside,
+            ..
+        }) = &mut self.room
+        else {
+            return;
+        };
+        self.own.remember(scratch, state);
+        for (at, active) in self.active.iter_mut().enumerate() {
+            let now = &self.blocks[at / LANES].ends[0];
+            let weights = Weights::at([0.0, 1.0], 0.0);
+            for (side, step) in active.sides.iter_mut().zip(active.difference.steps) {
+                if side.machine.hooks.has_axial() {
+                    beside.clone_from(state);
+                    add_column([now, now], at % LANES, &weights, step, beside);
+                    side.remember(scratch, beside);
+                }
+            }
+        }
+    }
+
+    fn follow(
+        &mut self,
+        system: &mut System<Individual<'_>>,
+        ends: [&State; 2],
+        stages: Stages<'_>,
+    ) -> Result<(), Missing> {
+        let h = ends[1].t - ends[0].t;
+        for i in 1..stages.tableau.stages() {
+            if let Some(room) = &mut self.room {
+                let [own, ..] = &mut room.force;
+                let made = room.tangents.stage(system, (i, stages), ends, own);
+                made.map_err(|_| Missing::Singular)?;
+            }
+            for block in 0..self.blocks.len() {
+                self.right(block);
+                if let Some(room) = &mut self.room {
+                    self.blocks[block].stage(
+                        &system.equations,
+                        &room.tangents,
+                        (stages.tableau, i, h),
+                        &mut room.right,
+                        &mut room.bases,
+                    );
+                }
+            }
+        }
+        for (end, now) in self.ends.iter_mut().zip(ends) {
+            end.clone_from(now);
+        }
+        for block in &mut self.blocks {
+            block.accept();
+        }
+        self.remember(ends[1]);
+        Ok(())
+    }
+
+    fn start(
+        &mut self,
+        system: &mut System<Individual<'_>>,
+        state: &State,
+        stages: usize,
+    ) -> Result<(), Missing> {
+        let n = state.q.len();
+        let blocks = self.active.len().div_ceil(LANES);
+        // the explicit first stage is where the step begins, the last one where it ends
+        self.blocks = vec![Block::new(n, stages - 2); blocks];
+        let mut room = Room {
+            tangents: Tangents::new(&system.equations, state),
+            bases: Bases::new(n),
+            scratch: Scratch::new(system.equations.machine),
+            right: vec![Lanes::default(); n],
+            force: [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![0.0; n]),
+            state: state.clone(),
+        };
+        let made = room.tangents.rest(system, state, &mut room.force[0]);
+        made.map_err(|_| Missing::Singular)?;
+        self.room = Some(room);
+        let curves = self.active.iter_mut().flat_map(|active| &mut active.curves);
+        for curve in curves.chain(&mut self.read) {
+            curve.reserve_exact(self.settings.samples);
+        }
+        for block in 0..blocks {
+            self.right(block);
+            if let Some(room) = &mut self.room {
+                self.blocks[block].rest(&room.tangents, &mut room.right);
+            }
+        }
+        self.remember(state);
+        Ok(())
+    }
+}
+
+impl Observe for Follower<'_, '_> {
+    fn begin(&mut self, system: &mut System<Individual<'_>>, state: &State) {
+        self.observer.begin(system, state);
+        if let Method::RungeKutta(tableau) = self.settings.method {
+            self.missing = self.start(system, state, tableau.stages()).err();
+        }
+    }
+
+    fn step(
+        &mut self,
+        system: &mut System<Individual<'_>>,
+        ends: [&State; 2],
+        stages: Option<Stages<'_>>,
+    ) {
+        self.observer.step(system, ends, stages);
+        if let (None, Some(stages)) = (self.missing, stages) {
+            self.missing = self.follow(system, ends, stages).err();
+        }
+    }
+
+    fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
+        self.observer.sample(index, system, state);
+        let (None, Some(room)) = (self.missing, &mut self.room) else {
+            return;
+        };
+        let Room {
+            scratch,
+            state: beside,
+            force: [force, ..],
+            ..
+        } = room;
+        let [from, to] = &self.ends;
+        let weights = Weights::at([from.t, to.t], state.t);
+        let own = self.own.readings(scratch, state, force);
+        for (curve, reading) in self.read.iter_mut().zip(own) {
+            curve.push(reading);
+        }
+        for (at, active) in self.active.iter_mut().enumerate() {
+            let mut sum = [0.0; 4];
+            let Difference {
+                steps,
+                weights: shares,
+                own: share,
+            } = active.difference;
+            let mut add = |share: f64, readings: [f64; 4]| {
+                for (sum, reading) in sum.iter_mut().zip(readings) {
+                    *sum += share * reading;
+                }
+            };
+            add(share, own);
+            // the ends have changed places when the step was accepted
+            let [ended, began] = &self.blocks[at / LANES].ends;
+            for ((side, step), share) in active.sides.iter_mut().zip(steps).zip(shares) {
+                let t = self.settings.sampled(side.machine, &side.drive, index);
+                interpolate(from, to, t, beside);
+                add_column([began, ended], at % LANES, &weights, step, beside);
+                add(share, side.readings(scratch, beside, force));
+            }
+            for (curve, sum) in active.curves.iter_mut().zip(sum) {
+                curve.push(sum);
+            }
+        }
+    }
+
+    fn complete(&mut self, machine: &Machine, spacing: f64) {
+        self.observer.complete(machine, spacing);
+        let read = self.active.iter().flat_map(|active| &active.sides);
+        if !read
+            .chain([&self.own])
+            .any(|side| side.machine.hooks.has_readings())
+        {
+            return;
+        }
+        for active in &mut self.active {
+            let mut sum =
+                [const { Vec::new() }; 4].map(|_: Vec<f64>| vec![0.0; self.read[0].len()]);
+            let mut add_series = |side: &Side<'_>, step: f64, share: f64| {
+                let mut curves = self.read.clone();
+                for (curve, column) in curves.iter_mut().zip(&active.curves) {
+                    add(curve, step, column);
+                }
+                side.machine.hooks.read_series(spacing, &mut curves);
+                for (sum, curve) in sum.iter_mut().zip(&curves) {
+                    add(sum, share, curve);
+                }
+            };
+            let Difference {
+                steps,
+                weights,
+                own,
+            } = active.difference;
+            if own != 0.0 {
+                add_series(&self.own, 0.0, own);
+            }
+            for ((side, step), weight) in active.sides.iter().zip(steps).zip(weights) {
+                add_series(side, step, weight);
+            }
+            active.curves = sum;
+        }
+    }
+}
+
+/// A column that was worked out.
+fn judged(curves: [Vec<f64>; 4]) -> Derivative {
+    let mut all = curves.iter().flatten();
+    if all.clone().all(|x| *x == 0.0) {
+        Derivative::Nothing
+    } else if all.all(|x| x.is_finite()) {
+        Derivative::Curves(curves)
+    } else {
+        Derivative::Missing(Missing::NotFinite)
+    }
+}
+
+fn add(to: &mut [f64], weight: f64, x: &[f64]) {
+    for (to, x) in to.iter_mut().zip(x) {
+        *to += weight * x;
+    }
+}

@@ -1,0 +1,183 @@
+//! Which columns are asked for: checked, and for every effect's parameter the machines beside it.
+use super::column::{Coefficient, Column, Missing};
+use super::differences::Difference;
+use crate::effect::{Asked, Chosen, Role, chosen};
+use crate::model::Machine;
+use crate::model::description::Description;
+use crate::model::layout::Motion;
+
+/// What a machine was made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Origin<'a> {
+    /// Its description without effects.
+    pub description: &'a Description,
+    /// Number of head modes that are kept.
+    pub modes: usize,
+    /// Its effects.
+    pub effects: &'a [Asked<'a>],
+}
+
+/// A column that cannot be asked for; `column` is its position.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Refused {
+    /// An effect or a value that cannot be.
+    #[error("column {column}: {refused}")]
+    Effect {
+        /// Position.
+        column: usize,
+        /// What is wrong.
+        refused: crate::effect::Refused,
+    },
+    /// The machine has the effect, with values of its own.
+    #[error("column {column}: the machine has `{effect}` with values of its own; leave out others")]
+    Present {
+        /// Position.
+        column: usize,
+        /// The effect.
+        effect: String,
+    },
+    /// The machine's own effects are refused.
+    #[error(transparent)]
+    Machine(#[from] crate::effect::Refused),
+}
+
+/// Columns that a run is asked for.
+#[derive(Debug)]
+pub struct Plan {
+    pub(super) ways: Vec<Way>,
+}
+
+/// How a column comes about.
+#[derive(Debug)]
+pub(super) enum Way {
+    /// Of a coefficient of the ropes.
+    Coefficient(Coefficient),
+    /// Of two machines beside the one that runs.
+    Beside {
+        machines: Box<[Machine; 2]>,
+        difference: Difference,
+    },
+    Nothing,
+    Missing(Missing),
+}
+
+impl Plan {
+    /// Checks columns and builds what they ask for; `machine` is the one that will run, made of
+    /// `origin`.
+    ///
+    /// # Errors
+    /// The first column that cannot be asked for.
+    pub fn new(
+        origin: &Origin<'_>,
+        machine: &Machine,
+        columns: &[Column],
+    ) -> Result<Self, Refused> {
+        let own = chosen(origin.effects)?;
+        let ways = columns.iter().enumerate().map(|(at, column)| match column {
+            Column::Coefficient(coefficient) => Ok(Way::Coefficient(*coefficient)),
+            Column::Parameter {
+                effect,
+                parameter,
+                values,
+            } => {
+                let (effects, varied) = with(&own, at, effect, values)?;
+                let descriptor = effects[varied].descriptor();
+                let Some(k) = descriptor.parameter(parameter) else {
+                    let refused = crate::effect::Refused::UnknownParameter {
+                        effect: varied,
+                        id: effect.clone(),
+                        name: parameter.clone(),
+                    };
+                    return Err(Refused::Effect {
+                        column: at,
+                        refused,
+                    });
+                };
+                Ok(way(origin, machine, &effects, (varied, k)))
+            }
+        });
+        Ok(Self {
+            ways: ways.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Number of columns.
+    pub const fn len(&self) -> usize {
+        self.ways.len()
+    }
+
+    /// Whether there are none.
+    pub const fn is_empty(&self) -> bool {
+        self.ways.is_empty()
+    }
+}
+
+/// The machine's effects with a further one among them, and its place there.
+fn with(
+    own: &[Chosen],
+    column: usize,
+    effect: &str,
+    values: &[(String, f64)],
+) -> Result<(Vec<Chosen>, usize), Refused> {
+    let has = |one: &Chosen| one.descriptor().id == effect;
+    let mut effects = own.to_vec();
+    if let Some(at) = effects.iter().position(|one| has(one) && !one.is_absent()) {
+        return if values.is_empty() {
+            Ok((effects, at))
+        } else {
+            Err(Refused::Present {
+                column,
+                effect: effect.to_owned(),
+            })
+        };
+    }
+    effects.retain(|one| !has(one));
+    let asked = Asked {
+        id: effect,
+        parameters: values.iter().map(|(name, x)| (&**name, *x)).collect(),
+    };
+    let refused = |refused| Refused::Effect { column, refused };
+    effects.extend(chosen(&[asked]).map_err(refused)?);
+    effects.sort_by_key(Chosen::place);
+    let at = effects.iter().position(has).unwrap_or(0);
+    Ok((effects, at))
+}
+
+/// How the column of parameter `k` of the effect at `varied` comes about.
+fn way(
+    origin: &Origin<'_>,
+    machine: &Machine,
+    effects: &[Chosen],
+    (varied, k): (usize, usize),
+) -> Way {
+    let one = &effects[varied];
+    let parameter = &one.descriptor().parameters[k];
+    if parameter.role == Role::Shape && one.is_absent() {
+        return Way::Nothing;
+    }
+    if parameter.whole {
+        return Way::Missing(Missing::Whole);
+    }
+    let difference = Difference::within(parameter, one.values[k]);
+    let beside = difference.steps.map(|step| {
+        let mut effects = effects.to_vec();
+        effects[varied].values[k] += step;
+        let present = effects.iter().enumerate();
+        let present = present.filter(|(at, one)| *at == varied || !one.is_absent());
+        let built: Vec<_> = present.map(|(_, one)| one.build()).collect();
+        let beside =
+            Machine::with_effects(origin.description.clone(), origin.modes, &built).ok()?;
+        let space = machine.layout.motion == Motion::Space && beside.layout.motion == Motion::Plane;
+        Some(if space { beside.in_space() } else { beside })
+    });
+    let [Some(first), Some(second)] = beside else {
+        return Way::Missing(Missing::NoMachine);
+    };
+    if first.layout != machine.layout || second.layout != machine.layout {
+        return Way::Missing(Missing::Coordinates);
+    }
+    Way::Beside {
+        machines: Box::new([first, second]),
+        difference,
+    }
+}
