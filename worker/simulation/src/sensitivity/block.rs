@@ -39,6 +39,11 @@ impl Motion {
             a: zeros(),
         }
     }
+
+    /// Largest derivative of a coordinate in a column.
+    pub(super) fn size(&self, lane: usize) -> f64 {
+        self.q.iter().fold(0.0, |size, q| q.0[lane].abs().max(size))
+    }
 }
 
 impl Bases {

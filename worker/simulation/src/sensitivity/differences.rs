@@ -3,7 +3,7 @@ use crate::effect::Parameter;
 
 /// Share of a parameter's size over which a residual is differenced: what is left of curvature is its
 /// square, and forces of a hundred kilonewtons are rounded at 1e-11 N.
-const SHARE: f64 = 1e-5;
+const SHARE: f64 = 1e-7;
 
 /// Where a function is asked beside the place at hand, and how its values make a derivative of second
 /// order.

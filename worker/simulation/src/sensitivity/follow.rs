@@ -56,6 +56,10 @@ fn follow<'a>(
     (result, columns)
 }
 
+/// By how much the farthest coordinate is moved where readings are differenced along a column \[m\],
+/// \[rad\].
+const MOVED: f64 = 1e-8;
+
 /// A column that is worked out.
 struct Active<'a> {
     sides: [Side<'a>; 2],
@@ -332,9 +336,9 @@ impl Observe for Follower<'_, '_> {
         for (at, active) in self.active.iter_mut().enumerate() {
             let mut sum = [0.0; 4];
             let Difference {
-                steps,
                 weights: shares,
                 own: share,
+                ..
             } = active.difference;
             let mut add = |share: f64, readings: [f64; 4]| {
                 for (sum, reading) in sum.iter_mut().zip(readings) {
@@ -342,13 +346,21 @@ impl Observe for Follower<'_, '_> {
                 }
             };
             add(share, own);
-            // the ends have changed places when the step was accepted
-            let [ended, began] = &self.blocks[at / LANES].ends;
-            for ((side, step), share) in active.sides.iter_mut().zip(steps).zip(shares) {
+            for (side, share) in active.sides.iter_mut().zip(shares) {
                 let t = self.settings.sampled(side.machine, &side.drive, index);
                 interpolate(from, to, t, beside);
-                add_column([began, ended], at % LANES, &weights, step, beside);
                 add(share, side.readings(scratch, beside, force));
+            }
+            // the ends have changed places when the step was accepted
+            let [ended, began] = &self.blocks[at / LANES].ends;
+            let size = began.size(at % LANES).max(ended.size(at % LANES));
+            if size > 0.0 {
+                let step = MOVED / size;
+                for step in [step, -step] {
+                    beside.clone_from(state);
+                    add_column([began, ended], at % LANES, &weights, step, beside);
+                    add(0.5 / step, self.own.readings(scratch, beside, force));
+                }
             }
             for (curve, sum) in active.curves.iter_mut().zip(sum) {
                 curve.push(sum);
