@@ -75,6 +75,19 @@ pub struct LinkLoad {
     pub dissipated: f64,
 }
 
+impl LinkLoad {
+    /// No load.
+    pub fn none() -> Self {
+        Self {
+            force: V3::zeros(),
+            torque_i: V3::zeros(),
+            torque_j: V3::zeros(),
+            axial: 0.0,
+            dissipated: 0.0,
+        }
+    }
+}
+
 /// A pull along the axis of J beside that of a bushing.
 #[derive(Clone, Copy, Debug)]
 pub struct Pull {

@@ -85,6 +85,23 @@ impl Impact {
         }
     }
 
+    /// Derivatives of the force by stiffness and by damping; zero where nothing is pressed.
+    pub fn force_by(&self, depth: f64, rate: f64) -> [f64; 2] {
+        #[expect(clippy::float_cmp, reason = "selects the exact special case")]
+        let root = self.exponent == 1.5;
+        let power = |x: f64| match x > 0.0 {
+            true if root => x * x.sqrt(),
+            true => power_law(x, self.exponent),
+            false => 0.0,
+        };
+        let at = self.pressed(depth, rate, power);
+        if at.force > 0.0 {
+            [at.spring / self.stiffness, at.step * rate]
+        } else {
+            [0.0; 2]
+        }
+    }
+
     /// Force \[N\] and power that the damping takes \[W\] at many penetrations \[m\] and their rates
     /// [m/s]: what [`Self::force`] gives one by one, to the bit.
     pub fn push_all(&self, [depth, rate]: [&[f64]; 2], [force, lost]: [&mut [f64]; 2]) {

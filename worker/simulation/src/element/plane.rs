@@ -27,7 +27,7 @@ pub struct PlaneMarker {
 }
 
 /// Force and torque of a link on both bodies, torques about the bodies' reference points.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PlaneLoad {
     /// Force on body I \[N\]; body J feels the opposite.
     pub force: V2,

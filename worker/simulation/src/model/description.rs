@@ -5,7 +5,7 @@
 use crate::element::{bushing::Bushing, impact::Impact};
 
 /// A unit with one working condition, without the rope coefficients that are searched.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Description {
     /// Acceleration of gravity, along -y [m/s2].
     pub gravity: f64,
@@ -51,7 +51,7 @@ impl Description {
 }
 
 /// A crank whose motion is prescribed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crank {
     /// Shaft centre \[m\].
     pub center: [f64; 2],
@@ -68,7 +68,7 @@ pub struct Crank {
 }
 
 /// Connecting rods with crossbeam: one rigid body, pinned to the crank.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rod {
     /// Pin to rope joint \[m\].
     pub length: f64,
@@ -81,7 +81,7 @@ pub struct Rod {
 }
 
 /// A rope of equal cylinders.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rope {
     /// Diameter of a cylinder \[m\].
     pub diameter: f64,
@@ -100,7 +100,7 @@ pub struct Rope {
 }
 
 /// A circular arc fixed on the beam that a rope wraps.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Arc {
     /// Centre in the beam frame \[m\].
     pub center: [f64; 2],
@@ -113,7 +113,7 @@ pub struct Arc {
 }
 
 /// Reduced flexible head: n modes over s stations of the rope arc.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Head {
     /// Angular frequencies [rad/s]; n.
     pub frequencies: Vec<f64>,
@@ -149,7 +149,7 @@ pub struct Head {
 }
 
 /// Two ropes side by side on each head; what a [`Rope`] and a [`RopeLaw`] state is of both together.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Twins {
     /// Distance of either rope from the machine's plane \[m\].
     pub offset: f64,
@@ -162,7 +162,7 @@ pub struct Twins {
 
 /// The antisymmetric side of a reduced head: a modes over the stations of [`Head`], at `z = +offset`.
 /// Forces in its influence lines come in pairs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Sway {
     /// Angular frequencies [rad/s]; a.
     pub frequencies: Vec<f64>,

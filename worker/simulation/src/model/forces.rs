@@ -7,6 +7,7 @@ use crate::math::spline::sum::Sum;
 use crate::model::chain::parts::Joints;
 use crate::model::chain::state::ChainState;
 use crate::model::contact::{Bend, Surface};
+use crate::model::hook::Hooks;
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
 use crate::model::scratch::Scratch;
@@ -16,6 +17,41 @@ use nalgebra::{Vector2, Vector3};
 
 type V2 = Vector2<f64>;
 type V3 = Vector3<f64>;
+
+/// Terms of the generalised forces: what a difference of forces asks for of a machine that differs from
+/// another in some of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Terms {
+    /// Weights of and loads on the rigid bodies, the head's own forces, forces of effects.
+    pub(crate) rigid: bool,
+    /// Weights of the cylinders and their velocity terms.
+    pub(crate) weights: bool,
+    /// Joints at the ends of the ropes.
+    pub(crate) ends: bool,
+    /// All joints.
+    pub(crate) joints: bool,
+    /// Contact.
+    pub(crate) contact: bool,
+}
+
+impl Terms {
+    /// Every one.
+    pub(crate) const ALL: Self = Self {
+        rigid: true,
+        weights: true,
+        ends: true,
+        joints: true,
+        contact: true,
+    };
+    /// None.
+    pub(crate) const NONE: Self = Self {
+        rigid: false,
+        weights: false,
+        ends: false,
+        joints: false,
+        contact: false,
+    };
+}
 
 #[expect(
     clippy::multiple_inherent_impl,
@@ -41,26 +77,97 @@ impl Machine {
 
     /// Generalised forces `Q(q, v, t)` into `force`; joint and contact loads stay in `scratch`.
     pub(super) fn forces(&self, at: &Instant<'_>, scratch: &mut Scratch, force: &mut [f64]) {
+        for (chain, state) in self.chains.iter().zip(&mut scratch.chains) {
+            chain.pose(at.q, at.v, state);
+        }
+        self.posed_forces(at, Terms::ALL, scratch, force);
+    }
+
+    /// Some of the terms of `Q(q, v, t)`, with poses of the cylinders that are in `scratch`.
+    pub(super) fn posed_forces(
+        &self,
+        at: &Instant<'_>,
+        terms: Terms,
+        scratch: &mut Scratch,
+        force: &mut [f64],
+    ) {
         force.fill(0.0);
-        self.pose(at.q, at.v, scratch);
-        self.weights(at, force);
+        if terms.contact {
+            self.deflect(at.q, at.v, scratch);
+        }
+        if terms.rigid {
+            self.weights(at, force);
+        }
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &mut scratch.chains[k];
-            chain.add_weights(&self.gravity(), state, force);
-            let joints = self.joints(k, at);
-            chain.add_joints(&joints, state, force);
-            self.end_forces(k, at, &joints, scratch, force);
+            if terms.weights {
+                chain.add_weights(&self.gravity(), state, force);
+            }
+            if terms.ends || terms.joints {
+                let joints = self.joints(k, at);
+                if terms.joints {
+                    chain.add_joints(&joints, state, force);
+                } else {
+                    chain.add_ends(&joints, state, force);
+                }
+                self.end_forces(k, at, &joints, scratch, force);
+            }
+            if terms.contact {
+                let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+                let (blocks, border) = force.split_at_mut(self.layout.beam());
+                chain.add_contact(
+                    &surface,
+                    &at.ropes.contact,
+                    &mut scratch.chains[k],
+                    blocks,
+                    border,
+                );
+            }
+        }
+        if terms.rigid {
+            self.hooks.add_forces(at, force);
+        }
+    }
+
+    /// Forces of pieces that hang on no machine, at poses that are in `scratch`: of laws without a past.
+    pub(super) fn forces_of(
+        &self,
+        hooks: &Hooks,
+        at: &Instant<'_>,
+        scratch: &Scratch,
+        force: &mut [f64],
+    ) {
+        force.fill(0.0);
+        hooks.add_forces(at, force);
+        for (k, chain) in self.chains.iter().enumerate() {
+            let axial = self.axial(hooks, k, at);
+            if axial.is_some() {
+                let joints = Joints {
+                    axial,
+                    ..self.joints(k, at)
+                };
+                chain.add_pulls(&joints, &scratch.chains[k], force);
+            }
+        }
+    }
+
+    /// Derivative of the contact's forces by stiffness, or by damping, of its law into `force`: of the
+    /// points that are in `scratch`, where they are pressed.
+    pub(super) fn contact_by(
+        &self,
+        at: &Instant<'_>,
+        by_damping: bool,
+        scratch: &mut Scratch,
+        force: &mut [f64],
+    ) {
+        force.fill(0.0);
+        for (k, chain) in self.chains.iter().enumerate() {
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             let (blocks, border) = force.split_at_mut(self.layout.beam());
-            chain.add_contact(
-                &surface,
-                &at.ropes.contact,
-                &mut scratch.chains[k],
-                blocks,
-                border,
-            );
+            let state = &mut scratch.chains[k];
+            state.points.vary(&at.ropes.contact, by_damping);
+            chain.add_pressed(&surface, state, blocks, border);
         }
-        self.hooks.add_forces(at, force);
     }
 
     /// What presses and pulls on the back head at an instant, without the rest of the loads:

@@ -1,6 +1,8 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
 use crate::linear::{Bordered, Entry};
+use crate::model::forces::Terms;
+use crate::model::hook::Hooks;
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
 use crate::model::ropes::Ropes;
@@ -42,7 +44,8 @@ impl<'a> Individual<'a> {
             drive,
             scratch,
             load_share: 1.0,
-            at: (0.0, machine.drive_state(&drive, 0.0)),
+            // of no time: the first question fills it
+            at: (f64::NAN, DriveState::default()),
         }
     }
 
@@ -68,9 +71,7 @@ impl<'a> Individual<'a> {
     /// From now on only a share of the load hangs at the suspension point.
     pub fn share_load(&mut self, share: f64) {
         self.load_share = share;
-        let mut state = self.machine.drive_state(&self.drive, self.at.0);
-        state.load *= share;
-        self.at.1 = state;
+        self.at.0 = f64::NAN;
     }
 
     /// Force of the back ropes on their head, contact and anchor together, in W \[N\].
@@ -126,6 +127,31 @@ impl<'a> Individual<'a> {
             individual: self,
             at,
         }
+    }
+
+    /// Some terms of the generalised forces, with the poses of the last evaluation.
+    pub(crate) fn posed_forces(&mut self, at: StateRef<'_>, terms: Terms, force: &mut [f64]) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine
+            .posed_forces(&instant, terms, &mut self.scratch, force);
+    }
+
+    /// Forces of pieces that hang on no machine, with the poses of the last evaluation.
+    pub(crate) fn forces_of(&mut self, hooks: &Hooks, at: StateRef<'_>, force: &mut [f64]) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine
+            .forces_of(hooks, &instant, &self.scratch, force);
+    }
+
+    /// Derivative of the contact's forces by stiffness, or by damping, of its law, at the points of the
+    /// last evaluation.
+    pub(crate) fn contact_by(&mut self, at: StateRef<'_>, by_damping: bool, force: &mut [f64]) {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        self.machine
+            .contact_by(&instant, by_damping, &mut self.scratch, force);
     }
 
     /// Lets laws with a past remember an accepted state.

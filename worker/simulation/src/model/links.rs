@@ -5,7 +5,8 @@ use crate::math::elementary::sin_cos;
 use crate::math::rotation::{about_z, skew};
 use crate::model::chain::parts::{Held, Joints};
 use crate::model::description::Arc;
-use crate::model::hook::axial::Carrier;
+use crate::model::hook::Hooks;
+use crate::model::hook::axial::{AxialLaws, Carrier};
 use crate::model::instant::Instant;
 use crate::model::machine::Machine;
 use crate::model::strand::{BACK, Face, Strand};
@@ -42,20 +43,26 @@ impl Machine {
                 law: &at.ropes.anchor,
                 pinned: false,
             }),
-            axial: {
-                let pitch = self.description.rope.pitch;
-                let share = self.share();
-                // laws along a rope are of the pair, as its coefficients are
-                let stiffness = at.ropes.joint.stiffness[0] * pitch / share;
-                let rope = self.strands[chain].rope;
-                let carrier = Carrier {
-                    stiffness,
-                    share,
-                    length: pitch,
-                };
-                self.hooks.axial(rope, at.drive, carrier)
-            },
+            axial: self.axial(&self.hooks, chain, at),
         }
+    }
+
+    /// The laws that effects have hung along a chain.
+    pub(crate) fn axial<'a>(
+        &self,
+        hooks: &'a Hooks,
+        chain: usize,
+        at: &Instant<'a>,
+    ) -> Option<AxialLaws<'a>> {
+        let pitch = self.description.rope.pitch;
+        let share = self.share();
+        // laws along a rope are of the pair, as its coefficients are
+        let carrier = Carrier {
+            stiffness: at.ropes.joint.stiffness[0] * pitch / share,
+            share,
+            length: pitch,
+        };
+        hooks.axial(self.strands[chain].rope, at.drive, carrier)
     }
 
     /// The joint on the crossbeam end of the rod, or on the suspension point.

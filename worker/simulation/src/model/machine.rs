@@ -88,20 +88,39 @@ impl Machine {
     fn install_effects(&mut self) {
         let mut hooks = Hooks::default();
         if let Some((effects, cycle)) = &self.effects {
-            let site = Site {
-                description: &self.description,
-                layout: self.layout,
-                cycle,
-                bottom: self.bottom,
-                lowest_suspension: self.lowest_suspension,
-                card: &self.card,
-                faces: &self.faces,
-            };
+            let site = self.site(cycle);
             for effect in effects {
                 effect.install(&site, &mut hooks);
             }
         }
         self.hooks = hooks;
+    }
+
+    /// The pieces that an effect would hang on the machine as it is.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(crate) fn pieces_of(&self, effect: &dyn Effect) -> Result<Hooks, InvalidDescription> {
+        let d = &self.description;
+        let own = match &self.effects {
+            Some((_, cycle)) => cycle.clone(),
+            None => Cycle::new(d, &Mechanism::of(d), &self.bottom)?,
+        };
+        let mut hooks = Hooks::default();
+        effect.install(&self.site(&own), &mut hooks);
+        Ok(hooks)
+    }
+
+    fn site<'a>(&'a self, cycle: &'a Cycle) -> Site<'a> {
+        Site {
+            description: &self.description,
+            layout: self.layout,
+            cycle,
+            bottom: self.bottom,
+            lowest_suspension: self.lowest_suspension,
+            card: &self.card,
+            faces: &self.faces,
+        }
     }
 
     fn assemble(

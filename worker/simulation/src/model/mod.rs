@@ -5,7 +5,7 @@ pub mod chain;
 pub mod contact;
 pub(crate) mod cycle;
 pub mod description;
-mod forces;
+pub(crate) mod forces;
 pub(crate) mod hook;
 mod ideal;
 pub(crate) mod individual;

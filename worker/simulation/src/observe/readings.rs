@@ -22,17 +22,22 @@ pub(crate) fn readings(
         individual.all_loads(at, force)
     };
     let mut stress = gauge_stress(&loads, &state.a);
-    let machine = individual.machine;
-    if machine.hooks.has_readings() {
-        let recorded = individual.drive.turn(state.t)[0] - machine.hooks.index_offset();
-        let sampled = Sampled {
-            head_push: individual.head_push(),
-            back_tension: individual.base_tensions(BACK).sum(),
-            joint_stiffness: individual.ropes.joint.stiffness[0],
-            beam: state.q[machine.layout.beam()],
-            elapsed: recorded / std::f64::consts::TAU,
-        };
-        machine.hooks.read(&sampled, &mut stress);
+    let hooks = &individual.machine.hooks;
+    if hooks.has_readings() {
+        hooks.read(&sampled(individual, state), &mut stress);
     }
     stress
+}
+
+/// What readings may know of a state, all of whose loads an individual has.
+pub(crate) fn sampled(individual: &Individual<'_>, state: &State) -> Sampled {
+    let machine = individual.machine;
+    let recorded = individual.drive.turn(state.t)[0] - machine.hooks.index_offset();
+    Sampled {
+        head_push: individual.head_push(),
+        back_tension: individual.base_tensions(BACK).sum(),
+        joint_stiffness: individual.ropes.joint.stiffness[0],
+        beam: state.q[machine.layout.beam()],
+        elapsed: recorded / std::f64::consts::TAU,
+    }
 }

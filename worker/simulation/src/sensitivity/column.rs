@@ -59,6 +59,19 @@ impl Coefficient {
         }
     }
 
+    /// The law with a coefficient of 1 and no other, and no preload.
+    pub(super) const fn unit(self, law: &RopeLaw) -> RopeLaw {
+        let mut unit = *law;
+        unit.bushing.preload = 0.0;
+        let mut k = 0;
+        while k < Self::ALL.len() {
+            *Self::ALL[k].of(&mut unit) = 0.0;
+            k += 1;
+        }
+        *self.of(&mut unit) = 1.0;
+        unit
+    }
+
     /// A law with this coefficient moved by so many decades, to first order.
     #[must_use]
     pub(super) fn moved(self, law: &RopeLaw, decades: f64) -> RopeLaw {

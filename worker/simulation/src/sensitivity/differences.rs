@@ -1,9 +1,11 @@
 //! Differences of what one stage or one sample says, at two places beside the one at hand.
-use crate::effect::Parameter;
+use crate::effect::{Parameter, Place};
 
-/// Share of a parameter's size over which a residual is differenced: what is left of curvature is its
-/// square, and forces of a hundred kilonewtons are rounded at 1e-11 N.
-const SHARE: f64 = 1e-7;
+/// Share of a parameter's size over which a residual is differenced: geometry moves points of contact in
+/// and out of touch, where a force has no second derivative; drive and load are smooth, and their curves
+/// are rounded.
+const GEOMETRY: f64 = 1e-7;
+const CURVE: f64 = 1e-5;
 
 /// Where a function is asked beside the place at hand, and how its values make a derivative of second
 /// order.
@@ -38,12 +40,16 @@ impl Difference {
 
     /// By decades of a coefficient, in which forces are linear.
     pub(super) const fn decades() -> Self {
-        Self::central(SHARE)
+        Self::central(CURVE)
     }
 
-    /// For a parameter at a value, within its bounds.
-    pub(super) fn within(parameter: &Parameter, value: f64) -> Self {
-        let step = SHARE * parameter.scale;
+    /// For a parameter at a value, within its bounds, by what its effect changes.
+    pub(super) fn within(place: Place, parameter: &Parameter, value: f64) -> Self {
+        let share = match place {
+            Place::Dynamics => GEOMETRY,
+            Place::Drive | Place::Load | Place::Gauge => CURVE,
+        };
+        let step = share * parameter.scale;
         if value - step < parameter.lower {
             Self::one_sided(step)
         } else if value + step > parameter.upper {

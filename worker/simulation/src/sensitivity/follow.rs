@@ -1,9 +1,10 @@
 //! A run with its columns: what a run reports of its steps and samples, differentiated behind it.
 use super::block::{Bases, Block, add_column};
-use super::column::{Columns, Derivative, Missing};
+use super::column::{Coefficient, Columns, Derivative, Missing};
 use super::differences::Difference;
 use super::plan::{Plan, Way};
 use super::side::Side;
+use super::source::{ROPES, Source, add};
 use super::tangents::Tangents;
 use crate::integrator::dense::{Weights, interpolate};
 use crate::integrator::method::Method;
@@ -14,6 +15,7 @@ use crate::model::{Individual, Machine, Scratch};
 use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
 use crate::verdict::Verdict;
+use std::f64::consts::LN_10;
 
 /// Simulates one individual and differentiates the run; verdict, samples and counters are those of
 /// [`run::simulate`](crate::run::simulate), bit for bit. A run that fails has no columns.
@@ -62,9 +64,96 @@ const MOVED: f64 = 1e-8;
 
 /// A column that is worked out.
 struct Active<'a> {
-    sides: [Side<'a>; 2],
+    /// Its place in the plan.
+    column: usize,
+    source: Source<'a>,
+    /// The machines beside, two or none.
+    sides: Vec<Side<'a>>,
     difference: Difference,
+    /// Whether the gauges know of the parameter where the state is as it was.
+    explicit: bool,
     curves: [Vec<f64>; 4],
+}
+
+impl<'a> Active<'a> {
+    /// Nothing where there is nothing to work out.
+    fn new(
+        (machine, law): (&'a Machine, &RopeLaw),
+        settings: &RunSettings,
+        (column, way): (usize, &'a Way),
+    ) -> Option<Self> {
+        let side = |machine: &'a Machine, law: &RopeLaw| {
+            Side::new(machine, machine.ropes(law), settings.drive(machine))
+        };
+        let curves = [const { Vec::new() }; 4];
+        match way {
+            Way::Coefficient(coefficient) => {
+                let difference = Difference::decades();
+                let moved = |step| side(machine, &coefficient.moved(law, step));
+                let factor = LN_10 * *coefficient.of(&mut law.clone());
+                let source = match coefficient {
+                    // laws along a rope ask for its stiffness, and remember
+                    _ if machine.hooks.has_axial() => Source::Difference(ROPES, false),
+                    Coefficient::Kc | Coefficient::Cc => Source::Contact {
+                        by_damping: *coefficient == Coefficient::Cc,
+                        factor,
+                    },
+                    other => Source::Joints(side(machine, &other.unit(law)), factor),
+                };
+                Some(Self {
+                    column,
+                    source,
+                    sides: difference.steps.map(moved).to_vec(),
+                    difference,
+                    explicit: true,
+                    curves,
+                })
+            }
+            Way::Beside {
+                machines,
+                difference,
+                differing,
+            } => {
+                let source = differing.terms.map_or(Source::Nothing, |(terms, inertia)| {
+                    Source::Difference(terms, inertia)
+                });
+                let mut all = machines.iter().chain([machine]);
+                let read = all.any(|machine| machine.hooks.has_readings());
+                let sides = machines.iter().map(|machine| side(machine, law));
+                Some(Self {
+                    column,
+                    source,
+                    sides: sides.collect(),
+                    difference: *difference,
+                    explicit: differing.stress || read,
+                    curves,
+                })
+            }
+            Way::Pieces(hooks) => Some(Self {
+                column,
+                source: Source::Pieces(hooks),
+                sides: Vec::new(),
+                difference: Difference::decades(),
+                explicit: false,
+                curves,
+            }),
+            Way::Nothing | Way::Missing(_) => None,
+        }
+    }
+
+    /// Place in the order in which columns are worked out: the contact's own need its points, which other
+    /// machines move; those without a motion come last and are not in the blocks.
+    const fn order(&self) -> u8 {
+        match self.source {
+            Source::Contact { .. } => 0,
+            Source::Joints(..) | Source::Pieces(_) | Source::Difference(..) => 1,
+            Source::Nothing => 2,
+        }
+    }
+
+    const fn moves(&self) -> bool {
+        !matches!(self.source, Source::Nothing)
+    }
 }
 
 /// Follows a run.
@@ -91,7 +180,7 @@ struct Room {
     bases: Bases,
     scratch: Scratch,
     right: Vec<Lanes>,
-    force: [Vec<f64>; 3],
+    force: [Vec<f64>; 2],
     state: State,
 }
 
@@ -102,31 +191,12 @@ impl<'a, 'o> Follower<'a, 'o> {
         plan: &'a Plan,
         observer: &'o mut dyn Observe,
     ) -> Self {
-        let side = |machine: &'a Machine, law: &RopeLaw| {
-            Side::new(machine, machine.ropes(law), settings.drive(machine))
-        };
-        let active = plan.ways.iter().filter_map(|way| {
-            let (sides, difference) = match way {
-                Way::Coefficient(coefficient) => {
-                    let difference = Difference::decades();
-                    let moved = |step| side(machine, &coefficient.moved(law, step));
-                    (difference.steps.map(moved), difference)
-                }
-                Way::Beside {
-                    machines,
-                    difference,
-                } => (
-                    machines.each_ref().map(|machine| side(machine, law)),
-                    *difference,
-                ),
-                Way::Nothing | Way::Missing(_) => return None,
-            };
-            Some(Active {
-                sides,
-                difference,
-                curves: [const { Vec::new() }; 4],
-            })
-        });
+        let subject = (machine, law);
+        let ways = plan.ways.iter().enumerate();
+        let mut active: Vec<_> = ways
+            .filter_map(|way| Active::new(subject, settings, way))
+            .collect();
+        active.sort_by_key(Active::order);
         let missing = match settings.method {
             Method::RungeKutta(_) => None,
             Method::Rosenbrock | Method::GeneralizedAlpha { .. } | Method::Bdf { .. } => {
@@ -134,8 +204,8 @@ impl<'a, 'o> Follower<'a, 'o> {
             }
         };
         Self {
-            own: side(machine, law),
-            active: active.collect(),
+            own: Side::new(machine, machine.ropes(law), settings.drive(machine)),
+            active,
             settings: *settings,
             observer,
             blocks: Vec::new(),
@@ -149,51 +219,46 @@ impl<'a, 'o> Follower<'a, 'o> {
     /// Each column in the order of the plan.
     fn columns(self, plan: &Plan) -> Columns {
         let missing = self.missing;
-        let mut active = self.active.into_iter();
-        let one = |way: &Way| match way {
-            Way::Nothing => Derivative::Nothing,
-            Way::Missing(missing) => Derivative::Missing(*missing),
-            Way::Coefficient(_) | Way::Beside { .. } => {
-                let curves = active.next().map(|active| active.curves);
-                match (missing, curves) {
-                    (Some(missing), _) => Derivative::Missing(missing),
-                    (None, curves) => curves.map_or(Derivative::Nothing, judged),
-                }
-            }
-        };
+        let mut columns: Vec<_> = plan
+            .ways
+            .iter()
+            .map(|way| match way {
+                Way::Missing(missing) => Derivative::Missing(*missing),
+                _ => Derivative::Nothing,
+            })
+            .collect();
+        for active in self.active {
+            columns[active.column] =
+                missing.map_or_else(|| judged(active.curves), Derivative::Missing);
+        }
         Columns {
-            columns: plan.ways.iter().map(one).collect(),
+            columns,
             factorizations: self.room.map_or(0, |room| room.tangents.factorizations),
         }
     }
 
     /// `dR/dp` of the columns of one block at a stage into `room.right`.
-    fn right(&mut self, block: usize) {
+    fn right(&mut self, block: usize, individual: &mut Individual<'_>) {
         let Some(Room {
             tangents,
-            scratch,
             right,
-            force: [own, one, sum],
+            force: [one, sum],
             ..
         }) = &mut self.room
         else {
             return;
         };
         right.fill(Lanes::default());
-        let State { a, .. } = &tangents.state;
-        let at = tangents.state.motion();
         let columns = self.active.chunks_mut(LANES).nth(block);
         for (lane, active) in columns.into_iter().flatten().enumerate() {
-            let difference = active.difference;
-            sum.fill(0.0);
-            if difference.own != 0.0 {
-                self.own.residual(scratch, at, a, own);
-                add(sum, difference.own, own);
-            }
-            for (side, weight) in active.sides.iter_mut().zip(difference.weights) {
-                side.residual(scratch, at, a, one);
-                add(sum, weight, one);
-            }
+            let Active {
+                source,
+                sides,
+                difference,
+                ..
+            } = active;
+            let between = (&mut self.own, &mut sides[..], &*difference);
+            source.right(individual, &tangents.state, between, [one, sum]);
             for (right, sum) in right.iter_mut().zip(&*sum) {
                 right.0[lane] = *sum;
             }
@@ -212,7 +277,10 @@ impl<'a, 'o> Follower<'a, 'o> {
         };
         self.own.remember(scratch, state);
         for (at, active) in self.active.iter_mut().enumerate() {
-            let now = &self.blocks[at / LANES].ends[0];
+            let Some(block) = self.blocks.get(at / LANES) else {
+                break;
+            };
+            let now = &block.ends[0];
             let weights = Weights::at([0.0, 1.0], 0.0);
             for (side, step) in active.sides.iter_mut().zip(active.difference.steps) {
                 if side.machine.hooks.has_axial() {
@@ -238,7 +306,7 @@ impl<'a, 'o> Follower<'a, 'o> {
                 made.map_err(|_| Missing::Singular)?;
             }
             for block in 0..self.blocks.len() {
-                self.right(block);
+                self.right(block, &mut system.equations);
                 if let Some(room) = &mut self.room {
                     self.blocks[block].stage(
                         &system.equations,
@@ -267,7 +335,8 @@ impl<'a, 'o> Follower<'a, 'o> {
         stages: usize,
     ) -> Result<(), Missing> {
         let n = state.q.len();
-        let blocks = self.active.len().div_ceil(LANES);
+        let moving = self.active.iter().filter(|active| active.moves());
+        let blocks = moving.count().div_ceil(LANES);
         // the explicit first stage is where the step begins, the last one where it ends
         self.blocks = vec![Block::new(n, stages - 2); blocks];
         let mut room = Room {
@@ -275,7 +344,7 @@ impl<'a, 'o> Follower<'a, 'o> {
             bases: Bases::new(n),
             scratch: Scratch::new(system.equations.machine),
             right: vec![Lanes::default(); n],
-            force: [const { Vec::new() }; 3].map(|_: Vec<f64>| vec![0.0; n]),
+            force: [const { Vec::new() }; 2].map(|_: Vec<f64>| vec![0.0; n]),
             state: state.clone(),
         };
         let made = room.tangents.rest(system, state, &mut room.force[0]);
@@ -286,7 +355,7 @@ impl<'a, 'o> Follower<'a, 'o> {
             curve.reserve_exact(self.settings.samples);
         }
         for block in 0..blocks {
-            self.right(block);
+            self.right(block, &mut system.equations);
             if let Some(room) = &mut self.room {
                 self.blocks[block].rest(&room.tangents, &mut room.right);
             }
@@ -345,18 +414,21 @@ impl Observe for Follower<'_, '_> {
                     *sum += share * reading;
                 }
             };
-            add(share, own);
-            for (side, share) in active.sides.iter_mut().zip(shares) {
+            if active.explicit {
+                add(share, own);
+            }
+            let explicit = active.sides.iter_mut().zip(shares);
+            for (side, share) in explicit.filter(|_| active.explicit) {
                 let t = self.settings.sampled(side.machine, &side.drive, index);
                 interpolate(from, to, t, beside);
                 add(share, side.readings(scratch, beside, force));
             }
             // the ends have changed places when the step was accepted
-            let [ended, began] = &self.blocks[at / LANES].ends;
-            let size = began.size(at % LANES).max(ended.size(at % LANES));
-            if size > 0.0 {
+            let ends = self.blocks.get(at / LANES).map(|block| &block.ends);
+            if let Some([ended, began]) = ends.filter(|_| active.moves()) {
+                let size = began.size(at % LANES).max(ended.size(at % LANES));
                 let step = MOVED / size;
-                for step in [step, -step] {
+                for step in [step, -step].into_iter().filter(|_| size > 0.0) {
                     beside.clone_from(state);
                     add_column([began, ended], at % LANES, &weights, step, beside);
                     add(0.5 / step, self.own.readings(scratch, beside, force));
@@ -415,11 +487,5 @@ fn judged(curves: [Vec<f64>; 4]) -> Derivative {
         Derivative::Curves(curves)
     } else {
         Derivative::Missing(Missing::NotFinite)
-    }
-}
-
-fn add(to: &mut [f64], weight: f64, x: &[f64]) {
-    for (to, x) in to.iter_mut().zip(x) {
-        *to += weight * x;
     }
 }

@@ -17,6 +17,7 @@ mod differences;
 mod follow;
 mod plan;
 mod side;
+mod source;
 mod tangents;
 
 pub use column::{Coefficient, Column, Columns, Derivative, Missing};

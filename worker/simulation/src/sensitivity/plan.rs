@@ -1,9 +1,11 @@
 //! Which columns are asked for: checked, and for every effect's parameter the machines beside it.
 use super::column::{Coefficient, Column, Missing};
 use super::differences::Difference;
+use super::source::Differing;
 use crate::effect::{Asked, Chosen, Role, chosen};
 use crate::model::Machine;
 use crate::model::description::Description;
+use crate::model::hook::Hooks;
 use crate::model::layout::Motion;
 
 /// What a machine was made of.
@@ -56,7 +58,10 @@ pub(super) enum Way {
     Beside {
         machines: Box<[Machine; 2]>,
         difference: Difference,
+        differing: Differing,
     },
+    /// Of the pieces of a force that is linear in its size, at a size of 1.
+    Pieces(Box<Hooks>),
     Nothing,
     Missing(Missing),
 }
@@ -158,7 +163,18 @@ fn way(
     if parameter.whole {
         return Way::Missing(Missing::Whole);
     }
-    let difference = Difference::within(parameter, one.values[k]);
+    // what is beside laws with a past changes what they remember
+    if one.descriptor().generic && !machine.hooks.has_axial() {
+        let mut unit = one.clone();
+        unit.values[k] = 1.0;
+        return machine
+            .pieces_of(&*unit.build())
+            .map_or(Way::Missing(Missing::NoMachine), |hooks| {
+                Way::Pieces(Box::new(hooks))
+            });
+    }
+    let place = one.descriptor().place;
+    let difference = Difference::within(place, parameter, one.values[k]);
     let beside = difference.steps.map(|step| {
         let mut effects = effects.to_vec();
         effects[varied].values[k] += step;
@@ -177,6 +193,7 @@ fn way(
         return Way::Missing(Missing::Coordinates);
     }
     Way::Beside {
+        differing: Differing::between(machine, &first, place),
         machines: Box::new([first, second]),
         difference,
     }

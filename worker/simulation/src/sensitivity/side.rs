@@ -1,10 +1,11 @@
 //! A machine beside the one that runs: what its stages, its past and its gauges say where a parameter is
 //! a little off.
 use crate::drive::Drive;
+use crate::model::forces::Terms;
 use crate::model::hook::Memory;
 use crate::model::{Individual, Machine, Ropes, Scratch};
 use crate::observe::readings;
-use crate::system::{Equations, State, StateRef};
+use crate::system::{Equations, State};
 
 /// An individual without buffers of its own.
 #[derive(Clone, Debug)]
@@ -27,7 +28,7 @@ impl<'a> Side<'a> {
     }
 
     /// The individual with buffers lent to it.
-    fn within<T>(
+    pub(super) fn within<T>(
         &mut self,
         scratch: &mut Scratch,
         ask: impl FnOnce(&mut Individual<'a>) -> T,
@@ -47,17 +48,20 @@ impl<'a> Side<'a> {
         }
     }
 
-    /// Residual `Q - M a`.
+    /// Some terms of the residual `Q - M a`, inertia among them or not, at a state whose poses are in
+    /// `scratch`.
     pub(super) fn residual(
         &mut self,
         scratch: &mut Scratch,
-        at: StateRef<'_>,
-        a: &[f64],
+        state: &State,
+        (terms, inertia): (Terms, bool),
         out: &mut [f64],
     ) {
         self.within(scratch, |individual| {
-            individual.forces(at, out);
-            individual.subtract_inertia(at.q, a, out);
+            individual.posed_forces(state.motion(), terms, out);
+            if inertia {
+                individual.subtract_inertia(&state.q, &state.a, out);
+            }
         });
     }
 

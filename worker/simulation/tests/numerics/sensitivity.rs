@@ -188,14 +188,14 @@ fn fast() -> Subject {
 
 fn show(subject: &Subject, columns: &[Column]) {
     let (found, steps) = subject.columns(columns);
-    for (column, found) in columns.iter().zip(found) {
-        let step = match column {
+    for (column_of, found) in columns.iter().zip(found) {
+        let step = match column_of {
             Column::Coefficient(_) => 2e-3,
             Column::Parameter {
                 effect, parameter, ..
             } => 1e-2 * find(effect, parameter).scale,
         };
-        let name = match column {
+        let name = match column_of {
             Column::Coefficient(c) => format!("{c:?}"),
             Column::Parameter {
                 effect, parameter, ..
@@ -203,18 +203,20 @@ fn show(subject: &Subject, columns: &[Column]) {
         };
         match found {
             Derivative::Curves(curves) => {
-                for share in [0.01] {
-                    let (judge, apart) = subject.differenced(column, share * step, &steps);
-                    let column = curves.concat();
-                    if name.contains("front_head") || name.contains("angle") || name.contains("front_rope") {
-                        for k in (0..72).step_by(4) { println!("   {k} {:.4e} {:.4e}", judge[k], column[k] - judge[k]); }
-                    }
+                let column = curves.concat();
+                let judged = [1.0, 0.1, 0.01].map(|share| {
+                    let (judge, apart) = subject.differenced(column_of, share * step, &steps);
                     let size = norm(&judge) / (judge.len() as f64).sqrt() / 1e6;
-                    println!(
-                        "{name}: {size:.3e} MPa, off {:.1e}, judge {apart:.1e} {share}",
-                        distance(&column, &judge)
-                    );
-                }
+                    (apart, distance(&column, &judge), size)
+                });
+                let best = judged
+                    .into_iter()
+                    .min_by(|x, y| x.0.total_cmp(&y.0))
+                    .unwrap();
+                println!(
+                    "{name}: {:.3e} MPa, off {:.1e}, judge {:.1e}",
+                    best.2, best.1, best.0
+                );
             }
             other => println!("{name}: {other:?}"),
         }
@@ -231,8 +233,11 @@ fn coefficients() {
 fn effects() {
     let columns: Vec<Column> = catalogue()
         .iter()
-        .filter(|d| ["front_head_radius", "head_damping", "card_smoothing", "fluid_pound", "rope_stretch", "crank_angle_offset", "load_cell_lag", "crank_speed_ripple", "probe.front_rope.const", "probe.back_head.sgn_v"].contains(&&*d.id))
-.flat_map(|d| {
+        .filter(|d| {
+            let shown = ["const", "d2", "sgn_v", "v", "cos3"];
+            !d.generic || shown.iter().any(|form| d.id.ends_with(&format!(".{form}")))
+        })
+        .flat_map(|d| {
             d.parameters
                 .iter()
                 .filter(|p| p.role == Role::Size)

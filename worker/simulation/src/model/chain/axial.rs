@@ -3,7 +3,8 @@
 //! A law knows extension and rate alone, not whether the cylinders move in the plane or in space.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
-use crate::element::bushing::Pull;
+use crate::element::bushing::{LinkLoad, Pull};
+use crate::element::plane::PlaneLoad;
 use crate::model::hook::Along;
 
 #[expect(
@@ -42,6 +43,31 @@ impl Chain {
             by_extension: along.by_place,
             by_rate: along.by_rate,
         })
+    }
+
+    /// Adds what the laws along the rope pull, without the joints' own forces.
+    pub(crate) fn add_pulls(&self, joints: &Joints<'_>, state: &ChainState, force: &mut [f64]) {
+        for joint in 1..self.count {
+            let Some(pull) = self.pull(joint, joints, state) else {
+                return;
+            };
+            if self.in_plane(joint) {
+                let [i, j] = self.plane_markers(joint, &state.plane);
+                let mut load = PlaneLoad::default();
+                load.add_pull((&i, &j), &pull);
+                let at = &mut force[(self.first + joint - 1) * 3..][..6];
+                at[0] -= load.force.x;
+                at[1] -= load.force.y;
+                at[2] += load.torque_j;
+                at[3] += load.force.x;
+                at[4] += load.force.y;
+                at[5] += load.torque_i;
+            } else if let Some(([i, j], law)) = self.link(joint, joints, state) {
+                let mut load = LinkLoad::none();
+                law.add_pull((&i, &j), &pull, &mut load);
+                self.add_load(joint, &load, state, force);
+            }
+        }
     }
 
     /// Lets laws with a past remember the step that ended in these poses.

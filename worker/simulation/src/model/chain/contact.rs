@@ -32,11 +32,23 @@ impl Chain {
         force: &mut [f64],
         border: &mut [f64],
     ) {
+        self.touch(surface, law, state);
+        self.add_pressed(surface, state, force, border);
+        state.deepest = state.points.deepest();
+    }
+
+    /// Adds the forces of the points of contact that are in `state`.
+    pub(crate) fn add_pressed(
+        &self,
+        surface: &Surface<'_>,
+        state: &mut ChainState,
+        force: &mut [f64],
+        border: &mut [f64],
+    ) {
         if let Some(bend) = &surface.bend {
             state.pressure.clear(bend.shapes);
         }
         state.contact.fill(0.0);
-        self.touch(surface, law, state);
         let (points, contact, force) =
             (&state.points, &mut state.contact, &mut force[self.range()]);
         let loads = match self.motion {
@@ -44,7 +56,6 @@ impl Chain {
             Motion::Space => self.press(points, &state.poses, contact, force),
         };
         let Pressed { beam, lost, .. } = loads;
-        state.deepest = state.points.deepest();
         state.dissipated = lost;
         if surface.bend.is_some() {
             state.points.spread(&mut state.pressure);

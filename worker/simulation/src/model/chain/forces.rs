@@ -1,6 +1,7 @@
 //! Forces of weight and joints on the cylinders of a chain.
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
+use crate::element::bushing::LinkLoad;
 use crate::linear::BLOCK;
 use crate::math::elementary::sin_cos_all;
 use crate::model::layout::Motion;
@@ -82,31 +83,63 @@ impl Chain {
             return;
         }
         for joint in 0..=self.count {
-            let Some(([i, j], law)) = self.link(joint, joints, state) else {
-                continue;
-            };
-            let mut load = law.load(&i, &j);
-            if let Some(pull) = self.pull(joint, joints, state) {
-                law.add_pull((&i, &j), &pull, &mut load);
-            }
-            let at = (self.first + joint) * BLOCK;
-            if joint > 0 {
-                add_wrench(
-                    &state.poses[joint - 1],
-                    &-load.force,
-                    &load.torque_j,
-                    &mut force[at - BLOCK..],
-                );
-            }
-            if joint < self.count {
-                add_wrench(
-                    &state.poses[joint],
-                    &load.force,
-                    &load.torque_i,
-                    &mut force[at..],
-                );
-            }
-            state.joints[joint] = load;
+            self.add_space_joint(joint, joints, state, force);
+        }
+    }
+
+    /// The same of the joints that hold the ends.
+    pub(crate) fn add_ends(&self, joints: &Joints<'_>, state: &mut ChainState, force: &mut [f64]) {
+        if self.motion == Motion::Plane {
+            self.add_plane_ends(joints, state, force);
+            return;
+        }
+        for joint in [0, self.count] {
+            self.add_space_joint(joint, joints, state, force);
+        }
+    }
+
+    fn add_space_joint(
+        &self,
+        joint: usize,
+        joints: &Joints<'_>,
+        state: &mut ChainState,
+        force: &mut [f64],
+    ) {
+        let Some(([i, j], law)) = self.link(joint, joints, state) else {
+            return;
+        };
+        let mut load = law.load(&i, &j);
+        if let Some(pull) = self.pull(joint, joints, state) {
+            law.add_pull((&i, &j), &pull, &mut load);
+        }
+        self.add_load(joint, &load, state, force);
+        state.joints[joint] = load;
+    }
+
+    /// Adds a joint's load to the cylinders that it holds in space.
+    pub(super) fn add_load(
+        &self,
+        joint: usize,
+        load: &LinkLoad,
+        state: &ChainState,
+        force: &mut [f64],
+    ) {
+        let at = (self.first + joint) * BLOCK;
+        if joint > 0 {
+            add_wrench(
+                &state.poses[joint - 1],
+                &-load.force,
+                &load.torque_j,
+                &mut force[at - BLOCK..],
+            );
+        }
+        if joint < self.count {
+            add_wrench(
+                &state.poses[joint],
+                &load.force,
+                &load.torque_i,
+                &mut force[at..],
+            );
         }
     }
 }

@@ -19,22 +19,8 @@ impl Chain {
         state: &mut ChainState,
         force: &mut [f64],
     ) {
+        self.add_plane_ends(joints, state, force);
         let force = &mut force[self.range()];
-        for joint in [0, self.count] {
-            let Some(([i, j], law)) = self.link(joint, joints, state) else {
-                continue;
-            };
-            let load = law.load(&i, &j);
-            let (at, sign, torque) = if joint == 0 {
-                (0, 1.0, load.torque_i.z)
-            } else {
-                ((joint - 1) * 3, -1.0, load.torque_j.z)
-            };
-            force[at] += sign * load.force.x;
-            force[at + 1] += sign * load.force.y;
-            force[at + 2] += torque;
-            state.joints[joint] = load;
-        }
         // on the cylinder between two joints, in registers: what was stored a moment ago is slow to read
         let mut carried = [force[0], force[1], force[2]];
         for joint in 1..self.count {
@@ -59,6 +45,31 @@ impl Chain {
             kept.dissipated = load.dissipated;
         }
         force[(self.count - 1) * 3..].copy_from_slice(&carried);
+    }
+
+    /// The same of the joints that hold the ends.
+    pub(super) fn add_plane_ends(
+        &self,
+        joints: &Joints<'_>,
+        state: &mut ChainState,
+        force: &mut [f64],
+    ) {
+        let force = &mut force[self.range()];
+        for joint in [0, self.count] {
+            let Some(([i, j], law)) = self.link(joint, joints, state) else {
+                continue;
+            };
+            let load = law.load(&i, &j);
+            let (at, sign, torque) = if joint == 0 {
+                (0, 1.0, load.torque_i.z)
+            } else {
+                ((joint - 1) * 3, -1.0, load.torque_j.z)
+            };
+            force[at] += sign * load.force.x;
+            force[at + 1] += sign * load.force.y;
+            force[at + 2] += torque;
+            state.joints[joint] = load;
+        }
     }
 
     /// Subtracts the tangent of the joints between the cylinders.

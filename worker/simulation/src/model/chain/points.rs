@@ -133,6 +133,17 @@ impl Points {
         );
     }
 
+    /// Puts the derivatives of the forces by the law's stiffness, or by its damping, in their place.
+    pub(crate) fn vary(&mut self, law: &Impact, by_damping: bool) {
+        let n = self.cylinders.len();
+        let force = self.force[..n].as_flattened_mut();
+        let at = self.depth[..n].as_flattened().iter();
+        for (force, (&depth, &rate)) in force.iter_mut().zip(at.zip(self.rate[..n].as_flattened()))
+        {
+            *force = law.force_by(depth, rate)[usize::from(by_damping)];
+        }
+    }
+
     fn collect<'a, const A: usize, P: InPlane<A> + 'a>(
         &mut self,
         chain: &Chain,

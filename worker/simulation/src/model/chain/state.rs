@@ -6,7 +6,7 @@ use crate::math::spline::sum::Spread;
 use crate::model::hook::axial::Memory;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector2;
 
 /// Poses and loads of a chain at the last evaluation of its forces; allocated once.
 #[derive(Clone, Debug)]
@@ -41,18 +41,11 @@ impl ChainState {
             Motion::Plane => (0, chain.count),
             Motion::Space => (chain.count, 0),
         };
-        let none = LinkLoad {
-            force: Vector3::zeros(),
-            torque_i: Vector3::zeros(),
-            torque_j: Vector3::zeros(),
-            axial: 0.0,
-            dissipated: 0.0,
-        };
         Self {
             poses: vec![Pose::new(&[0.0; 6], &[0.0; 6]); poses],
             plane: vec![PlanePose::new(&[0.0; 3], &[0.0; 3], Vector2::x()); plane],
             turns: std::array::from_fn(|_| vec![0.0; plane]),
-            joints: vec![none; chain.count + 1],
+            joints: vec![LinkLoad::none(); chain.count + 1],
             contact: vec![0.0; chain.count],
             points: Points::new(chain),
             pressure: Spread::default(),

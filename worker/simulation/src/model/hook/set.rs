@@ -135,6 +135,16 @@ impl Hooks {
         })
     }
 
+    /// Whether the crank leaves uniform rotation.
+    pub(crate) fn has_warps(&self) -> bool {
+        !self.warps.is_empty()
+    }
+
+    /// Whether the back head's surface is another one with other pieces.
+    pub(crate) fn digs_as(&self, other: &Self) -> bool {
+        (&self.profile, self.rise) == (&other.profile, other.rise)
+    }
+
     /// Whether there are laws along a rope.
     pub(crate) fn has_axial(&self) -> bool {
         self.axial.iter().any(|laws| !laws.is_empty())

@@ -1,0 +1,131 @@
+//! How `dR/dp` of a column comes about at a stage, at the state as it is.
+//!
+//! Closed: coefficients of the ropes, in which forces are linear, and generic forces, which are linear in
+//! their amplitude. Differenced: those terms of the residual in which a machine beside differs.
+use super::differences::Difference;
+use super::side::Side;
+use crate::effect::Place;
+use crate::model::forces::Terms;
+use crate::model::hook::Hooks;
+use crate::model::{Individual, Machine};
+use crate::system::State;
+
+/// How `dR/dp` comes about.
+#[derive(Clone, Debug)]
+pub(super) enum Source<'a> {
+    /// Times a factor, what the joints of ropes say that have a coefficient of 1 and no other.
+    Joints(Side<'a>, f64),
+    /// Times a factor, the contact's derivative by its stiffness, or by its damping.
+    Contact {
+        /// By which.
+        by_damping: bool,
+        /// The factor.
+        factor: f64,
+    },
+    /// What pieces of amplitude 1 say.
+    Pieces(&'a Hooks),
+    /// A difference between machines: of so many terms, of inertia or not.
+    Difference(Terms, bool),
+    /// The motion does not know of the parameter.
+    Nothing,
+}
+
+/// What a machine beside differs in.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Differing {
+    /// Terms of its forces, and whether its inertia.
+    pub(super) terms: Option<(Terms, bool)>,
+    /// Whether its head answers a given state with another stress, or another time belongs to a sample.
+    pub(super) stress: bool,
+}
+
+impl Differing {
+    /// What a machine beside differs in, by an effect that changes this of the model.
+    pub(super) fn between(own: &Machine, beside: &Machine, place: Place) -> Self {
+        let (d, o) = (&own.description, &beside.description);
+        let arcs = d.front_arc != o.front_arc || d.back_arc != o.back_arc;
+        let built = arcs || d.rod != o.rod || d.head != o.head || d.twins != o.twins;
+        let any = |has: fn(&Hooks) -> bool| has(&own.hooks) || has(&beside.hooks);
+        let driven = place == Place::Drive || any(Hooks::has_warps);
+        let contact = arcs
+            || d.head != o.head
+            || d.twins != o.twins
+            || d.rope != o.rope
+            || !own.hooks.digs_as(&beside.hooks);
+        let joints = any(Hooks::has_axial) || d.rope != o.rope;
+        let terms = Terms {
+            rigid: true,
+            weights: d.rope != o.rope,
+            ends: built || driven,
+            joints,
+            contact,
+        };
+        let inertia = built || d.beam_inertia != o.beam_inertia || d.rope != o.rope;
+        let still = place == Place::Gauge && !built && !joints && !contact;
+        Self {
+            terms: (!still).then_some((terms, inertia)),
+            stress: built || driven || contact,
+        }
+    }
+}
+
+/// Forces of the ropes alone.
+pub(super) const ROPES: Terms = Terms {
+    ends: true,
+    joints: true,
+    contact: true,
+    ..Terms::NONE
+};
+
+impl Source<'_> {
+    /// `dR/dp` into `sum`, at a state whose poses and points of contact `individual` has.
+    pub(super) fn right(
+        &mut self,
+        individual: &mut Individual<'_>,
+        state: &State,
+        (own, sides, difference): (&mut Side<'_>, &mut [Side<'_>], &Difference),
+        [one, sum]: [&mut [f64]; 2],
+    ) {
+        let at = state.motion();
+        let scale = |sum: &mut [f64], factor: f64| {
+            for x in sum {
+                *x *= factor;
+            }
+        };
+        match self {
+            Self::Joints(unit, factor) => {
+                let terms = Terms {
+                    contact: false,
+                    ..ROPES
+                };
+                unit.residual(&mut individual.scratch, state, (terms, false), sum);
+                scale(sum, *factor);
+            }
+            Self::Contact { by_damping, factor } => {
+                individual.contact_by(at, *by_damping, sum);
+                scale(sum, *factor);
+            }
+            Self::Pieces(hooks) => individual.forces_of(hooks, at, sum),
+            Self::Difference(terms, inertia) => {
+                sum.fill(0.0);
+                let asked = (*terms, *inertia);
+                let scratch = &mut individual.scratch;
+                if difference.own != 0.0 {
+                    own.residual(scratch, state, asked, one);
+                    add(sum, difference.own, one);
+                }
+                for (side, weight) in sides.iter_mut().zip(difference.weights) {
+                    side.residual(scratch, state, asked, one);
+                    add(sum, weight, one);
+                }
+            }
+            Self::Nothing => sum.fill(0.0),
+        }
+    }
+}
+
+pub(super) fn add(to: &mut [f64], weight: f64, x: &[f64]) {
+    for (to, x) in to.iter_mut().zip(x) {
+        *to += weight * x;
+    }
+}
