@@ -2,7 +2,7 @@
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
 /// Columns that are solved side by side.
-pub const LANES: usize = 8;
+pub const LANES: usize = 4;
 
 /// One unknown of [`LANES`] columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -94,9 +94,13 @@ impl<'a> Active<'a> {
                 let source = match coefficient {
                     // laws along a rope ask for its stiffness, and remember
                     _ if machine.hooks.has_axial() => Source::Difference(ROPES, false),
-                    Coefficient::Kc | Coefficient::Cc => Source::Contact {
-                        by_damping: *coefficient == Coefficient::Cc,
-                        factor,
+                    Coefficient::Kc => Source::Contact {
+                        by_damping: false,
+                        factor: LN_10 * machine.ropes(law).contact.stiffness,
+                    },
+                    Coefficient::Cc => Source::Contact {
+                        by_damping: true,
+                        factor: LN_10 * machine.ropes(law).contact.damping,
                     },
                     other => Source::Joints(side(machine, &other.unit(law)), factor),
                 };
@@ -470,8 +474,8 @@ impl Observe for Follower<'_, '_> {
             if own != 0.0 {
                 add_series(&self.own, 0.0, own);
             }
-            for ((side, step), weight) in active.sides.iter().zip(steps).zip(weights) {
-                add_series(side, step, weight);
+            for (k, (step, weight)) in steps.into_iter().zip(weights).enumerate() {
+                add_series(active.sides.get(k).unwrap_or(&self.own), step, weight);
             }
             active.curves = sum;
         }
