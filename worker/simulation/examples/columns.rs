@@ -33,7 +33,10 @@ fn main() {
     law.bushing.rotational_damping = [40.0 * deg; 2];
     law.contact.stiffness = 1e6;
     law.contact.damping = 50.0;
-    let settings = RunSettings { samples: 24, ..RunSettings::default() };
+    let settings = RunSettings {
+        samples: 24,
+        ..RunSettings::default()
+    };
     let origin = Origin {
         description: &description,
         modes,
@@ -104,7 +107,11 @@ fn main() {
         (t.elapsed().as_secs_f64(), s)
     };
     println!("{:?}", plain().1.statistics);
-    for (name, columns) in sets.into_iter().filter(|(name, _)| std::env::args().nth(1).is_none_or(|only| name.starts_with(&only))) {
+    for (name, columns) in sets.into_iter().filter(|(name, _)| {
+        std::env::args()
+            .nth(1)
+            .is_none_or(|only| name.starts_with(&only))
+    }) {
         let t = Instant::now();
         let plan = Plan::new(&origin, &machine, &columns).unwrap();
         let planned = t.elapsed().as_secs_f64();

@@ -1,6 +1,7 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
 use crate::linear::{Bordered, Entry};
+use crate::math::elementary::sin_cos;
 use crate::model::forces::Terms;
 use crate::model::hook::Hooks;
 use crate::model::instant::Instant;
@@ -89,6 +90,19 @@ impl<'a> Individual<'a> {
             push[1] += force.y;
         }
         push
+    }
+
+    /// Force of the end of the rope on the back head at coordinates and rates, in the beam frame \[N\].
+    pub(crate) fn anchor_pull(&mut self, at: StateRef<'_>) -> [f64; 2] {
+        self.move_to(at.t);
+        let instant = instant(&self.ropes, &self.at.1, at);
+        let joints = self.machine.joints(0, &instant);
+        let load = self.machine.chains[0].head_load(&joints, at.q, at.v);
+        let (s, c) = sin_cos(at.q[self.machine.layout.beam()]);
+        load.map_or([0.0; 2], |load| {
+            let [x, y] = [load.force.x, load.force.y];
+            [c * x + s * y, c * y - s * x]
+        })
     }
 
     /// Tensions at the bases of the ropes on the back head (0) or the front head (1) \[N\].

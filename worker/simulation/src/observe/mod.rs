@@ -1,5 +1,6 @@
 //! What is recorded of a revolution: gauge stress, rope tension, motion, torque.
 mod curves;
+mod gradient;
 mod readings;
 mod recorder;
 mod shape;
@@ -8,6 +9,7 @@ mod stress;
 mod tests;
 
 pub use curves::{Curves, Shape};
-pub(crate) use readings::readings;
+pub(crate) use gradient::Gradient;
+pub(crate) use readings::{readings, sampled};
 pub use recorder::Recorder;
 pub use stress::gauge_stress;

@@ -3,6 +3,7 @@ use super::tangents::Tangents;
 use crate::integrator::dense::Weights;
 use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
+use crate::observe::Gradient;
 use crate::system::{Equations, State};
 
 /// Derivatives of coordinates, rates and accelerations; n each.
@@ -147,4 +148,30 @@ pub(super) fn add_column(
         out.v[i] += f0 * v0 + f1 * v1 + g0 * a0 + g1 * a1;
         out.a[i] += r * a0 + s * a1;
     }
+}
+
+/// Derivatives of the gauges' stress along the columns between two ends.
+pub(super) fn stress(
+    [from, to]: [&Motion; 2],
+    weights: &Weights,
+    gradient: &Gradient,
+    beam: usize,
+) -> [Lanes; 4] {
+    let [f0, f1] = weights.value;
+    let [g0, g1] = weights.slope;
+    let [r, s] = weights.linear;
+    let mut sum = [Lanes::default(); 4];
+    for (i, [by_place, by_rate]) in &gradient.entries {
+        let i = *i;
+        let q = from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1;
+        let v = from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1;
+        for (gauge, sum) in sum.iter_mut().enumerate() {
+            *sum += q * by_place[gauge] + v * by_rate[gauge];
+        }
+    }
+    let a = from.a[beam] * r + to.a[beam] * s;
+    for (sum, by) in sum.iter_mut().zip(gradient.by_acceleration) {
+        *sum += a * by;
+    }
+    sum
 }

@@ -1,5 +1,5 @@
 //! A run with its columns: what a run reports of its steps and samples, differentiated behind it.
-use super::block::{Bases, Block, add_column};
+use super::block::{Bases, Block, add_column, stress};
 use super::column::{Coefficient, Columns, Derivative, Missing};
 use super::differences::Difference;
 use super::plan::{Plan, Way};
@@ -12,6 +12,7 @@ use crate::integrator::stepper::Stages;
 use crate::linear::{LANES, Lanes};
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Scratch};
+use crate::observe::Gradient;
 use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
 use crate::verdict::Verdict;
@@ -186,6 +187,8 @@ struct Room {
     right: Vec<Lanes>,
     force: [Vec<f64>; 2],
     state: State,
+    /// Derivatives of the stress, where there is such a thing.
+    gradient: Option<Gradient>,
 }
 
 impl<'a, 'o> Follower<'a, 'o> {
@@ -332,6 +335,89 @@ impl<'a, 'o> Follower<'a, 'o> {
         Ok(())
     }
 
+    /// Notes what the gauges read at a sample, and the derivatives.
+    fn read(&mut self, index: usize, state: &State) {
+        let Some(Room {
+            scratch,
+            state: beside,
+            force: [force, ..],
+            gradient,
+            ..
+        }) = &mut self.room
+        else {
+            return;
+        };
+        let own = match gradient {
+            Some(gradient) => self.own.gradient(scratch, state, (force, beside), gradient),
+            None => self.own.readings(scratch, state, force),
+        };
+        for (curve, reading) in self.read.iter_mut().zip(own) {
+            curve.push(reading);
+        }
+        let [from, to] = &self.ends;
+        let weights = Weights::at([from.t, to.t], state.t);
+        let beam = self.own.machine.layout.beam();
+        let mut along = [Lanes::default(); 4];
+        for (at, active) in self.active.iter_mut().enumerate() {
+            let lane = at % LANES;
+            // the ends have changed places when the step was accepted
+            let ends = self.blocks.get(at / LANES).map(|block| &block.ends);
+            let ends = ends.filter(|_| active.moves()).map(|[to, from]| [from, to]);
+            let mut sum = [0.0; 4];
+            let mut add = |share: f64, readings: &[f64; 4]| {
+                for (sum, reading) in sum.iter_mut().zip(readings) {
+                    *sum += share * reading;
+                }
+            };
+            match (&gradient, ends) {
+                (Some(gradient), Some(ends)) => {
+                    if lane == 0 {
+                        along = stress(ends, &weights, gradient, beam);
+                    }
+                    add(1.0, &along.map(|along| along.0[lane]));
+                }
+                (None, Some(ends)) => {
+                    let size = ends[0].size(lane).max(ends[1].size(lane));
+                    let step = MOVED / size;
+                    for step in [step, -step].into_iter().filter(|_| size > 0.0) {
+                        beside.clone_from(state);
+                        add_column(ends, lane, &weights, step, beside);
+                        add(0.5 / step, &self.own.readings(scratch, beside, force));
+                    }
+                }
+                (_, None) => {}
+            }
+            match (&mut active.source, &gradient) {
+                (Source::Joints(unit, factor), Some(gradient)) => {
+                    let pull = unit.anchor_pull(scratch, state);
+                    for (by, pull) in gradient.by_pull.iter().zip(pull) {
+                        add(*factor * pull, by);
+                    }
+                }
+                (Source::Contact { by_damping, factor }, Some(gradient)) => {
+                    add(*factor, &gradient.by_contact[usize::from(*by_damping)]);
+                }
+                _ if active.explicit => {
+                    let Difference {
+                        weights,
+                        own: share,
+                        ..
+                    } = active.difference;
+                    add(share, &own);
+                    for (side, share) in active.sides.iter_mut().zip(weights) {
+                        let t = self.settings.sampled(side.machine, &side.drive, index);
+                        interpolate(from, to, t, beside);
+                        add(share, &side.readings(scratch, beside, force));
+                    }
+                }
+                _ => {}
+            }
+            for (curve, sum) in active.curves.iter_mut().zip(sum) {
+                curve.push(sum);
+            }
+        }
+    }
+
     fn start(
         &mut self,
         system: &mut System<Individual<'_>>,
@@ -350,6 +436,7 @@ impl<'a, 'o> Follower<'a, 'o> {
             right: vec![Lanes::default(); n],
             force: [const { Vec::new() }; 2].map(|_: Vec<f64>| vec![0.0; n]),
             state: state.clone(),
+            gradient: Gradient::serves(self.own.machine).then(Gradient::default),
         };
         let made = room.tangents.rest(system, state, &mut room.force[0]);
         made.map_err(|_| Missing::Singular)?;
@@ -391,56 +478,8 @@ impl Observe for Follower<'_, '_> {
 
     fn sample(&mut self, index: usize, system: &mut System<Individual<'_>>, state: &State) {
         self.observer.sample(index, system, state);
-        let (None, Some(room)) = (self.missing, &mut self.room) else {
-            return;
-        };
-        let Room {
-            scratch,
-            state: beside,
-            force: [force, ..],
-            ..
-        } = room;
-        let [from, to] = &self.ends;
-        let weights = Weights::at([from.t, to.t], state.t);
-        let own = self.own.readings(scratch, state, force);
-        for (curve, reading) in self.read.iter_mut().zip(own) {
-            curve.push(reading);
-        }
-        for (at, active) in self.active.iter_mut().enumerate() {
-            let mut sum = [0.0; 4];
-            let Difference {
-                weights: shares,
-                own: share,
-                ..
-            } = active.difference;
-            let mut add = |share: f64, readings: [f64; 4]| {
-                for (sum, reading) in sum.iter_mut().zip(readings) {
-                    *sum += share * reading;
-                }
-            };
-            if active.explicit {
-                add(share, own);
-            }
-            let explicit = active.sides.iter_mut().zip(shares);
-            for (side, share) in explicit.filter(|_| active.explicit) {
-                let t = self.settings.sampled(side.machine, &side.drive, index);
-                interpolate(from, to, t, beside);
-                add(share, side.readings(scratch, beside, force));
-            }
-            // the ends have changed places when the step was accepted
-            let ends = self.blocks.get(at / LANES).map(|block| &block.ends);
-            if let Some([ended, began]) = ends.filter(|_| active.moves()) {
-                let size = began.size(at % LANES).max(ended.size(at % LANES));
-                let step = MOVED / size;
-                for step in [step, -step].into_iter().filter(|_| size > 0.0) {
-                    beside.clone_from(state);
-                    add_column([began, ended], at % LANES, &weights, step, beside);
-                    add(0.5 / step, self.own.readings(scratch, beside, force));
-                }
-            }
-            for (curve, sum) in active.curves.iter_mut().zip(sum) {
-                curve.push(sum);
-            }
+        if self.missing.is_none() {
+            self.read(index, state);
         }
     }
 

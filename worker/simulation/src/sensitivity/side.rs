@@ -4,7 +4,7 @@ use crate::drive::Drive;
 use crate::model::forces::Terms;
 use crate::model::hook::Memory;
 use crate::model::{Individual, Machine, Ropes, Scratch};
-use crate::observe::readings;
+use crate::observe::{Gradient, readings};
 use crate::system::{Equations, State};
 
 /// An individual without buffers of its own.
@@ -83,5 +83,25 @@ impl<'a> Side<'a> {
         self.within(scratch, |individual| {
             readings(individual, state, force, part)
         })
+    }
+
+    /// The same with its derivatives by the state; `room` is for a state.
+    pub(super) fn gradient(
+        &mut self,
+        scratch: &mut Scratch,
+        state: &State,
+        (force, room): (&mut [f64], &mut State),
+        gradient: &mut Gradient,
+    ) -> [f64; 4] {
+        self.within(scratch, |individual| {
+            let stress = readings(individual, state, force, true);
+            gradient.fill(individual, state, room);
+            stress
+        })
+    }
+
+    /// Force of the end of the rope on the back head, in the beam frame \[N\].
+    pub(super) fn anchor_pull(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
+        self.within(scratch, |individual| individual.anchor_pull(state.motion()))
     }
 }

@@ -60,11 +60,66 @@ struct Derivatives<const B: usize> {
     slope: [f64; B],
 }
 
+/// A pressed point as a reading asks for it, of a cylinder that moves in the plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reached {
+    /// Force \[N\] and arc angle \[rad\].
+    pub(crate) force: f64,
+    pub(crate) angle: f64,
+    /// Derivatives of the force by stiffness and by damping of the law.
+    pub(crate) by_law: [f64; 2],
+    /// Derivatives of the force by the cylinder's coordinates and by their rates, and of the angle.
+    pub(crate) force_by: [[f64; 3]; 2],
+    pub(crate) angle_by: [f64; 3],
+    /// The same by the beam angle, then by the modes, which turn no angle.
+    pub(crate) force_by_border: [[f64; BORDER]; 2],
+    pub(crate) angle_by_beam: f64,
+}
+
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
 impl Chain {
+    /// Gives every pressed point of cylinders that move in the plane, and its cylinder.
+    pub(crate) fn each_reached(
+        &self,
+        (surface, law): (&Surface<'_>, &Impact),
+        state: &ChainState,
+        mut visit: impl FnMut(usize, &Reached),
+    ) {
+        let tangent = Tangent::<BORDER> {
+            chain: self,
+            surface,
+            law,
+            gamma: 0.0,
+            border: surface.modes() + 1,
+            corner: [[0.0; BORDER]; BORDER],
+        };
+        let points = &state.points;
+        for (k, &j) in points.cylinders().iter().enumerate() {
+            for touch in points.touches(k, surface, law) {
+                let point = tangent.derivatives(&state.plane[j], &touch);
+                let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
+                let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
+                let by_rate = touch.law.by_rate;
+                let reached = Reached {
+                    force: touch.law.force,
+                    angle: touch.angle,
+                    by_law: touch.by_law,
+                    force_by: [
+                        own(&|r| point.own_force[r]),
+                        own(&|r| by_rate * point.own[r]),
+                    ],
+                    angle_by: own(&|r| angle_by_point.dot(&point.moved[r])),
+                    force_by_border: [point.force_by, point.gradient.map(|x| by_rate * x)],
+                    angle_by_beam,
+                };
+                visit(j, &reached);
+            }
+        }
+    }
+
     /// Adds the contact's tangent to the cylinders' blocks and to the border, if there is one.
     pub(crate) fn add_contact_tangent(
         &self,

@@ -1,11 +1,12 @@
 //! The markers of a chain's joints.
 use super::parts::{Chain, Held, Joints};
 use super::state::ChainState;
-use crate::element::bushing::{Bushing, Marker};
+use crate::element::bushing::{Bushing, LinkLoad, Marker};
 use crate::element::plane::PlaneMarker;
+use crate::math::elementary::sin_cos;
 use crate::model::layout::Motion;
 use crate::model::pose::{PlanePose, Pose};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector2};
 
 /// Which body of a joint a block's rows belong to.
 #[derive(Clone, Copy)]
@@ -32,6 +33,24 @@ impl Chain {
             plane_on_cylinder(&poses[joint], -half),
             plane_on_cylinder(&poses[joint - 1], half),
         ]
+    }
+
+    /// Load of the joint at the head at coordinates and rates, whatever pose the cylinder was left in.
+    pub(crate) fn head_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
+        let width = self.motion.width();
+        let last = self.range().end - width..self.range().end;
+        let (q, v) = (&q[last.clone()], &v[last]);
+        let pose = match self.motion {
+            Motion::Plane => {
+                let (s, c) = sin_cos(q[2]);
+                PlanePose::new(q, v, Vector2::new(c, s)).in_space()
+            }
+            Motion::Space => Pose::new(q, v),
+        };
+        let held = joints.head?;
+        let j = on_cylinder(&pose, 0.5 * self.pitch);
+        let [i, j] = held.with_law_axes(&[held.marker, j]);
+        Some(held.law.load(&i, &j))
     }
 
     /// Markers I and J of a joint and its law; nothing where an end is free. Between cylinders that

@@ -6,7 +6,7 @@
 //! nearer to the chain's base, I the one nearer to its head.
 mod axial;
 mod contact;
-mod contact_tangent;
+pub(crate) mod contact_tangent;
 mod energy;
 mod forces;
 mod inertia;

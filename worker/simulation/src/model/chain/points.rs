@@ -68,14 +68,17 @@ pub(super) struct Touch {
     /// Where along its cylinder it lies \[m\], and its velocity [m/s].
     pub(super) along: f64,
     pub(super) velocity: V2,
+    /// Arc angle, in the beam frame \[rad\]; 0 where the surface is a circle.
+    pub(super) angle: f64,
     /// Derivatives of the penetration by the point and by the beam angle, and second ones.
     pub(super) by_point: V2,
     pub(super) by_beam: f64,
     pub(super) curvature: Curvature,
     /// Where on the grid of the arc's shapes it lies, if it has any.
     pub(super) on_grid: Place,
-    /// Its share of the law.
+    /// Its share of the law, and of the law's derivatives by stiffness and damping.
     pub(super) law: ImpactForce,
+    pub(super) by_law: [f64; 2],
 }
 
 impl Points {
@@ -283,6 +286,7 @@ impl Points {
         (0..POINTS).filter(pressed).map(move |i| Touch {
             along: self.along[i],
             velocity: of(&self.velocity, i),
+            angle: self.angle[k][i],
             by_point: of(&self.by_point, i),
             by_beam: self.by_beam[k][i],
             curvature: self.curvature(k, i, surface),
@@ -290,6 +294,9 @@ impl Points {
             law: law
                 .force(self.depth[k][i], self.rate[k][i])
                 .share(self.share[i]),
+            by_law: law
+                .force_by(self.depth[k][i], self.rate[k][i])
+                .map(|by| self.share[i] * by),
         })
     }
 

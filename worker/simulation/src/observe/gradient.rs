@@ -1,0 +1,203 @@
+//! Derivatives of the gauges' stress by the state, of a head under one rope in the plane.
+//!
+//! Stress is linear in the forces that press and pull on the head: a point of contact at arc angle `s`
+//! counts `W_g(s) = N_g(s) + sum_m s_mg phi_m(s) / w_m^2`, its influence line and what the modes'
+//! static answer leaves of it. So `d stress = sum W_g df + f W_g' ds` over the points, the like of the
+//! rope's end, and modes and beam themselves. Derivatives of the end's pull are differences of one joint.
+use crate::math::elementary::sin_cos;
+use crate::model::description::StressRecovery;
+use crate::model::layout::{MAX_MODES, Motion};
+use crate::model::{Individual, Machine};
+use crate::system::{State, StateRef};
+
+/// Four gauges.
+type Each = [f64; 4];
+
+/// Derivatives of the stress at four gauges.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Gradient {
+    /// By so many coordinates: which, by the coordinate, by its rate \[Pa\] per unit.
+    pub(crate) entries: Vec<(usize, [Each; 2])>,
+    /// By the beam's acceleration.
+    pub(crate) by_acceleration: Each,
+    /// By stiffness and by damping of the contact's law.
+    pub(crate) by_contact: [Each; 2],
+    /// By the end's pull in the beam frame [Pa/N].
+    pub(crate) by_pull: [Each; 2],
+    /// Entry of each coordinate, or none.
+    places: Vec<Option<usize>>,
+}
+
+/// Steps by which the joint at the rope's end is differenced: of coordinates, and of rates, in which its
+/// force is linear.
+const STEPS: [f64; 2] = [1e-7, 1e-4];
+
+fn add(to: &mut Each, weight: f64, x: &Each) {
+    for (to, x) in to.iter_mut().zip(x) {
+        *to += weight * x;
+    }
+}
+
+/// Stress per static force on a mode: what the modes move beyond, less.
+fn modal(machine: &Machine, m: usize) -> Each {
+    let head = &machine.description.head;
+    let w = head.frequencies[m];
+    head.gauge_stress[m].map(|stress| stress / (w * w))
+}
+
+impl Gradient {
+    /// Whether a machine's gauges have one.
+    pub(crate) fn serves(machine: &Machine) -> bool {
+        machine.layout.motion == Motion::Plane
+            && machine.faces.len() == 1
+            && !machine.hooks.has_readings()
+            && machine.description.head.recovery == StressRecovery::ModeAcceleration
+    }
+
+    /// Works it out at a state whose loads on the back head the individual has; `room` is for a state.
+    pub(crate) fn fill(
+        &mut self,
+        individual: &mut Individual<'_>,
+        state: &State,
+        room: &mut State,
+    ) {
+        let machine = individual.machine;
+        let layout = machine.layout;
+        let beam = layout.beam();
+        self.entries.clear();
+        self.places.clear();
+        self.places.resize(state.q.len(), None);
+        self.by_contact = [[0.0; 4]; 2];
+        self.by_rigid(machine, state);
+        self.by_points(individual, state);
+        self.by_pull = by_pull(machine);
+        let last = machine.chains[0].range().end;
+        for k in (last - 3..last).chain(beam..=beam + layout.modes) {
+            self.by_end(individual, state, room, k);
+        }
+    }
+
+    fn entry(&mut self, k: usize) -> &mut [Each; 2] {
+        let at = *self.places[k].get_or_insert_with(|| {
+            self.entries.push((k, [[0.0; 4]; 2]));
+            self.entries.len() - 1
+        });
+        &mut self.entries[at].1
+    }
+
+    /// Weight and acceleration of the head, and its modes.
+    fn by_rigid(&mut self, machine: &Machine, state: &State) {
+        let head = &machine.description.head;
+        let layout = machine.layout;
+        let mut base = [
+            head.weight_stress[0],
+            head.weight_stress[1],
+            head.turning_stress,
+        ];
+        for m in 0..layout.modes {
+            for (base, coupling) in base.iter_mut().zip(head.participation[m]) {
+                add(base, coupling, &modal(machine, m));
+            }
+            let own = self.entry(layout.mode(m));
+            add(&mut own[0], 1.0, &head.gauge_stress[m]);
+        }
+        let beam = layout.beam();
+        let (s, c) = sin_cos(state.q[beam]);
+        let g = machine.description.gravity;
+        let own = self.entry(beam);
+        add(&mut own[0], g * c, &base[0]);
+        add(&mut own[0], -g * s, &base[1]);
+        self.by_acceleration = base[2];
+    }
+
+    fn by_points(&mut self, individual: &Individual<'_>, state: &State) {
+        let machine = individual.machine;
+        let (face, chain) = (&machine.faces[0], &machine.chains[0]);
+        let modes = machine.layout.modes;
+        let beam = machine.layout.beam();
+        let deflection = &individual.scratch.deflection;
+        let surface = machine.surface(0, &state.q, &state.v, deflection);
+        let law = (&surface, &individual.ropes.contact);
+        chain.each_reached(law, &individual.scratch.chains[0], |j, point| {
+            let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
+            let place = face.normal_influence.place(point.angle);
+            face.normal_influence.slopes(&place, &mut value, &mut slope);
+            let (mut shape, mut tilt) = ([0.0; MAX_MODES], [0.0; MAX_MODES]);
+            let place = face.radial.place(point.angle);
+            face.radial
+                .slopes(&place, &mut shape[..modes], &mut tilt[..modes]);
+            for m in 0..modes {
+                let unit = modal(machine, m);
+                add(&mut value, shape[m], &unit);
+                add(&mut slope, tilt[m], &unit);
+            }
+            for (by, of) in self.by_contact.iter_mut().zip(point.by_law) {
+                add(by, of, &value);
+            }
+            let first = (chain.first + j) * 3;
+            for k in 0..3 {
+                let own = self.entry(first + k);
+                add(&mut own[0], point.force_by[0][k], &value);
+                add(&mut own[0], point.force * point.angle_by[k], &slope);
+                add(&mut own[1], point.force_by[1][k], &value);
+            }
+            for k in 0..=modes {
+                let own = self.entry(beam + k);
+                add(&mut own[0], point.force_by_border[0][k], &value);
+                add(&mut own[1], point.force_by_border[1][k], &value);
+            }
+            let own = self.entry(beam);
+            add(&mut own[0], point.force * point.angle_by_beam, &slope);
+        });
+    }
+
+    /// What the rope's end pulls more when coordinate `k` or its rate grows.
+    fn by_end(
+        &mut self,
+        individual: &mut Individual<'_>,
+        state: &State,
+        room: &mut State,
+        k: usize,
+    ) {
+        let by_pull = self.by_pull;
+        for (part, step) in STEPS.into_iter().enumerate() {
+            let mut by = [0.0; 2];
+            for step in [step, -step] {
+                room.q.copy_from_slice(&state.q);
+                room.v.copy_from_slice(&state.v);
+                [&mut room.q, &mut room.v][part][k] += step;
+                let at = StateRef::new(state.t, &room.q, &room.v);
+                let pull = individual.anchor_pull(at);
+                for (by, pull) in by.iter_mut().zip(pull) {
+                    *by += pull * (0.5 / step);
+                }
+            }
+            let own = &mut self.entry(k)[part];
+            add(own, by[0], &by_pull[0]);
+            add(own, by[1], &by_pull[1]);
+        }
+    }
+}
+
+/// Stress per pull of the rope's end along x and y of the beam frame.
+fn by_pull(machine: &Machine) -> [Each; 2] {
+    let face = &machine.faces[0];
+    let anchor = machine.description.back_arc.anchor;
+    let (s, c) = sin_cos(anchor);
+    let (mut inward, mut along) = ([0.0; 4], [0.0; 4]);
+    let place = face.normal_influence.place(anchor);
+    face.normal_influence.values(&place, &mut inward);
+    let place = face.tangential_influence.place(anchor);
+    face.tangential_influence.values(&place, &mut along);
+    let mut by = [[0.0; 4]; 2];
+    for (by, (normal, tangential)) in by.iter_mut().zip([(-c, -s), (-s, c)]) {
+        add(by, normal, &inward);
+        add(by, tangential, &along);
+    }
+    for (m, shape) in face.anchor.iter().enumerate() {
+        for (by, moves) in by.iter_mut().zip(shape.moves) {
+            add(by, -moves, &modal(machine, m));
+        }
+    }
+    by
+}
