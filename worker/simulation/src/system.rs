@@ -22,6 +22,12 @@ pub trait Equations {
     /// Fills `matrix` with `mass M - damping D - K`.
     fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered);
 
+    /// Fills the first matrix with `-K`, the second as [`Equations::tangent`] does.
+    fn tangents(&self, at: Loaded<'_>, shift: Shift, [stiffness, matrix]: [&mut Bordered; 2]) {
+        self.tangent(at, Shift::NONE, stiffness);
+        self.tangent(at, shift, matrix);
+    }
+
     /// Adds what [`Equations::tangent`] leaves out of `-damping D - K`: the derivatives of velocity
     /// terms and of `M(q) a` under accelerations `a`.
     fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered);
@@ -182,6 +188,25 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         self.tangent(shift, matrix);
         let equations = &self.system.equations;
         equations.add_spin_tangent(self.state(), a, shift.damping, matrix);
+    }
+
+    /// Fills the first matrix with the complete `-K`, the second as [`Self::exact_tangent`] does.
+    pub fn exact_tangents(
+        &mut self,
+        a: &[f64],
+        shift: Shift,
+        [stiffness, matrix]: [&mut Bordered; 2],
+    ) {
+        let System {
+            equations,
+            statistics,
+            ..
+        } = &mut *self.system;
+        statistics.jacobians += 1;
+        equations.tangents(self.at, shift, [&mut *stiffness, &mut *matrix]);
+        let at = self.at.state();
+        equations.add_spin_tangent(at, a, 0.0, stiffness);
+        equations.add_spin_tangent(at, a, shift.damping, matrix);
     }
 
     /// Factorises `mass M - damping D - K`.

@@ -248,6 +248,12 @@ impl Equations for Individual<'_> {
         self.machine.tangent(&instant, shift, &self.scratch, matrix);
     }
 
+    fn tangents(&self, at: Loaded<'_>, shift: Shift, matrices: [&mut Bordered; 2]) {
+        let instant = self.instant(at.state());
+        self.machine
+            .tangents(&instant, shift, &self.scratch, matrices);
+    }
+
     fn add_spin_tangent(&self, at: StateRef<'_>, a: &[f64], damping: f64, matrix: &mut Bordered) {
         for chain in &self.machine.chains {
             chain.add_spin_tangent(at, a, damping, matrix);

@@ -29,6 +29,38 @@ impl Machine {
         scratch: &Scratch,
         matrix: &mut Bordered,
     ) {
+        self.fill_tangent(at, (shift, true), scratch, matrix);
+        self.hooks.add_tangent(at, shift.damping, matrix);
+    }
+
+    /// Fills two matrices at once, the first with the stiffness alone.
+    pub(super) fn tangents(
+        &self,
+        at: &Instant<'_>,
+        shift: Shift,
+        scratch: &Scratch,
+        [stiffness, matrix]: [&mut Bordered; 2],
+    ) {
+        self.fill_tangent(at, (Shift::NONE, false), scratch, stiffness);
+        self.fill_tangent(at, (shift, false), scratch, matrix);
+        for (k, chain) in self.chains.iter().enumerate() {
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+            let on = (&surface, &at.ropes.contact);
+            let both = [&mut *stiffness, &mut *matrix];
+            chain.add_contact_tangents(on, &scratch.chains[k], shift.damping, both);
+        }
+        self.hooks.add_tangent(at, 0.0, stiffness);
+        self.hooks.add_tangent(at, shift.damping, matrix);
+    }
+
+    /// All but what effects add, with the contact or without it.
+    fn fill_tangent(
+        &self,
+        at: &Instant<'_>,
+        (shift, contact): (Shift, bool),
+        scratch: &Scratch,
+        matrix: &mut Bordered,
+    ) {
         let damping = shift.damping;
         matrix.clear();
         self.inertia_blocks(at.q, shift.mass, matrix);
@@ -49,10 +81,11 @@ impl Machine {
                 };
                 self.anchor_tangent(&anchor, at, damping, matrix);
             }
-            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
+            if contact {
+                let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+                chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
+            }
         }
-        self.hooks.add_tangent(at, damping, matrix);
     }
 
     fn inertia_blocks(&self, q: &[f64], mass: f64, matrix: &mut Bordered) {

@@ -84,19 +84,22 @@ impl Block {
             ends: [from, to],
             stages,
         } = self;
-        bases.q.copy_from_slice(&from.q);
-        bases.v.copy_from_slice(&from.v);
-        for (j, weight) in tableau.rows[i].iter().enumerate() {
+        let row = tableau.rows[i];
+        let first = h * row[0];
+        for (k, (q, v)) in bases.q.iter_mut().zip(&mut bases.v).enumerate() {
+            *q = from.q[k] + from.v[k] * first;
+            *v = from.v[k] + from.a[k] * first;
+        }
+        for (weight, [v, a]) in row[1..]
+            .iter()
+            .zip(&*stages)
+            .filter(|(weight, _)| **weight != 0.0)
+        {
             let weight = h * weight;
-            let (v, a) = match j {
-                0 => (&from.v, &from.a),
-                j => (&stages[j - 1][0], &stages[j - 1][1]),
-            };
-            for (k, base) in bases.q.iter_mut().enumerate() {
-                *base += v[k] * weight;
-            }
-            for (k, base) in bases.v.iter_mut().enumerate() {
-                *base += a[k] * weight;
+            let each = bases.q.iter_mut().zip(&mut bases.v).zip(v.iter().zip(a));
+            for ((base_q, base_v), (v, a)) in each {
+                *base_q += *v * weight;
+                *base_v += *a * weight;
             }
         }
         let shift = 1.0 / (tableau.diagonal * h);
@@ -116,9 +119,10 @@ impl Block {
             let [v, a] = &mut stages[i - 1];
             (v, a)
         };
-        for (k, w) in right.iter().enumerate() {
-            v[k] = *w * shift;
-            a[k] = (v[k] - bases.v[k]) * shift;
+        let each = v.iter_mut().zip(a).zip(right.iter().zip(&bases.v));
+        for ((v, a), (w, base)) in each {
+            *v = *w * shift;
+            *a = (*v - *base) * shift;
         }
     }
 

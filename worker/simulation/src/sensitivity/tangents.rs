@@ -85,10 +85,8 @@ impl Tangents {
         let kept = system.statistics;
         let State { a, .. } = &self.state;
         let mut loads = system.forces(self.state.motion(), room);
-        if shift != Shift::NONE {
-            loads.exact_tangent(a, Shift::NONE, &mut self.stiffness);
-        }
-        loads.exact_tangent(a, shift, &mut self.factor);
+        let matrices = [&mut self.stiffness, &mut self.factor];
+        loads.exact_tangents(a, shift, matrices);
         system.statistics = kept;
         self.factorizations += 1;
         self.factor.factorize()

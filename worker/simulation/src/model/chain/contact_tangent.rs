@@ -138,6 +138,44 @@ impl Chain {
         }
     }
 
+    /// The same to two matrices at once, to the first without damping.
+    pub(crate) fn add_contact_tangents(
+        &self,
+        (surface, law): (&Surface<'_>, &Impact),
+        state: &ChainState,
+        gamma: f64,
+        matrices: [&mut Bordered; 2],
+    ) {
+        let border = matrices[0].border().min(surface.modes() + 1);
+        let on = (surface, law);
+        if border <= FEW {
+            self.add_tangents_within::<FEW>(on, state, gamma, (matrices, border));
+        } else {
+            self.add_tangents_within::<BORDER>(on, state, gamma, (matrices, border));
+        }
+    }
+
+    fn add_tangents_within<const B: usize>(
+        &self,
+        (surface, law): (&Surface<'_>, &Impact),
+        state: &ChainState,
+        gamma: f64,
+        (matrices, border): ([&mut Bordered; 2], usize),
+    ) {
+        let mut pair = [0.0, gamma].map(|gamma| Tangent::<B> {
+            chain: self,
+            surface,
+            law,
+            gamma,
+            border,
+            corner: [[0.0; B]; B],
+        });
+        match self.motion {
+            Motion::Plane => add_both(&mut pair, &state.points, &state.plane, matrices),
+            Motion::Space => add_both(&mut pair, &state.points, &state.poses, matrices),
+        }
+    }
+
     fn add_tangent_within<const B: usize>(
         &self,
         (surface, law): (&Surface<'_>, &Impact),
@@ -158,10 +196,50 @@ impl Chain {
             Motion::Plane => tangent.add_cylinders(points, &state.plane, matrix),
             Motion::Space => tangent.add_cylinders(points, &state.poses, matrix),
         }
-        for row in 0..border {
-            for column in 0..border {
-                matrix.add_corner(row, column, tangent.corner[row][column]);
+        tangent.add_corner(matrix);
+    }
+}
+
+/// Adds the tangents of two factors of the damping, the first of which is zero.
+fn add_both<const A: usize, const B: usize>(
+    pair: &mut [Tangent<'_, B>; 2],
+    points: &Points,
+    poses: &[impl InPlane<A>],
+    mut matrices: [&mut Bordered; 2],
+) {
+    for (k, &j) in points.cylinders().iter().enumerate() {
+        let mut sums = [Sums::<B>::zero(), Sums::zero()];
+        let mut touched = false;
+        for touch in points.touches(k, pair[0].surface, pair[0].law) {
+            touched = true;
+            let mut point = pair[0].derivatives(&poses[j], &touch);
+            for (tangent, sums) in pair.iter_mut().zip(&mut sums) {
+                let damped = tangent.gamma * touch.law.by_rate;
+                for (by, own) in point.own_force.iter_mut().zip(point.own) {
+                    *by += damped * own;
+                }
+                for (by, own) in point.force_by.iter_mut().zip(point.gradient) {
+                    *by += damped * own;
+                }
+                tangent.add_point(&point, &touch, &poses[j], sums);
             }
+        }
+        let each = pair.iter().zip(&sums).zip(&mut matrices);
+        for ((tangent, sums), matrix) in each.filter(|_| touched) {
+            tangent.add_sums::<A>(tangent.chain.first + j, sums, matrix);
+        }
+    }
+    for (tangent, matrix) in pair.iter().zip(matrices) {
+        tangent.add_corner(matrix);
+    }
+}
+
+impl<const B: usize> Sums<B> {
+    const fn zero() -> Self {
+        Self {
+            own: [[0.0; OWN]; OWN],
+            right: [[0.0; B]; OWN],
+            bottom: [[0.0; B]; OWN],
         }
     }
 }
@@ -178,15 +256,20 @@ impl<const B: usize> Tangent<'_, B> {
             if touches.peek().is_none() {
                 continue;
             }
-            let mut sums = Sums {
-                own: [[0.0; OWN]; OWN],
-                right: [[0.0; B]; OWN],
-                bottom: [[0.0; B]; OWN],
-            };
+            let mut sums = Sums::zero();
             for touch in touches {
-                self.add_point(&touch, &poses[j], &mut sums);
+                let point = self.derivatives(&poses[j], &touch);
+                self.add_point(&point, &touch, &poses[j], &mut sums);
             }
             self.add_sums::<A>(self.chain.first + j, &sums, matrix);
+        }
+    }
+
+    fn add_corner(&self, matrix: &mut Bordered) {
+        for row in 0..self.border {
+            for column in 0..self.border {
+                matrix.add_corner(row, column, self.corner[row][column]);
+            }
         }
     }
 
@@ -211,19 +294,19 @@ impl<const B: usize> Tangent<'_, B> {
     /// Adds what one point adds.
     fn add_point<const A: usize>(
         &mut self,
+        point: &Derivatives<B>,
         touch: &Touch,
         pose: &impl InPlane<A>,
         sums: &mut Sums<B>,
     ) {
-        let point = self.derivatives(pose, touch);
-        add_own::<A, B>(&point, touch, sums);
+        add_own::<A, B>(point, touch, sums);
         for a in 0..A {
             for b in 0..A {
                 let bend = pose.axis_by_twice(a, b) * touch.along;
                 sums.own[2 + a][2 + b] += touch.law.force * touch.by_point.dot(&bend);
             }
         }
-        self.add_border::<A>(&point, touch, sums);
+        self.add_border::<A>(point, touch, sums);
     }
 
     /// Derivatives of penetration and force by all coordinates.
