@@ -306,7 +306,8 @@ impl<'a, 'o> Follower<'a, 'o> {
         stages: Stages<'_>,
     ) -> Result<(), Missing> {
         let h = ends[1].t - ends[0].t;
-        for i in 1..stages.tableau.stages() {
+        let moving = !self.blocks.is_empty();
+        for i in (1..stages.tableau.stages()).filter(|_| moving) {
             if let Some(room) = &mut self.room {
                 let [own, ..] = &mut room.force;
                 let made = room.tangents.stage(system, (i, stages), ends, own);
@@ -347,10 +348,8 @@ impl<'a, 'o> Follower<'a, 'o> {
         else {
             return;
         };
-        let own = match gradient {
-            Some(gradient) => self.own.gradient(scratch, state, (force, beside), gradient),
-            None => self.own.readings(scratch, state, force),
-        };
+        let room = (&mut force[..], &mut *beside);
+        let (own, known) = self.own.gradient(scratch, state, room, gradient.as_mut());
         for (curve, reading) in self.read.iter_mut().zip(own) {
             curve.push(reading);
         }
@@ -396,6 +395,19 @@ impl<'a, 'o> Follower<'a, 'o> {
                 }
                 (Source::Contact { by_damping, factor }, Some(gradient)) => {
                     add(*factor, &gradient.by_contact[usize::from(*by_damping)]);
+                }
+                (Source::Nothing, _) if !self.own.machine.hooks.has_readings() => {
+                    let Difference {
+                        weights,
+                        own: share,
+                        ..
+                    } = active.difference;
+                    add(share, &own);
+                    for (side, share) in active.sides.iter().zip(weights) {
+                        let mut read = own;
+                        side.machine.hooks.read(&known, &mut read);
+                        add(share, &read);
+                    }
                 }
                 _ if active.explicit => {
                     let Difference {

@@ -2,9 +2,9 @@
 //! a little off.
 use crate::drive::Drive;
 use crate::model::forces::Terms;
-use crate::model::hook::Memory;
+use crate::model::hook::{Memory, Sampled};
 use crate::model::{Individual, Machine, Ropes, Scratch};
-use crate::observe::{Gradient, readings};
+use crate::observe::{Gradient, readings, sampled};
 use crate::system::{Equations, State};
 
 /// An individual without buffers of its own.
@@ -85,18 +85,22 @@ impl<'a> Side<'a> {
         })
     }
 
-    /// The same with its derivatives by the state; `room` is for a state.
+    /// The same with all loads, what further readings may know, and the derivatives by the state where the
+    /// gauges have them; `room` is for a state.
     pub(super) fn gradient(
         &mut self,
         scratch: &mut Scratch,
         state: &State,
         (force, room): (&mut [f64], &mut State),
-        gradient: &mut Gradient,
-    ) -> [f64; 4] {
+        gradient: Option<&mut Gradient>,
+    ) -> ([f64; 4], Sampled) {
         self.within(scratch, |individual| {
-            let stress = readings(individual, state, force, true);
-            gradient.fill(individual, state, room);
-            stress
+            let stress = readings(individual, state, force, false);
+            let known = sampled(individual, state);
+            if let Some(gradient) = gradient {
+                gradient.fill(individual, state, room);
+            }
+            (stress, known)
         })
     }
 
