@@ -3,12 +3,14 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::Vector3;
 use simulation::drive::Drive;
+use simulation::effect::{Role, catalogue};
 use simulation::integrator::method::CATALOGUE;
 use simulation::model::{Individual, Machine};
 use simulation::observe::Recorder;
 use simulation::reference;
 use simulation::rig::{End, Rig, Setup};
 use simulation::run::{RunSettings, simulate};
+use simulation::sensitivity::{self, Coefficient, Column, Origin, Plan};
 use simulation::settle::{guess, minimize};
 use simulation::system::{Equations, Shift, StateRef, System};
 
@@ -127,5 +129,56 @@ fn settles(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, kernels, runs, settles);
+/// Runs with columns beside the plain run: the ten coefficients and a friction, all sizes of the
+/// catalogue.
+fn columns(criterion: &mut Criterion) {
+    let mut description = reference::description();
+    description.rope.pitch = 0.05;
+    description.rope.back = 72;
+    description.rope.front = 114;
+    let machine = machine();
+    let origin = Origin {
+        description: &description,
+        modes: 2,
+        effects: &[],
+    };
+    let sizes = catalogue().iter().flat_map(|d| {
+        let sizes = d.parameters.iter().filter(|p| p.role == Role::Size);
+        sizes.map(|p| Column::Parameter {
+            effect: d.id.to_string(),
+            parameter: p.name.to_owned(),
+            values: Vec::new(),
+        })
+    });
+    let sizes: Vec<Column> = sizes.collect();
+    let of = |id: &str| {
+        let own = |c: &&Column| matches!(c, Column::Parameter { effect, .. } if effect == id);
+        sizes.iter().filter(own).cloned().collect::<Vec<_>>()
+    };
+    let coefficients = Coefficient::ALL.map(Column::Coefficient);
+    let sets = [
+        ("no column", Vec::new()),
+        ("one column", coefficients[..1].to_vec()),
+        (
+            "12 columns",
+            [coefficients.to_vec(), of("pivot_friction")].concat(),
+        ),
+        ("all sizes", sizes.clone()),
+    ];
+    let mut group = criterion.benchmark_group("run with columns");
+    group.sample_size(10);
+    let (_, law) = laws()[0];
+    for (name, columns) in sets {
+        let plan = Plan::new(&origin, &machine, &columns).expect("the catalogue's own");
+        group.bench_function(format!("{name} ({})", columns.len()), |b| {
+            b.iter(|| {
+                let mut recorder = Recorder::gauges_only();
+                let settings = RunSettings::default();
+                sensitivity::simulate(&machine, &law, &settings, &plan, &mut recorder)
+            });
+        });
+    }
+}
+
+criterion_group!(benches, kernels, runs, columns, settles);
 criterion_main!(benches);

@@ -20,6 +20,10 @@ type V3 = Vector3<f64>;
 
 /// Terms of the generalised forces: what a difference of forces asks for of a machine that differs from
 /// another in some of them.
+#[expect(
+    clippy::struct_excessive_bools,
+    reason = "a set of terms, each there or not"
+)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Terms {
     /// Weights of and loads on the rigid bodies, the head's own forces, forces of effects.

@@ -1,11 +1,14 @@
 //! Differences of what one stage or one sample says, at two places beside the one at hand.
-use crate::effect::{Parameter, Place};
+use crate::effect::Parameter;
 
-/// Share of a parameter's size over which a residual is differenced: geometry moves points of contact in
-/// and out of touch, where a force has no second derivative; drive and load are smooth, and their curves
-/// are rounded.
-const GEOMETRY: f64 = 1e-7;
-const CURVE: f64 = 1e-5;
+/// Share of a parameter's size over which a residual is differenced: what is left of curvature is its
+/// square, and what of rounding is far below.
+pub(super) const SMOOTH: f64 = 1e-5;
+/// The same where points of contact move in and out of touch: there a force has no second derivative.
+pub(super) const TOUCHING: f64 = 1e-8;
+/// The same where laws along a rope may remember: at a turn of a joint's strain hysteresis has a kink, and
+/// strains are rounded at 1e-15.
+pub(super) const REMEMBERING: f64 = 1e-7;
 
 /// Where a function is asked beside the place at hand, and how its values make a derivative of second
 /// order.
@@ -39,16 +42,12 @@ impl Difference {
     }
 
     /// By decades of a coefficient, in which forces are linear.
-    pub(super) const fn decades() -> Self {
-        Self::central(CURVE)
+    pub(super) const fn decades(remembering: bool) -> Self {
+        Self::central(if remembering { REMEMBERING } else { SMOOTH })
     }
 
-    /// For a parameter at a value, within its bounds, by what its effect changes.
-    pub(super) fn within(place: Place, parameter: &Parameter, value: f64) -> Self {
-        let share = match place {
-            Place::Dynamics => GEOMETRY,
-            Place::Drive | Place::Load | Place::Gauge => CURVE,
-        };
+    /// For a parameter at a value, within its bounds, over a share of its size.
+    pub(super) fn within(parameter: &Parameter, value: f64, share: f64) -> Self {
         let step = share * parameter.scale;
         if value - step < parameter.lower {
             Self::one_sided(step)

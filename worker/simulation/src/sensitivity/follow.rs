@@ -11,6 +11,7 @@ use crate::integrator::method::Method;
 use crate::integrator::stepper::Stages;
 use crate::linear::{LANES, Lanes};
 use crate::model::description::RopeLaw;
+use crate::model::hook::Sampled;
 use crate::model::{Individual, Machine, Scratch};
 use crate::observe::Gradient;
 use crate::run::{Observe, RunResult, RunSettings};
@@ -89,7 +90,7 @@ impl<'a> Active<'a> {
         let curves = [const { Vec::new() }; 4];
         match way {
             Way::Coefficient(coefficient) => {
-                let difference = Difference::decades();
+                let difference = Difference::decades(machine.hooks.has_axial());
                 let moved = |step| side(machine, &coefficient.moved(law, step));
                 let factor = LN_10 * *coefficient.of(&mut law.clone());
                 let source = match coefficient {
@@ -103,7 +104,17 @@ impl<'a> Active<'a> {
                         by_damping: true,
                         factor: LN_10 * machine.ropes(law).contact.damping,
                     },
-                    other => Source::Joints(side(machine, &other.unit(law)), factor),
+                    Coefficient::Kb1
+                    | Coefficient::Kb23
+                    | Coefficient::Kb4
+                    | Coefficient::Kb56
+                    | Coefficient::Cb1
+                    | Coefficient::Cb23
+                    | Coefficient::Cb4
+                    | Coefficient::Cb56 => {
+                        let unit = side(machine, &coefficient.unit(law));
+                        Source::Joints(Box::new(unit), factor)
+                    }
                 };
                 Some(Self {
                     column,
@@ -138,12 +149,59 @@ impl<'a> Active<'a> {
                 column,
                 source: Source::Pieces(hooks),
                 sides: Vec::new(),
-                difference: Difference::decades(),
+                difference: Difference::decades(false),
                 explicit: false,
                 curves,
             }),
             Way::Nothing | Way::Missing(_) => None,
         }
+    }
+
+    /// What the gauges read more of at a sample whose state is as it was.
+    fn explicit(
+        &mut self,
+        sample: &Sample<'_>,
+        gradient: Option<&Gradient>,
+        (scratch, force, beside): (&mut Scratch, &mut [f64], &mut State),
+    ) -> [f64; 4] {
+        let mut sum = [0.0; 4];
+        let mut add = |share: f64, readings: &[f64; 4]| {
+            for (sum, reading) in sum.iter_mut().zip(readings) {
+                *sum += share * reading;
+            }
+        };
+        let Difference { weights, own, .. } = self.difference;
+        match (&mut self.source, gradient, &sample.known) {
+            (Source::Joints(unit, factor), Some(gradient), _) => {
+                let pull = unit.anchor_pull(scratch, sample.state);
+                for (by, pull) in gradient.by_pull.iter().zip(pull) {
+                    add(*factor * pull, by);
+                }
+            }
+            (Source::Contact { by_damping, factor }, Some(gradient), _) => {
+                add(*factor, &gradient.by_contact[usize::from(*by_damping)]);
+            }
+            (Source::Nothing, _, Some(known)) => {
+                add(own, &sample.own);
+                for (side, share) in self.sides.iter().zip(weights) {
+                    let mut read = sample.own;
+                    side.machine.hooks.read(known, &mut read);
+                    add(share, &read);
+                }
+            }
+            _ if self.explicit => {
+                add(own, &sample.own);
+                for (side, share) in self.sides.iter_mut().zip(weights) {
+                    let (settings, index) = sample.turned;
+                    let t = settings.sampled(side.machine, &side.drive, index);
+                    let [from, to] = sample.ends;
+                    interpolate(from, to, t, beside);
+                    add(share, &side.readings(scratch, beside, force));
+                }
+            }
+            _ => {}
+        }
+        sum
     }
 
     /// Place in the order in which columns are worked out: the contact's own need its points, which other
@@ -159,6 +217,19 @@ impl<'a> Active<'a> {
     const fn moves(&self) -> bool {
         !matches!(self.source, Source::Nothing)
     }
+}
+
+/// A sample of the recorded revolution.
+struct Sample<'s> {
+    state: &'s State,
+    /// Ends of the step that it lies in.
+    ends: [&'s State; 2],
+    /// What the gauges read.
+    own: [f64; 4],
+    /// What further readings may know, where there are none.
+    known: Option<Sampled>,
+    /// Which sample.
+    turned: (&'s RunSettings, usize),
 }
 
 /// Follows a run.
@@ -231,7 +302,9 @@ impl<'a, 'o> Follower<'a, 'o> {
             .iter()
             .map(|way| match way {
                 Way::Missing(missing) => Derivative::Missing(*missing),
-                _ => Derivative::Nothing,
+                Way::Coefficient(_) | Way::Beside { .. } | Way::Pieces(_) | Way::Nothing => {
+                    Derivative::Nothing
+                }
             })
             .collect();
         for active in self.active {
@@ -354,6 +427,13 @@ impl<'a, 'o> Follower<'a, 'o> {
             curve.push(reading);
         }
         let [from, to] = &self.ends;
+        let sample = Sample {
+            state,
+            ends: [from, to],
+            own,
+            known: (!self.own.machine.hooks.has_readings()).then_some(known),
+            turned: (&self.settings, index),
+        };
         let weights = Weights::at([from.t, to.t], state.t);
         let beam = self.own.machine.layout.beam();
         let mut along = [Lanes::default(); 4];
@@ -386,44 +466,9 @@ impl<'a, 'o> Follower<'a, 'o> {
                 }
                 (_, None) => {}
             }
-            match (&mut active.source, &gradient) {
-                (Source::Joints(unit, factor), Some(gradient)) => {
-                    let pull = unit.anchor_pull(scratch, state);
-                    for (by, pull) in gradient.by_pull.iter().zip(pull) {
-                        add(*factor * pull, by);
-                    }
-                }
-                (Source::Contact { by_damping, factor }, Some(gradient)) => {
-                    add(*factor, &gradient.by_contact[usize::from(*by_damping)]);
-                }
-                (Source::Nothing, _) if !self.own.machine.hooks.has_readings() => {
-                    let Difference {
-                        weights,
-                        own: share,
-                        ..
-                    } = active.difference;
-                    add(share, &own);
-                    for (side, share) in active.sides.iter().zip(weights) {
-                        let mut read = own;
-                        side.machine.hooks.read(&known, &mut read);
-                        add(share, &read);
-                    }
-                }
-                _ if active.explicit => {
-                    let Difference {
-                        weights,
-                        own: share,
-                        ..
-                    } = active.difference;
-                    add(share, &own);
-                    for (side, share) in active.sides.iter_mut().zip(weights) {
-                        let t = self.settings.sampled(side.machine, &side.drive, index);
-                        interpolate(from, to, t, beside);
-                        add(share, &side.readings(scratch, beside, force));
-                    }
-                }
-                _ => {}
-            }
+            let room = (&mut *scratch, &mut force[..], &mut *beside);
+            let explicit = active.explicit(&sample, gradient.as_ref(), room);
+            add(1.0, &explicit);
             for (curve, sum) in active.curves.iter_mut().zip(sum) {
                 curve.push(sum);
             }
@@ -497,14 +542,10 @@ impl Observe for Follower<'_, '_> {
 
     fn complete(&mut self, machine: &Machine, spacing: f64) {
         self.observer.complete(machine, spacing);
-        let read = self.active.iter().flat_map(|active| &active.sides);
-        if !read
-            .chain([&self.own])
-            .any(|side| side.machine.hooks.has_readings())
-        {
-            return;
-        }
-        for active in &mut self.active {
+        let filters = |side: &Side<'_>| side.machine.hooks.has_readings();
+        let own = filters(&self.own);
+        let active = self.active.iter_mut();
+        for active in active.filter(|active| own || active.sides.iter().any(filters)) {
             let mut sum =
                 [const { Vec::new() }; 4].map(|_: Vec<f64>| vec![0.0; self.read[0].len()]);
             let mut add_series = |side: &Side<'_>, step: f64, share: f64| {

@@ -1,6 +1,6 @@
 //! Which columns are asked for: checked, and for every effect's parameter the machines beside it.
 use super::column::{Coefficient, Column, Missing};
-use super::differences::Difference;
+use super::differences::{Difference, REMEMBERING, SMOOTH, TOUCHING};
 use super::source::Differing;
 use crate::effect::{Asked, Chosen, Role, chosen};
 use crate::model::Machine;
@@ -173,28 +173,48 @@ fn way(
                 Way::Pieces(Box::new(hooks))
             });
     }
-    let place = one.descriptor().place;
-    let difference = Difference::within(place, parameter, one.values[k]);
-    let beside = difference.steps.map(|step| {
-        let mut effects = effects.to_vec();
-        effects[varied].values[k] += step;
-        let present = effects.iter().enumerate();
-        let present = present.filter(|(at, one)| *at == varied || !one.is_absent());
-        let built: Vec<_> = present.map(|(_, one)| one.build()).collect();
-        let beside =
-            Machine::with_effects(origin.description.clone(), origin.modes, &built).ok()?;
-        let space = machine.layout.motion == Motion::Space && beside.layout.motion == Motion::Plane;
-        Some(if space { beside.in_space() } else { beside })
-    });
-    let [Some(first), Some(second)] = beside else {
-        return Way::Missing(Missing::NoMachine);
+    let built = |share: f64| {
+        let difference = Difference::within(parameter, one.values[k], share);
+        let machines = difference.steps.map(|step| {
+            let mut effects = effects.to_vec();
+            effects[varied].values[k] += step;
+            beside(origin, machine, &effects, varied)
+        });
+        let [Some(first), Some(second)] = machines else {
+            return Err(Missing::NoMachine);
+        };
+        if first.layout != machine.layout || second.layout != machine.layout {
+            return Err(Missing::Coordinates);
+        }
+        let differing = Differing::between(machine, &first, one.descriptor().place);
+        Ok((Box::new([first, second]), difference, differing))
     };
-    if first.layout != machine.layout || second.layout != machine.layout {
-        return Way::Missing(Missing::Coordinates);
+    let made = built(SMOOTH).and_then(|smooth| match smooth.2.terms {
+        Some((terms, _)) if terms.contact => built(TOUCHING),
+        Some((terms, _)) if terms.joints => built(REMEMBERING),
+        _ => Ok(smooth),
+    });
+    match made {
+        Err(missing) => Way::Missing(missing),
+        Ok((machines, difference, differing)) => Way::Beside {
+            machines,
+            difference,
+            differing,
+        },
     }
-    Way::Beside {
-        differing: Differing::between(machine, &first, place),
-        machines: Box::new([first, second]),
-        difference,
-    }
+}
+
+/// A machine with effects, one of which may be absent and stays.
+fn beside(
+    origin: &Origin<'_>,
+    machine: &Machine,
+    effects: &[Chosen],
+    stays: usize,
+) -> Option<Machine> {
+    let present = effects.iter().enumerate();
+    let present = present.filter(|(at, one)| *at == stays || !one.is_absent());
+    let built: Vec<_> = present.map(|(_, one)| one.build()).collect();
+    let beside = Machine::with_effects(origin.description.clone(), origin.modes, &built).ok()?;
+    let space = machine.layout.motion == Motion::Space && beside.layout.motion == Motion::Plane;
+    Some(if space { beside.in_space() } else { beside })
 }

@@ -14,7 +14,7 @@ use crate::system::State;
 #[derive(Clone, Debug)]
 pub(super) enum Source<'a> {
     /// Times a factor, what the joints of ropes say that have a coefficient of 1 and no other.
-    Joints(Side<'a>, f64),
+    Joints(Box<Side<'a>>, f64),
     /// Times a factor, the contact's derivative by its stiffness, or by its damping.
     Contact {
         /// By which.
@@ -60,7 +60,8 @@ impl Differing {
             joints,
             contact,
         };
-        let inertia = built || d.beam_inertia != o.beam_inertia || d.rope != o.rope;
+        let inertia =
+            built || d.beam_inertia.to_bits() != o.beam_inertia.to_bits() || d.rope != o.rope;
         let still = place == Place::Gauge && !built && !joints && !contact;
         Self {
             terms: (!still).then_some((terms, inertia)),
