@@ -1,4 +1,4 @@
-//! Entries of vectors of unknowns: of one column, or of eight side by side.
+//! Entries of vectors of unknowns: of one column, or of several side by side.
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
 /// Columns that are solved side by side.

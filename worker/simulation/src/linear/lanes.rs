@@ -1,7 +1,7 @@
-//! Many right-hand sides side by side: what is done for one vector of unknowns, done for eight.
+//! Many right-hand sides side by side: what is done for one vector of unknowns, done for several.
 //!
-//! A factor is read once for eight columns, and what waits for itself along a chain in one column waits
-//! no longer in eight. No lane knows of its neighbours: a column has the same bits whatever stands
+//! A factor is read once for several columns, and what waits for itself along a chain in one column waits
+//! no longer in several. No lane knows of its neighbours: a column has the same bits whatever stands
 //! beside it.
 use super::block::Block;
 use super::blocks::Blocks;
@@ -139,6 +139,52 @@ impl Bordered {
         match self {
             Self::Plane(blocks) => blocks.subtract_product_lanes(x, y),
             Self::Space(blocks) => blocks.subtract_product_lanes(x, y),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear::LANES;
+
+    /// What is done side by side is done as one by one.
+    #[test]
+    fn columns_are_solved_and_multiplied_as_one_by_one() {
+        let mut a = Bordered::plane(&[3, 5], [1, 2]);
+        let n = a.len();
+        let wave = |k: usize| 0.3 * libm::sin(1.0 + 0.7 * k as f64);
+        for i in 0..n {
+            a.add(i, i, 3.0 + wave(i));
+            for k in n - 3..n {
+                a.add(i, k, wave(3 * i + k));
+                a.add(k, i, wave(i + 5 * k));
+            }
+        }
+        for i in (0..6).chain(9..21) {
+            a.add(i, i + 3, wave(7 * i));
+            a.add(i + 3, i, wave(11 * i));
+        }
+        let columns: Vec<Vec<f64>> = (0..LANES)
+            .map(|lane| (0..n).map(|i| wave(i * (lane + 2))).collect())
+            .collect();
+        let lanes: Vec<Lanes> = (0..n)
+            .map(|i| Lanes(std::array::from_fn(|lane| columns[lane][i])))
+            .collect();
+        let mut products = vec![Lanes::default(); n];
+        a.subtract_product_lanes(&lanes, &mut products);
+        let mut factor = a.clone();
+        factor.factorize().unwrap();
+        let mut solved = lanes;
+        factor.solve_lanes(&mut solved);
+        for (lane, column) in columns.iter().enumerate() {
+            let product = a.product(column);
+            let mut x = column.clone();
+            factor.solve(&mut x);
+            for i in 0..n {
+                assert!((products[i].0[lane] + product[i]).abs() < 1e-13);
+                assert!((solved[i].0[lane] - x[i]).abs() < 1e-12);
+            }
         }
     }
 }

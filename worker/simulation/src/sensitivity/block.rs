@@ -1,4 +1,4 @@
-//! Columns of the state, eight side by side, through the stages of a step.
+//! Columns of the state, several side by side, through the stages of a step.
 use super::tangents::Tangents;
 use crate::integrator::dense::Weights;
 use crate::integrator::tableau::Tableau;

@@ -4,13 +4,14 @@
 //! The run itself is the plain one, bit for bit. Behind every accepted step its stages, taken as solved,
 //! are differentiated: `S w = dR/dp + K' dq_b + M dv_b / c`, `S = M / c^2 - D / c - K'`, gives
 //! `dq = dq_b + w`, `dv = w / c`, `da = (dv - dv_b) / c` with one factorisation for all columns, which are
-//! solved eight side by side. Step sizes are what they were, so nothing is differentiated that a
+//! solved side by side. Step sizes are what they were, so nothing is differentiated that a
 //! controller decided; the equilibrium at the start is differentiated as the solution of its equations.
 //!
 //! Staggered direct method: Feehery, Tolsma and Barton, "Efficient sensitivity analysis of large-scale
 //! differential-algebraic systems", Applied Numerical Mathematics 25 (1997).
 //!
 //! Unknown here: which columns a search wants, and what a fall-back for a missing one is.
+mod active;
 mod block;
 mod column;
 mod differences;

@@ -1,4 +1,5 @@
 //! One stage, taken as solved, linearised.
+use super::source::add;
 use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
 use crate::system::{Equations, Shift, State, System};
@@ -90,11 +91,5 @@ impl Tangents {
         system.statistics = kept;
         self.factorizations += 1;
         self.factor.factorize()
-    }
-}
-
-fn add(to: &mut [f64], weight: f64, x: &[f64]) {
-    for (to, x) in to.iter_mut().zip(x) {
-        *to += weight * x;
     }
 }

@@ -1,0 +1,182 @@
+//! A column that is worked out: where its derivatives come from, and what the gauges read more of.
+use super::column::Coefficient;
+use super::differences::Difference;
+use super::plan::Way;
+use super::side::Side;
+use super::source::{ROPES, Source};
+use crate::integrator::dense::interpolate;
+use crate::model::description::RopeLaw;
+use crate::model::hook::Sampled;
+use crate::model::{Machine, Scratch};
+use crate::observe::Gradient;
+use crate::run::RunSettings;
+use crate::system::State;
+use std::f64::consts::LN_10;
+
+/// A sample of the recorded revolution.
+pub(super) struct Sample<'s> {
+    pub(super) state: &'s State,
+    /// Ends of the step that it lies in.
+    pub(super) ends: [&'s State; 2],
+    /// What the gauges read.
+    pub(super) own: [f64; 4],
+    /// What further readings may know, where there are none.
+    pub(super) known: Option<Sampled>,
+    /// Which sample.
+    pub(super) turned: (&'s RunSettings, usize),
+}
+
+/// A column that is worked out.
+pub(super) struct Active<'a> {
+    /// Its place in the plan.
+    pub(super) column: usize,
+    pub(super) source: Source<'a>,
+    /// The machines beside, two or none.
+    pub(super) sides: Vec<Side<'a>>,
+    pub(super) difference: Difference,
+    /// Whether the gauges know of the parameter where the state is as it was.
+    explicit: bool,
+    pub(super) curves: [Vec<f64>; 4],
+}
+
+impl<'a> Active<'a> {
+    /// Nothing where there is nothing to work out.
+    pub(super) fn new(
+        (machine, law): (&'a Machine, &RopeLaw),
+        settings: &RunSettings,
+        (column, way): (usize, &'a Way),
+    ) -> Option<Self> {
+        let side = |machine: &'a Machine, law: &RopeLaw| {
+            Side::new(machine, machine.ropes(law), settings.drive(machine))
+        };
+        let curves = [const { Vec::new() }; 4];
+        match way {
+            Way::Coefficient(coefficient) => {
+                let difference = Difference::decades(machine.hooks.has_axial());
+                let moved = |step| side(machine, &coefficient.moved(law, step));
+                let factor = LN_10 * *coefficient.of(&mut law.clone());
+                let source = match coefficient {
+                    // laws along a rope ask for its stiffness, and remember
+                    _ if machine.hooks.has_axial() => Source::Difference(ROPES, false),
+                    Coefficient::Kc => Source::Contact {
+                        by_damping: false,
+                        factor: LN_10 * machine.ropes(law).contact.stiffness,
+                    },
+                    Coefficient::Cc => Source::Contact {
+                        by_damping: true,
+                        factor: LN_10 * machine.ropes(law).contact.damping,
+                    },
+                    Coefficient::Kb1
+                    | Coefficient::Kb23
+                    | Coefficient::Kb4
+                    | Coefficient::Kb56
+                    | Coefficient::Cb1
+                    | Coefficient::Cb23
+                    | Coefficient::Cb4
+                    | Coefficient::Cb56 => {
+                        let unit = side(machine, &coefficient.unit(law));
+                        Source::Joints(Box::new(unit), factor)
+                    }
+                };
+                Some(Self {
+                    column,
+                    source,
+                    sides: difference.steps.map(moved).to_vec(),
+                    difference,
+                    explicit: true,
+                    curves,
+                })
+            }
+            Way::Beside {
+                machines,
+                difference,
+                differing,
+            } => {
+                let source = differing.terms.map_or(Source::Nothing, |(terms, inertia)| {
+                    Source::Difference(terms, inertia)
+                });
+                let mut all = machines.iter().chain([machine]);
+                let read = all.any(|machine| machine.hooks.has_readings());
+                let sides = machines.iter().map(|machine| side(machine, law));
+                Some(Self {
+                    column,
+                    source,
+                    sides: sides.collect(),
+                    difference: *difference,
+                    explicit: differing.stress || read,
+                    curves,
+                })
+            }
+            Way::Pieces(hooks) => Some(Self {
+                column,
+                source: Source::Pieces(hooks),
+                sides: Vec::new(),
+                difference: Difference::decades(false),
+                explicit: false,
+                curves,
+            }),
+            Way::Nothing | Way::Missing(_) => None,
+        }
+    }
+
+    /// What the gauges read more of at a sample whose state is as it was.
+    pub(super) fn explicit(
+        &mut self,
+        sample: &Sample<'_>,
+        gradient: Option<&Gradient>,
+        (scratch, force, beside): (&mut Scratch, &mut [f64], &mut State),
+    ) -> [f64; 4] {
+        let mut sum = [0.0; 4];
+        let mut add = |share: f64, readings: &[f64; 4]| {
+            for (sum, reading) in sum.iter_mut().zip(readings) {
+                *sum += share * reading;
+            }
+        };
+        let Difference { weights, own, .. } = self.difference;
+        match (&mut self.source, gradient, &sample.known) {
+            (Source::Joints(unit, factor), Some(gradient), _) => {
+                let pull = unit.anchor_pull(scratch, sample.state);
+                for (by, pull) in gradient.by_pull.iter().zip(pull) {
+                    add(*factor * pull, by);
+                }
+            }
+            (Source::Contact { by_damping, factor }, Some(gradient), _) => {
+                add(*factor, &gradient.by_contact[usize::from(*by_damping)]);
+            }
+            (Source::Nothing, _, Some(known)) => {
+                add(own, &sample.own);
+                for (side, share) in self.sides.iter().zip(weights) {
+                    let mut read = sample.own;
+                    side.machine.hooks.read(known, &mut read);
+                    add(share, &read);
+                }
+            }
+            _ if self.explicit => {
+                add(own, &sample.own);
+                for (side, share) in self.sides.iter_mut().zip(weights) {
+                    let (settings, index) = sample.turned;
+                    let t = settings.sampled(side.machine, &side.drive, index);
+                    let [from, to] = sample.ends;
+                    interpolate(from, to, t, beside);
+                    add(share, &side.readings(scratch, beside, force));
+                }
+            }
+            _ => {}
+        }
+        sum
+    }
+
+    /// Place in the order in which columns are worked out: the contact's own need its points, which other
+    /// machines move; those without a motion come last and are not in the blocks.
+    pub(super) const fn order(&self) -> u8 {
+        match self.source {
+            Source::Contact { .. } => 0,
+            Source::Joints(..) | Source::Pieces(_) | Source::Difference(..) => 1,
+            Source::Nothing => 2,
+        }
+    }
+
+    pub(super) const fn moves(&self) -> bool {
+        !matches!(self.source, Source::Nothing)
+    }
+}
