@@ -205,7 +205,8 @@ struct Judged {
     of: usize,
 }
 
-/// Compares columns with differences: wherever these agree among themselves to 3e-5, to 1e-4.
+/// Compares columns with differences: wherever these agree among themselves to 2e-5, to 1e-4; where they
+/// are rounding alone, extrapolated ones are off by four times as much.
 fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) {
     let (found, steps) = subject.columns(columns);
     for (column, found) in columns.iter().zip(found) {
@@ -230,9 +231,9 @@ fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) {
         println!("{column:?}: {size:.2e} MPa, off {off:.1e}, judge {apart:.1e}");
         if size > 0.05 {
             judged.of += 1;
-            judged.able += usize::from(apart < 3e-5);
+            judged.able += usize::from(apart < 2e-5);
         }
-        assert!(off < 1e-4 || apart > 3e-5, "{column:?}: {off:e} {apart:e}");
+        assert!(off < 1e-4 || apart > 2e-5, "{column:?}: {off:e} {apart:e}");
     }
 }
 
