@@ -38,7 +38,7 @@ fn product<const N: usize>(a: &Block<N>, x: &Part<N>) -> Part<N> {
     reason = "what is done for many columns is a file of its own"
 )]
 impl<const N: usize> Blocks<N> {
-    /// [`Blocks::solve`] for [`LANES`] columns.
+    /// [`Blocks::solve`] for `LANES` columns.
     pub fn solve_lanes(&self, x: &mut [Lanes]) {
         let m = self.border;
         let (blocks, border) = x.split_at_mut(self.diagonal.len() * N);
@@ -77,7 +77,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    /// `y -= A x` of the assembled (not factorised) matrix for [`LANES`] columns.
+    /// `y -= A x` of the assembled (not factorised) matrix for `LANES` columns.
     pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
         let m = self.border;
         let base = self.diagonal.len() * N;
@@ -126,7 +126,7 @@ impl<const N: usize> Blocks<N> {
     reason = "what is done for many columns is a file of its own"
 )]
 impl Bordered {
-    /// [`Bordered::solve`] for [`LANES`] columns.
+    /// [`Bordered::solve`] for `LANES` columns.
     pub fn solve_lanes(&self, x: &mut [Lanes]) {
         match self {
             Self::Plane(blocks) => blocks.solve_lanes(x),
@@ -134,7 +134,7 @@ impl Bordered {
         }
     }
 
-    /// `y -= A x` of the assembled matrix for [`LANES`] columns.
+    /// `y -= A x` of the assembled matrix for `LANES` columns.
     pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
         match self {
             Self::Plane(blocks) => blocks.subtract_product_lanes(x, y),
