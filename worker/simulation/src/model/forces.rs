@@ -315,15 +315,19 @@ impl Machine {
 
     /// Force that the crank pin exerts on the rod, given joint loads and accelerations \[N\].
     pub(crate) fn pin_force(&self, at: &Instant<'_>, a: &[f64], scratch: &Scratch) -> V2 {
+        let back = &scratch.chains[..self.faces.len()];
+        let pull = back.iter().map(|chain| chain.joints[0].force);
+        self.pin_force_under(at, a, pull.fold(V3::zeros(), |sum, force| sum + force))
+    }
+
+    /// The same where the back ropes' bases are pulled by this force.
+    pub(super) fn pin_force_under(&self, at: &Instant<'_>, a: &[f64], rope: V3) -> V2 {
         let rod = &self.description.rod;
         let i = self.layout.rod();
         let (s, c) = sin_cos(at.q[i]);
         let center = at.drive.pin[2] + V2::new(-s, c) * (rod.center_of_mass * a[i])
             - V2::new(c, s) * (rod.center_of_mass * at.v[i] * at.v[i]);
         // the joints pull the rod with minus the force on the first cylinders
-        let back = &scratch.chains[..self.faces.len()];
-        let pull = back.iter().map(|chain| chain.joints[0].force);
-        let rope = pull.fold(V3::zeros(), |sum, force| sum + force);
         V2::new(
             rod.mass * center.x + rope.x,
             rod.mass * (center.y + self.description.gravity) + rope.y,

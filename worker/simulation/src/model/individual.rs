@@ -10,6 +10,7 @@ use crate::model::ropes::Ropes;
 use crate::model::scratch::Scratch;
 use crate::norm::{ANGLE, LENGTH, MODAL, cylinders_error, cylinders_newton, square, worst};
 use crate::system::{Equations, Loaded, Loads, Powers, Shift, State, StateRef, Static};
+use nalgebra::{Vector2, Vector3};
 
 /// Machine, ropes, drive and the loads of the last evaluation.
 #[derive(Debug)]
@@ -103,6 +104,23 @@ impl<'a> Individual<'a> {
             let [x, y] = [load.force.x, load.force.y];
             [c * x + s * y, c * y - s * x]
         })
+    }
+
+    /// Force of the back ropes on their first cylinders at coordinates and rates \[N\].
+    pub(crate) fn base_pull(&mut self, at: StateRef<'_>) -> Vector3<f64> {
+        self.move_to(at.t);
+        let machine = self.machine;
+        let instant = instant(&self.ropes, &self.at.1, at);
+        let back = machine.chains[..machine.faces.len()].iter().enumerate();
+        back.filter_map(|(k, chain)| chain.base_load(&machine.joints(k, &instant), at.q, at.v))
+            .fold(Vector3::zeros(), |sum, load| sum + load.force)
+    }
+
+    /// Force of the crank pin on the rod at a state \[N\], whatever loads were left behind.
+    pub(crate) fn pin_force(&mut self, state: &State) -> Vector2<f64> {
+        let pull = self.base_pull(state.motion());
+        let at = instant(&self.ropes, &self.at.1, state.motion());
+        self.machine.pin_force_under(&at, &state.a, pull)
     }
 
     /// Tensions at the bases of the ropes on the back head (0) or the front head (1) \[N\].

@@ -3,6 +3,7 @@ mod curves;
 mod gradient;
 mod readings;
 mod recorder;
+mod shaft;
 mod shape;
 mod stress;
 #[cfg(test)]
@@ -12,4 +13,5 @@ pub use curves::{Curves, Shape};
 pub(crate) use gradient::Gradient;
 pub(crate) use readings::{readings, sampled};
 pub use recorder::Recorder;
+pub(crate) use shaft::{TorqueBy, shaft, turned_by_ropes};
 pub use stress::gauge_stress;

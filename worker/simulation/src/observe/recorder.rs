@@ -1,9 +1,8 @@
 //! Records a run: the gauges alone for a score, or everything.
 use super::curves::Curves;
 use super::readings::readings;
+use super::shaft::crank_torque;
 use super::shape::shape;
-use crate::drive::DriveState;
-use crate::math::elementary::sin_cos;
 use crate::model::strand::{BACK, FRONT};
 use crate::model::{Individual, Instant, Machine};
 use crate::run::Observe;
@@ -93,15 +92,4 @@ impl Observe for Recorder {
     fn complete(&mut self, machine: &Machine, spacing: f64) {
         machine.hooks.read_series(spacing, &mut self.curves.gauge);
     }
-}
-
-/// Net torque that the reducer must give in the sense of rotation, counterweight included [N m].
-fn crank_torque(machine: &Machine, drive: &DriveState, pin: &nalgebra::Vector2<f64>) -> f64 {
-    let crank = &machine.description.crank;
-    let (s, c) = sin_cos(drive.pin_angle);
-    let rope = crank.radius * crank.sense * (pin.y * c - pin.x * s);
-    // the counterweight hangs opposite the pin and falls while the rope is pulled
-    let weight = crank.counterweight_moment
-        * sin_cos(drive.pin_angle + crank.sense * crank.counterweight_phase).1;
-    rope + crank.sense * weight
 }

@@ -1,5 +1,5 @@
 //! A column that is worked out: where its derivatives come from, and what the gauges read more of.
-use super::column::Coefficient;
+use super::column::{Changes, Coefficient};
 use super::differences::Difference;
 use super::plan::Way;
 use super::side::Side;
@@ -20,6 +20,8 @@ pub(super) struct Sample<'s> {
     pub(super) ends: [&'s State; 2],
     /// What the gauges read.
     pub(super) own: [f64; 4],
+    /// What is read beside them.
+    pub(super) shaft: [f64; 2],
     /// What further readings may know, where there are none.
     pub(super) known: Option<Sampled>,
     /// Which sample.
@@ -36,7 +38,7 @@ pub(super) struct Active<'a> {
     pub(super) difference: Difference,
     /// Whether the gauges know of the parameter where the state is as it was.
     explicit: bool,
-    pub(super) curves: [Vec<f64>; 4],
+    pub(super) curves: Changes,
 }
 
 impl<'a> Active<'a> {
@@ -49,7 +51,7 @@ impl<'a> Active<'a> {
         let side = |machine: &'a Machine, law: &RopeLaw| {
             Side::new(machine, machine.ropes(law), settings.drive(machine))
         };
-        let curves = [const { Vec::new() }; 4];
+        let curves = Changes::default();
         match way {
             Way::Coefficient(coefficient) => {
                 let difference = Difference::decades(machine.hooks.has_axial());
@@ -162,6 +164,42 @@ impl<'a> Active<'a> {
                 }
             }
             _ => {}
+        }
+        sum
+    }
+
+    /// What is read more beside the gauges at a sample whose state is as it was.
+    pub(super) fn explicit_shaft(
+        &mut self,
+        sample: &Sample<'_>,
+        (scratch, beside): (&mut Scratch, &mut State),
+    ) -> [f64; 2] {
+        let Difference { weights, own, .. } = self.difference;
+        let mut sum = [0.0; 2];
+        match &mut self.source {
+            Source::Joints(unit, factor) => {
+                sum[1] = *factor * unit.turned_by_ropes(scratch, sample.state);
+            }
+            Source::Difference(..) => {
+                let mut add = |share: f64, read: [f64; 2]| {
+                    for (sum, read) in sum.iter_mut().zip(read) {
+                        *sum += share * read;
+                    }
+                };
+                add(own, sample.shaft);
+                for (side, share) in self.sides.iter_mut().zip(weights) {
+                    let (settings, index) = sample.turned;
+                    let t = settings.sampled(side.machine, &side.drive, index);
+                    if t.to_bits() == sample.state.t.to_bits() {
+                        add(share, side.shaft(scratch, sample.state));
+                    } else {
+                        let [from, to] = sample.ends;
+                        interpolate(from, to, t, beside);
+                        add(share, side.shaft(scratch, beside));
+                    }
+                }
+            }
+            Source::Contact { .. } | Source::Pieces(_) | Source::Nothing => {}
         }
         sum
     }

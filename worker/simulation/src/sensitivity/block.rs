@@ -3,7 +3,7 @@ use super::tangents::Tangents;
 use crate::integrator::dense::Weights;
 use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
-use crate::observe::Gradient;
+use crate::observe::{Gradient, TorqueBy};
 use crate::system::{Equations, State};
 
 /// Derivatives of coordinates, rates and accelerations; n each.
@@ -152,6 +152,28 @@ pub(super) fn add_column(
         out.v[i] += f0 * v0 + f1 * v1 + g0 * a0 + g1 * a1;
         out.a[i] += r * a0 + s * a1;
     }
+}
+
+/// Derivatives of the suspension's coordinate `height` and of the torque along the columns between two
+/// ends.
+pub(super) fn shaft(
+    [from, to]: [&Motion; 2],
+    weights: &Weights,
+    height: usize,
+    torque: &TorqueBy,
+) -> [Lanes; 2] {
+    let [f0, f1] = weights.value;
+    let [g0, g1] = weights.slope;
+    let [r, s] = weights.linear;
+    let place = |i: usize| from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1;
+    let mut sum = Lanes::default();
+    for (i, [by_place, by_rate, by_acceleration]) in &torque.0 {
+        let i = *i;
+        let v = from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1;
+        let a = from.a[i] * r + to.a[i] * s;
+        sum += place(i) * *by_place + v * *by_rate + a * *by_acceleration;
+    }
+    [place(height), sum]
 }
 
 /// Derivatives of the gauges' stress along the columns between two ends.

@@ -123,12 +123,36 @@ pub enum Missing {
     NotFinite,
 }
 
+/// Derivatives of what is read at every sample, per decade or per the parameter's declared unit.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Changes {
+    /// Of gauges 1 to 4 \[Pa\].
+    pub gauge: [Vec<f64>; 4],
+    /// Of the height of the suspension point above its lowest design position \[m\].
+    pub suspension: Vec<f64>,
+    /// Of the net crank torque [N m].
+    pub torque: Vec<f64>,
+}
+
+impl Changes {
+    /// Every curve.
+    pub(super) fn each(&self) -> impl Iterator<Item = &Vec<f64>> + Clone {
+        let beside = [&self.suspension, &self.torque];
+        self.gauge.iter().chain(beside)
+    }
+
+    /// The same.
+    pub(super) fn each_mut(&mut self) -> impl Iterator<Item = &mut Vec<f64>> {
+        let beside = [&mut self.suspension, &mut self.torque];
+        self.gauge.iter_mut().chain(beside)
+    }
+}
+
 /// One column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Derivative {
-    /// Of the readings of gauges 1 to 4 at every sample: \[Pa\] per decade or per the parameter's
-    /// declared unit.
-    Curves([Vec<f64>; 4]),
+    /// It has one.
+    Curves(Box<Changes>),
     /// The parameter does nothing: zeros.
     Nothing,
     /// There is none.

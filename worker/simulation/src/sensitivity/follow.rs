@@ -1,7 +1,7 @@
 //! A run with its columns: what a run reports of its steps and samples, differentiated behind it.
 use super::active::{Active, Sample};
-use super::block::{Bases, Block, add_column, stress};
-use super::column::{Columns, Derivative, Missing};
+use super::block::{Bases, Block, add_column, shaft, stress};
+use super::column::{Changes, Columns, Derivative, Missing};
 use super::differences::Difference;
 use super::plan::{Plan, Way};
 use super::side::Side;
@@ -13,7 +13,7 @@ use crate::integrator::stepper::Stages;
 use crate::linear::{LANES, Lanes};
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Scratch};
-use crate::observe::Gradient;
+use crate::observe::{Gradient, TorqueBy};
 use crate::run::{Observe, RunResult, RunSettings};
 use crate::system::{State, System};
 use crate::verdict::Verdict;
@@ -91,6 +91,7 @@ struct Room {
     state: State,
     /// Derivatives of the stress, where there is such a thing.
     gradient: Option<Gradient>,
+    torque: TorqueBy,
 }
 
 impl<'a, 'o> Follower<'a, 'o> {
@@ -247,11 +248,15 @@ impl<'a, 'o> Follower<'a, 'o> {
             state: beside,
             force: [force, ..],
             gradient,
+            torque,
             ..
         }) = &mut self.room
         else {
             return;
         };
+        self.own
+            .torque_by(scratch, state, (&mut *torque, &mut *beside));
+        let read = self.own.shaft(scratch, state);
         let room = (&mut force[..], &mut *beside);
         let (own, known) = self.own.gradient(scratch, state, room, gradient.as_mut());
         for (curve, reading) in self.read.iter_mut().zip(own) {
@@ -262,17 +267,22 @@ impl<'a, 'o> Follower<'a, 'o> {
             state,
             ends: [from, to],
             own,
+            shaft: read,
             known: (!self.own.machine.hooks.has_readings()).then_some(known),
             turned: (&self.settings, index),
         };
         let weights = Weights::at([from.t, to.t], state.t);
-        let beam = self.own.machine.layout.beam();
+        let layout = self.own.machine.layout;
         let mut along = [Lanes::default(); 4];
+        let mut along_shaft = [Lanes::default(); 2];
         for (at, active) in self.active.iter_mut().enumerate() {
             let lane = at % LANES;
             // the ends have changed places when the step was accepted
             let ends = self.blocks.get(at / LANES).map(|block| &block.ends);
             let ends = ends.filter(|_| active.moves()).map(|[to, from]| [from, to]);
+            if let Some(ends) = ends.filter(|_| lane == 0) {
+                along_shaft = shaft(ends, &weights, layout.suspension(), torque);
+            }
             let mut sum = [0.0; 4];
             let mut add = |share: f64, readings: &[f64; 4]| {
                 for (sum, reading) in sum.iter_mut().zip(readings) {
@@ -282,7 +292,7 @@ impl<'a, 'o> Follower<'a, 'o> {
             match (&gradient, ends) {
                 (Some(gradient), Some(ends)) => {
                     if lane == 0 {
-                        along = stress(ends, &weights, gradient, beam);
+                        along = stress(ends, &weights, gradient, layout.beam());
                     }
                     add(1.0, &along.map(|along| along.0[lane]));
                 }
@@ -300,8 +310,15 @@ impl<'a, 'o> Follower<'a, 'o> {
             let room = (&mut *scratch, &mut force[..], &mut *beside);
             let explicit = active.explicit(&sample, gradient.as_ref(), room);
             add(1.0, &explicit);
-            for (curve, sum) in active.curves.iter_mut().zip(sum) {
-                curve.push(sum);
+            let mut moved = active.explicit_shaft(&sample, (&mut *scratch, &mut *beside));
+            if ends.is_some() {
+                for (moved, along) in moved.iter_mut().zip(along_shaft) {
+                    *moved += along.0[lane];
+                }
+            }
+            let each = active.curves.each_mut();
+            for (curve, x) in each.zip(sum.into_iter().chain(moved)) {
+                curve.push(x);
             }
         }
     }
@@ -325,11 +342,13 @@ impl<'a, 'o> Follower<'a, 'o> {
             force: [const { Vec::new() }; 2].map(|_: Vec<f64>| vec![0.0; n]),
             state: state.clone(),
             gradient: Gradient::serves(self.own.machine).then(Gradient::default),
+            torque: TorqueBy::default(),
         };
         let made = room.tangents.rest(system, state, &mut room.force[0]);
         made.map_err(|_| Missing::Singular)?;
         self.room = Some(room);
-        let curves = self.active.iter_mut().flat_map(|active| &mut active.curves);
+        let curves = self.active.iter_mut();
+        let curves = curves.flat_map(|active| active.curves.each_mut());
         for curve in curves.chain(&mut self.read) {
             curve.reserve_exact(self.settings.samples);
         }
@@ -381,7 +400,7 @@ impl Observe for Follower<'_, '_> {
                 [const { Vec::new() }; 4].map(|_: Vec<f64>| vec![0.0; self.read[0].len()]);
             let mut add_series = |side: &Side<'_>, step: f64, share: f64| {
                 let mut curves = self.read.clone();
-                for (curve, column) in curves.iter_mut().zip(&active.curves) {
+                for (curve, column) in curves.iter_mut().zip(&active.curves.gauge) {
                     add(curve, step, column);
                 }
                 side.machine.hooks.read_series(spacing, &mut curves);
@@ -400,18 +419,18 @@ impl Observe for Follower<'_, '_> {
             for (k, (step, weight)) in steps.into_iter().zip(weights).enumerate() {
                 add_series(active.sides.get(k).unwrap_or(&self.own), step, weight);
             }
-            active.curves = sum;
+            active.curves.gauge = sum;
         }
     }
 }
 
 /// A column that was worked out.
-fn judged(curves: [Vec<f64>; 4]) -> Derivative {
-    let mut all = curves.iter().flatten();
-    if all.clone().all(|x| *x == 0.0) {
+fn judged(changes: Changes) -> Derivative {
+    let all = |is: fn(&f64) -> bool| changes.each().flatten().all(is);
+    if all(|x| *x == 0.0) {
         Derivative::Nothing
-    } else if all.all(|x| x.is_finite()) {
-        Derivative::Curves(curves)
+    } else if all(|x| x.is_finite()) {
+        Derivative::Curves(Box::new(changes))
     } else {
         Derivative::Missing(Missing::NotFinite)
     }

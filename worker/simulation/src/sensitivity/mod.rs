@@ -21,6 +21,6 @@ mod side;
 mod source;
 mod tangents;
 
-pub use column::{Coefficient, Column, Columns, Derivative, Missing};
+pub use column::{Changes, Coefficient, Column, Columns, Derivative, Missing};
 pub use follow::{simulate, simulate_on};
 pub use plan::{Origin, Plan, Refused};

@@ -4,7 +4,7 @@ use crate::drive::Drive;
 use crate::model::forces::Terms;
 use crate::model::hook::{Memory, Sampled};
 use crate::model::{Individual, Machine, Ropes, Scratch};
-use crate::observe::{Gradient, readings, sampled};
+use crate::observe::{Gradient, TorqueBy, readings, sampled, shaft, turned_by_ropes};
 use crate::system::{Equations, State};
 
 /// An individual without buffers of its own.
@@ -102,6 +102,26 @@ impl<'a> Side<'a> {
             }
             (stress, known)
         })
+    }
+
+    /// What is read beside the gauges, as [`shaft`] says.
+    pub(super) fn shaft(&mut self, scratch: &mut Scratch, state: &State) -> [f64; 2] {
+        self.within(scratch, |individual| shaft(individual, state))
+    }
+
+    /// Derivatives of the torque by the state; `room` is for a state.
+    pub(super) fn torque_by(
+        &mut self,
+        scratch: &mut Scratch,
+        state: &State,
+        (by, room): (&mut TorqueBy, &mut State),
+    ) {
+        self.within(scratch, |individual| by.fill(individual, state, room));
+    }
+
+    /// What the back ropes' pull alone turns the crank with [N m].
+    pub(super) fn turned_by_ropes(&mut self, scratch: &mut Scratch, state: &State) -> f64 {
+        self.within(scratch, |individual| turned_by_ropes(individual, state))
     }
 
     /// Force of the end of the rope on the back head, in the beam frame \[N\].

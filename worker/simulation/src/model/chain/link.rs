@@ -37,20 +37,36 @@ impl Chain {
 
     /// Load of the joint at the head at coordinates and rates, whatever pose the cylinder was left in.
     pub(crate) fn head_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
-        let width = self.motion.width();
-        let last = self.range().end - width..self.range().end;
-        let (q, v) = (&q[last.clone()], &v[last]);
-        let pose = match self.motion {
+        let held = joints.head?;
+        let pose = self.pose_at(self.count - 1, q, v);
+        let [i, j] = held.with_law_axes(&[held.marker, on_cylinder(&pose, 0.5 * self.pitch)]);
+        Some(held.law.load(&i, &j))
+    }
+
+    /// The same of the joint at the base.
+    pub(crate) fn base_load(&self, joints: &Joints<'_>, q: &[f64], v: &[f64]) -> Option<LinkLoad> {
+        let held = joints.base?;
+        let pose = self.pose_at(0, q, v);
+        let [i, j] = held.with_law_axes(&[on_cylinder(&pose, -0.5 * self.pitch), held.marker]);
+        Some(held.law.load(&i, &j))
+    }
+
+    /// Where the coordinates of a cylinder lie in a vector of unknowns.
+    pub(crate) fn cylinder(&self, at: usize) -> std::ops::Range<usize> {
+        let (first, width) = (self.range().start, self.motion.width());
+        first + at * width..first + (at + 1) * width
+    }
+
+    fn pose_at(&self, cylinder: usize, q: &[f64], v: &[f64]) -> Pose {
+        let range = self.cylinder(cylinder);
+        let (q, v) = (&q[range.clone()], &v[range]);
+        match self.motion {
             Motion::Plane => {
                 let (s, c) = sin_cos(q[2]);
                 PlanePose::new(q, v, Vector2::new(c, s)).in_space()
             }
             Motion::Space => Pose::new(q, v),
-        };
-        let held = joints.head?;
-        let j = on_cylinder(&pose, 0.5 * self.pitch);
-        let [i, j] = held.with_law_axes(&[held.marker, j]);
-        Some(held.law.load(&i, &j))
+        }
     }
 
     /// Markers I and J of a joint and its law; nothing where an end is free. Between cylinders that

@@ -1,0 +1,83 @@
+//! What is read beside the gauges: the height of the suspension point and the net torque at the crank shaft.
+use crate::drive::DriveState;
+use crate::math::elementary::sin_cos;
+use crate::model::{Individual, Machine};
+use crate::system::State;
+use nalgebra::Vector2;
+
+/// Net torque that the reducer must give in the sense of rotation, counterweight included [N m].
+pub(super) fn crank_torque(machine: &Machine, drive: &DriveState, pin: &Vector2<f64>) -> f64 {
+    let crank = &machine.description.crank;
+    // the counterweight hangs opposite the pin and falls while the rope is pulled
+    let weight = crank.counterweight_moment
+        * sin_cos(drive.pin_angle + crank.sense * crank.counterweight_phase).1;
+    turning(machine, drive, pin) + crank.sense * weight
+}
+
+/// Torque of a force at the crank pin in the sense of rotation [N m].
+fn turning(machine: &Machine, drive: &DriveState, force: &Vector2<f64>) -> f64 {
+    let crank = &machine.description.crank;
+    let (s, c) = sin_cos(drive.pin_angle);
+    crank.radius * crank.sense * (force.y * c - force.x * s)
+}
+
+/// Height of the suspension point above its lowest design position \[m\] and torque [N m] at a state.
+pub(crate) fn shaft(individual: &mut Individual<'_>, state: &State) -> [f64; 2] {
+    let pin = individual.pin_force(state);
+    let machine = individual.machine;
+    let drive = individual.drive_state(state.t);
+    let height = state.q[machine.layout.suspension()] - machine.lowest_suspension;
+    [height, crank_torque(machine, &drive, &pin)]
+}
+
+/// What the back ropes' pull alone turns the crank with at a state [N m].
+pub(crate) fn turned_by_ropes(individual: &mut Individual<'_>, state: &State) -> f64 {
+    let pull = individual.base_pull(state.motion());
+    let drive = individual.drive_state(state.t);
+    turning(individual.machine, &drive, &pull.xy())
+}
+
+/// Steps by which torque is differenced: of coordinates, of rates, and of accelerations, in which it is
+/// linear.
+const STEPS: [f64; 3] = [1e-7, 1e-4, 1e-2];
+
+/// Derivatives of the torque by the state: by so many coordinates, by their rates and accelerations.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct TorqueBy(pub(crate) Vec<(usize, [f64; 3])>);
+
+impl TorqueBy {
+    /// Works it out at a state; `room` is for a state. What turns the crank knows of the rod and of the
+    /// first cylinders alone.
+    pub(crate) fn fill(
+        &mut self,
+        individual: &mut Individual<'_>,
+        state: &State,
+        room: &mut State,
+    ) {
+        let machine = individual.machine;
+        let back = machine.chains[..machine.faces.len()].iter();
+        let first = back.flat_map(|chain| chain.cylinder(0));
+        self.0.clear();
+        self.0.extend(
+            std::iter::once(machine.layout.rod())
+                .chain(first)
+                .map(|k| (k, [0.0; 3])),
+        );
+        room.clone_from(state);
+        for (at, by) in &mut self.0 {
+            for (part, step) in STEPS.into_iter().enumerate() {
+                let mut asked = |step: f64| {
+                    let moved = |room: &mut State, by: f64| {
+                        [&mut room.q, &mut room.v, &mut room.a][part][*at] += by;
+                    };
+                    let was = [room.q[*at], room.v[*at], room.a[*at]];
+                    moved(room, step);
+                    let [_, torque] = shaft(individual, room);
+                    [room.q[*at], room.v[*at], room.a[*at]] = was;
+                    torque
+                };
+                by[part] = (asked(step) - asked(-step)) * (0.5 / step);
+            }
+        }
+    }
+}
