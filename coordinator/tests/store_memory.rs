@@ -51,6 +51,7 @@ fn finished(job: u64) -> Finished {
             fitness: 1.0 / (job + 1) as f64,
             channels: vec![score; 4],
             residual: vec![0.5; RESIDUALS],
+            columns: Vec::new(),
             counters: Counters::default(),
         })),
     }

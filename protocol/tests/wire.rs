@@ -9,7 +9,7 @@ use protocol::{
     case::EffectSetting,
     event::{Event, Finished},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{Answer, Failure, Individual, Job, Numerics, Outcome, Reply, SimulateSpec},
+    job::{Answer, Column, Failure, Individual, Job, Numerics, Outcome, Reply, SimulateSpec},
     message::{Attempt, Beat, Cost, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
     wire::{self, Kind, WireError},
 };
@@ -64,6 +64,7 @@ fn job() -> impl Strategy<Value = Job> {
                 },
                 numerics: Numerics(numerics),
                 reply: Reply::Channels,
+                columns: vec![Column::of("size")],
             })
         }),
     ]

@@ -8,7 +8,7 @@ use protocol::{
     case::{Case, Offset, Scale},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
-    job::{Answer, Failure, Job, Outcome, Reached, Reply, Verdict},
+    job::{Answer, Derivative, Failure, Job, Outcome, Per, Reached, Reply, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
     pumping_unit::{
         Discretisation, ElementKind, Integrator, Machine, ModeFamily, ReduceHeadSpec, ReducedHead,
@@ -31,7 +31,7 @@ fn form() -> String {
     }
     trace!(ToWorker FromWorker ToSlot FromSlot Event Case Machine);
     trace!(Simulation Discretisation ReduceHeadSpec ReducedHead);
-    trace!(Job Reply Answer Outcome Failure Verdict Reached ModeFamily ElementKind);
+    trace!(Job Reply Answer Outcome Failure Verdict Reached Derivative Per ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
     trace!(TurnSense);
     let registry = tracer.registry().expect("every variant was seen");

@@ -121,6 +121,40 @@ fn a_case_without_records_is_checked_and_simulated() {
     let stress = simulated["gauge_mpa"]["1"].as_array().unwrap();
     assert_eq!(stress.len(), 720);
     assert!(stress.iter().all(Value::is_number));
+    // what each of these changes, and what has no effect says so
+    let asked = [
+        "simulate",
+        "case",
+        "--derivatives",
+        "kb1,kb4,pivot_friction.moment",
+        "--out",
+        "derived",
+    ];
+    let derived = said(folder, &asked);
+    assert_eq!(derived["digest"], simulated["digest"]);
+    assert!(derived["wall_s"].is_number() && derived["derivatives_wall_s"].is_number());
+    let by = &derived["derivatives"];
+    assert_eq!(by.as_object().unwrap().len(), 3);
+    assert_eq!(by["kb1"]["unit"], "MPa per decade");
+    assert_eq!(by["pivot_friction.moment"]["unit"], "MPa per N.m");
+    for gauge in ["1", "2", "3", "4"] {
+        let curve = by["kb1"]["gauge_mpa"][gauge].as_array().unwrap();
+        assert_eq!(curve.len(), 720);
+        assert!(curve.iter().any(|x| x.as_f64().unwrap().abs() > 1e-3));
+    }
+    assert_eq!(by["kb4"]["nothing"], true);
+    let table = fs::read_to_string(folder.join("derived/derivatives.csv")).unwrap();
+    assert!(table.lines().count() > 720, "{table}");
+    let report = fs::read_to_string(folder.join("derived/report.html")).unwrap();
+    assert!(report.contains("Derivatives of the curves"));
+    let unknown = ["simulate", "case", "--derivatives", "kb1,kb7"];
+    let refused = horsehead(folder, &unknown).output().unwrap();
+    let words = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(2), "{words}");
+    assert!(
+        words.contains("`kb7` is no unknown") && words.contains("kb1, kb23"),
+        "{words}"
+    );
     // nothing to compare it with
     let refused = horsehead(folder, &["calibrate", "case"]).output().unwrap();
     let words = String::from_utf8_lossy(&refused.stderr);

@@ -52,6 +52,7 @@ fn observe(case: &Case, effects: &[EffectSetting], discretisation: Discretisatio
         },
         numerics: discretisation.numerics().unwrap(),
         reply: Reply::Channels,
+        columns: Vec::new(),
     };
     match Prepared::new(worker::SIMULATORS, case)
         .unwrap()
@@ -94,6 +95,7 @@ fn effects_give_the_same_bits_wherever_they_are_stated() {
         verdict: whole.verdict,
         counters: whole.counters,
         curves: whole.channels,
+        columns: Vec::new(),
     };
     assert_eq!(of_whole.rounded(&case, 0), plain);
 

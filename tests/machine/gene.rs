@@ -18,7 +18,7 @@ use protocol::{
 use search::space::Space;
 use search::strategy::{
     Settings, build,
-    levenberg::LevenbergSettings,
+    levenberg::{Derivatives, LevenbergSettings},
     memetic::MemeticSettings,
     quick::{Part, QuickSettings},
 };
@@ -268,6 +268,7 @@ fn a_calibration_finds_the_sizes_of_effects() {
                 iterations: 5,
                 apart: 0.03,
                 step: 0.01,
+                derivatives: Derivatives::Exact,
             }),
         ],
     );

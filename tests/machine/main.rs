@@ -1,5 +1,6 @@
 //! Proofs on the real unit: the shipped case, converted as a worker does.
 #![expect(clippy::unwrap_used, reason = "helpers of tests")]
+mod columns;
 mod effect;
 mod gene;
 mod rounding;

@@ -32,6 +32,7 @@ fn both(prepared: &Prepared, individual: &Individual) -> [Observation; 2] {
         verdict: whole.verdict,
         counters: whole.counters,
         curves: whole.channels,
+        columns: Vec::new(),
     };
     [rounded.into_channels().unwrap(), exact]
 }

@@ -50,8 +50,8 @@ pub trait Model: fmt::Debug + Send + Sync {
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure>;
 
     /// Simulates, and says everything that can be drawn; `pictures` is how many of what
-    /// moves are wanted over the whole run, 0 for none. A model that has nothing beside its channels need not say
-    /// anything here.
+    /// moves are wanted over the whole run, 0 for none. Derivatives by the columns of the job come with it. A
+    /// model that has nothing beside its channels need not say anything here.
     ///
     /// # Errors
     /// As [`Self::observe`].
@@ -63,6 +63,8 @@ pub trait Model: fmt::Debug + Send + Sync {
             counters: seen.counters,
             wall_s: began.elapsed().as_secs_f64(),
             channels: seen.curves,
+            columns: seen.columns,
+            columns_wall_s: 0.0,
             details: Vec::new(),
         })
     }

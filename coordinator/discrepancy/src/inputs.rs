@@ -29,6 +29,8 @@ pub struct Inputs {
     pub seed: u64,
     /// How it is decided.
     pub thresholds: Thresholds,
+    /// Whether a laboratory that could differentiate is not to: every derivative is a difference.
+    pub differences: bool,
 }
 
 impl Inputs {

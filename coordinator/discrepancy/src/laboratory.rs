@@ -52,6 +52,12 @@ pub trait Laboratory {
     /// Why no experiment can be done any more.
     type Error;
 
+    /// Whether observations come with the columns that a job asks for, or with a reason why not; where it
+    /// says no, differences of whole experiments do.
+    fn differentiates(&self) -> bool {
+        false
+    }
+
     /// Does a batch; observations in its order, nothing for an experiment that did not run to its
     /// end.
     ///

@@ -100,6 +100,14 @@ impl Axis {
         value.clamp(self.unknown.lower, self.unknown.upper)
     }
 
+    /// How fast the value grows with the coordinate, inside the bounds [declared unit].
+    fn rate(&self, x: f64) -> f64 {
+        match self.unknown.scale {
+            Scale::Logarithmic => std::f64::consts::LN_10 * self.value(x),
+            Scale::Linear => self.half(),
+        }
+    }
+
     /// The coordinate of a value.
     pub fn coordinate(&self, value: f64) -> f64 {
         match self.unknown.scale {
@@ -120,6 +128,8 @@ pub struct Space {
     axes: Vec<Axis>,
     /// What gives each unknown its value, in the case's order.
     givers: Vec<Giver>,
+    /// Their names.
+    names: Vec<String>,
 }
 
 /// What gives an unknown its value.
@@ -155,7 +165,12 @@ impl Space {
         if axes.is_empty() {
             return Err(SpaceError::Empty);
         }
-        Ok(Self { axes, givers })
+        let names = unknowns.iter().map(|unknown| unknown.name.clone());
+        Ok(Self {
+            axes,
+            givers,
+            names: names.collect(),
+        })
     }
 
     /// The space of a case's unknowns about other values than those that it states [declared units],
@@ -211,6 +226,17 @@ impl Space {
             Giver::Axis(axis, ratio) => ratio * own[axis],
         };
         self.givers.iter().map(value).collect()
+    }
+
+    /// The unknowns that an axis moves: their positions, their names, and how fast each of their values
+    /// grows with its coordinate `x` [declared unit].
+    pub fn rates(&self, axis: usize, x: f64) -> impl Iterator<Item = (usize, &str, f64)> {
+        let own = self.axes[axis].rate(x);
+        let givers = self.givers.iter().zip(&self.names).enumerate();
+        givers.filter_map(move |(position, (giver, name))| match *giver {
+            Giver::Axis(by, ratio) if by == axis => Some((position, &**name, ratio * own)),
+            Giver::Axis(..) | Giver::Held(_) => None,
+        })
     }
 
     /// The point of values of all unknowns [declared units].
@@ -288,6 +314,38 @@ mod tests {
         let short = Space::about(&unknowns, &[6e9]);
         let (found, expected) = (1, 2);
         assert_eq!(short, Err(SpaceError::Length { found, expected }));
+    }
+
+    /// A value grows as its rate says, and what is tied to it with it.
+    #[test]
+    fn rates_are_those_of_the_values() {
+        let mut unknowns = [
+            logarithmic(1.0, 2.0, 4.0),
+            linear(-3.0, -1.0, 1.0),
+            logarithmic(1.0, 6.0, 9.0),
+        ];
+        unknowns[2].tie = Some(Tie {
+            to: unknowns[0].name.clone(),
+            ratio: 3.0,
+        });
+        let space = Space::new(&unknowns).unwrap();
+        let at = [0.1, -0.2];
+        for axis in 0..2 {
+            let moved = |by: f64| {
+                let mut x = at;
+                x[axis] += by;
+                space.values(&x)
+            };
+            let (up, down) = (moved(1e-6), moved(-1e-6));
+            let mut rates = vec![0.0; 3];
+            for (position, name, rate) in space.rates(axis, at[axis]) {
+                assert_eq!(name, unknowns[position].name);
+                rates[position] = rate;
+            }
+            for (k, rate) in rates.into_iter().enumerate() {
+                assert!((rate - (up[k] - down[k]) / 2e-6).abs() < 1e-6, "{axis} {k}");
+            }
+        }
     }
 
     /// Whatever has no axis still has a value, and the box does not know its place in the case.

@@ -6,7 +6,7 @@ use crate::report::{Drawing, General};
 use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::{Case, Channel},
-    job::{ChannelScore, Curves, Numerics},
+    job::{ChannelScore, Curves, Numerics, Per},
     wire::WireError,
 };
 use serde_json::{Map, Value, json};
@@ -97,6 +97,26 @@ pub(crate) trait Kind: Sync {
         });
         let curves = Value::Object(curves.collect());
         Ok(Map::from_iter([("curves".to_owned(), curves)]))
+    }
+
+    /// What `simulate --derivatives --output json` says of a derivative per `per`, channel by channel.
+    fn derivative(
+        &self,
+        case: &Case,
+        condition: usize,
+        per: &Per,
+        curves: &[Vec<f32>],
+    ) -> Map<String, Value> {
+        let channels = case.channels_of(condition).zip(curves);
+        // a channel that is not differentiated has no values
+        let channels = channels.filter(|(_, values)| !values.is_empty());
+        let curves = channels.map(|((_, channel), values)| {
+            let unit = format!("{} per {per}", channel.unit);
+            let curve = json!({ "unit": unit, "values": values });
+            (channel.name.clone(), curve)
+        });
+        let curves = Value::Object(curves.collect());
+        Map::from_iter([("curves".to_owned(), curves)])
     }
 
     /// Key of the unknowns in objects.

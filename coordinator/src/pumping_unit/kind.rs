@@ -3,7 +3,10 @@ use super::{
     case,
     digest::simulation_digest,
     numerics::numerics,
-    output::{curves::CurvesOutput, score},
+    output::{
+        curves::{CurvesOutput, derivative},
+        score,
+    },
     report::Dhh,
 };
 use crate::{
@@ -14,7 +17,7 @@ use crate::{
 use discrepancy::thresholds::Thresholds;
 use protocol::{
     case::{Case, Channel},
-    job::{ChannelScore, Curves, Numerics},
+    job::{ChannelScore, Curves, Numerics, Per},
     pumping_unit::{Machine, Simulation},
     wire::WireError,
 };
@@ -67,6 +70,16 @@ impl Kind for PumpingUnits {
             Ok(Value::Object(map)) => Ok(map),
             Ok(_) | Err(_) => Ok(Map::new()),
         }
+    }
+
+    fn derivative(
+        &self,
+        case: &Case,
+        condition: usize,
+        per: &Per,
+        curves: &[Vec<f32>],
+    ) -> Map<String, Value> {
+        derivative(case, condition, per, curves)
     }
 
     fn unknowns(&self) -> &'static str {

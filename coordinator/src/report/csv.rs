@@ -1,9 +1,10 @@
 //! The channels of simulations as CSV: one row per channel and point.
 //!
 //! An empty field is a value that does not exist; numbers are written with all their digits.
-use super::data::Shown;
+use super::data::{Shown, SingleRun};
 use super::number::field;
 use super::words::condition_name;
+use protocol::job::Derivative;
 use std::io::Write;
 
 const COLUMNS: [&str; 10] = [
@@ -50,6 +51,48 @@ pub(super) fn curves(to: impl Write, runs: &[(&str, Shown<'_>)]) -> Result<(), c
                     &abscissa.name,
                     &abscissa.unit,
                 ];
+                writer.write_record(names.into_iter().chain(numbers.iter().map(String::as_str)))?;
+            }
+        }
+    }
+    Ok(writer.flush()?)
+}
+
+/// Writes the derivatives of one simulation, one row per name, channel and point.
+///
+/// # Errors
+/// [`csv::Error`] when the writer fails.
+pub(super) fn derivatives(to: impl Write, run: &SingleRun) -> Result<(), csv::Error> {
+    const COLUMNS: [&str; 8] = [
+        "condition",
+        "by",
+        "channel",
+        "unit",
+        "abscissa",
+        "abscissa_unit",
+        "at",
+        "derivative",
+    ];
+    let mut writer = csv::Writer::from_writer(to);
+    writer.write_record(COLUMNS)?;
+    let condition = condition_name(&run.case, run.condition);
+    for (name, derivative) in run.derived.iter().zip(&run.curves.columns) {
+        let Derivative::Curves { per, curves } = derivative else {
+            continue;
+        };
+        let channels = run.case.channels_of(run.condition);
+        for ((_, channel), values) in channels.zip(curves) {
+            let (abscissa, unit) = (&channel.abscissa, format!("{} per {per}", channel.unit));
+            for (at, value) in abscissa.points.iter().zip(values) {
+                let names = [
+                    condition.as_str(),
+                    name,
+                    &channel.name,
+                    &unit,
+                    &abscissa.name,
+                    &abscissa.unit,
+                ];
+                let numbers = [field(Some(*at)), field(Some(f64::from(*value)))];
                 writer.write_record(names.into_iter().chain(numbers.iter().map(String::as_str)))?;
             }
         }

@@ -210,6 +210,8 @@ pub struct SingleRun {
     pub evaluation: Option<Evaluation>,
     /// The curves.
     pub curves: Curves,
+    /// What they were differentiated by, in the order of their columns.
+    pub derived: Vec<String>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }

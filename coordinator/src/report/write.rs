@@ -1,7 +1,8 @@
 //! What commands write: reports of calibrations and simulations with the data behind them.
+use super::csv;
 use super::data::{Calibration, SingleRun};
 use super::document::{Report, Table, section_text};
-use super::folder::{ReportError, write_report};
+use super::folder::{ReportError, stream, write_report};
 use super::{kind, section};
 use std::path::{Path, PathBuf};
 
@@ -49,5 +50,9 @@ pub fn write_simulation(folder: &Path, run: &SingleRun) -> Result<Vec<PathBuf>, 
     let mut written = write_report(folder, &simulation(run))?;
     let alone = [(run.genes_name.as_str(), run.shown())];
     written.extend(kind::of(&run.case).files(folder, &alone)?);
+    if !run.derived.is_empty() {
+        let derivatives = |file| csv::derivatives(file, run);
+        written.push(stream(folder, "derivatives.csv", derivatives)?);
+    }
     Ok(written)
 }

@@ -10,9 +10,9 @@ use super::{
 use protocol::{
     case::Case,
     id::JobId,
-    job::{Answer, Individual, Job, Outcome, Reply, SimulateSpec},
+    job::{Answer, Column, Individual, Job, Outcome, Reply, SimulateSpec},
 };
-use search::strategy::{Best, Finish, Proposal, Strategy};
+use search::strategy::{Best, Finish, Proposal, Residual, Strategy};
 use std::collections::BTreeMap;
 
 /// Individuals that must have failed before a search is given up because nothing else has happened.
@@ -66,7 +66,13 @@ pub async fn calibrate<E: Evaluator>(
         if let Some(evaluation) = completed.outcome.answer().and_then(Answer::evaluation)
             && !evaluation.residual.is_empty()
         {
-            strategy.tell_residual(proposal.id, evaluation.residual.clone());
+            let by = derived(case, &proposal).into_iter();
+            let by = by.map(|column| column.name).zip(evaluation.columns.clone());
+            let residual = Residual {
+                values: evaluation.residual.clone(),
+                by: by.collect(),
+            };
+            strategy.tell_residual(proposal.id, residual);
         }
         let entry = entry(proposal, completed.outcome)?;
         strategy.tell(entry.id, entry.told());
@@ -81,7 +87,18 @@ fn score(case: &Case, proposal: &Proposal) -> Job {
     let reply = Reply::Score {
         with_residual: proposal.purpose.wants_residual(),
     };
-    Job::Simulate(SimulateSpec::new(individual, reply))
+    Job::Simulate(SimulateSpec {
+        columns: derived(case, proposal),
+        ..SimulateSpec::new(individual, reply)
+    })
+}
+
+/// What a proposal is to be differentiated by: every unknown that moves.
+fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
+    let wanted = proposal.purpose.wants_derivatives();
+    let moving = case.unknowns.iter().filter(|it| !it.fixed && !it.is_off());
+    let columns = moving.map(|unknown| Column::of(unknown.name.clone()));
+    columns.filter(|_| wanted).collect()
 }
 
 /// What came back of a proposal. A failure that every other individual would meet too ends the

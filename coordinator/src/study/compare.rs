@@ -7,7 +7,7 @@ use super::{
 use protocol::{
     case::Case,
     id::JobId,
-    job::{self, Evaluation, Individual, Job, Reply, SimulateSpec},
+    job::{self, Column, Evaluation, Individual, Job, Reply, SimulateSpec},
 };
 use std::collections::BTreeMap;
 
@@ -23,6 +23,8 @@ pub struct Wanted {
     pub individuals: Vec<(String, Vec<f64>)>,
     /// Pictures of what moves; 0 for none.
     pub pictures: u32,
+    /// What the curves are differentiated by.
+    pub columns: Vec<Column>,
 }
 
 /// Pictures that show what moves without a jerk.
@@ -74,21 +76,24 @@ pub async fn compare<E: Evaluator>(
         let recorded = case.is_measured(one.condition);
         for (position, (_, genes)) in one.individuals.iter().enumerate() {
             let first = first_id(one.condition, position);
-            let simulate = |reply| {
-                let individual = Individual::new(one.condition, genes.clone());
-                Job::Simulate(SimulateSpec::new(individual, reply))
-            };
             if recorded {
+                let individual = Individual::new(one.condition, genes.clone());
                 let reply = Reply::Score {
                     with_residual: false,
                 };
-                evaluator.submit(JobId(first), simulate(reply))?;
+                let spec = SimulateSpec::new(individual, reply);
+                evaluator.submit(JobId(first), Job::Simulate(spec))?;
                 open.insert(first, (group, position));
             }
             let reply = Reply::Curves {
                 pictures: one.pictures,
             };
-            evaluator.submit(JobId(first + 1), simulate(reply))?;
+            let individual = Individual::new(one.condition, genes.clone());
+            let spec = SimulateSpec {
+                columns: one.columns.clone(),
+                ..SimulateSpec::new(individual, reply)
+            };
+            evaluator.submit(JobId(first + 1), Job::Simulate(spec))?;
             open.insert(first + 1, (group, position));
         }
     }

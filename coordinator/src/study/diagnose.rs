@@ -86,6 +86,7 @@ pub async fn diagnose_on<E: Evaluator>(
         watch,
         stop,
         next_id: LIBRARY + 1,
+        differentiates: !inputs.differences,
         costs: BTreeMap::new(),
     };
     let diagnosis = diagnose(&mut jobs, inputs).await?;
@@ -101,11 +102,16 @@ struct Jobs<'a, E> {
     watch: &'a mut dyn Watch<StageView>,
     stop: &'a mut Stop,
     next_id: u64,
+    differentiates: bool,
     costs: BTreeMap<Stage, StageCost>,
 }
 
 impl<E: Evaluator> Laboratory for Jobs<'_, E> {
     type Error = StudyError;
+
+    fn differentiates(&self) -> bool {
+        self.differentiates
+    }
 
     async fn observe(
         &mut self,

@@ -155,6 +155,7 @@ fn evaluation(fitness: f64, verdict: Verdict) -> Evaluation {
         fitness,
         channels: vec![channel],
         residual: Vec::new(),
+        columns: Vec::new(),
         counters: Counters::default(),
     }
 }
@@ -344,6 +345,7 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
         condition,
         individuals: individuals.clone(),
         pictures: 0,
+        columns: Vec::new(),
     };
     for order in 1..6 {
         let mut oracle = Oracle::new(&case, order, physics);
@@ -378,6 +380,7 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
         condition: 0,
         individuals,
         pictures: 0,
+        columns: Vec::new(),
     }];
     let error = compare(&mut oracle, &case, &wanted, &mut stop)
         .await

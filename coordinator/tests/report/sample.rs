@@ -388,6 +388,7 @@ pub(crate) fn score(case: &Case, condition: usize, simulation: &Simulation) -> E
         fitness: if complete { weighted.sum() } else { 1.66e6 },
         channels,
         residual: Vec::new(),
+        columns: Vec::new(),
         counters: simulation.counters,
     }
 }
@@ -591,6 +592,7 @@ pub(crate) fn single() -> SingleRun {
         genes: case.start(),
         evaluation: Some(score(&case, 0, &simulation)),
         curves: curves(&case, 0, simulation),
+        derived: Vec::new(),
         notes: Vec::new(),
         case,
     }

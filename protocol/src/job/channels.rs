@@ -1,4 +1,5 @@
 //! The channels of a simulation: what a diagnosis needs of a run.
+use super::derivative::Derivative;
 use super::verdict::{Counters, Verdict};
 use crate::{
     case::{Case, Channel},
@@ -21,6 +22,8 @@ pub struct Observation {
     /// the run got.
     #[serde(with = "crate::curve::each")]
     pub curves: Vec<Vec<f64>>,
+    /// Derivatives by the columns that were asked for, in their order; none of a run that failed.
+    pub columns: Vec<Derivative>,
 }
 
 impl Observation {

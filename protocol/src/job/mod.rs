@@ -12,6 +12,7 @@
 //! [`Answer`], and a file in `worker/src/handler`.
 mod channels;
 mod curves;
+mod derivative;
 mod failure;
 mod score;
 mod simulate;
@@ -20,6 +21,7 @@ mod word;
 
 pub use channels::Observation;
 pub use curves::Curves;
+pub use derivative::{Column, Derivative, MOST_COLUMNS, Per};
 pub use failure::{Failure, WrongKind};
 pub use score::{ChannelScore, Evaluation};
 pub use simulate::{Individual, Numerics, Reply, SimulateSpec};

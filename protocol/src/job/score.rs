@@ -1,4 +1,5 @@
 //! A simulation compared with what was measured.
+use super::derivative::Derivative;
 use super::verdict::{Counters, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,9 @@ pub struct Evaluation {
     /// other, each scaled such that the squared length of the whole is the objective; empty unless
     /// asked for and complete.
     pub residual: Vec<f64>,
+    /// Derivatives of the residual by the columns that were asked for, in their order, one curve each;
+    /// empty where the residual is.
+    pub columns: Vec<Derivative>,
     /// What it cost.
     pub counters: Counters,
 }

@@ -1,4 +1,5 @@
 //! What to simulate, how finely, and what to say of it: the one job of all simulations.
+use super::derivative::Column;
 use crate::case::EffectSetting;
 use serde::{Deserialize, Serialize};
 
@@ -11,6 +12,9 @@ pub struct SimulateSpec {
     pub numerics: Numerics,
     /// What is wanted of it.
     pub reply: Reply,
+    /// What it is differentiated by, at most [`super::MOST_COLUMNS`]; derivatives come with curves and with
+    /// residuals.
+    pub columns: Vec<Column>,
 }
 
 impl SimulateSpec {
@@ -20,6 +24,7 @@ impl SimulateSpec {
             individual,
             numerics: Numerics::OF_THE_CASE,
             reply,
+            columns: Vec::new(),
         }
     }
 }

@@ -73,6 +73,8 @@ impl Simulation {
             counters: self.counters,
             wall_s: self.wall_s,
             channels,
+            columns: Vec::new(),
+            columns_wall_s: 0.0,
             details: wire::encode(&self)?,
         })
     }

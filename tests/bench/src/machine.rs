@@ -67,6 +67,7 @@ impl Machine {
             },
             numerics: discretisation.numerics()?,
             reply: Reply::Curves { pictures: 0 },
+            columns: Vec::new(),
         });
         let done = self.prepared.evaluate(&job).done();
         let answer = done.map_err(|failure| anyhow!("not simulated: {failure}"))?;

@@ -8,7 +8,10 @@ use protocol::{
     announce::EffectDescriptor,
     case::{Case, EffectSetting, merged},
     id::ContentHash,
-    job::{Counters, Failure, Individual, Observation, Reached, SimulateSpec, Verdict, Word},
+    job::{
+        Counters, Derivative, Failure, Individual, Observation, Reached, SimulateSpec, Verdict,
+        Word,
+    },
 };
 use worker::simulator::{Model, Simulator};
 
@@ -221,6 +224,7 @@ impl Prepared {
                 ..Counters::default()
             },
             curves: run.curves,
+            columns: Derivative::none(&spec.columns),
         })
     }
 }

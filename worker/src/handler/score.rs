@@ -3,7 +3,7 @@
 //! A run that fails is graded: every complete run beats a failure in motion (the later the
 //! better), which beats a failure under static load (the more load carried the better).
 use protocol::case::{Case, ChannelRecord, Objective, Offset, Term};
-use protocol::job::{ChannelScore, Evaluation, Failure, Observation, Reached, Verdict};
+use protocol::job::{ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict};
 
 /// Fitness of a failure in motion just before the end, and under load just before full load; far
 /// above the error of any run that completes.
@@ -28,6 +28,7 @@ pub(super) fn evaluation(
             fitness: graded(reached),
             channels: Vec::new(),
             residual: Vec::new(),
+            columns: Vec::new(),
             counters,
         });
     }
@@ -54,6 +55,15 @@ pub(super) fn evaluation(
         fitness: weighted(&case.objective, &compared)?,
         residual: if with_residual {
             residual(&case.objective, &compared)
+        } else {
+            Vec::new()
+        },
+        columns: if with_residual {
+            let names: Vec<&str> = case.channels_of(condition).map(|(_, c)| &*c.name).collect();
+            let columns = seen.columns.iter();
+            columns
+                .map(|column| residual_by(&case.objective, &names, column))
+                .collect()
         } else {
             Vec::new()
         },
@@ -144,9 +154,50 @@ fn residual(objective: &Objective, compared: &[Compared<'_>]) -> Vec<f64> {
     terms.filter_map(scaled).flatten().collect()
 }
 
+/// The derivative of that residual, where `names` are those of the channels that have one.
+fn residual_by(objective: &Objective, names: &[&str], by: &Derivative) -> Derivative {
+    let Derivative::Curves { per, curves } = by else {
+        return by.clone();
+    };
+    let mut all = Vec::new();
+    for term in &objective.terms {
+        let at = names.iter().position(|name| *name == term.channel);
+        let Some(curve) = at
+            .and_then(|at| curves.get(at))
+            .filter(|curve| !curve.is_empty())
+        else {
+            return Derivative::Missing {
+                reason: format!("`{}` is not differentiated", term.channel),
+            };
+        };
+        let n = curve.len() as f64;
+        let curve = curve.iter().map(|x| f64::from(*x));
+        let removed = match objective.offset {
+            Offset::Free => curve.clone().sum::<f64>() / n,
+            Offset::Fixed => 0.0,
+        };
+        let scale = (term.weight / n).sqrt();
+        // measured less simulated
+        all.extend(curve.map(|x| single(scale * (removed - x))));
+    }
+    Derivative::Curves {
+        per: per.clone(),
+        curves: vec![all],
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "derivatives travel in single precision"
+)]
+const fn single(x: f64) -> f32 {
+    x as f32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use protocol::job::Per;
 
     #[test]
     fn scores_follow_their_definitions() {
@@ -167,6 +218,64 @@ mod tests {
         assert!((free.peak_to_peak_error - 0.5).abs() < 1e-15);
         let (fixed, _) = compared(2, &record, &simulated, Offset::Fixed);
         assert!((fixed.mse - 2.5).abs() < 1e-15);
+    }
+
+    /// The derivative of a residual is what a change of the curves changes, whichever offset is removed.
+    #[test]
+    fn derivatives_are_those_of_the_residual() {
+        let record = |mean: [f64; 4]| ChannelRecord {
+            cycles: 1,
+            mean: mean.to_vec(),
+            spread: vec![0.0; 4],
+        };
+        let records = [record([1.0, 3.0, 5.0, 3.0]), record([2.0, 0.0, 1.0, 4.0])];
+        let names = ["b", "unscored", "a"];
+        let curves = [
+            [0.5, 1.0, -2.0, 0.25],
+            [9.0, 9.0, 9.0, 9.0],
+            [4.0, 0.0, 1.0, -1.0],
+        ];
+        let term = |channel: &str, weight: f64| Term {
+            channel: channel.to_owned(),
+            weight,
+        };
+        let derivative = Derivative::Curves {
+            per: Per::Decade,
+            curves: curves.map(|c| c.map(single).to_vec()).to_vec(),
+        };
+        for offset in [Offset::Free, Offset::Fixed] {
+            let objective = Objective {
+                condition: 0,
+                terms: vec![term("a", 0.7), term("b", 2.0)],
+                offset,
+            };
+            let at = |by: f64| {
+                let all = [(0, "a", 2), (1, "b", 0)].map(|(at, name, own)| {
+                    let simulated = curves[own].map(|x| 1.0 + by * x);
+                    let (score, residual) = compared(at, &records[at], &simulated, offset);
+                    Compared {
+                        name,
+                        score,
+                        residual,
+                    }
+                });
+                residual(&objective, &all)
+            };
+            let Derivative::Curves { curves, .. } = residual_by(&objective, &names, &derivative)
+            else {
+                unreachable!("it has one")
+            };
+            let expected = at(1.0)
+                .into_iter()
+                .zip(at(0.0))
+                .map(|(one, zero)| one - zero);
+            assert_eq!(curves[0].len(), 8);
+            for (found, expected) in curves[0].iter().zip(expected) {
+                assert!((f64::from(*found) - expected).abs() < 1e-6);
+            }
+            let none = residual_by(&objective, &names[..1], &derivative);
+            assert!(matches!(none, Derivative::Missing { .. }));
+        }
     }
 
     #[test]

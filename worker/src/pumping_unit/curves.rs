@@ -19,7 +19,11 @@ pub(super) fn run(
 ) -> Result<Curves, Failure> {
     let step_deg = machines.unit.machine.run.output_step_deg;
     let recorder = Recorder::everything(samples_apart(pictures, step_deg));
-    let ran = Ran::new(machines, spec, recorder)?;
+    let plain = SimulateSpec {
+        columns: Vec::new(),
+        ..spec.clone()
+    };
+    let ran = Ran::new(machines, &plain, recorder)?;
     let (gauge_mpa, suspension_m) = (ran.gauges_mpa(), ran.suspension_m());
     let channels = ran.channels(&machines.unit.case, spec.individual.condition)?;
     let curves = ran.curves;
@@ -46,7 +50,17 @@ pub(super) fn run(
         motion: shapes.map(|shape| motion(shape, step_deg)).collect(),
     };
     let drawn = simulation.into_curves(channels);
-    drawn.map_err(|error| Failure::misconfigured("curves", error.to_string()))
+    let drawn = drawn.map_err(|error| Failure::misconfigured("curves", error.to_string()))?;
+    if spec.columns.is_empty() {
+        return Ok(drawn);
+    }
+    // the same bits once more: `wall_s` is that of a plain run
+    let derived = Ran::new(machines, spec, Recorder::gauges_only())?;
+    Ok(Curves {
+        columns: derived.columns,
+        columns_wall_s: derived.wall_s,
+        ..drawn
+    })
 }
 
 /// How many samples lie between two shapes; 0 where none are wanted.

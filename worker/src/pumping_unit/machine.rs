@@ -56,7 +56,7 @@ pub(crate) fn no_condition(condition: usize) -> Failure {
     Failure::misconfigured("conditions", format!("has no entry {condition}"))
 }
 
-fn description(
+pub(super) fn description(
     machine: &pumping_unit::Machine,
     condition: &WorkingCondition,
 ) -> Result<Description, Failure> {

@@ -1,6 +1,7 @@
 //! The pumping unit with double horse heads: from what travels to what the dynamics take, and back.
 //!
 //! The only folder that names both vocabularies: degrees become radians and megapascals pascals here.
+mod columns;
 mod curves;
 mod digest;
 mod effect;

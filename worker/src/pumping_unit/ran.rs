@@ -1,11 +1,18 @@
 //! A simulation that was run, before anything is said of it.
-use super::machines::Machines;
-use super::{genes::rope_law, reply, run::discretised_settings};
+use super::{columns::Columns, machines::Machines};
+use super::{
+    genes::rope_law,
+    reply::{self, megapascals},
+    run::discretised_settings,
+};
 use protocol::case::{Case, Channel};
-use protocol::job::{Counters, Failure, SimulateSpec, Verdict};
+use protocol::job::{Counters, Derivative, Failure, SimulateSpec, Verdict};
 use protocol::pumping_unit::{Discretisation, Sensor};
 use simulation::observe::{Curves, Recorder};
-use simulation::run::{RunResult, simulate};
+use simulation::{
+    run::{RunResult, simulate},
+    sensitivity,
+};
 use std::time::Instant;
 
 /// What a run left behind.
@@ -17,10 +24,12 @@ pub(super) struct Ran {
     /// Lowest design position of the suspension \[m\].
     pub(super) lowest_suspension_m: f64,
     pub(super) wall_s: f64,
+    /// Derivatives by the columns of the job; none of a run that failed.
+    pub(super) columns: Vec<Derivative>,
 }
 
 impl Ran {
-    /// Simulates and records what the recorder takes.
+    /// Simulates, with the columns of the job behind the run, and records what the recorder takes.
     ///
     /// # Errors
     /// [`Failure::Misconfigured`] when condition, genes, effects or discretisation do not fit the
@@ -30,14 +39,26 @@ impl Ran {
         spec: &SimulateSpec,
         mut recorder: Recorder,
     ) -> Result<Self, Failure> {
-        let numerics = Discretisation::of(&spec.numerics)
-            .map_err(|error| Failure::misconfigured("numerics", error.to_string()))?;
+        let numerics = numerics(spec)?;
         let unit = machines.discretised(&numerics)?;
         let law = rope_law(&unit, &spec.individual.genes)?;
         let settings = discretised_settings(&unit.machine, &numerics);
         let machine = machines.machine(&unit, &spec.individual)?;
+        let columns = Columns::new(&unit, &machine, spec)?;
         let started = Instant::now();
-        let result = simulate(&machine, &law, &settings, &mut recorder);
+        let (result, columns) = match columns {
+            None => (
+                simulate(&machine, &law, &settings, &mut recorder),
+                Vec::new(),
+            ),
+            Some(columns) => {
+                let (result, found) =
+                    sensitivity::simulate(&machine, &law, &settings, &columns.plan, &mut recorder);
+                let condition = spec.individual.condition;
+                let said = found.map(|found| columns.said(&unit.case, condition, found));
+                (result, said.unwrap_or_default())
+            }
+        };
         Ok(Self {
             verdict: reply::verdict(&result.verdict),
             counters: reply::counters(&result.statistics),
@@ -45,6 +66,7 @@ impl Ran {
             result,
             lowest_suspension_m: machine.lowest_suspension,
             wall_s: started.elapsed().as_secs_f64(),
+            columns,
         })
     }
 
@@ -80,6 +102,11 @@ impl Ran {
     }
 }
 
-fn megapascals(stress_pa: &[f64]) -> Vec<f64> {
-    stress_pa.iter().map(|s| s * 1e-6).collect()
+/// How finely a job wants it.
+///
+/// # Errors
+/// [`Failure::Misconfigured`] for bytes that say nothing of a pumping unit.
+pub(super) fn numerics(spec: &SimulateSpec) -> Result<Discretisation, Failure> {
+    Discretisation::of(&spec.numerics)
+        .map_err(|error| Failure::misconfigured("numerics", error.to_string()))
 }

@@ -36,3 +36,8 @@ pub(super) const fn counters(statistics: &Statistics) -> Counters {
         factorizations: statistics.factorizations,
     }
 }
+
+/// Stress in the unit in which it travels.
+pub(super) fn megapascals(stress_pa: &[f64]) -> Vec<f64> {
+    stress_pa.iter().map(|s| s * 1e-6).collect()
+}

@@ -57,6 +57,7 @@ impl Model for Machines {
             verdict: ran.verdict,
             counters: ran.counters,
             curves: ran.channels(&self.unit.case, spec.individual.condition)?,
+            columns: ran.columns,
         })
     }
 

@@ -1,19 +1,22 @@
 //! The library under suspicion: a signature of every effect at the fitted point, and its score test.
 //!
-//! Signatures are differences at the effect's typical size, taken again where that changes the
-//! curves too much to be linear or too little to be seen; effects whose law has a shape (an angle, a
+//! Where the laboratory differentiates, signatures are derivatives at the fitted point, of every shape in one
+//! go, unless the effect is not linear up to the size that the record asks for: one difference per size
+//! says so. All others are differences at the effect's typical size, taken again where that changes the
+//! curves too much to be linear or too little to be seen. Effects whose law has a shape (an angle, a
 //! width, a ratio) are tried at several values of it, and the best of k tries is judged as such.
 use crate::cause::suspect::Suspect;
 use crate::laboratory::Laboratory;
 use crate::linear::score::{Score, score};
 use crate::linear::tangent::Tangent;
+use crate::model::change::term_of_absent;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::parameter::{absent, bounds, positive, shapes, sized, sizes, typical};
 use crate::model::unknowns::Point;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::EffectDescriptor;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A signature to be taken: an effect at some shape, one of its sizes at some value.
 #[derive(Clone, Debug)]
@@ -30,6 +33,10 @@ struct Probe {
     amount: f64,
     /// Whitened change per unit of the size, once it was taken.
     column: Option<DVector<f64>>,
+    /// The same to first order, if that is known.
+    exact: Option<DVector<f64>>,
+    /// Whether the first order is all that is asked for.
+    settled: bool,
 }
 
 impl Probe {
@@ -45,6 +52,8 @@ impl Probe {
 const WANTED: f64 = 4.0;
 /// Changes outside this range are taken again.
 const USABLE: [f64; 2] = [1.0, 20.0];
+/// Cosine of derivative and difference from which an effect counts as linear.
+const LINEAR: f64 = 0.98;
 /// Values of each shape that are tried.
 const SHAPES: usize = 6;
 
@@ -59,11 +68,14 @@ pub async fn examine<L: Laboratory>(
 ) -> Result<Vec<Suspect>, L::Error> {
     let tangent = fit.tangent();
     let mut probes = plan(effects);
+    differentiate(experiments, fit, effects, &mut probes).await?;
+    suggest(effects, &mut probes, &tangent);
     // what a size does in the effect's typical shape tells how much of it to take in the others
     take(experiments, fit, effects, &mut probes, |probe| {
         probe.typical
     })
     .await?;
+    settle(&mut probes, &tangent);
     adjust(effects, &mut probes, &tangent);
     spread(&mut probes);
     take(experiments, fit, effects, &mut probes, |_| true).await?;
@@ -89,6 +101,8 @@ fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
                     size,
                     amount: typical(&effect.parameters[size]),
                     column: None,
+                    exact: None,
+                    settled: false,
                 });
             }
         }
@@ -111,13 +125,76 @@ fn shape_choices(effect: &EffectDescriptor) -> Vec<Vec<f64>> {
     choices
 }
 
+/// Learns the first order of all probes, as far as the laboratory knows it. Forces without a cause are
+/// linear in their size, so nothing else is asked of them.
+async fn differentiate<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    effects: &[EffectDescriptor],
+    probes: &mut [Probe],
+) -> Result<(), L::Error> {
+    let term = |probe: &Probe| {
+        let effect = &effects[probe.effect];
+        term_of_absent(&fit.model, effect, &probe.shape, probe.size)
+    };
+    let terms = probes.iter().map(term).collect();
+    let changes = experiments.changes(fit, terms).await?;
+    let metric = &experiments.on.metric;
+    for (probe, change) in probes.iter_mut().zip(changes) {
+        let exact = change.map(|change| metric.whiten(&change));
+        // what does nothing at first may do something later
+        probe.exact = exact.filter(|exact| exact.norm_squared() > 0.0);
+        if effects[probe.effect].generic && probe.exact.is_some() {
+            probe.settled = true;
+            probe.column.clone_from(&probe.exact);
+        }
+    }
+    Ok(())
+}
+
+/// How much of a size changes the curves as much as a signature should, to first order.
+fn suggest(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
+    for probe in probes {
+        let Some(exact) = &probe.exact else { continue };
+        let change = tangent.project(exact).norm();
+        let [lower, upper] = bounds(&effects[probe.effect].parameters[probe.size]);
+        let amount = (probe.amount.signum() * WANTED / change).clamp(lower, upper);
+        if amount.is_finite() && amount != 0.0 {
+            probe.amount = amount;
+        }
+    }
+}
+
+/// Where a difference points where the derivative does, derivatives serve for all shapes of that size.
+fn settle(probes: &mut [Probe], tangent: &Tangent) {
+    let linear = |probe: &Probe| {
+        let (Some(exact), Some(column)) = (&probe.exact, &probe.column) else {
+            return false;
+        };
+        let (x, y) = (tangent.project(exact), tangent.project(column));
+        x.dot(&y) >= LINEAR * x.norm() * y.norm()
+    };
+    let typical = probes.iter().filter(|probe| probe.typical && linear(probe));
+    let linear: BTreeSet<(usize, usize)> =
+        typical.map(|probe| (probe.effect, probe.size)).collect();
+    for probe in probes {
+        if linear.contains(&(probe.effect, probe.size)) && probe.exact.is_some() {
+            probe.settled = true;
+            probe.column.clone_from(&probe.exact);
+        }
+    }
+}
+
 /// Gives every other shape the amount that suits the typical one.
 fn spread(probes: &mut [Probe]) {
     let typical = probes.iter().filter(|probe| probe.typical);
     let amounts: BTreeMap<(usize, usize), f64> = typical
         .map(|probe| ((probe.effect, probe.size), probe.amount))
         .collect();
-    for probe in probes.iter_mut().filter(|probe| !probe.typical) {
+    for probe in probes
+        .iter_mut()
+        .filter(|probe| !probe.typical && !probe.settled)
+    {
         if let Some(amount) = amounts.get(&(probe.effect, probe.size)) {
             probe.amount = *amount;
         }
@@ -149,7 +226,7 @@ async fn take<L: Laboratory>(
 
 /// Chooses another amount for signatures that were too large, too small or failed.
 fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
-    for probe in probes {
+    for probe in probes.iter_mut().filter(|probe| !probe.settled) {
         let parameter = &effects[probe.effect].parameters[probe.size];
         let [lower, upper] = bounds(parameter);
         let amount = match &probe.column {

@@ -1,10 +1,13 @@
-//! Experiments on one record: the curves of points, and fits of models to it.
-use crate::laboratory::{Laboratory, Stage, curves};
+//! Experiments on one record: the curves of points and their changes, and fits of models to it.
+use crate::laboratory::{Laboratory, Stage, channels};
+use crate::model::change::Wanted;
 use crate::model::fit::Fit;
 use crate::model::unknowns::{Model, Point};
-use crate::record::measured::Curves;
+use crate::record::measured::{Curves, Record, difference};
 use crate::record::whitened::WhitenedRecord;
-use search::least_squares::{Ended, LeastSquares, Settings, Variable};
+use protocol::job::{Observation, SimulateSpec};
+use search::derivative::Term;
+use search::least_squares::{Ended, Evaluated, LeastSquares, Settings, Variable};
 
 /// A laboratory, the record that its experiments are compared with, and the stage that they count for.
 #[derive(Debug)]
@@ -35,10 +38,92 @@ impl<L: Laboratory> Experiments<'_, L> {
     /// # Errors
     /// Those of the laboratory.
     pub async fn curves(&mut self, points: &[Point]) -> Result<Vec<Option<Curves>>, L::Error> {
-        let (record, numerics) = (&self.on.record, &self.on.numerics);
-        let experiment = |point: &Point| point.experiment(record.condition, numerics);
-        let batch = points.iter().map(experiment).collect();
-        curves(self.lab, self.stage, record, batch).await
+        let wanted = points.iter().map(|point| Wanted::new(point.clone(), false));
+        let seen = self.seen(&self.on.record, wanted.collect()).await?;
+        Ok(seen.into_iter().map(|seen| Some(seen?.curves)).collect())
+    }
+
+    /// Curves of points under the condition of a record, with the changes of them that are wanted; nothing
+    /// for a point that failed.
+    async fn seen(
+        &mut self,
+        record: &Record,
+        wanted: Vec<Wanted>,
+    ) -> Result<Vec<Option<Seen>>, L::Error> {
+        let numerics = &self.on.numerics;
+        let experiment = |wanted: &Wanted| SimulateSpec {
+            columns: wanted.columns(),
+            ..wanted.point.experiment(record.condition, numerics)
+        };
+        let batch = wanted.iter().map(experiment).collect();
+        let observed = self.lab.observe(self.stage, batch).await?;
+        let seen = |(wanted, seen): (Wanted, Option<Observation>)| {
+            let seen = seen?;
+            let curves = channels(&seen, record)?;
+            let changes = wanted.changes(&seen.columns, (record, &curves));
+            Some(Seen { curves, changes })
+        };
+        Ok(wanted.into_iter().zip(observed).map(seen).collect())
+    }
+
+    /// First-order changes of a fit's curves by terms of its model, as far as the laboratory knows them.
+    pub(crate) async fn changes(
+        &mut self,
+        fit: &Fit,
+        terms: Vec<Term>,
+    ) -> Result<Vec<Option<Curves>>, L::Error> {
+        /// Terms of one simulation: the more, the less each costs; several occupy several slots.
+        const TOGETHER: usize = 80;
+        if !self.lab.differentiates() {
+            return Ok(vec![None; terms.len()]);
+        }
+        let together = |terms: &[Term]| Wanted {
+            point: fit.point(),
+            changes: terms.iter().map(|term| vec![term.clone()]).collect(),
+        };
+        let wanted: Vec<Wanted> = terms.chunks(TOGETHER).map(together).collect();
+        let counts: Vec<usize> = terms.chunks(TOGETHER).map(<[Term]>::len).collect();
+        let seen = self.seen(&self.on.record, wanted).await?;
+        let each = seen.into_iter().zip(counts);
+        Ok(each
+            .flat_map(|(seen, count)| seen.map_or_else(|| vec![None; count], |seen| seen.changes))
+            .collect())
+    }
+
+    /// Curves of a fit on a record, and their change per unit of each of its unknowns: as the laboratory
+    /// differentiates them, else by differences. Nothing where the point fails; no change by an unknown
+    /// whose difference does.
+    pub(crate) async fn linearized(
+        &mut self,
+        fit: &Fit,
+        record: &Record,
+    ) -> Result<Option<Seen>, L::Error> {
+        let neighbours: Vec<(f64, Point)> = fit.neighbours().collect();
+        let exact = self.lab.differentiates();
+        let mut wanted = vec![Wanted::new(fit.point(), exact)];
+        let beside = |point: &Point| Wanted::new(point.clone(), false);
+        if !exact {
+            wanted.extend(neighbours.iter().map(|(_, point)| beside(point)));
+        }
+        let mut seen = self.seen(record, wanted).await?.into_iter();
+        let Some(mut own) = seen.next().flatten() else {
+            return Ok(None);
+        };
+        own.changes.resize(neighbours.len(), None);
+        let open: Vec<usize> = (0..neighbours.len())
+            .filter(|k| own.changes[*k].is_none())
+            .collect();
+        let rest = if exact {
+            let wanted = open.iter().map(|k| beside(&neighbours[*k].1));
+            self.seen(record, wanted.collect()).await?
+        } else {
+            seen.collect()
+        };
+        for (k, there) in open.into_iter().zip(rest) {
+            let change = |there: Seen| difference(&there.curves, &own.curves, neighbours[k].0);
+            own.changes[k] = there.map(change);
+        }
+        Ok(Some(own))
     }
 
     /// Runs several fits side by side, so that their points fill one batch. A start that cannot be
@@ -51,6 +136,10 @@ impl<L: Laboratory> Experiments<'_, L> {
         starts: Vec<Point>,
         how: Settings,
     ) -> Result<Vec<Option<Fit>>, L::Error> {
+        let how = Settings {
+            exact: self.lab.differentiates(),
+            ..how
+        };
         let search = |start: Point| {
             let search = LeastSquares::new(start.model.variables(&start.x), how);
             (start.model, search)
@@ -67,28 +156,31 @@ impl<L: Laboratory> Experiments<'_, L> {
             }
             let plans: Vec<Vec<Vec<f64>>> = fits.iter().map(|(_, search)| search.plan()).collect();
             let planned = fits.iter().zip(&plans);
-            let planned =
-                planned.flat_map(|((model, _), plan)| plan.iter().map(move |x| (model, x)));
-            let points: Vec<Point> = planned
-                .map(|(model, x)| Point {
+            let wanted = planned.flat_map(|((model, search), plan)| {
+                let point = |x: &Vec<f64>| Point {
                     model: model.clone(),
                     x: x.clone(),
-                })
-                .collect();
-            if points.is_empty() {
+                };
+                let exact = search.wants_columns();
+                plan.iter().map(move |x| Wanted::new(point(x), exact))
+            });
+            let wanted: Vec<Wanted> = wanted.collect();
+            if wanted.is_empty() {
                 break;
             }
-            let mut results = self.curves(&points).await?.into_iter();
+            let mut results = self.seen(&self.on.record, wanted).await?.into_iter();
             for (((_, search), best), plan) in fits.iter_mut().zip(&mut at_best).zip(&plans) {
                 if plan.is_empty() {
                     continue;
                 }
-                let own: Vec<Option<Curves>> = results.by_ref().take(plan.len()).collect();
-                let whitened = own.iter().map(|c| c.as_ref().map(|c| self.on.residual(c)));
-                search.absorb(whitened.collect());
+                let own: Vec<Option<Seen>> = results.by_ref().take(plan.len()).collect();
+                let whitened = own
+                    .iter()
+                    .map(|seen| Some(seen.as_ref()?.whitened(self.on)));
+                search.absorb(whitened.collect::<Vec<Option<Evaluated>>>());
                 let arrived = plan.iter().position(|x| *x == search.best().x);
-                if let Some(curves) = arrived.and_then(|k| own.into_iter().nth(k)) {
-                    *best = curves;
+                if let Some(seen) = arrived.and_then(|k| own.into_iter().nth(k)) {
+                    *best = seen.map(|seen| seen.curves);
                 }
             }
         }
@@ -110,6 +202,23 @@ impl<L: Laboratory> Experiments<'_, L> {
     pub async fn fit(&mut self, start: Point, how: Settings) -> Result<Option<Fit>, L::Error> {
         let fits = self.fits(vec![start], how).await?;
         Ok(fits.into_iter().next().flatten())
+    }
+}
+
+/// Curves at a point, and changes of them per unit of what was asked for.
+pub(crate) struct Seen {
+    pub(crate) curves: Curves,
+    pub(crate) changes: Vec<Option<Curves>>,
+}
+
+impl Seen {
+    /// In a record's metric; residuals are measured less simulated.
+    fn whitened(&self, on: &WhitenedRecord) -> Evaluated {
+        let column = |change: &Option<Curves>| Some(-on.metric.whiten(change.as_ref()?));
+        Evaluated {
+            residual: on.residual(&self.curves),
+            columns: self.changes.iter().map(column).collect(),
+        }
     }
 }
 

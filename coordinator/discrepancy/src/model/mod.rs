@@ -1,5 +1,6 @@
 //! What is fitted, and how: the case's unknowns and the parameters of added effects, fits of
 //! them to a record, and the experiments that a fit takes. What an effect does it does not know.
+pub(crate) mod change;
 pub mod experiments;
 pub(crate) mod fit;
 pub(crate) mod off;

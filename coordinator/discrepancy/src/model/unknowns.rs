@@ -136,6 +136,7 @@ impl Point {
             individual,
             numerics: numerics.clone(),
             reply: Reply::Channels,
+            columns: Vec::new(),
         }
     }
 }

@@ -1,11 +1,13 @@
 //! Signatures of periodic forces without a cause, joint by joint.
 use crate::laboratory::Laboratory;
+use crate::model::change::term_of_absent;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::model::parameter::{at_typical, sizes};
+use crate::model::parameter::{absent, at_typical, sizes};
 use crate::model::probe;
 use crate::model::unknowns::Point;
 use crate::place::joint::{Harmonic, Latent};
+use crate::record::measured::Curves;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::EffectDescriptor;
 use std::collections::BTreeMap;
@@ -32,19 +34,32 @@ pub(crate) async fn latents<L: Laboratory>(
         .filter_map(|effect| Some((effect, probe::order(&effect.id)?)))
         .filter(|(_, order)| *order <= HARMONICS)
         .collect();
-    let probed = |effect| fit.with(effect, &at_typical(effect, &sizes(effect)));
-    let points: Vec<Point> = probes.iter().map(|(effect, _)| probed(effect)).collect();
-    let curves = experiments.curves(&points).await?;
     let metric = &experiments.on.metric;
+    let exact = changes(experiments, fit, &probes).await?;
+    let open: Vec<&EffectDescriptor> = probes
+        .iter()
+        .zip(&exact)
+        .filter_map(|((effect, _), change)| change.is_none().then_some(*effect))
+        .collect();
+    let probed = |effect: &&EffectDescriptor| fit.with(effect, &at_typical(effect, &sizes(effect)));
+    let points: Vec<Point> = open.iter().map(probed).collect();
+    let mut curves = experiments.curves(&points).await?.into_iter();
     let base = metric.whiten(&fit.curves);
     let mut joints: BTreeMap<&str, Parts> = BTreeMap::new();
-    for ((effect, order), curves) in probes.iter().zip(curves) {
-        let (Some(curves), Some(own)) = (curves, effect.parameters.first()) else {
+    for ((effect, order), change) in probes.iter().zip(exact) {
+        let column = match change {
+            Some(change) => Some(metric.whiten(&change)),
+            None => curves
+                .next()
+                .flatten()
+                .map(|curves| metric.whiten(&curves) - &base),
+        };
+        let (Some(column), Some(own)) = (column, effect.parameters.first()) else {
             continue;
         };
         let parts = joints.entry(effect.joint.as_str()).or_default();
         parts.unit.clone_from(&own.unit);
-        parts.columns.push(metric.whiten(&curves) - &base);
+        parts.columns.push(column);
         parts.harmonics.push(Harmonic {
             order: *order,
             sine: probe::is_sine(&effect.id),
@@ -58,4 +73,25 @@ pub(crate) async fn latents<L: Laboratory>(
         unit: parts.unit,
     });
     Ok(latents.collect())
+}
+
+/// What each force of a usual size changes, to first order, as far as the laboratory knows it: forces are
+/// linear in their size.
+async fn changes<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    probes: &[(&EffectDescriptor, usize)],
+) -> Result<Vec<Option<Curves>>, L::Error> {
+    let term = |effect: &EffectDescriptor| term_of_absent(&fit.model, effect, &absent(effect), 0);
+    let terms = probes.iter().map(|(effect, _)| term(effect)).collect();
+    let mut changes = experiments.changes(fit, terms).await?;
+    for ((effect, _), change) in probes.iter().zip(&mut changes) {
+        let [amount, ..] = at_typical(effect, &sizes(effect))[..] else {
+            continue;
+        };
+        for x in change.iter_mut().flatten().flatten() {
+            *x *= amount;
+        }
+    }
+    Ok(changes)
 }

@@ -12,7 +12,6 @@ use crate::linear::tangent::Tangent;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::parameter::sizes;
-use crate::model::unknowns::Point;
 use crate::record::whitened::WhitenedRecord;
 use crate::size::limit::Limit;
 use nalgebra::{DMatrix, DVector};
@@ -146,37 +145,37 @@ struct Seen {
     signatures: Vec<DMatrix<f64>>,
 }
 
-/// Differences of the unknowns and of all visible effects on another record; nothing if one of the
+/// Changes by the unknowns and by all visible effects on another record; nothing if one of the
 /// simulations failed.
 async fn linearized<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
     visible: &[Visible<'_>],
 ) -> Result<Option<Seen>, L::Error> {
-    let (steps, moved): (Vec<f64>, Vec<Point>) = fit.neighbours().unzip();
-    let mut points = vec![fit.point()];
-    points.extend(moved);
-    for Visible { suspect, .. } in visible {
-        points.extend(
-            suspect
-                .taken
-                .iter()
-                .map(|own| fit.with(&suspect.effect, own)),
-        );
-    }
-    let curves = experiments.curves(&points).await?;
-    let whiten = |curves: Option<_>| Some(experiments.on.metric.whiten(&curves?));
-    let Some(whitened) = curves.into_iter().map(whiten).collect::<Option<Vec<_>>>() else {
+    let on = experiments.on;
+    let Some(seen) = experiments.linearized(fit, &on.record).await? else {
         return Ok(None);
     };
-    let mut rest = whitened.iter().skip(1);
-    let base = &whitened[0];
+    let mut points = Vec::new();
+    for Visible { suspect, .. } in visible {
+        let taken = suspect.taken.iter();
+        points.extend(taken.map(|own| fit.with(&suspect.effect, own)));
+    }
+    let curves = experiments.curves(&points).await?;
+    let whiten = |curves: Option<_>| Some(on.metric.whiten(&curves?));
     // residuals are measured less simulated
-    let columns = steps
-        .iter()
-        .zip(rest.by_ref())
-        .map(|(step, moved)| (base - moved) / *step);
-    let columns: Vec<DVector<f64>> = columns.collect();
+    let columns = seen
+        .changes
+        .into_iter()
+        .map(|change| Some(-whiten(change)?));
+    let (Some(columns), Some(whitened)) = (
+        columns.collect::<Option<Vec<DVector<f64>>>>(),
+        curves.into_iter().map(whiten).collect::<Option<Vec<_>>>(),
+    ) else {
+        return Ok(None);
+    };
+    let base = &on.metric.whiten(&seen.curves);
+    let mut rest = whitened.iter();
     let mut signatures = Vec::new();
     for Visible { suspect, amounts } in visible {
         let own = sizes(&suspect.effect)

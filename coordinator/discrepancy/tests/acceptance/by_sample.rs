@@ -312,6 +312,7 @@ impl Laboratory for Ringing {
                 verdict: Ended::Complete,
                 counters: Counters::default(),
                 curves: curves(&genes, &effects),
+                columns: Vec::new(),
             })
         };
         Ok(batch.into_iter().map(seen).collect())
@@ -366,6 +367,7 @@ fn hidden(effects: &[(&str, f64)], cycles: usize, stated: bool) -> Record {
 /// Diagnoses records, from beside the truth.
 fn diagnosed(records: Vec<Record>) -> Diagnosis {
     let inputs = Inputs {
+        differences: false,
         space: space(),
         unknowns: unknowns(),
         records,

@@ -74,6 +74,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         }
     }
     let inputs = Inputs {
+        differences: false,
         space: space(),
         unknowns: Vec::new(),
         records,

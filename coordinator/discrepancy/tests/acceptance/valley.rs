@@ -137,6 +137,7 @@ fn observed(spec: &SimulateSpec) -> Observation {
         verdict: Ended::Complete,
         counters: Counters::default(),
         curves: gauges(genes, clock, lag, amount("load_cell_gain")),
+        columns: Vec::new(),
     }
 }
 
@@ -186,6 +187,7 @@ fn at(genes: [f64; 3]) -> Point {
 /// A diagnosis with looks for another valley from that misfit on.
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
+        differences: false,
         space: space(),
         unknowns: Vec::new(),
         records: vec![record(truth)],

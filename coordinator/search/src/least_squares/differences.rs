@@ -1,4 +1,4 @@
-//! Columns of a Jacobian by differences, with a second try on the other side for a point that could
+//! Columns of a Jacobian by differences, those apart that are known, with a second try on the other side for a point that could
 //! not be evaluated.
 use super::problem::{Settings, Variable};
 use nalgebra::{DMatrix, DVector};
@@ -31,17 +31,27 @@ impl Found {
     }
 }
 
-/// The differences of all columns.
+/// All columns.
 #[derive(Clone, Debug)]
 pub(super) struct Columns {
     differences: Vec<Difference>,
     retried: bool,
+    /// What is known already, by variable.
+    known: Vec<Option<DVector<f64>>>,
 }
 
 impl Columns {
-    pub(super) fn new(x: &[f64], variables: &[Variable], steps: &[f64], central: bool) -> Self {
+    pub(super) fn new(
+        x: &[f64],
+        variables: &[Variable],
+        (steps, central): (&[f64], bool),
+        known: Vec<Option<DVector<f64>>>,
+    ) -> Self {
         let mut differences = Vec::new();
         for (variable, v) in variables.iter().enumerate() {
+            if known.get(variable).is_some_and(Option::is_some) {
+                continue;
+            }
             let up = steps[variable];
             // a variable beside its bound is differenced inwards
             let (first, second) = if x[variable] + up <= v.upper {
@@ -67,6 +77,7 @@ impl Columns {
         Self {
             differences,
             retried: false,
+            known,
         }
     }
 
@@ -131,7 +142,8 @@ impl Columns {
         self.open().next().is_none()
     }
 
-    /// The Jacobian, and by how much the largest step of each variable changed the residual.
+    /// The Jacobian, and by how much the largest step of each variable changed the residual; 0 for one that
+    /// took none.
     pub(super) fn jacobian(
         &self,
         residual: &DVector<f64>,
@@ -140,6 +152,10 @@ impl Columns {
         let mut jacobian = DMatrix::zeros(residual.len(), count);
         let mut changes = vec![0.0; count];
         for variable in 0..count {
+            if let Some(Some(known)) = self.known.get(variable) {
+                jacobian.set_column(variable, known);
+                continue;
+            }
             let own: Vec<(f64, &DVector<f64>)> = self
                 .differences
                 .iter()

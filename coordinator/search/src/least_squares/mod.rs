@@ -1,8 +1,8 @@
 //! Levenberg-Marquardt on a residual vector: the search that uses every sample of a curve.
 //!
 //! Minimises `|r(x)|^2 + sum ((x_k - mean_k) / deviation_k)^2` inside a box. It plans batches of
-//! points and absorbs their residual vectors: difference columns of the Jacobian first, then a fan
-//! of damped steps of which the best is taken. What a point means, and where it is evaluated, it
+//! points and absorbs their residual vectors: columns of the Jacobian first, known or
+//! differenced, then a fan of damped steps of which the best is taken. What a point means, and where it is evaluated, it
 //! does not know; a point that could not be evaluated is a missing value, never a large number.
 //!
 //! Sources: Moré, "The Levenberg-Marquardt algorithm: implementation and theory" (1978); the fan of
@@ -14,5 +14,5 @@ mod step;
 #[cfg(test)]
 mod tests;
 
-pub use problem::{Ended, Linearized, Prior, Settings, Variable};
+pub use problem::{Ended, Evaluated, Linearized, Prior, Settings, Variable};
 pub use search::LeastSquares;

@@ -40,6 +40,9 @@ pub struct Settings {
     pub step_range: f64,
     /// Whether columns are central differences: twice the points, second-order accurate.
     pub central: bool,
+    /// Whether whoever evaluates may know columns: they are asked for, and only those that it has not are
+    /// differenced.
+    pub exact: bool,
 }
 
 impl Settings {
@@ -61,6 +64,7 @@ impl Default for Settings {
             change: 2.0,
             step_range: 10.0,
             central: false,
+            exact: false,
         }
     }
 }
@@ -88,4 +92,21 @@ pub struct Linearized {
     /// Derivatives of the residual, n x number of unknowns; a column that could not be evaluated is
     /// zero.
     pub jacobian: DMatrix<f64>,
+}
+
+/// What was evaluated at a point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evaluated {
+    /// The residual vector.
+    pub residual: DVector<f64>,
+    /// Its derivatives by the variables where those were wanted, in their order; none for a column that
+    /// is not known. Empty where nothing is known of any.
+    pub columns: Vec<Option<DVector<f64>>>,
+}
+
+impl From<DVector<f64>> for Evaluated {
+    fn from(residual: DVector<f64>) -> Self {
+        let columns = Vec::new();
+        Self { residual, columns }
+    }
 }

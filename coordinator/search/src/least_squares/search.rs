@@ -1,7 +1,7 @@
-//! The search as a sequence of batches: differences, then a fan of damped steps.
+//! The search as a sequence of batches: columns, then a fan of damped steps.
 use super::{
     differences::{self, Columns},
-    problem::{Ended, Linearized, Settings, Variable},
+    problem::{Ended, Evaluated, Linearized, Settings, Variable},
     step,
 };
 use nalgebra::{DMatrix, DVector};
@@ -10,6 +10,8 @@ use nalgebra::{DMatrix, DVector};
 #[derive(Clone, Debug)]
 enum Phase {
     Start,
+    /// The best point once more, with its columns.
+    Exact,
     Columns(Columns),
     Fan(Vec<(f64, Vec<f64>)>),
     Over(Ended),
@@ -73,7 +75,6 @@ impl LeastSquares {
         }
         let mut search = Self::new(variables, settings);
         search.arrive(known.1);
-        search.plan_columns();
         search
     }
 
@@ -81,25 +82,37 @@ impl LeastSquares {
     /// when the search is over.
     pub fn plan(&self) -> Vec<Vec<f64>> {
         match &self.phase {
-            Phase::Start => vec![self.at.x.clone()],
+            Phase::Start | Phase::Exact => vec![self.at.x.clone()],
             Phase::Columns(columns) => columns.points(&self.at.x),
             Phase::Fan(fan) => fan.iter().map(|(_, x)| x.clone()).collect(),
             Phase::Over(_) => Vec::new(),
         }
     }
 
-    /// Takes the residuals of the planned points; none for one that could not be evaluated. All
-    /// residuals of a search have the same length.
-    pub fn absorb(&mut self, residuals: Vec<Option<DVector<f64>>>) {
-        self.evaluations += residuals.len() as u64;
-        self.failures += residuals.iter().filter(|r| r.is_none()).count() as u64;
+    /// Whether the residuals of the planned points are wanted with their derivatives by all variables.
+    pub const fn wants_columns(&self) -> bool {
+        self.settings.exact && matches!(self.phase, Phase::Start | Phase::Exact)
+    }
+
+    /// Takes what was evaluated at the planned points; none for one that could not be. All residuals of a
+    /// search have the same length.
+    pub fn absorb<E: Into<Evaluated>>(&mut self, found: Vec<Option<E>>) {
+        let found: Vec<Option<Evaluated>> = found.into_iter().map(|e| e.map(Into::into)).collect();
+        self.evaluations += found.len() as u64;
+        self.failures += found.iter().filter(|e| e.is_none()).count() as u64;
+        let (residuals, mut columns): (Vec<_>, Vec<_>) = found
+            .into_iter()
+            .map(|e| e.map_or((None, Vec::new()), |e| (Some(e.residual), e.columns)))
+            .unzip();
+        let known = columns.pop().filter(|_| self.wants_columns());
         match std::mem::replace(&mut self.phase, Phase::Over(Ended::StartFailed)) {
             Phase::Start => {
                 if let Some(residual) = residuals.into_iter().next().flatten() {
-                    self.arrive(residual);
-                    self.plan_columns();
+                    self.place(residual);
+                    self.plan_columns(known.unwrap_or_default());
                 }
             }
+            Phase::Exact => self.plan_columns(known.unwrap_or_default()),
             Phase::Columns(columns) => self.columns(columns, residuals),
             Phase::Fan(fan) => self.fan(fan, residuals),
             Phase::Over(ended) => self.phase = Phase::Over(ended),
@@ -110,7 +123,7 @@ impl LeastSquares {
     pub const fn ended(&self) -> Option<Ended> {
         match self.phase {
             Phase::Over(ended) => Some(ended),
-            Phase::Start | Phase::Columns(_) | Phase::Fan(_) => None,
+            Phase::Start | Phase::Exact | Phase::Columns(_) | Phase::Fan(_) => None,
         }
     }
 
@@ -153,24 +166,38 @@ impl LeastSquares {
         ((self.at.residual.norm_squared() - settled) / self.cost).max(0.0)
     }
 
-    fn arrive(&mut self, residual: DVector<f64>) {
+    fn place(&mut self, residual: DVector<f64>) {
         self.at.residual = residual;
         self.cost = self.at.residual.norm_squared() + step::prior_cost(&self.at.x, &self.variables);
         self.fresh = false;
     }
 
-    fn plan_columns(&mut self) {
-        let columns = Columns::new(
-            &self.at.x,
-            &self.variables,
-            &self.steps,
-            self.settings.central,
-        );
-        self.phase = Phase::Columns(columns);
+    /// At a point whose residual alone is known.
+    fn arrive(&mut self, residual: DVector<f64>) {
+        self.place(residual);
+        if self.settings.exact {
+            self.phase = Phase::Exact;
+        } else {
+            self.plan_columns(Vec::new());
+        }
+    }
+
+    /// Differences what is not known.
+    fn plan_columns(&mut self, known: Vec<Option<DVector<f64>>>) {
+        // who knows no column at all is not asked again
+        self.settings.exact &= known.iter().any(Option::is_some);
+        let how = (&self.steps[..], self.settings.central);
+        let columns = Columns::new(&self.at.x, &self.variables, how, known);
+        self.seen(columns);
     }
 
     fn columns(&mut self, mut columns: Columns, residuals: Vec<Option<DVector<f64>>>) {
         columns.absorb(&self.at.x, &self.variables, residuals);
+        self.seen(columns);
+    }
+
+    /// Goes on once all columns are there.
+    fn seen(&mut self, columns: Columns) {
         if !columns.is_complete() {
             self.phase = Phase::Columns(columns);
             return;
@@ -221,7 +248,6 @@ impl LeastSquares {
                 self.damping = damping.max(1e-9);
                 self.at.x = x;
                 self.arrive(residual);
-                self.plan_columns();
             }
             _ => {
                 self.refused += 1;

@@ -163,3 +163,52 @@ fn a_known_start_is_not_evaluated_again_and_the_last_jacobian_is_fresh() {
         best.jacobian
     );
 }
+
+/// Evaluates with those columns of which `knows` says so.
+fn run_knowing(search: &mut LeastSquares, knows: impl Fn(usize) -> bool) -> Ended {
+    loop {
+        if let Some(ended) = search.ended() {
+            return ended;
+        }
+        let wants = search.wants_columns();
+        let evaluate = |x: &Vec<f64>| {
+            let columns = [[-20.0 * x[0], -1.0], [10.0, 0.0]];
+            let columns = columns.iter().enumerate();
+            let columns = columns.map(|(k, c)| knows(k).then(|| DVector::from_row_slice(c)));
+            Some(Evaluated {
+                residual: DVector::from_vec(rosenbrock(x)),
+                columns: if wants { columns.collect() } else { Vec::new() },
+            })
+        };
+        let found = search.plan().iter().map(evaluate).collect();
+        search.absorb(found);
+    }
+}
+
+#[test]
+fn known_columns_take_the_place_of_differences() {
+    let search = |exact| {
+        let variables = vec![variable(-1.2, -5.0, 5.0), variable(1.0, -5.0, 5.0)];
+        LeastSquares::new(variables, Settings { exact, ..tight() })
+    };
+    let (mut differenced, mut exact) = (search(false), search(true));
+    run_knowing(&mut differenced, |_| true);
+    run_knowing(&mut exact, |_| true);
+    for x in &exact.best().x {
+        assert!((x - 1.0).abs() < 1e-9, "{:?}", exact.best().x);
+    }
+    let at = exact.best();
+    assert_eq!(at.jacobian[(0, 0)].to_bits(), (-20.0 * at.x[0]).to_bits());
+    // a point in place of two for every Jacobian
+    assert!(exact.work().0 < differenced.work().0);
+    // one of them, as if the other did not exist
+    let mut half = search(true);
+    run_knowing(&mut half, |k| k == 1);
+    assert!((half.best().x[0] - 1.0).abs() < 1e-6, "{:?}", half.best().x);
+    assert!(exact.work().0 < half.work().0);
+    // nobody knows any: the search is that of differences, bit for bit, and does not ask again
+    let mut none = search(true);
+    run_knowing(&mut none, |_| false);
+    assert_eq!(none.best(), differenced.best());
+    assert_eq!(none.work(), differenced.work());
+}

@@ -1,5 +1,6 @@
 //! Everything a run has evaluated, in id order.
 use super::told::Told;
+use protocol::job::Derivative;
 use std::collections::BTreeMap;
 
 /// One evaluated individual.
@@ -12,7 +13,16 @@ pub struct Evaluated {
     /// What came back.
     pub told: Told,
     /// The residual vector, for a piece that wanted it.
-    pub residual: Option<Vec<f64>>,
+    pub residual: Option<Residual>,
+}
+
+/// The residual vector of an individual.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Residual {
+    /// In units in which its squared length is the fitness.
+    pub values: Vec<f64>,
+    /// Its derivatives by name, one curve each, where they were wanted and the model gives them.
+    pub by: BTreeMap<String, Derivative>,
 }
 
 /// All results of a run, found again by the exact bits of their genes.

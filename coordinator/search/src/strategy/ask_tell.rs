@@ -1,6 +1,6 @@
 //! The contract of every search.
 use super::{
-    archive::Archive,
+    archive::{Archive, Residual},
     outcome::{Best, Finish, Progress},
     proposal::Proposal,
     told::Told,
@@ -16,10 +16,9 @@ pub trait Strategy {
     /// consumed in id order, so nothing ever depends on arrival. A result told twice is ignored.
     fn tell(&mut self, id: u64, result: Told);
 
-    /// Takes the residual vector of a proposal whose purpose wants one, before its result: in units
-    /// in which its squared length is the fitness.
+    /// Takes the residual vector of a proposal whose purpose wants one, before its result.
     /// A strategy that wants none ignores it.
-    fn tell_residual(&mut self, _id: u64, _residual: Vec<f64>) {}
+    fn tell_residual(&mut self, _id: u64, _residual: Residual) {}
 
     /// Why the search is over, if it is.
     fn finished(&self) -> Option<Finish>;

@@ -3,7 +3,7 @@
 //! It knows batches, not algorithms. The state is a function of the longest unbroken run of
 //! results from id 0; later ones wait in a buffer.
 use super::{
-    archive::{Archive, Evaluated, key},
+    archive::{Archive, Evaluated, Residual, key},
     ask_tell::Strategy,
     outcome::{Best, Finish, Progress},
     piece::{Batch, Draft, Piece},
@@ -25,7 +25,7 @@ pub struct Conductor {
     outbox: Vec<Proposal>,
     early: BTreeMap<u64, Told>,
     /// Residual vectors of proposals that wanted one.
-    residuals: BTreeMap<u64, Vec<f64>>,
+    residuals: BTreeMap<u64, Residual>,
     next_id: u64,
     generation: u32,
     /// Generations of the pieces that are done.
@@ -101,8 +101,11 @@ impl Conductor {
         for Draft { genes, purpose } in batch.drafts {
             let known = if self.reuse_clones {
                 // a result that is known without its residual is no use where that is wanted
-                let serves =
-                    |id: &u64| !purpose.wants_residual() || self.residuals.contains_key(id);
+                let serves = |id: &u64| {
+                    let known = self.residuals.get(id);
+                    !purpose.wants_residual()
+                        || known.is_some_and(|it| !purpose.wants_derivatives() || !it.by.is_empty())
+                };
                 let met = self.archive.find(&genes).map(|entry| entry.id);
                 met.filter(serves)
                     .or_else(|| fresh.get(&key(&genes)).copied())
@@ -154,7 +157,7 @@ impl Strategy for Conductor {
         }
     }
 
-    fn tell_residual(&mut self, id: u64, residual: Vec<f64>) {
+    fn tell_residual(&mut self, id: u64, residual: Residual) {
         if self.open.contains_key(&id) {
             self.residuals.entry(id).or_insert(residual);
         }

@@ -4,19 +4,18 @@
 //! every sample which way to go; a step of this piece costs one point per gene and a fan of damped
 //! tries, and near a minimum gains more than any search that sees the fitness alone.
 use super::{
-    archive::{Archive, Evaluated},
+    archive::{Archive, Evaluated, Residual},
     piece::{Batch, Draft, Piece},
     proposal::Purpose,
     setting::{Setting, SettingsError, Values, check},
 };
 use crate::{
-    least_squares::{
-        problem::{Settings, Variable},
-        search::LeastSquares,
-    },
+    derivative::terms,
+    least_squares::{self, LeastSquares, Settings, Variable},
     space::Space,
 };
 use nalgebra::DVector;
+use protocol::job::Derivative;
 use serde::{Deserialize, Serialize};
 
 /// A descent of the residual vector.
@@ -31,6 +30,18 @@ pub struct LevenbergSettings {
     pub apart: f64,
     /// First difference step (coordinate).
     pub step: f64,
+    /// How columns come about.
+    pub derivatives: Derivatives,
+}
+
+/// How the columns of a Jacobian come about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Derivatives {
+    /// One simulation with all of them; differences for what the model does not give.
+    Exact,
+    /// A simulation for each.
+    Differences,
 }
 
 /// What can be set by name.
@@ -54,6 +65,11 @@ pub(super) const SETTINGS: &[Setting] = &[
         "step",
         Values::Real(1e-9, 1.0),
         "first difference step [decade]",
+    ),
+    Setting::new(
+        "derivatives",
+        Values::Words(&["exact", "differences"]),
+        "columns from one simulation where the model gives them, or from one each",
     ),
 ];
 
@@ -102,6 +118,7 @@ impl Levenberg {
                 iterations: self.settings.iterations,
                 // a tenth of the residual: far above rounding, within what is nearly linear
                 change: 0.1 * libm::sqrt(fitness),
+                exact: self.settings.derivatives == Derivatives::Exact,
                 ..Settings::default()
             };
             (LeastSquares::new(self.variables(&x), settings), 0)
@@ -125,6 +142,29 @@ impl Levenberg {
     }
 }
 
+/// Derivatives of a residual by the axes; none by one of which a part is not known.
+fn columns(space: &Space, genes: &[f64], residual: &Residual) -> Vec<Option<DVector<f64>>> {
+    let x = space.point(genes);
+    let column = |axis: usize| {
+        let mut sum = DVector::zeros(residual.values.len());
+        for term in terms(space, axis, &x, genes) {
+            match residual.by.get(&term.column.name)? {
+                Derivative::Curves { per, curves } => {
+                    let own = curves.first().filter(|own| own.len() == sum.len())?;
+                    let factor = term.factor(per);
+                    for (sum, x) in sum.iter_mut().zip(own) {
+                        *sum += factor * f64::from(*x);
+                    }
+                }
+                Derivative::Nothing { .. } => {}
+                Derivative::Missing { .. } => return None,
+            }
+        }
+        Some(sum)
+    };
+    (0..space.dimension()).map(column).collect()
+}
+
 impl Piece for Levenberg {
     fn plan(&mut self, archive: &Archive) -> Option<Batch> {
         if self.searches.is_none() {
@@ -134,9 +174,14 @@ impl Piece for Levenberg {
         for (search, awaited) in self.searches.iter_mut().flatten() {
             let points = search.plan();
             *awaited = points.len();
+            let purpose = if search.wants_columns() {
+                Purpose::Derivatives
+            } else {
+                Purpose::LeastSquares
+            };
             drafts.extend(points.iter().map(|x| Draft {
                 genes: self.space.values(x),
-                purpose: Purpose::LeastSquares,
+                purpose,
             }));
         }
         if drafts.is_empty() {
@@ -154,11 +199,19 @@ impl Piece for Levenberg {
         for (search, awaited) in self.searches.iter_mut().flatten() {
             if *awaited > 0 {
                 let own = results.by_ref().take(*awaited);
+                let (space, wanted) = (&self.space, search.wants_columns());
                 let residual = |one: &Evaluated| {
-                    let residual = one.residual.clone().filter(|_| one.told.survived())?;
-                    Some(DVector::from_vec(residual))
+                    let residual = one.residual.as_ref().filter(|_| one.told.survived())?;
+                    Some(least_squares::Evaluated {
+                        residual: DVector::from_column_slice(&residual.values),
+                        columns: if wanted {
+                            columns(space, &one.genes, residual)
+                        } else {
+                            Vec::new()
+                        },
+                    })
                 };
-                search.absorb(own.map(residual).collect());
+                search.absorb(own.map(residual).collect::<Vec<_>>());
             }
         }
     }

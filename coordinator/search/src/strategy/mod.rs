@@ -38,7 +38,7 @@ pub mod settings;
 mod tests;
 mod told;
 
-pub use archive::{Archive, Evaluated};
+pub use archive::{Archive, Evaluated, Residual};
 pub use ask_tell::Strategy;
 pub use catalogue::{CATALOGUE, build, preset};
 pub use conductor::Conductor;

@@ -32,6 +32,8 @@ pub enum Purpose {
     Refinement,
     /// Column or step of a descent of the residual vector.
     LeastSquares,
+    /// A point of such a descent with its derivatives.
+    Derivatives,
 }
 
 impl Purpose {
@@ -45,11 +47,17 @@ impl Purpose {
             Self::Scan => "scan",
             Self::Refinement => "refinement",
             Self::LeastSquares => "least_squares",
+            Self::Derivatives => "derivatives",
         }
     }
 
     /// Whether the residual vector is wanted beside the fitness.
     pub const fn wants_residual(self) -> bool {
-        matches!(self, Self::LeastSquares)
+        matches!(self, Self::LeastSquares | Self::Derivatives)
+    }
+
+    /// Whether its derivatives are wanted, too.
+    pub const fn wants_derivatives(self) -> bool {
+        matches!(self, Self::Derivatives)
     }
 }

@@ -11,7 +11,7 @@ use super::{
     ask_tell::Strategy,
     conductor::Conductor,
     design::hypercube,
-    levenberg::{self, Levenberg, LevenbergSettings},
+    levenberg::{self, Derivatives, Levenberg, LevenbergSettings},
     memetic::{
         generations::Memetic,
         settings::{self as memetic_settings, MemeticSettings},
@@ -178,6 +178,7 @@ impl QuickSettings {
                 iterations: 6,
                 apart: 0.03,
                 step: 0.01,
+                derivatives: Derivatives::Exact,
             });
         }
         settings

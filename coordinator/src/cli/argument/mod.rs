@@ -1,5 +1,6 @@
 //! Arguments that several commands share, one kind per file.
 pub(super) mod case;
+pub(super) mod derivatives;
 pub(super) mod door;
 pub(crate) mod individual;
 pub(crate) mod output;

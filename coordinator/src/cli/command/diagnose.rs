@@ -65,6 +65,10 @@ pub(super) struct Arguments {
     /// Effects that are added at most.
     #[arg(long, default_value_t = 3, value_name = "N", env = "HORSEHEAD_ROUNDS", value_parser = clap::value_parser!(u8).range(1..=5))]
     rounds: u8,
+    /// Take every derivative as a difference of whole simulations, as if the model gave none: slower, and
+    /// the judge of the exact ones.
+    #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
+    differences: bool,
     /// Append what is found to the case's case.toml.
     #[arg(long, env = "HORSEHEAD_ADD")]
     add: bool,
@@ -179,6 +183,7 @@ fn manifest(arguments: &Arguments, target: &Target) -> anyhow::Result<Manifest<D
                 without: arguments.without.clone(),
                 ..Thresholds::default()
             },
+            differences: arguments.differences,
         },
         start: target.start.clone(),
         case_folder: std::path::absolute(&target.folder)?,

@@ -1,7 +1,10 @@
 //! `horsehead simulate`: one run of the machine.
 use crate::{
     cli::{
-        argument::{case::CaseChoice, individual::IndividualChoice, output::OutputChoice},
+        argument::{
+            case::CaseChoice, derivatives::columns, individual::IndividualChoice,
+            output::OutputChoice,
+        },
         output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
         run::{bus, command_line::command_line, once::compare_once},
     },
@@ -21,6 +24,7 @@ Examples:
   horsehead simulate cases/cyjs10-5-37hb
   horsehead simulate cases/cyjs10-5-37hb --genes cases/cyjs10-5-37hb/table3_optimised.toml \\
       --condition 4rpm --out simulated
+  horsehead simulate cases/cyjs10-5-37hb --derivatives all --out simulated
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
@@ -31,6 +35,10 @@ pub(super) struct Arguments {
     /// Folder for the report, the figures and the curves; none are written without.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_OUT")]
     out: Option<PathBuf>,
+    /// Differentiate the curves, too, by unknowns separated by commas, parameters of effects as
+    /// EFFECT.PARAMETER (whether the case has the effect or not), or `all` that the case has.
+    #[arg(long, value_name = "NAMES|all", env = "HORSEHEAD_DERIVATIVES")]
+    derivatives: Option<String>,
     #[command(flatten)]
     output: OutputChoice,
 }
@@ -44,6 +52,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if let Some(folder) = &arguments.out {
         check_out(folder)?;
     }
+    let columns = match &arguments.derivatives {
+        Some(typed) => columns(case, typed)?,
+        None => Vec::new(),
+    };
+    let derived: Vec<String> = columns.iter().map(|column| column.name.clone()).collect();
     let pictures = if arguments.out.is_some() { PICTURES } else { 0 };
     let mut notes = loaded.notes.clone();
     for note in outside_bounds(case, &genes) {
@@ -54,6 +67,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         condition,
         individuals: vec![(arguments.individual.genes.clone(), genes)],
         pictures,
+        columns,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let curves = first(groups).context("no result came back")?;
@@ -81,6 +95,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         genes: curves.genes.clone(),
         evaluation: curves.evaluation.clone(),
         curves: curves.drawn.clone(),
+        derived: derived.clone(),
         notes,
     };
     if let Some(folder) = &arguments.out {
@@ -93,12 +108,12 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
     }
-    let object = simulation((case, condition), &curves, digest)?;
+    let object = simulation((case, condition), &curves, &derived, digest)?;
     let tables = || {
-        let ranges = report::ranges(&run);
-        ranges.map_or_else(String::new, |ranges| {
-            table::text(&ranges, terminal::styled())
-        })
+        let tables = report::ranges(&run).into_iter();
+        let tables = tables.chain(table::derivatives(&run));
+        let texts = tables.map(|table| table::text(&table, terminal::styled()));
+        texts.collect::<Vec<_>>().join("\n")
     };
     terminal::print(arguments.output.output, tables, &object)
 }

@@ -77,6 +77,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         condition,
         individuals: pair(&case, &best),
         pictures: 0,
+        columns: Vec::new(),
     };
     let workers = arguments.workers.unwrap_or_else(|| cores().min(4)).max(1);
     let groups = compare_once("verify", &case, std::slice::from_ref(&wanted), workers)?;

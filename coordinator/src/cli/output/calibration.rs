@@ -47,6 +47,7 @@ fn report_run(curves: &Curves) -> report::Run {
         fitness: f64::NAN,
         channels: Vec::new(),
         residual: Vec::new(),
+        columns: Vec::new(),
         counters: Counters::default(),
     };
     report::Run {

@@ -54,6 +54,7 @@ fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
             condition,
             individuals: pair(case, best),
             pictures: if condition == calibrated { PICTURES } else { 0 },
+            columns: Vec::new(),
         })
         .collect()
 }

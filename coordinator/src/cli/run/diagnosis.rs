@@ -24,6 +24,8 @@ pub(crate) type Diagnosis = Run<Decides>;
 pub(crate) struct Decides {
     /// Thresholds.
     pub(crate) thresholds: Thresholds,
+    /// Whether every derivative is a difference of whole simulations.
+    pub(crate) differences: bool,
 }
 
 impl manifest::Decides for Decides {
@@ -33,6 +35,9 @@ impl manifest::Decides for Decides {
         let mut words = format!(" --rounds {}", self.thresholds.rounds);
         if !self.thresholds.without.is_empty() {
             words.extend([" --without ", &quote(&self.thresholds.without.join(","))]);
+        }
+        if self.differences {
+            words.push_str(" --differences");
         }
         words
     }
@@ -143,5 +148,6 @@ fn inputs(
         finer,
         seed: manifest.seed,
         thresholds: thresholds.clone(),
+        differences: manifest.settings.differences,
     })
 }

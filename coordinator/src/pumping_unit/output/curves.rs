@@ -1,10 +1,41 @@
 //! The revolution in the object of `horsehead simulate`.
 use protocol::{
-    job::Verdict,
-    pumping_unit::{Energy, Simulation},
+    case::Case,
+    job::{Per, Verdict},
+    pumping_unit::{Energy, Sensor, Simulation},
 };
 use serde::Serialize;
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+
+/// Derivatives of the channels: of the gauges by number, in the unit that is named, and of the others where
+/// the case has them, per the same.
+pub(in crate::pumping_unit) fn derivative(
+    case: &Case,
+    condition: usize,
+    per: &Per,
+    curves: &[Vec<f32>],
+) -> Map<String, Value> {
+    let channels = case.channels_of(condition).zip(curves);
+    let gauges = channels.filter_map(|((_, channel), values)| {
+        let gauge = Sensor::gauge(&channel.name)?;
+        Some((gauge.to_string(), json!(values)))
+    });
+    let gauges = Value::Object(gauges.collect());
+    let mut said = Map::from_iter([
+        ("unit".to_owned(), json!(format!("MPa per {per}"))),
+        ("gauge_mpa".to_owned(), gauges),
+    ]);
+    for ((_, channel), values) in case.channels_of(condition).zip(curves) {
+        let key = match Sensor::named(&channel.name) {
+            Some(Sensor::Position) => "suspension_m",
+            Some(Sensor::Torque) => "crank_torque_n_m",
+            Some(Sensor::Gauge(_)) | None => continue,
+        };
+        said.insert(key.to_owned(), json!(values));
+    }
+    said
+}
 
 /// The curves of a revolution, and its energy.
 #[derive(Debug, Serialize)]

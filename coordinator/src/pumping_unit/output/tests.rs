@@ -42,6 +42,7 @@ fn curves(verdict: Verdict) -> Curves {
                 Vec::new()
             },
             residual: Vec::new(),
+            columns: Vec::new(),
             counters: Counters::default(),
         }),
         drawn: drawing(verdict).into_curves(Vec::new()).unwrap(),
@@ -90,7 +91,7 @@ fn fields(value: &Value) -> Vec<&str> {
 fn a_simulation_has_the_fields_that_programs_rely_on() {
     let (case, curves) = (case(), curves(Verdict::Complete));
     let digest = simulation_digest(&drawing(Verdict::Complete));
-    let value = simulation((&case, 0), &curves, digest).unwrap();
+    let value = simulation((&case, 0), &curves, &[], digest).unwrap();
     let value = serde_json::to_value(value).unwrap();
     assert_eq!(
         fields(&value),
@@ -149,7 +150,7 @@ fn a_failed_simulation_says_what_happened_and_how_far_it_got() {
     };
     let (case, failed) = (case(), curves(verdict));
     let value =
-        serde_json::to_value(simulation((&case, 0), &failed, String::new()).unwrap()).unwrap();
+        serde_json::to_value(simulation((&case, 0), &failed, &[], String::new()).unwrap()).unwrap();
     assert!(value["energy"].is_null());
     let expected = serde_json::json!({ "kind": "load_not_lifted", "load_fraction": 0.75 });
     assert_eq!(value["verdict"], expected);

@@ -5,6 +5,7 @@
 mod agreement;
 mod convergence;
 mod curves;
+mod derivative;
 mod gap;
 mod gene;
 mod notes;
@@ -45,6 +46,7 @@ pub(super) fn simulation(run: &SingleRun) -> Vec<Section> {
         summary::simulation(run),
         parameters::simulation(run),
         curves::simulation(run),
+        derivative::simulation(run),
     ];
     let own = kind::of(&run.case).sections(&run.genes_name, Some(&run.shown()));
     sections.extend(own);

@@ -65,6 +65,12 @@ fn the_case_is_checked_and_simulated() {
     );
     assert_eq!(curve["values"].as_array().unwrap().len(), 150);
     assert_eq!(rig.json(&simulate)["digest"], object["digest"]);
+    let derived = rig.json(&[&simulate[..], &["--derivatives", "mass,left"]].concat());
+    assert_eq!(derived["digest"], object["digest"]);
+    for name in ["mass", "left"] {
+        let missing = &derived["derivatives"][name]["missing"];
+        assert_eq!(missing, "this model gives no derivatives", "{derived}");
+    }
     rig.run(&[&simulate[..], &["--out", &rig.path("simulated")]].concat());
     words::check_folder(&rig.file("simulated"));
 }

@@ -1,15 +1,14 @@
 //! Refits of single parameters on parts of the abscissa and under other conditions.
-use crate::laboratory::{Laboratory, curves};
+use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
-use crate::model::unknowns::Point;
 use crate::place::wander::sheet::Sheet;
 use crate::place::wander::shifts::{Wander, wanders};
 use crate::record::measured::{Curves, Record, difference};
 use search::least_squares::Variable;
 
 /// How the unknowns of a fit would have to wander; those of the case come first among them. Each condition
-/// takes a simulation per unknown.
+/// takes a simulation per unknown where nothing differentiates.
 pub(crate) async fn wander<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
@@ -38,20 +37,13 @@ async fn sheet<L: Laboratory>(
     if !Sheet::suits(record) {
         return Ok(None);
     }
-    let (steps, moved): (Vec<f64>, Vec<Point>) = fit.neighbours().unzip();
-    let experiment = |point: Point| point.experiment(record.condition, &experiments.on.numerics);
-    let batch = std::iter::once(fit.point())
-        .chain(moved)
-        .map(experiment)
-        .collect();
-    let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
-    let Some((Some(fitted), moved)) = seen.split_first() else {
+    let Some(seen) = experiments.linearized(fit, record).await? else {
         return Ok(None);
     };
+    let fitted = &seen.curves;
     // a point that fails tells nothing of its unknown
-    let change = |(moved, step): (&Option<Curves>, &f64)| {
-        difference(moved.as_ref().unwrap_or(fitted), fitted, *step)
-    };
-    let changes: Vec<Curves> = moved.iter().zip(&steps).map(change).collect();
+    let still = || difference(fitted, fitted, 1.0);
+    let changes = seen.changes.into_iter();
+    let changes: Vec<Curves> = changes.map(|change| change.unwrap_or_else(still)).collect();
     Ok(Some(Sheet::new(record, fitted, &changes)))
 }

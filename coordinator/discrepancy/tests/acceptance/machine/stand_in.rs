@@ -301,6 +301,7 @@ impl Machine {
             verdict: Verdict::Complete,
             counters: Counters::default(),
             curves,
+            columns: Vec::new(),
         }
     }
 }
@@ -313,5 +314,6 @@ fn failed() -> Observation {
         },
         counters: Counters::default(),
         curves: vec![Vec::new(); 6],
+        columns: Vec::new(),
     }
 }

@@ -3,11 +3,11 @@ use super::score::{ScoreOutput, Unknowns, channels, objective, unknowns};
 use crate::{kind, study::Curves};
 use protocol::{
     case::Case,
-    job::{Counters, Reached, Verdict, Word},
+    job::{Counters, Derivative, Reached, Verdict, Word},
     wire::WireError,
 };
 use serde::Serialize;
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// Of `horsehead simulate`.
@@ -33,6 +33,12 @@ pub(crate) struct SimulateOutput<'a> {
     /// The curves and what else the kind of model shows, by keys of its own.
     #[serde(flatten)]
     pub(crate) drawn: Map<String, Value>,
+    /// Derivatives by what was asked for; absent where nothing was.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) derivatives: Option<Map<String, Value>>,
+    /// Time on the worker with all derivatives (s); absent without any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) derivatives_wall_s: Option<f64>,
     /// Hash of all result bits.
     pub(crate) digest: String,
 }
@@ -81,6 +87,36 @@ impl From<Verdict> for VerdictOutput {
     }
 }
 
+/// What each name changes, by name.
+fn derivatives(
+    case: &Case,
+    condition: usize,
+    curves: &Curves,
+    derived: &[String],
+) -> Map<String, Value> {
+    let kind = kind::of(case);
+    let one = |(at, name): (usize, &String)| {
+        let said = match curves.drawn.columns.get(at) {
+            Some(Derivative::Curves { per, curves }) => {
+                Value::Object(kind.derivative(case, condition, per, curves))
+            }
+            Some(Derivative::Nothing { per }) => {
+                let channels = case.channels_of(condition);
+                let zeros =
+                    channels.map(|(_, channel)| vec![0.0_f32; channel.abscissa.points.len()]);
+                let zeros: Vec<Vec<f32>> = zeros.collect();
+                let mut said = kind.derivative(case, condition, per, &zeros);
+                said.insert("nothing".to_owned(), Value::Bool(true));
+                Value::Object(said)
+            }
+            Some(Derivative::Missing { reason }) => json!({ "missing": reason }),
+            None => json!({ "missing": "the simulation did not complete" }),
+        };
+        (name.clone(), said)
+    };
+    derived.iter().enumerate().map(one).collect()
+}
+
 /// Everything about one simulation, of the bits that `digest` stands for.
 ///
 /// # Errors
@@ -88,6 +124,7 @@ impl From<Verdict> for VerdictOutput {
 pub(crate) fn simulation<'a>(
     (case, condition): (&'a Case, usize),
     curves: &'a Curves,
+    derived: &[String],
     digest: String,
 ) -> Result<SimulateOutput<'a>, WireError> {
     let found = case.conditions.get(condition);
@@ -100,6 +137,8 @@ pub(crate) fn simulation<'a>(
         unknowns: unknowns(case, &curves.genes),
         objective: objective(curves.evaluation.as_ref()),
         channels: channels(case, curves.evaluation.as_ref()),
+        derivatives: (!derived.is_empty()).then(|| derivatives(case, condition, curves, derived)),
+        derivatives_wall_s: (!derived.is_empty()).then_some(curves.drawn.columns_wall_s),
         drawn: kind::of(case).drawn(case, condition, &curves.drawn)?,
         digest,
     })

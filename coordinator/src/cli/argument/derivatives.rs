@@ -1,0 +1,48 @@
+//! What a simulation is differentiated by, as it is typed.
+use crate::cli::output::problem::Usage;
+use protocol::{case::Case, job::Column};
+
+/// The word for everything that the case has.
+const ALL: &str = "all";
+
+/// Columns by name, separated by commas; `all` are the unknowns of the case and the parameters of its
+/// effects.
+///
+/// # Errors
+/// A name that is neither an unknown nor could be a parameter of an effect, or one that stands twice.
+pub(crate) fn columns(case: &Case, typed: &str) -> Result<Vec<Column>, Usage> {
+    let own = case.unknowns.iter().map(|unknown| unknown.name.clone());
+    let parameters = case.effects.iter().flat_map(|effect| {
+        let all = effect.parameters.iter();
+        all.map(|(name, _)| format!("{}.{name}", effect.id))
+    });
+    let mut known: Vec<String> = own.collect();
+    for name in parameters {
+        // a parameter that is searched is an unknown already
+        if !known.contains(&name) {
+            known.push(name);
+        }
+    }
+    if typed == ALL {
+        return Ok(known.into_iter().map(Column::of).collect());
+    }
+    let mut names: Vec<&str> = Vec::new();
+    for name in typed.split(',').map(str::trim) {
+        let problem = if names.contains(&name) {
+            "stands twice"
+        } else if known.iter().any(|one| one == name) || name.contains('.') {
+            names.push(name);
+            continue;
+        } else {
+            "is no unknown of the case"
+        };
+        return Err(Usage {
+            message: format!("--derivatives: `{name}` {problem}"),
+            help: format!(
+                "give names separated by commas, or `{ALL}`: {}, or EFFECT.PARAMETER",
+                known.join(", ")
+            ),
+        });
+    }
+    Ok(names.into_iter().map(Column::of).collect())
+}

@@ -1,0 +1,158 @@
+//! Derivatives of the channels by what a job names.
+use super::{
+    effect,
+    machine::{description, no_condition},
+    reply::megapascals,
+};
+use protocol::{
+    case::{Case, Channel, EffectSetting, merged},
+    job::{self, Derivative, Failure, MOST_COLUMNS, Per, SimulateSpec},
+    pumping_unit::{self, PumpingUnit, Sensor},
+};
+use simulation::{
+    effect::{Asked, catalogue},
+    model::Machine,
+    sensitivity::{self, Coefficient, Column, Origin, Plan, Refused},
+};
+
+/// The columns of a job, planned on the machine that it simulates.
+pub(super) struct Columns {
+    /// As the dynamics take them.
+    pub(super) plan: Plan,
+    per: Vec<Per>,
+}
+
+impl Columns {
+    /// Nothing where the job has no columns.
+    ///
+    /// # Errors
+    /// [`Failure::Misconfigured`] naming the first column that cannot be asked for.
+    pub(super) fn new(
+        unit: &PumpingUnit,
+        machine: &Machine,
+        spec: &SimulateSpec,
+    ) -> Result<Option<Self>, Failure> {
+        let count = spec.columns.len();
+        if count == 0 {
+            return Ok(None);
+        }
+        if count > MOST_COLUMNS {
+            let problem = format!("are {count}; one answer holds {MOST_COLUMNS}");
+            return Err(Failure::misconfigured("columns", problem));
+        }
+        let individual = &spec.individual;
+        let working = unit.machine.conditions.get(individual.condition);
+        let working = working.ok_or_else(|| no_condition(individual.condition))?;
+        let description = description(&unit.machine, working)?;
+        let own = effect::of_individual(&unit.case, &individual.genes)?;
+        let effects = merged(&own, &individual.effects);
+        let effects: Vec<Asked<'_>> = effects.iter().map(asked).collect();
+        let columns = spec.columns.iter().enumerate().map(named);
+        let columns: Vec<(Column, Per)> = columns.collect::<Result<_, _>>()?;
+        let (columns, per): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        let origin = Origin {
+            description: &description,
+            modes: unit.machine.run.modes,
+            effects: &effects,
+        };
+        let plan = Plan::new(&origin, machine, &columns).map_err(|it| refused(&it))?;
+        Ok(Some(Self { plan, per }))
+    }
+
+    /// What came of them, as it travels: a curve for each channel of a condition.
+    pub(super) fn said(
+        self,
+        case: &Case,
+        condition: usize,
+        found: sensitivity::Columns,
+    ) -> Vec<Derivative> {
+        let channels = case.channels_of(condition).map(|(_, channel)| channel);
+        let channels: Vec<&Channel> = channels.collect();
+        let each = found.columns.into_iter().zip(self.per);
+        each.map(|(column, per)| derivative(&channels, column, per))
+            .collect()
+    }
+}
+
+fn asked(setting: &EffectSetting) -> Asked<'_> {
+    let parameters = setting.parameters.iter();
+    Asked {
+        id: &setting.id,
+        parameters: parameters.map(|(name, x)| (&**name, *x)).collect(),
+    }
+}
+
+/// A column in the words of the dynamics, with what its derivative is taken per.
+fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> {
+    let job::Column { name, values } = column;
+    if let Some(own) = pumping_unit::Coefficient::named(name) {
+        let all = pumping_unit::Coefficient::ALL.into_iter();
+        let mut all = all.zip(Coefficient::ALL);
+        if let Some((_, coefficient)) = all.find(|(one, _)| *one == own) {
+            return Ok((Column::Coefficient(coefficient), Per::Decade));
+        }
+    }
+    // a generic force has points in its own name, a parameter has none
+    let parts = name.rsplit_once('.');
+    let known = parts.and_then(|(effect, parameter)| {
+        let mut all = catalogue().iter();
+        let descriptor = all.find(|one| one.id == effect)?;
+        let mut all = descriptor.parameters.iter();
+        let found = all.find(|one| one.name == parameter)?;
+        Some((effect, found))
+    });
+    let Some((effect, parameter)) = known else {
+        let problem = format!(
+            "there is no `{name}`; there are the ten coefficients, as kb1, and parameters of effects, as \
+             pivot_friction.moment"
+        );
+        return Err(Failure::misconfigured(format!("columns[{at}]"), problem));
+    };
+    let column = Column::Parameter {
+        effect: effect.to_owned(),
+        parameter: parameter.name.to_owned(),
+        values: values.clone(),
+    };
+    Ok((column, Per::Unit(parameter.unit.symbol().to_owned())))
+}
+
+fn refused(refused: &Refused) -> Failure {
+    let at = match refused {
+        Refused::Effect { column, .. } | Refused::Present { column, .. } => Some(*column),
+        Refused::Machine(_) => None,
+    };
+    let field = at.map_or_else(|| "effects".to_owned(), |at| format!("columns[{at}]"));
+    Failure::misconfigured(field, refused.to_string())
+}
+
+/// As it travels: a curve for each channel.
+fn derivative(channels: &[&Channel], column: sensitivity::Derivative, per: Per) -> Derivative {
+    match column {
+        sensitivity::Derivative::Curves(changes) => {
+            let curve = |channel: &&Channel| match Sensor::named(&channel.name) {
+                Some(Sensor::Gauge(number)) => {
+                    single(&megapascals(&changes.gauge[usize::from(number) - 1]))
+                }
+                Some(Sensor::Position) => single(&changes.suspension),
+                Some(Sensor::Torque) => single(&changes.torque),
+                None => Vec::new(),
+            };
+            Derivative::Curves {
+                per,
+                curves: channels.iter().map(curve).collect(),
+            }
+        }
+        sensitivity::Derivative::Nothing => Derivative::Nothing { per },
+        sensitivity::Derivative::Missing(missing) => Derivative::Missing {
+            reason: missing.to_string(),
+        },
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "derivatives travel in single precision"
+)]
+fn single(curve: &[f64]) -> Vec<f32> {
+    curve.iter().map(|&x| x as f32).collect()
+}
