@@ -35,7 +35,10 @@ pub(super) fn steal(core: &mut Core, now: Duration) {
         }
         release(core, busy, attempt.job, Use::Lost);
         core.queue.remove(&attempt.job);
+        let repeated = core.counts.repeated;
         lease(core, idle, attempt.job, now);
+        // nobody had begun it: it is neither lost nor failed
+        core.counts.repeated = repeated;
     }
 }
 

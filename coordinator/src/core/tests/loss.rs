@@ -214,6 +214,8 @@ fn a_job_that_was_taken_from_a_worker_may_still_be_what_it_dies_of() {
         scene.join(2, 1);
         let taken = scene.given()[0].1.job;
         assert_eq!((held.len(), taken), (2, JobId(1)));
+        // nobody had begun it
+        assert_eq!(scene.core.snapshot(scene.now).repeated, 0);
         scene.wait(seconds, &[1, 2]);
         scene.tell(Input::Gone {
             worker: WorkerId(1),
