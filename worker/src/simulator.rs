@@ -41,7 +41,9 @@ pub trait Simulator: fmt::Debug + Sync {
 
 /// A model of one case, ready for any number of jobs on it; each leaves nothing behind for the next.
 pub trait Model: fmt::Debug + Send + Sync {
-    /// Simulates, and says what the channels of the condition show, exactly as computed. Where
+    /// Simulates, and says what the channels of the condition show, exactly as computed, with their
+    /// derivatives by the columns of the job: [`protocol::job::Derivative::none`] of a model that gives
+    /// none, and nothing of a run that fails. Columns change no bit of the curves. Where
     /// `scored_only` says that the others are not looked at, only curves of channels with a record need
     /// be there.
     ///
@@ -50,7 +52,7 @@ pub trait Model: fmt::Debug + Send + Sync {
     fn observe(&self, spec: &SimulateSpec, scored_only: bool) -> Result<Observation, Failure>;
 
     /// Simulates, and says everything that can be drawn; `pictures` is how many of what
-    /// moves are wanted over the whole run, 0 for none. Derivatives by the columns of the job come with it. A
+    /// moves are wanted over the whole run, 0 for none. Derivatives come with it as with [`Self::observe`]. A
     /// model that has nothing beside its channels need not say anything here.
     ///
     /// # Errors

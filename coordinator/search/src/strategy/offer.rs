@@ -126,10 +126,10 @@ impl Preset {
         let value = value.ok_or_else(|| found.setting.refusal(key, text))?;
         let shown = found.setting.show(&value);
         let place = settings.at_mut(&found.place);
-        *place.ok_or_else(|| SettingsError::Form {
-            strategy: self.strategy.to_owned(),
-            problem: format!("they have no {}", found.place),
-        })? = value;
+        let absent = || SettingsError::Absent {
+            key: key.to_owned(),
+        };
+        *place.ok_or_else(absent)? = value;
         Ok(shown)
     }
 }

@@ -28,6 +28,14 @@ pub enum SettingsError {
         /// What there is.
         known: Vec<String>,
     },
+    /// The setting is one of a part that the search leaves out for this case.
+    #[error(
+        "`{key}` sets nothing: no unknown of the case has a `valley`, so this search does not scan"
+    )]
+    Absent {
+        /// What was named.
+        key: String,
+    },
     /// The settings are of a strategy that is not there, or not of the form that it has.
     #[error("the settings of the strategy `{strategy}` cannot be used: {problem}")]
     Form {

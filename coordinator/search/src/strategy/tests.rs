@@ -485,4 +485,15 @@ fn unknown_settings_and_values_are_refused_with_what_there_is() {
     for text in ["NaN", "inf", ""] {
         said("threshold", text);
     }
+    // nothing of this space is scanned
+    let plain = Unknown::new("k", "1", Scale::Logarithmic, 1.0, [0.1, 10.0]);
+    let space = Space::new(&[plain]).unwrap();
+    let quick = preset("quick").unwrap();
+    let mut settings = (quick.settings)(&Plan {
+        space: &space,
+        workers: 1,
+    });
+    let error = quick.set(&mut settings, "scan_step", "0.1").unwrap_err();
+    let words = error.to_string();
+    assert!(words.starts_with("`scan_step` sets nothing"), "{words}");
 }
