@@ -6,6 +6,7 @@ pub const LANES: usize = 4;
 
 /// One unknown of [`LANES`] columns.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(align(32))]
 pub struct Lanes(pub [f64; LANES]);
 
 /// What the terms that are linear in a vector of unknowns ask of its entries: a number of one column,
@@ -25,7 +26,7 @@ impl Entry for f64 {}
 impl Entry for Lanes {}
 
 impl AddAssign for Lanes {
-    #[inline]
+    #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         for k in 0..LANES {
             self.0[k] += other.0[k];
@@ -34,7 +35,7 @@ impl AddAssign for Lanes {
 }
 
 impl SubAssign for Lanes {
-    #[inline]
+    #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         for k in 0..LANES {
             self.0[k] -= other.0[k];
@@ -45,7 +46,7 @@ impl SubAssign for Lanes {
 impl Add for Lanes {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn add(mut self, other: Self) -> Self {
         self += other;
         self
@@ -55,7 +56,7 @@ impl Add for Lanes {
 impl Sub for Lanes {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn sub(mut self, other: Self) -> Self {
         self -= other;
         self
@@ -65,16 +66,20 @@ impl Sub for Lanes {
 impl Mul<f64> for Lanes {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, factor: f64) -> Self {
-        Self(self.0.map(|x| x * factor))
+        let mut product = self;
+        for x in &mut product.0 {
+            *x *= factor;
+        }
+        product
     }
 }
 
 impl Div<f64> for Lanes {
     type Output = Self;
 
-    #[inline]
+    #[inline(always)]
     fn div(self, divisor: f64) -> Self {
         Self(self.0.map(|x| x / divisor))
     }

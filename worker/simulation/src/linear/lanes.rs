@@ -12,7 +12,7 @@ use super::entry::Lanes;
 type Part<const N: usize> = [Lanes; N];
 
 /// `y -= A x`.
-#[inline]
+#[inline(always)]
 fn subtract_product<const N: usize>(a: &Block<N>, x: &Part<N>, y: &mut Part<N>) {
     for (k, x) in x.iter().enumerate() {
         for (i, y) in y.iter_mut().enumerate() {
@@ -22,7 +22,7 @@ fn subtract_product<const N: usize>(a: &Block<N>, x: &Part<N>, y: &mut Part<N>) 
 }
 
 /// `A x`.
-#[inline]
+#[inline(always)]
 fn product<const N: usize>(a: &Block<N>, x: &Part<N>) -> Part<N> {
     let mut y = [Lanes::default(); N];
     for (k, x) in x.iter().enumerate() {
@@ -39,6 +39,7 @@ fn product<const N: usize>(a: &Block<N>, x: &Part<N>) -> Part<N> {
 )]
 impl<const N: usize> Blocks<N> {
     /// [`Blocks::solve`] for `LANES` columns.
+    #[inline(always)]
     pub fn solve_lanes(&self, x: &mut [Lanes]) {
         let m = self.border;
         let (blocks, border) = x.split_at_mut(self.diagonal.len() * N);
@@ -78,6 +79,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// `y -= A x` of the assembled (not factorised) matrix for `LANES` columns.
+    #[inline(always)]
     pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
         let m = self.border;
         let base = self.diagonal.len() * N;
@@ -112,6 +114,7 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// First block and length of every chain.
+    #[inline(always)]
     fn spans(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         self.chains.iter().scan(0, |first, &count| {
             let span = [*first, count];
@@ -127,6 +130,7 @@ impl<const N: usize> Blocks<N> {
 )]
 impl Bordered {
     /// [`Bordered::solve`] for `LANES` columns.
+    #[inline(always)]
     pub fn solve_lanes(&self, x: &mut [Lanes]) {
         match self {
             Self::Plane(blocks) => blocks.solve_lanes(x),
@@ -135,6 +139,7 @@ impl Bordered {
     }
 
     /// `y -= A x` of the assembled matrix for `LANES` columns.
+    #[inline(always)]
     pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
         match self {
             Self::Plane(blocks) => blocks.subtract_product_lanes(x, y),

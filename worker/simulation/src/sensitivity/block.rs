@@ -5,6 +5,7 @@ use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
 use crate::observe::{Gradient, TorqueBy};
 use crate::system::{Equations, State};
+use pulp::{Arch, Simd, WithSimd};
 
 /// Derivatives of coordinates, rates and accelerations; n each.
 #[derive(Clone, Debug)]
@@ -19,15 +20,16 @@ pub(super) struct Motion {
 pub(super) struct Block {
     /// Where the step began, and where it ended.
     pub(super) ends: [Motion; 2],
-    /// Rates and accelerations of the stages between.
-    stages: Vec<[Vec<Lanes>; 2]>,
+    /// Rates of the stages between.
+    rates: Vec<Vec<Lanes>>,
+    /// Nothing has moved any of the columns yet.
+    still: bool,
 }
 
-/// Room for what a stage is without its own acceleration, and for a product.
+/// Room for what a stage is without its own rate: its coordinates, and `-v / c` of its rates.
 #[derive(Clone, Debug)]
 pub(super) struct Bases {
     q: Vec<Lanes>,
-    v: Vec<Lanes>,
     scaled: Vec<Lanes>,
 }
 
@@ -50,23 +52,147 @@ impl Motion {
 impl Bases {
     /// For `n` coordinates.
     pub(super) fn new(n: usize) -> Self {
-        let Motion { q, v, a } = Motion::new(n);
-        Self { q, v, scaled: a }
+        let Motion { q, v, .. } = Motion::new(n);
+        Self { q, scaled: v }
+    }
+
+    /// What stage `i` of a step is without its own rate.
+    #[inline(always)]
+    fn fill(&mut self, parts: &Parts, from: &Motion, rates: &[Vec<Lanes>]) {
+        let Parts {
+            first: [to_q, to_s],
+            acceleration,
+            rates: each,
+        } = *parts;
+        for (k, (q, s)) in self.q.iter_mut().zip(&mut self.scaled).enumerate() {
+            *q = from.q[k] + from.v[k] * to_q;
+            *s = from.v[k] * to_s + from.a[k] * acceleration;
+        }
+        for (rate, [to_q, to_s]) in rates.iter().zip(each) {
+            for ((q, s), v) in self.q.iter_mut().zip(&mut self.scaled).zip(rate) {
+                *q += *v * to_q;
+                *s += *v * to_s;
+            }
+        }
+    }
+}
+
+/// Most stages of a method.
+const STAGES: usize = 8;
+
+/// With what weights the start of a step and the rates of its earlier stages enter a stage's coordinates,
+/// and `-v / c` of its rates: accelerations of stages are differences of rates, and are not kept.
+struct Parts {
+    first: [f64; 2],
+    acceleration: f64,
+    rates: [[f64; 2]; STAGES],
+}
+
+impl Parts {
+    /// Of stage `i` of a step of size `h`.
+    fn new(tableau: &Tableau, i: usize, h: f64) -> Self {
+        // base_j = x_j v_0 + y_j a_0 + sum z_jk v_k, and a_j = (v_j - base_j) / c
+        let (mut x, mut y) = ([1.0; STAGES], [0.0; STAGES]);
+        let mut z = [[0.0; STAGES]; STAGES];
+        for j in 1..=i {
+            let row = tableau.rows[j];
+            y[j] = h * row[0];
+            for (k, weight) in row.iter().enumerate().skip(1) {
+                let share = weight / tableau.diagonal;
+                x[j] -= share * x[k];
+                y[j] -= share * y[k];
+                z[j][k] += share;
+                for l in 1..k {
+                    z[j][l] -= share * z[k][l];
+                }
+            }
+        }
+        let shift = 1.0 / (tableau.diagonal * h);
+        let row = tableau.rows[i];
+        let mut rates = [[0.0; 2]; STAGES];
+        for (k, weight) in row.iter().enumerate().skip(1) {
+            rates[k - 1] = [h * weight, -z[i][k] * shift];
+        }
+        Self {
+            first: [h * row[0], -x[i] * shift],
+            acceleration: -y[i] * shift,
+            rates,
+        }
+    }
+}
+
+/// A stage of a block of columns.
+struct Advance<'a, E> {
+    block: &'a mut Block,
+    equations: &'a E,
+    tangents: &'a Tangents,
+    /// Method, stage, size of the step.
+    at: (&'a Tableau, usize, f64),
+    /// `dR/dp`.
+    right: &'a mut [Lanes],
+    bases: &'a mut Bases,
+}
+
+impl<E: Equations> WithSimd for Advance<'_, E> {
+    type Output = ();
+
+    #[expect(clippy::inline_always, reason = "compiled for each set of instructions")]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self {
+            block,
+            tangents,
+            at: (tableau, i, h),
+            right,
+            bases,
+            ..
+        } = self;
+        let Block {
+            ends: [from, to],
+            rates,
+            ..
+        } = block;
+        let shift = 1.0 / (tableau.diagonal * h);
+        bases.fill(&Parts::new(tableau, i, h), from, &rates[..i - 1]);
+        tangents.stiffness.subtract_product_lanes(&bases.q, right);
+        let q = &tangents.state.q;
+        self.equations.subtract_inertia(q, &bases.scaled, right);
+        tangents.factor.solve_lanes(right);
+        if let Some(v) = rates.get_mut(i - 1) {
+            for (v, w) in v.iter_mut().zip(right) {
+                *v = *w * shift;
+            }
+            return;
+        }
+        for (k, w) in right.iter().enumerate() {
+            to.q[k] = bases.q[k] + *w;
+            to.v[k] = *w * shift;
+            to.a[k] = to.v[k] * shift + bases.scaled[k];
+        }
     }
 }
 
 impl Block {
-    /// Zeros for `n` coordinates and a method of so many stages.
+    /// Zeros for `n` coordinates and a method of so many stages between a step's start and its end.
     pub(super) fn new(n: usize, stages: usize) -> Self {
-        let zeros = || vec![Lanes::default(); n];
         Self {
             ends: [Motion::new(n), Motion::new(n)],
-            stages: (0..stages).map(|_| [zeros(), zeros()]).collect(),
+            rates: vec![vec![Lanes::default(); n]; stages],
+            still: true,
         }
+    }
+
+    /// Whether the columns stay where they are: they are zero, and so is their `dR/dp`.
+    fn stays(&mut self, right: &[Lanes]) -> bool {
+        self.still = self.still && right.iter().all(|x| *x == Lanes::default());
+        self.still
     }
 
     /// Columns of an equilibrium, whose `dR/dp` is in `right`.
     pub(super) fn rest(&mut self, tangents: &Tangents, right: &mut [Lanes]) {
+        if self.stays(right) {
+            return;
+        }
         tangents.factor.solve_lanes(right);
         self.ends[0].q.copy_from_slice(right);
     }
@@ -76,54 +202,22 @@ impl Block {
         &mut self,
         equations: &E,
         tangents: &Tangents,
-        (tableau, i, h): (&Tableau, usize, f64),
+        at: (&Tableau, usize, f64),
         right: &mut [Lanes],
         bases: &mut Bases,
     ) {
-        let Self {
-            ends: [from, to],
-            stages,
-        } = self;
-        let row = tableau.rows[i];
-        let first = h * row[0];
-        for (k, (q, v)) in bases.q.iter_mut().zip(&mut bases.v).enumerate() {
-            *q = from.q[k] + from.v[k] * first;
-            *v = from.v[k] + from.a[k] * first;
+        if self.stays(right) {
+            return;
         }
-        for (weight, [v, a]) in row[1..]
-            .iter()
-            .zip(&*stages)
-            .filter(|(weight, _)| **weight != 0.0)
-        {
-            let weight = h * weight;
-            let each = bases.q.iter_mut().zip(&mut bases.v).zip(v.iter().zip(a));
-            for ((base_q, base_v), (v, a)) in each {
-                *base_q += *v * weight;
-                *base_v += *a * weight;
-            }
-        }
-        let shift = 1.0 / (tableau.diagonal * h);
-        tangents.stiffness.subtract_product_lanes(&bases.q, right);
-        for (scaled, v) in bases.scaled.iter_mut().zip(&bases.v) {
-            *scaled = *v * -shift;
-        }
-        equations.subtract_inertia(&tangents.state.q, &bases.scaled, right);
-        tangents.factor.solve_lanes(right);
-        let last = i + 1 == tableau.stages();
-        let (v, a) = if last {
-            for (k, q) in to.q.iter_mut().enumerate() {
-                *q = bases.q[k] + right[k];
-            }
-            (&mut to.v, &mut to.a)
-        } else {
-            let [v, a] = &mut stages[i - 1];
-            (v, a)
+        let stage = Advance {
+            block: self,
+            equations,
+            tangents,
+            at,
+            right,
+            bases,
         };
-        let each = v.iter_mut().zip(a).zip(right.iter().zip(&bases.v));
-        for ((v, a), (w, base)) in each {
-            *v = *w * shift;
-            *a = (*v - *base) * shift;
-        }
+        Arch::new().dispatch(stage);
     }
 
     /// The step is over: it ended where the next one begins.
