@@ -207,4 +207,38 @@ impl Bushing {
             ],
         ]
     }
+
+    /// Of these derivatives the part that `gamma` multiplies: by rates alone.
+    #[inline]
+    pub fn plane_damping(
+        &self,
+        (i, j): (&PlaneMarker, &PlaneMarker),
+        further: Option<&Pull>,
+    ) -> [[PlaneColumn; 3]; 2] {
+        let [mut c1, c2] = self.damping;
+        c1 += further.map_or(0.0, |further| further.by_rate);
+        let bend = self.rotational_damping[1];
+        let e = j.axis;
+        let damp = |x: V2| -(x * c2 + e * ((c1 - c2) * e.dot(&x)));
+        let Deformation { d, .. } = deformation(i, j);
+        let arm = d + j.rho;
+        let column = |by: V2, torque: f64| PlaneColumn {
+            force: by,
+            torque_i: torque + moment(&i.rho, &by),
+            torque_j: -torque - moment(&arm, &by),
+        };
+        let [force_x, force_y] = [damp(V2::x()), damp(V2::y())];
+        [
+            [
+                column(force_x, 0.0),
+                column(force_y, 0.0),
+                column(damp(across(&i.rho)), -bend),
+            ],
+            [
+                column(-force_x, 0.0),
+                column(-force_y, 0.0),
+                column(-damp(across(&arm)), bend),
+            ],
+        ]
+    }
 }

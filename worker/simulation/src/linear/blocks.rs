@@ -83,10 +83,49 @@ impl<const N: usize> Blocks<N> {
         self.upper.fill(Block::zeros());
         self.lower.fill(Block::zeros());
         self.corner.fill(0.0);
-        // a factorisation fills the border beyond the blocks that touched it
-        self.right.fill(Column::zeros());
-        self.bottom.fill(Column::zeros());
+        for b in 0..self.diagonal.len() {
+            let used = self.used(b);
+            self.right[used.clone()].fill(Column::zeros());
+            self.bottom[used].fill(Column::zeros());
+        }
         self.touches.fill(0);
+        self.filled.fill(0);
+    }
+
+    /// Where the border of block `b` may hold anything but zeros: what touched it, and what a
+    /// factorisation filled beyond that.
+    fn used(&self, b: usize) -> std::ops::Range<usize> {
+        let used = self.touches[b].max(self.filled[b]);
+        b * self.border..b * self.border + used
+    }
+
+    /// Becomes `first + factor second`, assembled matrices of the same shape.
+    pub fn set_sum(&mut self, first: &Self, factor: f64, second: &Self) {
+        for (sum, a, b) in [
+            (&mut self.diagonal, &first.diagonal, &second.diagonal),
+            (&mut self.upper, &first.upper, &second.upper),
+            (&mut self.lower, &first.lower, &second.lower),
+        ] {
+            for (sum, (a, b)) in sum.iter_mut().zip(a.iter().zip(b)) {
+                *sum = a + b * factor;
+            }
+        }
+        for (sum, (a, b)) in self
+            .corner
+            .iter_mut()
+            .zip(first.corner.iter().zip(&second.corner))
+        {
+            *sum = a + b * factor;
+        }
+        for b in 0..self.diagonal.len() {
+            let before = self.used(b);
+            self.touches[b] = first.touches[b].max(second.touches[b]);
+            for k in before.start..before.end.max(self.used(b).end) {
+                self.right[k] = first.right[k] + second.right[k] * factor;
+                self.bottom[k] = first.bottom[k] + second.bottom[k] * factor;
+            }
+        }
+        self.filled.fill(0);
     }
 
     /// Diagonal block.

@@ -29,62 +29,78 @@ impl Machine {
         scratch: &Scratch,
         matrix: &mut Bordered,
     ) {
-        self.fill_tangent(at, (shift, true), scratch, matrix);
-        self.hooks.add_tangent(at, shift.damping, matrix);
-    }
-
-    /// Fills two matrices at once, the first with the stiffness alone.
-    pub(super) fn tangents(
-        &self,
-        at: &Instant<'_>,
-        shift: Shift,
-        scratch: &Scratch,
-        [stiffness, matrix]: [&mut Bordered; 2],
-    ) {
-        self.fill_tangent(at, (Shift::NONE, false), scratch, stiffness);
-        self.fill_tangent(at, (shift, false), scratch, matrix);
-        for (k, chain) in self.chains.iter().enumerate() {
-            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            let on = (&surface, &at.ropes.contact);
-            let both = [&mut *stiffness, &mut *matrix];
-            chain.add_contact_tangents(on, &scratch.chains[k], shift.damping, both);
-        }
-        self.hooks.add_tangent(at, 0.0, stiffness);
-        self.hooks.add_tangent(at, shift.damping, matrix);
-    }
-
-    /// All but what effects add, with the contact or without it.
-    fn fill_tangent(
-        &self,
-        at: &Instant<'_>,
-        (shift, contact): (Shift, bool),
-        scratch: &Scratch,
-        matrix: &mut Bordered,
-    ) {
         let damping = shift.damping;
         matrix.clear();
         self.inertia_blocks(at.q, shift.mass, matrix);
         self.rigid_tangent(at, damping, matrix);
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
-            let [base, head] = chain.add_joint_tangent(&self.joints(k, at), state, damping, matrix);
-            if let Some(base) = base {
-                self.base_tangent(k, &base, &state.pose(0), damping, matrix);
+            chain.add_joint_tangent(&self.joints(k, at), state, damping, matrix);
+            self.end_tangents(k, at, scratch, damping, matrix);
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+            chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
+        }
+        self.hooks.add_tangent(at, damping, matrix);
+    }
+
+    /// Fills `stiffness` with `-K` and `matrix` with `mass M - damping D - K` in one pass over what moves
+    /// in the plane; `room` is overwritten.
+    pub(super) fn tangents(
+        &self,
+        at: &Instant<'_>,
+        shift: Shift,
+        scratch: &Scratch,
+        [stiffness, room, matrix]: [&mut Bordered; 3],
+    ) {
+        stiffness.clear();
+        room.clear();
+        for (k, chain) in self.chains.iter().enumerate() {
+            let state = &scratch.chains[k];
+            let both = [&mut *stiffness, &mut *room];
+            if !chain.add_joint_parts(&self.joints(k, at), state, both) {
+                self.tangent(at, Shift::NONE, scratch, stiffness);
+                self.tangent(at, shift, scratch, matrix);
+                return;
             }
-            if let (Some(end), Some(load)) = (head, state.joints.last()) {
-                let anchor = Anchor {
-                    chain: k,
-                    block: chain.first + chain.count - 1,
-                    end: &end,
-                    load,
-                    pose: &state.pose(chain.count - 1),
-                };
-                self.anchor_tangent(&anchor, at, damping, matrix);
+            let surface = self.surface(k, at.q, at.v, &scratch.deflection);
+            let both = [&mut *stiffness, &mut *room];
+            chain.add_contact_parts((&surface, &at.ropes.contact), state, both);
+        }
+        matrix.set_sum(stiffness, shift.damping, room);
+        for (Shift { mass, damping }, matrix) in [(Shift::NONE, stiffness), (shift, matrix)] {
+            self.inertia_blocks(at.q, mass, matrix);
+            self.rigid_tangent(at, damping, matrix);
+            for k in 0..self.chains.len() {
+                self.end_tangents(k, at, scratch, damping, matrix);
             }
-            if contact {
-                let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-                chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
-            }
+            self.hooks.add_tangent(at, damping, matrix);
+        }
+    }
+
+    /// Adds the tangent of the joints that hold a chain's ends.
+    fn end_tangents(
+        &self,
+        chain: usize,
+        at: &Instant<'_>,
+        scratch: &Scratch,
+        damping: f64,
+        matrix: &mut Bordered,
+    ) {
+        let (own, state) = (&self.chains[chain], &scratch.chains[chain]);
+        let joints = self.joints(chain, at);
+        let [base, head] = own.add_end_tangent(&joints, state, damping, matrix);
+        if let Some(base) = base {
+            self.base_tangent(chain, &base, &state.pose(0), damping, matrix);
+        }
+        if let (Some(end), Some(load)) = (head, state.joints.last()) {
+            let anchor = Anchor {
+                chain,
+                block: own.first + own.count - 1,
+                end: &end,
+                load,
+                pose: &state.pose(own.count - 1),
+            };
+            self.anchor_tangent(&anchor, at, damping, matrix);
         }
     }
 

@@ -13,6 +13,7 @@ pub(super) struct Tangents {
     pub(super) stiffness: Bordered,
     /// Factor of `S = M / c^2 - D / c - K'`, or of `-K` at rest.
     pub(super) factor: Bordered,
+    room: Bordered,
     /// How many were made.
     pub(super) factorizations: u64,
 }
@@ -24,6 +25,7 @@ impl Tangents {
             state: state.clone(),
             stiffness: equations.matrix(),
             factor: equations.matrix(),
+            room: equations.matrix(),
             factorizations: 0,
         }
     }
@@ -86,7 +88,7 @@ impl Tangents {
         let kept = system.statistics;
         let State { a, .. } = &self.state;
         let mut loads = system.forces(self.state.motion(), room);
-        let matrices = [&mut self.stiffness, &mut self.factor];
+        let matrices = [&mut self.stiffness, &mut self.room, &mut self.factor];
         loads.exact_tangents(a, shift, matrices);
         system.statistics = kept;
         self.factorizations += 1;

@@ -7,73 +7,37 @@
 //! Seen from a point, the coordinates are those of its cylinder that move it (`x`, `y` and the
 //! angles that turn the axis), then those of the border. With the derivatives `G` of the penetration
 //! and `F` of the force by all of them, a point adds `G F^T` and the force times what bends.
+use super::contact_point::{BORDER, Derivatives, OWN};
 use super::parts::Chain;
 use super::points::{Points, Touch};
 use super::state::ChainState;
 use crate::element::impact::Impact;
 use crate::linear::Bordered;
 use crate::model::contact::Surface;
-use crate::model::layout::{MAX_MODES, Motion};
+use crate::model::layout::Motion;
 use crate::model::pose::InPlane;
-use nalgebra::Vector2;
 
-type V2 = Vector2<f64>;
-
-/// Coordinates that move a point of a cylinder: two, and one or two angles.
-const OWN: usize = 4;
-/// Most coordinates of the border: the beam angle, then the modes.
-const BORDER: usize = MAX_MODES + 1;
 /// Those of a usual head, whose sums are short enough to be unrolled.
-const FEW: usize = 8;
+pub(super) const FEW: usize = 8;
 
 /// One chain's contact while its tangent is added up; there is room for `B` coordinates of the border.
-struct Tangent<'a, const B: usize> {
-    chain: &'a Chain,
-    surface: &'a Surface<'a>,
-    law: &'a Impact,
-    gamma: f64,
+pub(super) struct Tangent<'a, const B: usize> {
+    pub(super) chain: &'a Chain,
+    pub(super) surface: &'a Surface<'a>,
+    pub(super) law: &'a Impact,
+    pub(super) gamma: f64,
     /// Coordinates of the border that take part.
-    border: usize,
-    corner: [[f64; B]; B],
+    pub(super) border: usize,
+    pub(super) corner: [[f64; B]; B],
 }
 
 /// What the points of one cylinder add.
-struct Sums<const B: usize> {
-    own: [[f64; OWN]; OWN],
+pub(super) struct Sums<const B: usize> {
+    pub(super) own: [[f64; OWN]; OWN],
     /// Rows of the cylinder, columns of the border.
-    right: [[f64; B]; OWN],
+    pub(super) right: [[f64; B]; OWN],
     /// Rows of the border, columns of the cylinder, transposed.
-    bottom: [[f64; B]; OWN],
-}
-
-/// A point's derivatives.
-struct Derivatives<const B: usize> {
-    /// Of the penetration and of the force by the cylinder's coordinates.
-    own: [f64; OWN],
-    own_force: [f64; OWN],
-    /// How those move the point.
-    moved: [V2; OWN],
-    /// Of the penetration and of the force by the border's coordinates.
-    gradient: [f64; B],
-    force_by: [f64; B],
-    /// Slopes of the modes' shapes over the arc; the beam angle has none.
-    slope: [f64; B],
-}
-
-/// A pressed point as a reading asks for it, of a cylinder that moves in the plane.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Reached {
-    /// Force \[N\] and arc angle \[rad\].
-    pub(crate) force: f64,
-    pub(crate) angle: f64,
-    /// Derivatives of the force by stiffness and by damping of the law.
-    pub(crate) by_law: [f64; 2],
-    /// Derivatives of the force by the cylinder's coordinates and by their rates, and of the angle.
-    pub(crate) force_by: [[f64; 3]; 2],
-    pub(crate) angle_by: [f64; 3],
-    /// The same by the beam angle, then by the modes, which turn no angle.
-    pub(crate) force_by_border: [[f64; BORDER]; 2],
-    pub(crate) angle_by_beam: f64,
+    pub(super) bottom: [[f64; B]; OWN],
 }
 
 #[expect(
@@ -81,45 +45,6 @@ pub(crate) struct Reached {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Gives every pressed point of cylinders that move in the plane, and its cylinder.
-    pub(crate) fn each_reached(
-        &self,
-        (surface, law): (&Surface<'_>, &Impact),
-        state: &ChainState,
-        mut visit: impl FnMut(usize, &Reached),
-    ) {
-        let tangent = Tangent::<BORDER> {
-            chain: self,
-            surface,
-            law,
-            gamma: 0.0,
-            border: surface.modes() + 1,
-            corner: [[0.0; BORDER]; BORDER],
-        };
-        let points = &state.points;
-        for (k, &j) in points.cylinders().iter().enumerate() {
-            for touch in points.touches(k, surface, law) {
-                let point = tangent.derivatives(&state.plane[j], &touch);
-                let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
-                let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
-                let by_rate = touch.law.by_rate;
-                let reached = Reached {
-                    force: touch.law.force,
-                    angle: touch.angle,
-                    by_law: touch.by_law,
-                    force_by: [
-                        own(&|r| point.own_force[r]),
-                        own(&|r| by_rate * point.own[r]),
-                    ],
-                    angle_by: own(&|r| angle_by_point.dot(&point.moved[r])),
-                    force_by_border: [point.force_by, point.gradient.map(|x| by_rate * x)],
-                    angle_by_beam,
-                };
-                visit(j, &reached);
-            }
-        }
-    }
-
     /// Adds the contact's tangent to the cylinders' blocks and to the border, if there is one.
     pub(crate) fn add_contact_tangent(
         &self,
@@ -135,44 +60,6 @@ impl Chain {
             self.add_tangent_within::<FEW>(on, state, gamma, (matrix, border));
         } else {
             self.add_tangent_within::<BORDER>(on, state, gamma, (matrix, border));
-        }
-    }
-
-    /// The same to two matrices at once, to the first without damping.
-    pub(crate) fn add_contact_tangents(
-        &self,
-        (surface, law): (&Surface<'_>, &Impact),
-        state: &ChainState,
-        gamma: f64,
-        matrices: [&mut Bordered; 2],
-    ) {
-        let border = matrices[0].border().min(surface.modes() + 1);
-        let on = (surface, law);
-        if border <= FEW {
-            self.add_tangents_within::<FEW>(on, state, gamma, (matrices, border));
-        } else {
-            self.add_tangents_within::<BORDER>(on, state, gamma, (matrices, border));
-        }
-    }
-
-    fn add_tangents_within<const B: usize>(
-        &self,
-        (surface, law): (&Surface<'_>, &Impact),
-        state: &ChainState,
-        gamma: f64,
-        (matrices, border): ([&mut Bordered; 2], usize),
-    ) {
-        let mut pair = [0.0, gamma].map(|gamma| Tangent::<B> {
-            chain: self,
-            surface,
-            law,
-            gamma,
-            border,
-            corner: [[0.0; B]; B],
-        });
-        match self.motion {
-            Motion::Plane => add_both(&mut pair, &state.points, &state.plane, matrices),
-            Motion::Space => add_both(&mut pair, &state.points, &state.poses, matrices),
         }
     }
 
@@ -200,42 +87,8 @@ impl Chain {
     }
 }
 
-/// Adds the tangents of two factors of the damping, the first of which is zero.
-fn add_both<const A: usize, const B: usize>(
-    pair: &mut [Tangent<'_, B>; 2],
-    points: &Points,
-    poses: &[impl InPlane<A>],
-    mut matrices: [&mut Bordered; 2],
-) {
-    for (k, &j) in points.cylinders().iter().enumerate() {
-        let mut sums = [Sums::<B>::zero(), Sums::zero()];
-        let mut touched = false;
-        for touch in points.touches(k, pair[0].surface, pair[0].law) {
-            touched = true;
-            let mut point = pair[0].derivatives(&poses[j], &touch);
-            for (tangent, sums) in pair.iter_mut().zip(&mut sums) {
-                let damped = tangent.gamma * touch.law.by_rate;
-                for (by, own) in point.own_force.iter_mut().zip(point.own) {
-                    *by += damped * own;
-                }
-                for (by, own) in point.force_by.iter_mut().zip(point.gradient) {
-                    *by += damped * own;
-                }
-                tangent.add_point(&point, &touch, &poses[j], sums);
-            }
-        }
-        let each = pair.iter().zip(&sums).zip(&mut matrices);
-        for ((tangent, sums), matrix) in each.filter(|_| touched) {
-            tangent.add_sums::<A>(tangent.chain.first + j, sums, matrix);
-        }
-    }
-    for (tangent, matrix) in pair.iter().zip(matrices) {
-        tangent.add_corner(matrix);
-    }
-}
-
 impl<const B: usize> Sums<B> {
-    const fn zero() -> Self {
+    pub(super) const fn zero() -> Self {
         Self {
             own: [[0.0; OWN]; OWN],
             right: [[0.0; B]; OWN],
@@ -258,14 +111,15 @@ impl<const B: usize> Tangent<'_, B> {
             }
             let mut sums = Sums::zero();
             for touch in touches {
-                let point = self.derivatives(&poses[j], &touch);
+                let seen = (self.surface, self.gamma, self.border);
+                let point = Derivatives::new(seen, &poses[j], &touch);
                 self.add_point(&point, &touch, &poses[j], &mut sums);
             }
             self.add_sums::<A>(self.chain.first + j, &sums, matrix);
         }
     }
 
-    fn add_corner(&self, matrix: &mut Bordered) {
+    pub(super) fn add_corner(&self, matrix: &mut Bordered) {
         for row in 0..self.border {
             for column in 0..self.border {
                 matrix.add_corner(row, column, self.corner[row][column]);
@@ -274,7 +128,7 @@ impl<const B: usize> Tangent<'_, B> {
     }
 
     /// Adds what the points of one cylinder add to its block and to the border.
-    fn add_sums<const A: usize>(&self, block: usize, sums: &Sums<B>, matrix: &mut Bordered) {
+    pub(super) fn add_sums<const A: usize>(&self, block: usize, sums: &Sums<B>, matrix: &mut Bordered) {
         let rows: [usize; OWN] = std::array::from_fn(|k| {
             if k < 2 {
                 k
@@ -292,7 +146,7 @@ impl<const B: usize> Tangent<'_, B> {
     }
 
     /// Adds what one point adds.
-    fn add_point<const A: usize>(
+    pub(super) fn add_point<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
         touch: &Touch,
@@ -307,64 +161,6 @@ impl<const B: usize> Tangent<'_, B> {
             }
         }
         self.add_border::<A>(point, touch, sums);
-    }
-
-    /// Derivatives of penetration and force by all coordinates.
-    fn derivatives<const A: usize>(&self, pose: &impl InPlane<A>, touch: &Touch) -> Derivatives<B> {
-        let surface = self.surface;
-        let Touch {
-            along,
-            velocity,
-            curvature,
-            law: at,
-            ..
-        } = touch;
-        let stiff = at.by_penetration + self.gamma * at.by_rate;
-        let (angle_by_point, angle_by_beam) = curvature.angle_by;
-        let beam_rate = surface.beam[1];
-        let angle_rate = angle_by_point.dot(velocity) + angle_by_beam * beam_rate;
-        let mut gradient = [0.0; B];
-        let mut force_by = [0.0; B];
-        let mut slope = [0.0; B];
-        let mut drift = 0.0;
-        if let Some(bend) = &surface.bend {
-            let modes = 1..self.border;
-            let (values, slopes) = (&mut gradient[modes.clone()], &mut slope[modes.clone()]);
-            bend.shapes.slopes(&touch.on_grid, values, slopes);
-            for (k, rate) in modes.clone().zip(bend.modal_rate) {
-                drift += rate * slope[k];
-            }
-            for k in modes {
-                force_by[k] = gradient[k] * stiff + slope[k] * (angle_rate * at.by_rate);
-            }
-        }
-        // rates of the gradient along the motion: H q'
-        let point_rate =
-            curvature.point * velocity + curvature.mixed * beam_rate + angle_by_point * drift;
-        let beam_gradient_rate =
-            curvature.mixed.dot(velocity) + curvature.beam * beam_rate + angle_by_beam * drift;
-        gradient[0] = touch.by_beam;
-        force_by[0] = touch.by_beam * stiff + beam_gradient_rate * at.by_rate;
-
-        let (arms, sweeps) = (pose.axis_by(), pose.sweep_by());
-        let moved: [V2; OWN] = std::array::from_fn(|k| match k {
-            0 => V2::x(),
-            1 => V2::y(),
-            k => arms.get(k - 2).map_or_else(V2::zeros, |arm| arm * *along),
-        });
-        let by_place = touch.by_point * stiff + point_rate * at.by_rate;
-        Derivatives {
-            own: moved.map(|moved| touch.by_point.dot(&moved)),
-            own_force: std::array::from_fn(|k| {
-                let turning = k.checked_sub(2).and_then(|a| sweeps.get(a));
-                let turning = turning.map_or(0.0, |sweep| along * touch.by_point.dot(sweep));
-                by_place.dot(&moved[k]) + at.by_rate * turning
-            }),
-            moved,
-            gradient,
-            force_by,
-            slope,
-        }
     }
 
     fn add_border<const A: usize>(

@@ -6,7 +6,9 @@
 //! nearer to the chain's base, I the one nearer to its head.
 mod axial;
 mod contact;
-pub(crate) mod contact_tangent;
+mod contact_parts;
+pub(crate) mod contact_point;
+mod contact_tangent;
 mod energy;
 mod forces;
 mod inertia;

@@ -87,15 +87,38 @@ impl Chain {
             let tangent = joints
                 .inner
                 .plane_tangent((&i, &j), &force, gamma, further.as_ref());
-            let [by_i, by_j] = tangent;
-            let block = self.first + joint;
-            subtract(matrix.diagonal_mut(block - 1), &by_j, Side::J);
-            let (upper, lower) = matrix.coupling_mut(block - 1);
-            subtract(upper, &by_i, Side::J);
-            subtract(lower, &by_j, Side::I);
-            subtract(matrix.diagonal_mut(block), &by_i, Side::I);
+            subtract_joint(matrix, self.first + joint, &tangent);
         }
     }
+
+    /// Subtracts the same by coordinates and by rates apart, each from a matrix of its own.
+    pub(super) fn add_plane_parts(
+        &self,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        [stiffness, damping]: [&mut Blocks<3>; 2],
+    ) {
+        for joint in 1..self.count {
+            let [i, j] = self.plane_markers(joint, &state.plane);
+            let force = state.joints[joint].force.xy();
+            let further = self.pull(joint, joints, state);
+            let (between, law) = ((&i, &j), joints.inner);
+            let by_place = law.plane_tangent(between, &force, 0.0, further.as_ref());
+            let by_rate = law.plane_damping(between, further.as_ref());
+            subtract_joint(stiffness, self.first + joint, &by_place);
+            subtract_joint(damping, self.first + joint, &by_rate);
+        }
+    }
+}
+
+/// Subtracts the tangent of the joint between `block` (I) and the one before it (J).
+#[inline]
+fn subtract_joint(matrix: &mut Blocks<3>, block: usize, [by_i, by_j]: &[[PlaneColumn; 3]; 2]) {
+    subtract(matrix.diagonal_mut(block - 1), by_j, Side::J);
+    let (upper, lower) = matrix.coupling_mut(block - 1);
+    subtract(upper, by_i, Side::J);
+    subtract(lower, by_j, Side::I);
+    subtract(matrix.diagonal_mut(block), by_i, Side::I);
 }
 
 /// Subtracts the rows of one side's cylinder.

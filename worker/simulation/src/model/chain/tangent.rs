@@ -37,15 +37,14 @@ pub(crate) struct EndTangent {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the joints' tangent of the cylinders' own blocks and couplings; returns those of the
-    /// end joints at base and head for their holders.
+    /// Adds the tangent of the joints between the cylinders.
     pub(crate) fn add_joint_tangent(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
         matrix: &mut Bordered,
-    ) -> [Option<EndTangent>; 2] {
+    ) {
         match matrix {
             Bordered::Plane(matrix) => {
                 self.add_plane_tangent(joints, state, gamma, matrix);
@@ -57,6 +56,32 @@ impl Chain {
                 }
             }
         }
+    }
+
+    /// The same by coordinates and by rates apart, each to a matrix of its own; whether there is such a
+    /// thing, which is so in the plane.
+    pub(crate) fn add_joint_parts(
+        &self,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        matrices: [&mut Bordered; 2],
+    ) -> bool {
+        let [Bordered::Plane(stiffness), Bordered::Plane(damping)] = matrices else {
+            return false;
+        };
+        self.add_plane_parts(joints, state, [stiffness, damping]);
+        true
+    }
+
+    /// Adds the tangent of the joints at base and head to the own blocks of the cylinders that they
+    /// hold; returns it for their holders.
+    pub(crate) fn add_end_tangent(
+        &self,
+        joints: &Joints<'_>,
+        state: &ChainState,
+        gamma: f64,
+        matrix: &mut Bordered,
+    ) -> [Option<EndTangent>; 2] {
         [(0, 0, Side::I), (self.count, self.count - 1, Side::J)].map(|(joint, cylinder, side)| {
             let ([i, j], law) = self.link(joint, joints, state)?;
             let [by_i, by_j] = law.tangent(&i, &j, &state.joints[joint]);
