@@ -154,7 +154,8 @@ impl Bushing {
 
     /// Derivatives of [`Self::plane_load`] by x, y and angle of I and of J, whose rates change
     /// `gamma` times as much; with a further pull, which `force` contains.
-    #[inline]
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     pub fn plane_tangent(
         &self,
         (i, j): (&PlaneMarker, &PlaneMarker),

@@ -156,18 +156,30 @@ impl<const N: usize> Blocks<N> {
         self.bottom[block * self.border + k][column] += value;
     }
 
-    /// Adds to row `row` of `block` in the border's first counted columns, and to column `row` in
-    /// its first counted rows.
-    #[inline]
-    pub fn add_border(&mut self, block: usize, row: usize, right: &[f64], bottom: &[f64]) {
-        let reach = self.lead + right.len().max(bottom.len());
-        self.touches[block] = self.touches[block].max(reach);
-        let of = block * self.border + self.lead..(block + 1) * self.border;
-        for (column, value) in self.right[of.clone()].iter_mut().zip(right) {
-            column[row] += value;
+    /// Adds to some rows and columns of `block`, to those rows in the border's first `reach` counted
+    /// columns, and to those columns in its first counted rows.
+    pub(crate) fn add_touching<const R: usize, const B: usize>(
+        &mut self,
+        block: usize,
+        rows: &[usize],
+        own: &[[f64; R]; R],
+        (right, bottom): (&[[f64; B]; R], &[[f64; B]; R]),
+        reach: usize,
+    ) {
+        let diagonal = &mut self.diagonal[block];
+        for (&row, own) in rows.iter().zip(own) {
+            for (&column, value) in rows.iter().zip(own) {
+                diagonal[(row, column)] += value;
+            }
         }
-        for (column, value) in self.bottom[of].iter_mut().zip(bottom) {
-            column[row] += value;
+        self.touches[block] = self.touches[block].max(self.lead + reach);
+        let first = block * self.border + self.lead;
+        for (to, from) in [(&mut self.right, right), (&mut self.bottom, bottom)] {
+            for (k, column) in to[first..first + reach].iter_mut().enumerate() {
+                for (&row, from) in rows.iter().zip(from) {
+                    column[row] += from[k];
+                }
+            }
         }
     }
 

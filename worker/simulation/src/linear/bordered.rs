@@ -89,13 +89,6 @@ impl Bordered {
         either!(self, blocks => blocks.add_bottom(block, k, column, value));
     }
 
-    /// Adds to row `row` of `block` in the border's first counted columns, and to column `row` in
-    /// its first counted rows.
-    #[inline]
-    pub fn add_border(&mut self, block: usize, row: usize, right: &[f64], bottom: &[f64]) {
-        either!(self, blocks => blocks.add_border(block, row, right, bottom));
-    }
-
     /// Adds `value` within the counted border.
     #[inline]
     pub fn add_corner(&mut self, row: usize, column: usize, value: f64) {

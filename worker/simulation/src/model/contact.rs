@@ -164,6 +164,8 @@ impl<'a> Surface<'a> {
     /// Second derivatives of the penetration of a point that lies `toward` from the centre, at arc
     /// angle `angle` and at `place` on the grid of the shapes, where the surface has the slope `s1`
     /// over the arc [m/rad].
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     pub fn curvature(&self, toward: &V2, angle: f64, place: &Place, s1: f64) -> Curvature {
         let r = toward.norm();
         let n = toward * (1.0 / r);
@@ -191,6 +193,8 @@ impl<'a> Surface<'a> {
     }
 
     /// Second derivative of the surface's height over the arc angle [m/rad^2].
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     fn bent(&self, angle: f64, place: &Place) -> f64 {
         let modes = self.bend.as_ref();
         let modes = modes.map_or(0.0, |bend| bend.sum.at(bend.shapes, place).0.second);

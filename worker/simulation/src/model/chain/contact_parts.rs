@@ -63,12 +63,12 @@ fn add_parts<const A: usize, const B: usize>(
 ) {
     let seen = (stiff.surface, 0.0, stiff.border);
     for (k, &j) in points.cylinders().iter().enumerate() {
-        let mut touches = points.touches(k, stiff.surface, stiff.law).peekable();
-        if touches.peek().is_none() {
+        if points.touching(k).next().is_none() {
             continue;
         }
         let mut sums = [Sums::zero(), Sums::zero()];
-        for touch in touches {
+        for i in points.touching(k) {
+            let touch = points.touch((k, i), stiff.surface, stiff.law);
             let point = Derivatives::new(seen, &poses[j], &touch);
             stiff.add_point(&point, &touch, &poses[j], &mut sums[0]);
             damped.add_damping::<A>(&point, touch.law.by_rate, &mut sums[1]);

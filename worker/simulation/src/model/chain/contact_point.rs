@@ -32,6 +32,8 @@ pub(super) struct Derivatives<const B: usize> {
 impl<const B: usize> Derivatives<B> {
     /// Derivatives of penetration and force by all coordinates.
     /// Rates change `gamma` times as much as coordinates; so many coordinates of the border take part.
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     pub(super) fn new<const A: usize>(
         (surface, gamma, border): (&Surface<'_>, f64, usize),
         pose: &impl InPlane<A>,
@@ -124,7 +126,8 @@ impl Chain {
         let seen = (surface, 0.0, surface.modes() + 1);
         let points = &state.points;
         for (k, &j) in points.cylinders().iter().enumerate() {
-            for touch in points.touches(k, surface, law) {
+            for i in points.touching(k) {
+                let touch = points.touch((k, i), surface, law);
                 let point = Derivatives::<BORDER>::new(seen, &state.plane[j], &touch);
                 let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
                 let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
@@ -132,7 +135,7 @@ impl Chain {
                 let reached = Reached {
                     force: touch.law.force,
                     angle: touch.angle,
-                    by_law: touch.by_law,
+                    by_law: points.by_law((k, i), law),
                     force_by: [
                         own(&|r| point.own_force[r]),
                         own(&|r| by_rate * point.own[r]),

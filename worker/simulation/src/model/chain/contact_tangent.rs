@@ -105,12 +105,12 @@ impl<const B: usize> Tangent<'_, B> {
         matrix: &mut Bordered,
     ) {
         for (k, &j) in points.cylinders().iter().enumerate() {
-            let mut touches = points.touches(k, self.surface, self.law).peekable();
-            if touches.peek().is_none() {
+            if points.touching(k).next().is_none() {
                 continue;
             }
             let mut sums = Sums::zero();
-            for touch in touches {
+            for i in points.touching(k) {
+                let touch = points.touch((k, i), self.surface, self.law);
                 let seen = (self.surface, self.gamma, self.border);
                 let point = Derivatives::new(seen, &poses[j], &touch);
                 self.add_point(&point, &touch, &poses[j], &mut sums);
@@ -136,16 +136,17 @@ impl<const B: usize> Tangent<'_, B> {
                 self.chain.motion.width() - A + k - 2
             }
         });
-        for r in 0..2 + A {
-            for c in 0..2 + A {
-                matrix.add_diagonal(block, rows[r], rows[c], sums.own[r][c]);
-            }
-            let of = ..self.border;
-            matrix.add_border(block, rows[r], &sums.right[r][of], &sums.bottom[r][of]);
+        let rows = &rows[..2 + A];
+        let (own, border) = (&sums.own, (&sums.right, &sums.bottom));
+        match matrix {
+            Bordered::Plane(matrix) => matrix.add_touching(block, rows, own, border, self.border),
+            Bordered::Space(matrix) => matrix.add_touching(block, rows, own, border, self.border),
         }
     }
 
     /// Adds what one point adds.
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     pub(super) fn add_point<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
@@ -163,6 +164,8 @@ impl<const B: usize> Tangent<'_, B> {
         self.add_border::<A>(point, touch, sums);
     }
 
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     fn add_border<const A: usize>(
         &mut self,
         point: &Derivatives<B>,
@@ -205,6 +208,8 @@ impl<const B: usize> Tangent<'_, B> {
 }
 
 /// Adds to a cylinder's own block, but for the bending of its axis.
+#[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+#[inline(always)]
 fn add_own<const A: usize, const B: usize>(
     point: &Derivatives<B>,
     touch: &Touch,

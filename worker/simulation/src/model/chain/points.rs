@@ -76,9 +76,8 @@ pub(super) struct Touch {
     pub(super) curvature: Curvature,
     /// Where on the grid of the arc's shapes it lies, if it has any.
     pub(super) on_grid: Place,
-    /// Its share of the law, and of the law's derivatives by stiffness and damping.
+    /// Its share of the law.
     pub(super) law: ImpactForce,
-    pub(super) by_law: [f64; 2],
 }
 
 impl Points {
@@ -273,34 +272,39 @@ impl Points {
         sum
     }
 
-    /// The pressed points of the `k`-th of [`Self::cylinders`], on the surface and under the law that
-    /// they were evaluated with.
-    pub(super) fn touches(
-        &self,
-        k: usize,
-        surface: &Surface<'_>,
-        law: &Impact,
-    ) -> impl Iterator<Item = Touch> {
+    /// Those points of the `k`-th of [`Self::cylinders`] that are pressed.
+    pub(super) fn touching(&self, k: usize) -> impl Iterator<Item = usize> {
         let pressed = move |&i: &usize| self.share[i] * self.force[k][i] != 0.0;
-        let of = move |[x, y]: &[Vec<Each>; 2], i: usize| V2::new(x[k][i], y[k][i]);
-        (0..POINTS).filter(pressed).map(move |i| Touch {
+        (0..POINTS).filter(pressed)
+    }
+
+    /// Point `i` of the `k`-th of [`Self::cylinders`], on the surface and under the law that it was
+    /// evaluated with.
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
+    pub(super) fn touch(&self, (k, i): (usize, usize), surface: &Surface<'_>, law: &Impact) -> Touch {
+        let law = law.force(self.depth[k][i], self.rate[k][i]);
+        Touch {
             along: self.along[i],
-            velocity: of(&self.velocity, i),
+            velocity: V2::new(self.velocity[0][k][i], self.velocity[1][k][i]),
             angle: self.angle[k][i],
-            by_point: of(&self.by_point, i),
+            by_point: V2::new(self.by_point[0][k][i], self.by_point[1][k][i]),
             by_beam: self.by_beam[k][i],
             curvature: self.curvature(k, i, surface),
             on_grid: self.on_grid[k][i],
-            law: law
-                .force(self.depth[k][i], self.rate[k][i])
-                .share(self.share[i]),
-            by_law: law
-                .force_by(self.depth[k][i], self.rate[k][i])
-                .map(|by| self.share[i] * by),
-        })
+            law: law.share(self.share[i]),
+        }
+    }
+
+    /// Derivatives of the same point's force by stiffness and by damping of the law.
+    pub(super) fn by_law(&self, (k, i): (usize, usize), law: &Impact) -> [f64; 2] {
+        let by = law.force_by(self.depth[k][i], self.rate[k][i]);
+        by.map(|by| self.share[i] * by)
     }
 
     /// Second derivatives of a penetration.
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
     fn curvature(&self, k: usize, i: usize, surface: &Surface<'_>) -> Curvature {
         let toward = V2::new(self.place[0][k][i], self.place[1][k][i]);
         let (angle, slope) = (self.angle[k][i], self.slope[k][i]);
