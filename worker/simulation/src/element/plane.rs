@@ -41,6 +41,9 @@ pub struct PlaneLoad {
     pub dissipated: f64,
 }
 
+/// Coefficients that a joint in the plane asks for.
+pub const PLANE_UNITS: usize = 6;
+
 /// Derivatives of force, torque on I and torque on J by one coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct PlaneColumn {
@@ -241,5 +244,37 @@ impl Bushing {
                 column(-damp(across(&arm)), bend),
             ],
         ]
+    }
+
+    /// The coefficients that [`Self::plane_units`] are multiplied by.
+    pub const fn plane_coefficients(&self) -> [f64; PLANE_UNITS] {
+        let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
+        let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
+        [k1, k2, k5, c1, c2, c5]
+    }
+
+    /// What a joint does per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22` and `C_55` to the coordinates
+    /// of J, then to those of I: forces are linear in them.
+    #[inline]
+    pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_UNITS]; 6] {
+        let Deformation { d, V, theta, w } = deformation(i, j);
+        let e = j.axis;
+        let arm = d + j.rho;
+        let [along_d, along_v] = [d, V].map(|x| e * e.dot(&x));
+        let forces = [-along_d, along_d - d, -along_v, along_v - V];
+        let mut units = [[0.0; PLANE_UNITS]; 6];
+        for (k, force) in [0, 1, 3, 4].into_iter().zip(forces) {
+            units[0][k] = -force.x;
+            units[1][k] = -force.y;
+            units[2][k] = -moment(&arm, &force);
+            units[3][k] = force.x;
+            units[4][k] = force.y;
+            units[5][k] = moment(&i.rho, &force);
+        }
+        for (k, turn) in [(2, theta), (5, w)] {
+            units[2][k] = turn;
+            units[5][k] = -turn;
+        }
+        units
     }
 }

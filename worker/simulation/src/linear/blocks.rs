@@ -298,10 +298,11 @@ impl<const N: usize> Blocks<N> {
                 subtract_product(&transposed, &head[b * m + k], &mut tail[k]);
             }
         }
-        for column in 0..reach {
-            for row in 0..reach {
-                self.corner[column * m + row] -=
-                    self.bottom[b * m + row].dot(&self.right[b * m + column]);
+        let of = b * m..b * m + reach;
+        let (right, bottom) = (&self.right[of.clone()], &self.bottom[of]);
+        for (right, corner) in right.iter().zip(self.corner.chunks_exact_mut(m)) {
+            for (bottom, corner) in bottom.iter().zip(corner) {
+                *corner -= bottom.dot(right);
             }
         }
         Ok(())

@@ -1,5 +1,6 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
+use crate::element::plane::PLANE_UNITS;
 use crate::linear::{Bordered, Entry};
 use crate::math::elementary::sin_cos;
 use crate::model::forces::Terms;
@@ -175,6 +176,15 @@ impl<'a> Individual<'a> {
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine
             .forces_of(hooks, &instant, &self.scratch, force);
+    }
+
+    /// What all joints between cylinders do to each coordinate per unit of their coefficients, at the poses
+    /// of the last evaluation in the plane; zeros in space.
+    pub(crate) fn joint_units(&self, units: &mut [[f64; PLANE_UNITS]]) {
+        units.fill([0.0; PLANE_UNITS]);
+        for (chain, state) in self.machine.chains.iter().zip(&self.scratch.chains) {
+            chain.add_plane_units(state, units);
+        }
     }
 
     /// Derivative of the contact's forces by stiffness, or by damping, of its law, at the points of the

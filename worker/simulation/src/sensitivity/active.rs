@@ -3,7 +3,7 @@ use super::column::{Changes, Coefficient};
 use super::differences::Difference;
 use super::plan::Way;
 use super::side::Side;
-use super::source::{ROPES, Source};
+use super::source::{Joints, ROPES, Source};
 use crate::integrator::dense::interpolate;
 use crate::model::description::RopeLaw;
 use crate::model::hook::Sampled;
@@ -77,7 +77,13 @@ impl<'a> Active<'a> {
                     | Coefficient::Cb4
                     | Coefficient::Cb56 => {
                         let unit = side(machine, &coefficient.unit(law));
-                        Source::Joints(Box::new(unit), factor)
+                        let coefficients = unit.inner().plane_coefficients();
+                        let which = coefficients.iter().position(|x| *x != 0.0);
+                        Source::Joints(Box::new(Joints {
+                            unit,
+                            factor,
+                            inner: which.map(|k| (k, coefficients[k])),
+                        }))
                     }
                 };
                 Some(Self {
@@ -136,10 +142,10 @@ impl<'a> Active<'a> {
         };
         let Difference { weights, own, .. } = self.difference;
         match (&mut self.source, gradient, &sample.known) {
-            (Source::Joints(unit, factor), Some(gradient), _) => {
-                let pull = unit.anchor_pull(scratch, sample.state);
+            (Source::Joints(joints), Some(gradient), _) => {
+                let pull = joints.unit.anchor_pull(scratch, sample.state);
                 for (by, pull) in gradient.by_pull.iter().zip(pull) {
-                    add(*factor * pull, by);
+                    add(joints.factor * pull, by);
                 }
             }
             (Source::Contact { by_damping, factor }, Some(gradient), _) => {
@@ -177,8 +183,8 @@ impl<'a> Active<'a> {
         let Difference { weights, own, .. } = self.difference;
         let mut sum = [0.0; 2];
         match &mut self.source {
-            Source::Joints(unit, factor) => {
-                sum[1] = *factor * unit.turned_by_ropes(scratch, sample.state);
+            Source::Joints(joints) => {
+                sum[1] = joints.factor * joints.unit.turned_by_ropes(scratch, sample.state);
             }
             Source::Difference(..) => {
                 let mut add = |share: f64, read: [f64; 2]| {

@@ -5,13 +5,15 @@ use super::column::{Changes, Columns, Derivative, Missing};
 use super::differences::Difference;
 use super::plan::{Plan, Way};
 use super::side::Side;
-use super::source::add;
+use super::source::{Source, add};
 use super::tangents::Tangents;
+use crate::element::plane::PLANE_UNITS;
 use crate::integrator::dense::Weights;
 use crate::integrator::method::Method;
 use crate::integrator::stepper::Stages;
 use crate::linear::{LANES, Lanes};
 use crate::model::description::RopeLaw;
+use crate::model::layout::Motion;
 use crate::model::{Individual, Machine, Scratch};
 use crate::observe::{Gradient, TorqueBy};
 use crate::run::{Observe, RunResult, RunSettings};
@@ -88,6 +90,8 @@ struct Room {
     scratch: Scratch,
     right: Vec<Lanes>,
     force: [Vec<f64>; 2],
+    /// What joints do per unit of their coefficients, in the plane and where a column asks.
+    units: Vec<[f64; PLANE_UNITS]>,
     state: State,
     /// Derivatives of the stress, where there is such a thing.
     gradient: Option<Gradient>,
@@ -155,6 +159,7 @@ impl<'a, 'o> Follower<'a, 'o> {
             tangents,
             right,
             force: [one, sum],
+            units,
             ..
         }) = &mut self.room
         else {
@@ -170,7 +175,7 @@ impl<'a, 'o> Follower<'a, 'o> {
                 ..
             } = active;
             let between = (&mut self.own, &mut sides[..], &*difference);
-            source.right(individual, &tangents.state, between, [one, sum]);
+            source.right(individual, &tangents.state, between, units, [one, sum]);
             for (right, sum) in right.iter_mut().zip(&*sum) {
                 right.0[lane] = *sum;
             }
@@ -217,6 +222,7 @@ impl<'a, 'o> Follower<'a, 'o> {
                 let [own, ..] = &mut room.force;
                 let made = room.tangents.stage(system, (i, stages), ends, own);
                 made.map_err(|_| Missing::Singular)?;
+                system.equations.joint_units(&mut room.units);
             }
             for block in 0..self.blocks.len() {
                 self.right(block, &mut system.equations);
@@ -334,18 +340,26 @@ impl<'a, 'o> Follower<'a, 'o> {
         let blocks = moving.count().div_ceil(LANES);
         // the explicit first stage is where the step begins, the last one where it ends
         self.blocks = vec![Block::new(n, stages - 2); blocks];
+        let asked = |active: &Active<'_>| matches!(active.source, Source::Joints(_));
+        let asked = self.active.iter().any(asked);
+        let units = match self.own.machine.layout.motion {
+            Motion::Plane if asked => n,
+            Motion::Plane | Motion::Space => 0,
+        };
         let mut room = Room {
             tangents: Tangents::new(&system.equations, state),
             bases: Bases::new(n),
             scratch: Scratch::new(system.equations.machine),
             right: vec![Lanes::default(); n],
             force: [const { Vec::new() }; 2].map(|_: Vec<f64>| vec![0.0; n]),
+            units: vec![[0.0; PLANE_UNITS]; units],
             state: state.clone(),
             gradient: Gradient::serves(self.own.machine).then(Gradient::default),
             torque: TorqueBy::default(),
         };
         let made = room.tangents.rest(system, state, &mut room.force[0]);
         made.map_err(|_| Missing::Singular)?;
+        system.equations.joint_units(&mut room.units);
         self.room = Some(room);
         let curves = self.active.iter_mut();
         let curves = curves.flat_map(|active| active.curves.each_mut());

@@ -1,6 +1,7 @@
 //! A machine beside the one that runs: what its stages, its past and its gauges say where a parameter is
 //! a little off.
 use crate::drive::Drive;
+use crate::element::bushing::Bushing;
 use crate::model::forces::Terms;
 use crate::model::hook::{Memory, Sampled};
 use crate::model::{Individual, Machine, Ropes, Scratch};
@@ -25,6 +26,11 @@ impl<'a> Side<'a> {
             drive,
             memory: vec![Vec::new(); machine.chains.len()],
         }
+    }
+
+    /// Law of the joints between its cylinders.
+    pub(super) const fn inner(&self) -> &Bushing {
+        &self.ropes.joint
     }
 
     /// The individual with buffers lent to it.

@@ -5,6 +5,7 @@
 use super::differences::Difference;
 use super::side::Side;
 use crate::effect::Place;
+use crate::element::plane::PLANE_UNITS;
 use crate::model::forces::Terms;
 use crate::model::hook::Hooks;
 use crate::model::{Individual, Machine};
@@ -13,8 +14,8 @@ use crate::system::State;
 /// How `dR/dp` comes about.
 #[derive(Clone, Debug)]
 pub(super) enum Source<'a> {
-    /// Times a factor, what the joints of ropes say that have a coefficient of 1 and no other.
-    Joints(Box<Side<'a>>, f64),
+    /// What the joints of ropes say that have a coefficient of 1 and no other.
+    Joints(Box<Joints<'a>>),
     /// Times a factor, the contact's derivative by its stiffness, or by its damping.
     Contact {
         /// By which.
@@ -28,6 +29,17 @@ pub(super) enum Source<'a> {
     Difference(Terms, bool),
     /// The motion does not know of the parameter.
     Nothing,
+}
+
+/// Ropes that have a coefficient of 1 and no other.
+#[derive(Clone, Debug)]
+pub(super) struct Joints<'a> {
+    pub(super) unit: Side<'a>,
+    /// What their forces are times.
+    pub(super) factor: f64,
+    /// In the plane, which of the units that are at hand the joints between cylinders are times what;
+    /// none where the coefficient turns nothing there.
+    pub(super) inner: Option<(usize, f64)>,
 }
 
 /// What a machine beside differs in.
@@ -79,12 +91,14 @@ pub(super) const ROPES: Terms = Terms {
 };
 
 impl Source<'_> {
-    /// `dR/dp` into `sum`, at a state whose poses and points of contact `individual` has.
+    /// `dR/dp` into `sum`, at a state whose poses and points of contact `individual` has; `units` are
+    /// those of [`Individual::joint_units`], or none in space.
     pub(super) fn right(
         &mut self,
         individual: &mut Individual<'_>,
         state: &State,
         (own, sides, difference): (&mut Side<'_>, &mut [Side<'_>], &Difference),
+        units: &[[f64; PLANE_UNITS]],
         [one, sum]: [&mut [f64]; 2],
     ) {
         let at = state.motion();
@@ -94,12 +108,23 @@ impl Source<'_> {
             }
         };
         match self {
-            Self::Joints(unit, factor) => {
+            Self::Joints(joints) => {
+                let Joints {
+                    unit,
+                    factor,
+                    inner,
+                } = &mut **joints;
                 let terms = Terms {
                     contact: false,
+                    joints: units.is_empty(),
                     ..ROPES
                 };
                 unit.residual(&mut individual.scratch, state, (terms, false), sum);
+                if let Some((which, times)) = *inner {
+                    for (sum, units) in sum.iter_mut().zip(units) {
+                        *sum += times * units[which];
+                    }
+                }
                 scale(sum, *factor);
             }
             Self::Contact { by_damping, factor } => {

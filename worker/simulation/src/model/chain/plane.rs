@@ -4,7 +4,8 @@
 use super::link::Side;
 use super::parts::{Chain, Joints};
 use super::state::ChainState;
-use crate::element::plane::PlaneColumn;
+use crate::element::bushing::Bushing;
+use crate::element::plane::{PLANE_UNITS, PlaneColumn};
 use crate::linear::{Block, Blocks};
 
 #[expect(
@@ -45,6 +46,23 @@ impl Chain {
             kept.dissipated = load.dissipated;
         }
         force[(self.count - 1) * 3..].copy_from_slice(&carried);
+    }
+
+    /// Adds to each coordinate what the joints between cylinders do there per unit of their coefficients,
+    /// as [`Bushing::plane_units`] has them; nothing in space.
+    pub(crate) fn add_plane_units(&self, state: &ChainState, units: &mut [[f64; PLANE_UNITS]]) {
+        let Some(units) = units.get_mut(self.range()) else {
+            return;
+        };
+        for joint in 1..self.count.min(state.plane.len()) {
+            let [i, j] = self.plane_markers(joint, &state.plane);
+            let own = Bushing::plane_units((&i, &j));
+            for (sum, own) in units[(joint - 1) * 3..].iter_mut().zip(own) {
+                for (sum, x) in sum.iter_mut().zip(own) {
+                    *sum += x;
+                }
+            }
+        }
     }
 
     /// The same of the joints that hold the ends.
