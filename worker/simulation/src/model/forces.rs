@@ -32,10 +32,12 @@ pub(crate) struct Terms {
     pub(crate) weights: bool,
     /// Joints at the ends of the ropes.
     pub(crate) ends: bool,
-    /// All joints.
+    /// All joints, with laws along the ropes.
     pub(crate) joints: bool,
-    /// Contact.
-    pub(crate) contact: bool,
+    /// Laws along the ropes alone.
+    pub(crate) pulls: bool,
+    /// Contact with the back head and with the front head.
+    pub(crate) contact: [bool; 2],
 }
 
 impl Terms {
@@ -45,7 +47,8 @@ impl Terms {
         weights: true,
         ends: true,
         joints: true,
-        contact: true,
+        pulls: false,
+        contact: [true; 2],
     };
     /// None.
     pub(crate) const NONE: Self = Self {
@@ -53,7 +56,8 @@ impl Terms {
         weights: false,
         ends: false,
         joints: false,
-        contact: false,
+        pulls: false,
+        contact: [false; 2],
     };
 }
 
@@ -96,7 +100,7 @@ impl Machine {
         force: &mut [f64],
     ) {
         force.fill(0.0);
-        if terms.contact {
+        if terms.contact[BACK] {
             self.deflect(at.q, at.v, scratch);
         }
         if terms.rigid {
@@ -116,7 +120,10 @@ impl Machine {
                 }
                 self.end_forces(k, at, &joints, scratch, force);
             }
-            if terms.contact {
+            if terms.pulls {
+                chain.add_pulls(&self.joints(k, at), &scratch.chains[k], force);
+            }
+            if terms.contact[self.strands[k].rope] {
                 let surface = self.surface(k, at.q, at.v, &scratch.deflection);
                 let (blocks, border) = force.split_at_mut(self.layout.beam());
                 chain.add_contact(

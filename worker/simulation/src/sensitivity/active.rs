@@ -105,7 +105,9 @@ impl<'a> Active<'a> {
                 });
                 let mut all = machines.iter().chain([machine]);
                 let read = all.any(|machine| machine.hooks.has_readings());
-                let sides = machines.iter().map(|machine| side(machine, law));
+                let asked = machines.iter().zip(difference.weights);
+                let asked = asked.filter(|(_, weight)| *weight != 0.0);
+                let sides = asked.map(|(machine, _)| side(machine, law));
                 Some(Self {
                     column,
                     source,
@@ -215,8 +217,10 @@ impl<'a> Active<'a> {
     pub(super) const fn order(&self) -> u8 {
         match self.source {
             Source::Contact { .. } => 0,
-            Source::Joints(..) | Source::Pieces(_) | Source::Difference(..) => 1,
-            Source::Nothing => 2,
+            // what turns nothing in the plane: side by side they stay where they are
+            Source::Joints(ref joints) if joints.inner.is_none() => 2,
+            Source::Joints(_) | Source::Pieces(_) | Source::Difference(..) => 1,
+            Source::Nothing => 3,
         }
     }
 

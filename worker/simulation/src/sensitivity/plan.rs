@@ -190,8 +190,8 @@ fn way(
         Ok((Box::new([first, second]), difference, differing))
     };
     let made = built(SMOOTH).and_then(|smooth| match smooth.2.terms {
-        Some((terms, _)) if terms.contact => built(TOUCHING),
-        Some((terms, _)) if terms.joints => built(REMEMBERING),
+        Some((terms, _)) if terms.contact.contains(&true) => built(TOUCHING),
+        Some((terms, _)) if terms.joints || terms.pulls => built(REMEMBERING),
         _ => Ok(smooth),
     });
     match made {

@@ -6,6 +6,7 @@ use super::differences::Difference;
 use super::side::Side;
 use crate::effect::Place;
 use crate::element::plane::PLANE_UNITS;
+use crate::model::description::Head;
 use crate::model::forces::Terms;
 use crate::model::hook::Hooks;
 use crate::model::{Individual, Machine};
@@ -56,28 +57,34 @@ impl Differing {
     pub(super) fn between(own: &Machine, beside: &Machine, place: Place) -> Self {
         let (d, o) = (&own.description, &beside.description);
         let arcs = d.front_arc != o.front_arc || d.back_arc != o.back_arc;
-        let built = arcs || d.rod != o.rod || d.head != o.head || d.twins != o.twins;
+        // damping of the modes acts on the modes alone
+        let head = Head {
+            damping_ratio: d.head.damping_ratio,
+            ..o.head.clone()
+        };
+        let head = d.head != head;
+        let built = arcs || d.rod != o.rod || head || d.twins != o.twins;
         let any = |has: fn(&Hooks) -> bool| has(&own.hooks) || has(&beside.hooks);
         let driven = place == Place::Drive || any(Hooks::has_warps);
-        let contact = arcs
-            || d.head != o.head
-            || d.twins != o.twins
-            || d.rope != o.rope
-            || !own.hooks.digs_as(&beside.hooks);
-        let joints = any(Hooks::has_axial) || d.rope != o.rope;
+        let both = d.twins != o.twins || d.rope != o.rope;
+        let back = d.back_arc != o.back_arc || head || !own.hooks.digs_as(&beside.hooks);
+        let contact = [back || both, d.front_arc != o.front_arc || both];
+        let joints = d.rope != o.rope;
         let terms = Terms {
             rigid: true,
             weights: d.rope != o.rope,
             ends: built || driven,
             joints,
+            pulls: any(Hooks::has_axial) && !joints,
             contact,
         };
+        let touching = contact.contains(&true);
         let inertia =
             built || d.beam_inertia.to_bits() != o.beam_inertia.to_bits() || d.rope != o.rope;
-        let still = place == Place::Gauge && !built && !joints && !contact;
+        let still = place == Place::Gauge && !built && !joints && !terms.pulls && !touching;
         Self {
             terms: (!still).then_some((terms, inertia)),
-            stress: built || driven || contact,
+            stress: built || driven || touching,
         }
     }
 }
@@ -86,7 +93,7 @@ impl Differing {
 pub(super) const ROPES: Terms = Terms {
     ends: true,
     joints: true,
-    contact: true,
+    contact: [true; 2],
     ..Terms::NONE
 };
 
@@ -115,7 +122,7 @@ impl Source<'_> {
                     inner,
                 } = &mut **joints;
                 let terms = Terms {
-                    contact: false,
+                    contact: [false; 2],
                     joints: units.is_empty(),
                     ..ROPES
                 };
