@@ -341,6 +341,23 @@ struct AlongRope {
 }
 
 impl Axial for AlongRope {
+    fn uniform(&self, drive: &DriveState) -> Option<f64> {
+        if matches!(
+            self.probe.form,
+            Form::Rate | Form::PlaceSquared | Form::PlaceCubed
+        ) {
+            return None;
+        }
+        let along = self.pull(&Strain {
+            drive,
+            strain: 0.0,
+            rate: 0.0,
+            stiffness: 1.0,
+            memory: None,
+        });
+        Some(along.spring + along.other)
+    }
+
     fn pull(&self, at: &Strain<'_>) -> Along {
         let (k, turn) = (at.stiffness, at.drive.turn);
         let place = at.strain * k;

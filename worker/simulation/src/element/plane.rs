@@ -41,8 +41,10 @@ pub struct PlaneLoad {
     pub dissipated: f64,
 }
 
-/// Coefficients that a joint in the plane asks for.
-pub const PLANE_UNITS: usize = 6;
+/// Coefficients that a joint in the plane asks for, its preload among them.
+pub const PLANE_UNITS: usize = 7;
+/// Which of them is the preload: a pull along the axis.
+pub const PLANE_PULL: usize = 6;
 
 /// Derivatives of force, torque on I and torque on J by one coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -250,20 +252,20 @@ impl Bushing {
     pub const fn plane_coefficients(&self) -> [f64; PLANE_UNITS] {
         let ([k1, k2], [c1, c2]) = (self.stiffness, self.damping);
         let [[_, k5], [_, c5]] = [self.rotational_stiffness, self.rotational_damping];
-        [k1, k2, k5, c1, c2, c5]
+        [k1, k2, k5, c1, c2, c5, self.preload]
     }
 
-    /// What a joint does per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22` and `C_55` to the coordinates
-    /// of J, then to those of I: forces are linear in them.
+    /// What a joint does per unit of `K_11`, `K_22`, `K_55`, `C_11`, `C_22`, `C_55` and preload to the
+    /// coordinates of J, then to those of I: forces are linear in them.
     #[inline]
     pub fn plane_units((i, j): (&PlaneMarker, &PlaneMarker)) -> [[f64; PLANE_UNITS]; 6] {
         let Deformation { d, V, theta, w } = deformation(i, j);
         let e = j.axis;
         let arm = d + j.rho;
         let [along_d, along_v] = [d, V].map(|x| e * e.dot(&x));
-        let forces = [-along_d, along_d - d, -along_v, along_v - V];
+        let forces = [-along_d, along_d - d, -along_v, along_v - V, -e];
         let mut units = [[0.0; PLANE_UNITS]; 6];
-        for (k, force) in [0, 1, 3, 4].into_iter().zip(forces) {
+        for (k, force) in [0, 1, 3, 4, PLANE_PULL].into_iter().zip(forces) {
             units[0][k] = -force.x;
             units[1][k] = -force.y;
             units[2][k] = -moment(&arm, &force);

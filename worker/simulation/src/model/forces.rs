@@ -1,6 +1,7 @@
 //! Generalised forces, inertia, and the powers that the energy ledger adds up.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
+use crate::element::plane::{PLANE_PULL, PLANE_UNITS};
 use crate::linear::Entry;
 use crate::math::elementary::sin_cos;
 use crate::math::spline::sum::Sum;
@@ -145,14 +146,19 @@ impl Machine {
         &self,
         hooks: &Hooks,
         at: &Instant<'_>,
-        scratch: &Scratch,
+        (scratch, units): (&Scratch, &[[f64; PLANE_UNITS]]),
         force: &mut [f64],
     ) {
         force.fill(0.0);
         hooks.add_forces(at, force);
         for (k, chain) in self.chains.iter().enumerate() {
             let axial = self.axial(hooks, k, at);
-            if axial.is_some() {
+            let uniform = axial.and_then(|laws| laws.uniform());
+            if let (Some(pull), Some(units)) = (uniform, units.get(chain.range())) {
+                for (force, units) in force[chain.range()].iter_mut().zip(units) {
+                    *force += pull * units[PLANE_PULL];
+                }
+            } else if axial.is_some() {
                 let joints = Joints {
                     axial,
                     ..self.joints(k, at)

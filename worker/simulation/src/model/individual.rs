@@ -171,11 +171,18 @@ impl<'a> Individual<'a> {
     }
 
     /// Forces of pieces that hang on no machine, with the poses of the last evaluation.
-    pub(crate) fn forces_of(&mut self, hooks: &Hooks, at: StateRef<'_>, force: &mut [f64]) {
+    /// `units` are those of [`Self::joint_units`], or none.
+    pub(crate) fn forces_of(
+        &mut self,
+        hooks: &Hooks,
+        at: StateRef<'_>,
+        units: &[[f64; PLANE_UNITS]],
+        force: &mut [f64],
+    ) {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine
-            .forces_of(hooks, &instant, &self.scratch, force);
+            .forces_of(hooks, &instant, (&self.scratch, units), force);
     }
 
     /// What all joints between cylinders do to each coordinate per unit of their coefficients, at the poses

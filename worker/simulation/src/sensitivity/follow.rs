@@ -340,7 +340,11 @@ impl<'a, 'o> Follower<'a, 'o> {
         let blocks = moving.count().div_ceil(LANES);
         // the explicit first stage is where the step begins, the last one where it ends
         self.blocks = vec![Block::new(n, stages - 2); blocks];
-        let asked = |active: &Active<'_>| matches!(active.source, Source::Joints(_));
+        let asked = |active: &Active<'_>| match active.source {
+            Source::Joints(_) => true,
+            Source::Pieces(hooks) => hooks.has_axial(),
+            Source::Contact { .. } | Source::Difference(..) | Source::Nothing => false,
+        };
         let asked = self.active.iter().any(asked);
         let units = match self.own.machine.layout.motion {
             Motion::Plane if asked => n,

@@ -138,7 +138,7 @@ impl Source<'_> {
                 individual.contact_by(at, *by_damping, sum);
                 scale(sum, *factor);
             }
-            Self::Pieces(hooks) => individual.forces_of(hooks, at, sum),
+            Self::Pieces(hooks) => individual.forces_of(hooks, at, units, sum),
             Self::Difference(terms, inertia) => {
                 sum.fill(0.0);
                 let asked = (*terms, *inertia);

@@ -9,6 +9,12 @@ pub trait Axial: Debug + Send + Sync {
     /// Pull \[N\] at a strain \[1\] and its rate [1/s]; energies are per length [J/m].
     fn pull(&self, at: &Strain<'_>) -> Along;
 
+    /// The pull \[N\] of a law that says the same all along the rope, whatever its strain: those of a force
+    /// that only time and the drive know.
+    fn uniform(&self, _drive: &DriveState) -> Option<f64> {
+        None
+    }
+
     /// What the law wants to know at the next step of this joint; a law without a past wants nothing.
     fn remember(&self, _at: &Strain<'_>) -> Option<Memory> {
         None
@@ -81,6 +87,13 @@ impl AxialLaws<'_> {
             by_place: sum.by_place * share,
             by_rate: sum.by_rate * share,
         }
+    }
+
+    /// The sum of the laws where it is the same all along the rope.
+    pub(crate) fn uniform(&self) -> Option<f64> {
+        let each = self.laws.iter().map(|law| law.uniform(self.drive));
+        let sum: Option<f64> = each.sum();
+        sum.map(|sum| sum * self.carrier.share)
     }
 
     /// Replaces the memories of a joint by what the laws want to know at the next step; `first`: there
