@@ -245,7 +245,9 @@ impl Equations for Rig {
         let chain = self.setup.chain;
         matrix.clear();
         chain.add_inertia_blocks(at.state().q, mass, matrix);
-        chain.add_joint_tangent(&self.setup.joints(), &self.state, damping, matrix);
+        let joints = self.setup.joints();
+        chain.add_joint_tangent(&joints, &self.state, damping, matrix);
+        chain.add_end_tangent(&joints, &self.state, damping, matrix);
         if let Some((surface, law)) = self.surface() {
             chain.add_contact_tangent(&surface, &law, &self.state, damping, matrix);
         }

@@ -300,7 +300,7 @@ impl<const N: usize> Blocks<N> {
         }
         let of = b * m..b * m + reach;
         let (right, bottom) = (&self.right[of.clone()], &self.bottom[of]);
-        for (right, corner) in right.iter().zip(self.corner.chunks_exact_mut(m)) {
+        for (right, corner) in right.iter().zip(self.corner.chunks_exact_mut(m.max(1))) {
             for (bottom, corner) in bottom.iter().zip(corner) {
                 *corner -= bottom.dot(right);
             }

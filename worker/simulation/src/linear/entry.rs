@@ -1,4 +1,5 @@
 //! Entries of vectors of unknowns: of one column, or of several side by side.
+use pulp::Simd;
 use std::ops::{Add, AddAssign, Div, Mul, Sub, SubAssign};
 
 /// Columns that are solved side by side.
@@ -24,6 +25,56 @@ pub trait Entry:
 
 impl Entry for f64 {}
 impl Entry for Lanes {}
+
+impl Lanes {
+    /// `self + factor x`, product and sum rounded apart, in vectors of the processor.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub fn add_scaled<S: Simd>(&mut self, simd: S, x: &Self, factor: f64) {
+        let factor = simd.splat_f64s(factor);
+        let (x, _) = S::as_simd_f64s(&x.0);
+        let (sum, _) = S::as_mut_simd_f64s(&mut self.0);
+        for (sum, x) in sum.iter_mut().zip(x) {
+            *sum = simd.add_f64s(*sum, simd.mul_f64s(*x, factor));
+        }
+    }
+
+    /// `self - factor x`, product and difference rounded apart, in vectors of the processor.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    pub fn subtract_scaled<S: Simd>(&mut self, simd: S, x: &Self, factor: f64) {
+        let factor = simd.splat_f64s(factor);
+        let (x, _) = S::as_simd_f64s(&x.0);
+        let (sum, _) = S::as_mut_simd_f64s(&mut self.0);
+        for (sum, x) in sum.iter_mut().zip(x) {
+            *sum = simd.sub_f64s(*sum, simd.mul_f64s(*x, factor));
+        }
+    }
+
+    /// `factor self`.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    #[must_use]
+    pub fn scaled<S: Simd>(&self, simd: S, factor: f64) -> Self {
+        let factor = simd.splat_f64s(factor);
+        let mut product = Self::default();
+        let (x, _) = S::as_simd_f64s(&self.0);
+        let (all, _) = S::as_mut_simd_f64s(&mut product.0);
+        for (product, x) in all.iter_mut().zip(x) {
+            *product = simd.mul_f64s(*x, factor);
+        }
+        product
+    }
+}
 
 impl AddAssign for Lanes {
     #[inline(always)]

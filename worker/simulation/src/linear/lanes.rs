@@ -3,34 +3,57 @@
 //! A factor is read once for several columns, and what waits for itself along a chain in one column waits
 //! no longer in several. No lane knows of its neighbours: a column has the same bits whatever stands
 //! beside it.
-use super::block::Block;
+use super::block::{Block, Column};
 use super::blocks::Blocks;
 use super::bordered::Bordered;
 use super::entry::Lanes;
+use pulp::Simd;
 
 /// The entries of one block of unknowns.
 type Part<const N: usize> = [Lanes; N];
 
 /// `y -= A x`.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
 #[inline(always)]
-fn subtract_product<const N: usize>(a: &Block<N>, x: &Part<N>, y: &mut Part<N>) {
-    for (k, x) in x.iter().enumerate() {
-        for (i, y) in y.iter_mut().enumerate() {
-            *y -= *x * a[(i, k)];
+fn subtract_product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>, y: &mut Part<N>) {
+    for (x, column) in x.iter().zip(&a.data.0) {
+        for (y, a) in y.iter_mut().zip(column) {
+            y.subtract_scaled(simd, x, *a);
         }
     }
 }
 
 /// `A x`.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
 #[inline(always)]
-fn product<const N: usize>(a: &Block<N>, x: &Part<N>) -> Part<N> {
+fn product<const N: usize, S: Simd>(simd: S, a: &Block<N>, x: &Part<N>) -> Part<N> {
     let mut y = [Lanes::default(); N];
-    for (k, x) in x.iter().enumerate() {
-        for (i, y) in y.iter_mut().enumerate() {
-            *y += *x * a[(i, k)];
+    for (x, column) in x.iter().zip(&a.data.0) {
+        for (y, a) in y.iter_mut().zip(column) {
+            y.add_scaled(simd, x, *a);
         }
     }
     y
+}
+
+/// The border's columns, or rows transposed, of block `b`, as far as there are any.
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
+fn touching<const N: usize>(
+    all: &[Column<N>],
+    (b, border): (usize, usize),
+    reach: usize,
+) -> impl Iterator<Item = &[f64; N]> {
+    all[b * border..][..reach].iter().map(|one| &one.data.0[0])
 }
 
 #[expect(
@@ -39,8 +62,12 @@ fn product<const N: usize>(a: &Block<N>, x: &Part<N>) -> Part<N> {
 )]
 impl<const N: usize> Blocks<N> {
     /// [`Blocks::solve`] for `LANES` columns.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    pub fn solve_lanes(&self, x: &mut [Lanes]) {
+    pub fn solve_lanes<S: Simd>(&self, simd: S, x: &mut [Lanes]) {
         let m = self.border;
         let (blocks, border) = x.split_at_mut(self.diagonal.len() * N);
         let (blocks, _) = blocks.as_chunks_mut::<N>();
@@ -51,14 +78,15 @@ impl<const N: usize> Blocks<N> {
                 for (right, carried) in right.iter_mut().zip(carried) {
                     *right -= carried;
                 }
-                let y = product(&self.diagonal[b], &right);
+                let y = product(simd, &self.diagonal[b], &right);
                 blocks[b] = y;
-                for (k, x) in border[..self.filled[b]].iter_mut().enumerate() {
-                    for (i, y) in y.iter().enumerate() {
-                        *x -= *y * self.bottom[b * m + k][i];
+                let rows = touching(&self.bottom, (b, m), self.filled[b]);
+                for (x, row) in border.iter_mut().zip(rows) {
+                    for (y, a) in y.iter().zip(row) {
+                        x.subtract_scaled(simd, y, *a);
                     }
                 }
-                carried = product(&self.lower[b], &y);
+                carried = product(simd, &self.lower[b], &y);
             }
         }
         self.solve_corner(border);
@@ -66,10 +94,11 @@ impl<const N: usize> Blocks<N> {
             let mut next = [Lanes::default(); N];
             for b in (first..first + count).rev() {
                 let mut y = blocks[b];
-                subtract_product(&self.upper[b], &next, &mut y);
-                for (k, x) in border[..self.filled[b]].iter().enumerate() {
-                    for (i, y) in y.iter_mut().enumerate() {
-                        *y -= *x * self.right[b * m + k][i];
+                subtract_product(simd, &self.upper[b], &next, &mut y);
+                let columns = touching(&self.right, (b, m), self.filled[b]);
+                for (x, column) in border.iter().zip(columns) {
+                    for (y, a) in y.iter_mut().zip(column) {
+                        y.subtract_scaled(simd, x, *a);
                     }
                 }
                 blocks[b] = y;
@@ -79,8 +108,12 @@ impl<const N: usize> Blocks<N> {
     }
 
     /// `y -= A x` of the assembled (not factorised) matrix for `LANES` columns.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
+    pub fn subtract_product_lanes<S: Simd>(&self, simd: S, x: &[Lanes], y: &mut [Lanes]) {
         let m = self.border;
         let base = self.diagonal.len() * N;
         let (blocks, edge) = x.split_at(base);
@@ -90,17 +123,24 @@ impl<const N: usize> Blocks<N> {
         for [first, count] in self.spans() {
             for b in first..first + count {
                 let mut y = out[b];
-                subtract_product(&self.diagonal[b], &blocks[b], &mut y);
+                let x = &blocks[b];
+                subtract_product(simd, &self.diagonal[b], x, &mut y);
                 if b + 1 < first + count {
-                    subtract_product(&self.upper[b], &blocks[b + 1], &mut y);
+                    subtract_product(simd, &self.upper[b], &blocks[b + 1], &mut y);
                 }
                 if b > first {
-                    subtract_product(&self.lower[b - 1], &blocks[b - 1], &mut y);
+                    subtract_product(simd, &self.lower[b - 1], &blocks[b - 1], &mut y);
                 }
-                for k in 0..self.touches[b] {
-                    for i in 0..N {
-                        y[i] -= edge[k] * self.right[b * m + k][i];
-                        out_edge[k] -= blocks[b][i] * self.bottom[b * m + k][i];
+                let columns = touching(&self.right, (b, m), self.touches[b]);
+                for (x, column) in edge.iter().zip(columns) {
+                    for (y, a) in y.iter_mut().zip(column) {
+                        y.subtract_scaled(simd, x, *a);
+                    }
+                }
+                let rows = touching(&self.bottom, (b, m), self.touches[b]);
+                for (y, row) in out_edge.iter_mut().zip(rows) {
+                    for (x, a) in x.iter().zip(row) {
+                        y.subtract_scaled(simd, x, *a);
                     }
                 }
                 out[b] = y;
@@ -108,13 +148,12 @@ impl<const N: usize> Blocks<N> {
         }
         for (k, x) in edge.iter().enumerate() {
             for (row, y) in out_edge.iter_mut().enumerate() {
-                *y -= *x * self.corner[k * m + row];
+                y.subtract_scaled(simd, x, self.corner[k * m + row]);
             }
         }
     }
 
     /// First block and length of every chain.
-    #[inline(always)]
     fn spans(&self) -> impl Iterator<Item = [usize; 2]> + '_ {
         self.chains.iter().scan(0, |first, &count| {
             let span = [*first, count];
@@ -130,20 +169,28 @@ impl<const N: usize> Blocks<N> {
 )]
 impl Bordered {
     /// [`Bordered::solve`] for `LANES` columns.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    pub fn solve_lanes(&self, x: &mut [Lanes]) {
+    pub fn solve_lanes<S: Simd>(&self, simd: S, x: &mut [Lanes]) {
         match self {
-            Self::Plane(blocks) => blocks.solve_lanes(x),
-            Self::Space(blocks) => blocks.solve_lanes(x),
+            Self::Plane(blocks) => blocks.solve_lanes(simd, x),
+            Self::Space(blocks) => blocks.solve_lanes(simd, x),
         }
     }
 
     /// `y -= A x` of the assembled matrix for `LANES` columns.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    pub fn subtract_product_lanes(&self, x: &[Lanes], y: &mut [Lanes]) {
+    pub fn subtract_product_lanes<S: Simd>(&self, simd: S, x: &[Lanes], y: &mut [Lanes]) {
         match self {
-            Self::Plane(blocks) => blocks.subtract_product_lanes(x, y),
-            Self::Space(blocks) => blocks.subtract_product_lanes(x, y),
+            Self::Plane(blocks) => blocks.subtract_product_lanes(simd, x, y),
+            Self::Space(blocks) => blocks.subtract_product_lanes(simd, x, y),
         }
     }
 }
@@ -152,6 +199,7 @@ impl Bordered {
 mod tests {
     use super::*;
     use crate::linear::LANES;
+    use pulp::Scalar;
 
     /// What is done side by side is done as one by one.
     #[test]
@@ -177,11 +225,11 @@ mod tests {
             .map(|i| Lanes(std::array::from_fn(|lane| columns[lane][i])))
             .collect();
         let mut products = vec![Lanes::default(); n];
-        a.subtract_product_lanes(&lanes, &mut products);
+        a.subtract_product_lanes(Scalar, &lanes, &mut products);
         let mut factor = a.clone();
         factor.factorize().unwrap();
         let mut solved = lanes;
-        factor.solve_lanes(&mut solved);
+        factor.solve_lanes(Scalar, &mut solved);
         for (lane, column) in columns.iter().enumerate() {
             let product = a.product(column);
             let mut x = column.clone();

@@ -5,7 +5,7 @@ use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
 use crate::observe::{Gradient, TorqueBy};
 use crate::system::{Equations, State};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 
 /// Derivatives of coordinates, rates and accelerations; n each.
 #[derive(Clone, Debug)]
@@ -57,21 +57,28 @@ impl Bases {
     }
 
     /// What stage `i` of a step is without its own rate.
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    fn fill(&mut self, parts: &Parts, from: &Motion, rates: &[Vec<Lanes>]) {
+    fn fill<S: Simd>(&mut self, simd: S, parts: &Parts, from: &Motion, rates: &[Vec<Lanes>]) {
         let Parts {
             first: [to_q, to_s],
             acceleration,
-            rates: each,
+            rates: weights,
         } = *parts;
-        for (k, (q, s)) in self.q.iter_mut().zip(&mut self.scaled).enumerate() {
-            *q = from.q[k] + from.v[k] * to_q;
-            *s = from.v[k] * to_s + from.a[k] * acceleration;
+        let starts = from.q.iter().zip(from.v.iter().zip(&from.a));
+        for ((q, s), (from_q, (v, a))) in self.q.iter_mut().zip(&mut self.scaled).zip(starts) {
+            *q = *from_q;
+            q.add_scaled(simd, v, to_q);
+            *s = v.scaled(simd, to_s);
+            s.add_scaled(simd, a, acceleration);
         }
-        for (rate, [to_q, to_s]) in rates.iter().zip(each) {
+        for (rate, [to_q, to_s]) in rates.iter().zip(weights) {
             for ((q, s), v) in self.q.iter_mut().zip(&mut self.scaled).zip(rate) {
-                *q += *v * to_q;
-                *s += *v * to_s;
+                q.add_scaled(simd, v, to_q);
+                s.add_scaled(simd, v, to_s);
             }
         }
     }
@@ -136,9 +143,12 @@ struct Advance<'a, E> {
 impl<E: Equations> WithSimd for Advance<'_, E> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "compiled for each set of instructions")]
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self {
             block,
             tangents,
@@ -153,21 +163,24 @@ impl<E: Equations> WithSimd for Advance<'_, E> {
             ..
         } = block;
         let shift = 1.0 / (tableau.diagonal * h);
-        bases.fill(&Parts::new(tableau, i, h), from, &rates[..i - 1]);
-        tangents.stiffness.subtract_product_lanes(&bases.q, right);
+        bases.fill(simd, &Parts::new(tableau, i, h), from, &rates[..i - 1]);
+        tangents
+            .stiffness
+            .subtract_product_lanes(simd, &bases.q, right);
         let q = &tangents.state.q;
         self.equations.subtract_inertia(q, &bases.scaled, right);
-        tangents.factor.solve_lanes(right);
+        tangents.factor.solve_lanes(simd, right);
         if let Some(v) = rates.get_mut(i - 1) {
             for (v, w) in v.iter_mut().zip(right) {
-                *v = *w * shift;
+                *v = w.scaled(simd, shift);
             }
             return;
         }
         for (k, w) in right.iter().enumerate() {
             to.q[k] = bases.q[k] + *w;
-            to.v[k] = *w * shift;
-            to.a[k] = to.v[k] * shift + bases.scaled[k];
+            to.v[k] = w.scaled(simd, shift);
+            to.a[k] = bases.scaled[k];
+            to.a[k].add_scaled(simd, &to.v[k], shift);
         }
     }
 }
@@ -193,7 +206,7 @@ impl Block {
         if self.stays(right) {
             return;
         }
-        tangents.factor.solve_lanes(right);
+        tangents.factor.solve_lanes(Scalar, right);
         self.ends[0].q.copy_from_slice(right);
     }
 

@@ -128,7 +128,12 @@ impl<const B: usize> Tangent<'_, B> {
     }
 
     /// Adds what the points of one cylinder add to its block and to the border.
-    pub(super) fn add_sums<const A: usize>(&self, block: usize, sums: &Sums<B>, matrix: &mut Bordered) {
+    pub(super) fn add_sums<const A: usize>(
+        &self,
+        block: usize,
+        sums: &Sums<B>,
+        matrix: &mut Bordered,
+    ) {
         let rows: [usize; OWN] = std::array::from_fn(|k| {
             if k < 2 {
                 k

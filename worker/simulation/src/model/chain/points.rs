@@ -282,7 +282,12 @@ impl Points {
     /// evaluated with.
     #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
     #[inline(always)]
-    pub(super) fn touch(&self, (k, i): (usize, usize), surface: &Surface<'_>, law: &Impact) -> Touch {
+    pub(super) fn touch(
+        &self,
+        (k, i): (usize, usize),
+        surface: &Surface<'_>,
+        law: &Impact,
+    ) -> Touch {
         let law = law.force(self.depth[k][i], self.rate[k][i]);
         Touch {
             along: self.along[i],
