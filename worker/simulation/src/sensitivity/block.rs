@@ -1,5 +1,5 @@
 //! Columns of the state, several side by side, through the stages of a step.
-use super::tangents::Tangents;
+use super::linearized::Linearized;
 use crate::integrator::dense::Weights;
 use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
@@ -132,7 +132,7 @@ impl Parts {
 struct Advance<'a, E> {
     block: &'a mut Block,
     equations: &'a E,
-    tangents: &'a Tangents,
+    tangents: &'a Linearized,
     /// Method, stage, size of the step.
     at: (&'a Tableau, usize, f64),
     /// `dR/dp`.
@@ -202,7 +202,7 @@ impl Block {
     }
 
     /// Columns of an equilibrium, whose `dR/dp` is in `right`.
-    pub(super) fn rest(&mut self, tangents: &Tangents, right: &mut [Lanes]) {
+    pub(super) fn rest(&mut self, tangents: &Linearized, right: &mut [Lanes]) {
         if self.stays(right) {
             return;
         }
@@ -214,7 +214,7 @@ impl Block {
     pub(super) fn stage<E: Equations>(
         &mut self,
         equations: &E,
-        tangents: &Tangents,
+        tangents: &Linearized,
         at: (&Tableau, usize, f64),
         right: &mut [Lanes],
         bases: &mut Bases,

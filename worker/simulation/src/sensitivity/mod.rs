@@ -16,10 +16,10 @@ mod block;
 mod column;
 mod differences;
 mod follow;
+mod linearized;
 mod plan;
 mod side;
 mod source;
-mod tangents;
 
 pub use column::{Changes, Coefficient, Column, Columns, Derivative, Missing};
 pub use follow::{simulate, simulate_on};

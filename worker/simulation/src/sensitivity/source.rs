@@ -103,9 +103,8 @@ impl Source<'_> {
     pub(super) fn right(
         &mut self,
         individual: &mut Individual<'_>,
-        state: &State,
+        (state, units): (&State, &[[f64; PLANE_UNITS]]),
         (own, sides, difference): (&mut Side<'_>, &mut [Side<'_>], &Difference),
-        units: &[[f64; PLANE_UNITS]],
         [one, sum]: [&mut [f64]; 2],
     ) {
         let at = state.motion();

@@ -1,32 +1,38 @@
 //! One stage, taken as solved, linearised.
 use super::source::add;
+use crate::element::plane::PLANE_UNITS;
 use crate::integrator::stepper::Stages;
 use crate::linear::{Bordered, SingularPivot};
+use crate::model::{Individual, Scratch};
 use crate::system::{Equations, Shift, State, System};
 
-/// State of a stage, its `-K'` and the factor of its `S`.
+/// Room for generalised forces and for a matrix.
+pub(super) type Buffers<'a> = (&'a mut [f64], &'a mut Bordered);
+
+/// State of a stage, its `-K'` and the factor of its `S`, and what its forces left behind.
 #[derive(Debug)]
-pub(super) struct Tangents {
+pub(super) struct Linearized {
     /// The stage's state under its accelerations.
     pub(super) state: State,
     /// `-K'`, which holds the derivatives of `M(q) a` too.
     pub(super) stiffness: Bordered,
     /// Factor of `S = M / c^2 - D / c - K'`, or of `-K` at rest.
     pub(super) factor: Bordered,
-    room: Bordered,
-    /// How many were made.
-    pub(super) factorizations: u64,
+    /// Poses, joint loads and contact.
+    pub(super) scratch: Scratch,
+    /// What joints do per unit of their coefficients, in the plane and where a column asks.
+    pub(super) units: Vec<[f64; PLANE_UNITS]>,
 }
 
-impl Tangents {
-    /// Allocates.
-    pub(super) fn new<E: Equations>(equations: &E, state: &State) -> Self {
+impl Linearized {
+    /// Allocates; so many coordinates have units.
+    pub(super) fn new(equations: &Individual<'_>, state: &State, units: usize) -> Self {
         Self {
             state: state.clone(),
             stiffness: equations.matrix(),
             factor: equations.matrix(),
-            room: equations.matrix(),
-            factorizations: 0,
+            scratch: Scratch::new(equations.machine),
+            units: vec![[0.0; PLANE_UNITS]; units],
         }
     }
 
@@ -34,11 +40,11 @@ impl Tangents {
     ///
     /// # Errors
     /// The unknown whose pivot vanished.
-    pub(super) fn rest<E: Equations>(
+    pub(super) fn rest(
         &mut self,
-        system: &mut System<E>,
+        system: &mut System<Individual<'_>>,
         state: &State,
-        room: &mut [f64],
+        room: Buffers<'_>,
     ) -> Result<(), SingularPivot> {
         self.state.clone_from(state);
         self.linearize(system, Shift::NONE, room)
@@ -48,12 +54,12 @@ impl Tangents {
     ///
     /// # Errors
     /// The unknown whose pivot vanished.
-    pub(super) fn stage<E: Equations>(
+    pub(super) fn stage(
         &mut self,
-        system: &mut System<E>,
+        system: &mut System<Individual<'_>>,
         (i, stages): (usize, Stages<'_>),
         [from, to]: [&State; 2],
-        room: &mut [f64],
+        room: Buffers<'_>,
     ) -> Result<(), SingularPivot> {
         let h = to.t - from.t;
         let c = stages.tableau.diagonal * h;
@@ -78,20 +84,27 @@ impl Tangents {
         self.linearize(system, shift, room)
     }
 
-    fn linearize<E: Equations>(
+    fn linearize(
         &mut self,
-        system: &mut System<E>,
+        system: &mut System<Individual<'_>>,
         shift: Shift,
-        room: &mut [f64],
+        (force, matrix): Buffers<'_>,
     ) -> Result<(), SingularPivot> {
         // what columns cost is no work of the run's
         let kept = system.statistics;
         let State { a, .. } = &self.state;
-        let mut loads = system.forces(self.state.motion(), room);
-        let matrices = [&mut self.stiffness, &mut self.room, &mut self.factor];
+        let mut loads = system.forces(self.state.motion(), force);
+        let matrices = [&mut self.stiffness, matrix, &mut self.factor];
         loads.exact_tangents(a, shift, matrices);
         system.statistics = kept;
-        self.factorizations += 1;
+        let individual = &mut system.equations;
+        individual.joint_units(&mut self.units);
+        std::mem::swap(&mut individual.scratch, &mut self.scratch);
+        // the run's past stays with the run
+        let chains = individual.scratch.chains.iter_mut();
+        for (run, stage) in chains.zip(&mut self.scratch.chains) {
+            std::mem::swap(&mut run.memory, &mut stage.memory);
+        }
         self.factor.factorize()
     }
 }

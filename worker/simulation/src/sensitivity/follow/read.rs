@@ -1,0 +1,99 @@
+//! What is read more at a sample.
+use super::super::active::Sample;
+use super::super::block::{add_column, shaft, stress};
+use super::{Follower, Room};
+use crate::integrator::dense::Weights;
+use crate::linear::{LANES, Lanes};
+use crate::system::State;
+
+/// By how much the farthest coordinate is moved where readings are differenced along a column \[m\],
+/// \[rad\].
+const MOVED: f64 = 1e-8;
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "steps and samples are files of their own"
+)]
+impl Follower<'_, '_> {
+    /// Notes what the gauges read at a sample, and the derivatives.
+    pub(super) fn read(&mut self, index: usize, state: &State) {
+        let Some(Room {
+            scratch,
+            state: beside,
+            force: [force, ..],
+            gradient,
+            torque,
+            ..
+        }) = &mut self.room
+        else {
+            return;
+        };
+        self.own
+            .torque_by(scratch, state, (&mut *torque, &mut *beside));
+        let read = self.own.shaft(scratch, state);
+        let room = (&mut force[..], &mut *beside);
+        let (own, known) = self.own.gradient(scratch, state, room, gradient.as_mut());
+        for (curve, reading) in self.read.iter_mut().zip(own) {
+            curve.push(reading);
+        }
+        let [from, to] = &self.ends;
+        let sample = Sample {
+            state,
+            ends: [from, to],
+            own,
+            shaft: read,
+            known: (!self.own.machine.hooks.has_readings()).then_some(known),
+            turned: (&self.settings, index),
+        };
+        let weights = Weights::at([from.t, to.t], state.t);
+        let layout = self.own.machine.layout;
+        let mut along = [Lanes::default(); 4];
+        let mut along_shaft = [Lanes::default(); 2];
+        for (at, active) in self.active.iter_mut().enumerate() {
+            let lane = at % LANES;
+            // the ends have changed places when the step was accepted
+            let ends = self.blocks.get(at / LANES).map(|block| &block.ends);
+            let ends = ends.filter(|_| active.moves()).map(|[to, from]| [from, to]);
+            if let Some(ends) = ends.filter(|_| lane == 0) {
+                along_shaft = shaft(ends, &weights, layout.suspension(), torque);
+            }
+            let mut sum = [0.0; 4];
+            let mut add = |share: f64, readings: &[f64; 4]| {
+                for (sum, reading) in sum.iter_mut().zip(readings) {
+                    *sum += share * reading;
+                }
+            };
+            match (&gradient, ends) {
+                (Some(gradient), Some(ends)) => {
+                    if lane == 0 {
+                        along = stress(ends, &weights, gradient, layout.beam());
+                    }
+                    add(1.0, &along.map(|along| along.0[lane]));
+                }
+                (None, Some(ends)) => {
+                    let size = ends[0].size(lane).max(ends[1].size(lane));
+                    let step = MOVED / size;
+                    for step in [step, -step].into_iter().filter(|_| size > 0.0) {
+                        beside.clone_from(state);
+                        add_column(ends, lane, &weights, step, beside);
+                        add(0.5 / step, &self.own.readings(scratch, beside, force));
+                    }
+                }
+                (_, None) => {}
+            }
+            let room = (&mut *scratch, &mut force[..], &mut *beside);
+            let explicit = active.explicit(&sample, gradient.as_ref(), room);
+            add(1.0, &explicit);
+            let mut moved = active.explicit_shaft(&sample, (&mut *scratch, &mut *beside));
+            if ends.is_some() {
+                for (moved, along) in moved.iter_mut().zip(along_shaft) {
+                    *moved += along.0[lane];
+                }
+            }
+            let each = active.curves.each_mut();
+            for (curve, x) in each.zip(sum.into_iter().chain(moved)) {
+                curve.push(x);
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Columns behind a step that was taken.
+use super::super::active::Active;
+use super::super::block::{Bases, Block, add_column};
+use super::super::column::Missing;
+use super::super::linearized::Linearized;
+use super::super::source::Source;
+use super::{Follower, Room};
+use crate::integrator::dense::Weights;
+use crate::integrator::stepper::Stages;
+use crate::linear::{LANES, Lanes};
+use crate::model::layout::Motion;
+use crate::model::{Individual, Scratch};
+use crate::observe::{Gradient, TorqueBy};
+use crate::system::{Equations, State, System};
+
+#[expect(
+    clippy::multiple_inherent_impl,
+    reason = "steps and samples are files of their own"
+)]
+impl Follower<'_, '_> {
+    /// `dR/dp` of the columns of one block at a stage into `room.right`.
+    fn right(&mut self, (block, stage): (usize, usize), individual: &mut Individual<'_>) {
+        let Some(Room {
+            stages,
+            right,
+            force: [one, sum],
+            ..
+        }) = &mut self.room
+        else {
+            return;
+        };
+        let at = &mut stages[stage];
+        std::mem::swap(&mut individual.scratch, &mut at.scratch);
+        right.fill(Lanes::default());
+        let columns = self.active.chunks_mut(LANES).nth(block);
+        for (lane, active) in columns.into_iter().flatten().enumerate() {
+            let Active {
+                source,
+                sides,
+                difference,
+                ..
+            } = active;
+            let between = (&mut self.own, &mut sides[..], &*difference);
+            let place = (&at.state, &at.units[..]);
+            source.right(individual, place, between, [one, sum]);
+            for (right, sum) in right.iter_mut().zip(&*sum) {
+                right.0[lane] = *sum;
+            }
+        }
+        std::mem::swap(&mut individual.scratch, &mut at.scratch);
+    }
+
+    /// Lets laws with a past remember where the columns stand now.
+    fn remember(&mut self, state: &State) {
+        let Some(Room {
+            scratch,
+            state: beside,
+            ..
+        }) = &mut self.room
+        else {
+            return;
+        };
+        self.own.remember(scratch, state);
+        for (at, active) in self.active.iter_mut().enumerate() {
+            let Some(block) = self.blocks.get(at / LANES) else {
+                break;
+            };
+            let now = &block.ends[0];
+            let weights = Weights::at([0.0, 1.0], 0.0);
+            for (side, step) in active.sides.iter_mut().zip(active.difference.steps) {
+                if side.machine.hooks.has_axial() {
+                    beside.clone_from(state);
+                    add_column([now, now], at % LANES, &weights, step, beside);
+                    side.remember(scratch, beside);
+                }
+            }
+        }
+    }
+
+    /// Takes the columns through a step: a block through all of its stages, so that it stays in cache.
+    pub(super) fn follow(
+        &mut self,
+        system: &mut System<Individual<'_>>,
+        ends: [&State; 2],
+        stages: Stages<'_>,
+    ) -> Result<(), Missing> {
+        let h = ends[1].t - ends[0].t;
+        if let (Some(room), false) = (&mut self.room, self.blocks.is_empty()) {
+            for (k, at) in room.stages.iter_mut().enumerate() {
+                let buffers = (&mut room.force[0][..], &mut room.matrix);
+                let made = at.stage(system, (k + 1, stages), ends, buffers);
+                made.map_err(|_| Missing::Singular)?;
+                room.factorizations += 1;
+            }
+        }
+        for block in 0..self.blocks.len() {
+            for k in 0..stages.tableau.stages() - 1 {
+                self.right((block, k), &mut system.equations);
+                if let Some(room) = &mut self.room {
+                    self.blocks[block].stage(
+                        &system.equations,
+                        &room.stages[k],
+                        (stages.tableau, k + 1, h),
+                        &mut room.right,
+                        &mut room.bases,
+                    );
+                }
+            }
+            self.blocks[block].accept();
+        }
+        for (end, now) in self.ends.iter_mut().zip(ends) {
+            end.clone_from(now);
+        }
+        self.remember(ends[1]);
+        Ok(())
+    }
+
+    /// Begins with the columns of the equilibrium; the method has so many stages.
+    pub(super) fn start(
+        &mut self,
+        system: &mut System<Individual<'_>>,
+        state: &State,
+        stages: usize,
+    ) -> Result<(), Missing> {
+        let n = state.q.len();
+        let moving = self.active.iter().filter(|active| active.moves());
+        let blocks = moving.count().div_ceil(LANES);
+        // the explicit first stage is where the step begins, the last one where it ends
+        self.blocks = vec![Block::new(n, stages - 2); blocks];
+        let asked = |active: &Active<'_>| match active.source {
+            Source::Joints(_) => true,
+            Source::Pieces(hooks) => hooks.has_axial(),
+            Source::Contact { .. } | Source::Difference(..) | Source::Nothing => false,
+        };
+        let asked = self.active.iter().any(asked);
+        let units = match self.own.machine.layout.motion {
+            Motion::Plane if asked => n,
+            Motion::Plane | Motion::Space => 0,
+        };
+        let own = &system.equations;
+        let zeros = || vec![0.0; n];
+        let mut room = Room {
+            stages: (1..stages)
+                .map(|_| Linearized::new(own, state, units))
+                .collect(),
+            matrix: own.matrix(),
+            bases: Bases::new(n),
+            scratch: Scratch::new(own.machine),
+            right: vec![Lanes::default(); n],
+            force: [zeros(), zeros()],
+            state: state.clone(),
+            gradient: Gradient::serves(self.own.machine).then(Gradient::default),
+            torque: TorqueBy::default(),
+            factorizations: 1,
+        };
+        let buffers = (&mut room.force[0][..], &mut room.matrix);
+        let made = room.stages[0].rest(system, state, buffers);
+        made.map_err(|_| Missing::Singular)?;
+        self.room = Some(room);
+        let curves = self.active.iter_mut();
+        let curves = curves.flat_map(|active| active.curves.each_mut());
+        for curve in curves.chain(&mut self.read) {
+            curve.reserve_exact(self.settings.samples);
+        }
+        for block in 0..blocks {
+            self.right((block, 0), &mut system.equations);
+            if let Some(room) = &mut self.room {
+                self.blocks[block].rest(&room.stages[0], &mut room.right);
+            }
+        }
+        self.remember(state);
+        Ok(())
+    }
+}
