@@ -5,6 +5,7 @@
 //! static answer leaves of it. So `d stress = sum W_g df + f W_g' ds` over the points, the like of the
 //! rope's end, and modes and beam themselves. Derivatives of the end's pull are differences of one joint.
 use crate::math::elementary::sin_cos;
+use crate::model::chain::contact_point::{BORDER, FEW, Reached};
 use crate::model::description::StressRecovery;
 use crate::model::layout::{MAX_MODES, Motion};
 use crate::model::{Individual, Machine};
@@ -69,7 +70,11 @@ impl Gradient {
         self.places.resize(state.q.len(), None);
         self.by_contact = [[0.0; 4]; 2];
         self.by_rigid(machine, state);
-        self.by_points(individual, state);
+        if layout.modes < FEW {
+            self.by_points::<FEW>(individual, state);
+        } else {
+            self.by_points::<BORDER>(individual, state);
+        }
         self.by_pull = by_pull(machine);
         let last = machine.chains[0].range().end;
         for k in (last - 3..last).chain(beam..=beam + layout.modes) {
@@ -110,7 +115,7 @@ impl Gradient {
         self.by_acceleration = base[2];
     }
 
-    fn by_points(&mut self, individual: &Individual<'_>, state: &State) {
+    fn by_points<const B: usize>(&mut self, individual: &Individual<'_>, state: &State) {
         let machine = individual.machine;
         let (face, chain) = (&machine.faces[0], &machine.chains[0]);
         let modes = machine.layout.modes;
@@ -118,7 +123,7 @@ impl Gradient {
         let deflection = &individual.scratch.deflection;
         let surface = machine.surface(0, &state.q, &state.v, deflection);
         let law = (&surface, &individual.ropes.contact);
-        chain.each_reached(law, &individual.scratch.chains[0], |j, point| {
+        chain.each_reached(law, &individual.scratch.chains[0], |j, point: &Reached<B>| {
             let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
             let place = face.normal_influence.place(point.angle);
             face.normal_influence.slopes(&place, &mut value, &mut slope);

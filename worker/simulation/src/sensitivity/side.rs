@@ -91,18 +91,19 @@ impl<'a> Side<'a> {
         })
     }
 
-    /// The same with all loads, what further readings may know, and the derivatives by the state where the
-    /// gauges have them; `room` is for a state.
+    /// The same with what further readings may know, if that is asked for, and the derivatives by the state
+    /// where the gauges have them; `room` is for a state.
     pub(super) fn gradient(
         &mut self,
         scratch: &mut Scratch,
         state: &State,
         (force, room): (&mut [f64], &mut State),
-        gradient: Option<&mut Gradient>,
-    ) -> ([f64; 4], Sampled) {
+        (known, gradient): (bool, Option<&mut Gradient>),
+    ) -> ([f64; 4], Option<Sampled>) {
+        let part = !known && !self.machine.hooks.has_readings();
         self.within(scratch, |individual| {
-            let stress = readings(individual, state, force, false);
-            let known = sampled(individual, state);
+            let stress = readings(individual, state, force, part);
+            let known = known.then(|| sampled(individual, state));
             if let Some(gradient) = gradient {
                 gradient.fill(individual, state, room);
             }

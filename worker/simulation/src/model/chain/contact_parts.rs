@@ -2,8 +2,8 @@
 //!
 //! With the derivatives `G` of a point's penetration and `c` of its force by the penetration's rate, the
 //! rates' part is `c G G^T`: it bends nothing.
-use super::contact_point::{BORDER, Derivatives};
-use super::contact_tangent::{FEW, Sums, Tangent};
+use super::contact_point::{BORDER, Derivatives, FEW};
+use super::contact_tangent::{Sums, Tangent};
 use super::parts::Chain;
 use super::points::Points;
 use super::state::ChainState;

@@ -13,7 +13,9 @@ type V2 = Vector2<f64>;
 /// Coordinates that move a point of a cylinder: two, and one or two angles.
 pub(super) const OWN: usize = 4;
 /// Most coordinates of the border: the beam angle, then the modes.
-pub(super) const BORDER: usize = MAX_MODES + 1;
+pub(crate) const BORDER: usize = MAX_MODES + 1;
+/// Those of a usual head, whose sums are short enough to be unrolled.
+pub(crate) const FEW: usize = 8;
 
 /// A point's derivatives; there is room for `B` coordinates of the border.
 pub(super) struct Derivatives<const B: usize> {
@@ -97,7 +99,7 @@ impl<const B: usize> Derivatives<B> {
 
 /// A pressed point as a reading asks for it, of a cylinder that moves in the plane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Reached {
+pub(crate) struct Reached<const B: usize> {
     /// Force \[N\] and arc angle \[rad\].
     pub(crate) force: f64,
     pub(crate) angle: f64,
@@ -107,7 +109,7 @@ pub(crate) struct Reached {
     pub(crate) force_by: [[f64; 3]; 2],
     pub(crate) angle_by: [f64; 3],
     /// The same by the beam angle, then by the modes, which turn no angle.
-    pub(crate) force_by_border: [[f64; BORDER]; 2],
+    pub(crate) force_by_border: [[f64; B]; 2],
     pub(crate) angle_by_beam: f64,
 }
 
@@ -116,19 +118,20 @@ pub(crate) struct Reached {
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Gives every pressed point of cylinders that move in the plane, and its cylinder.
-    pub(crate) fn each_reached(
+    /// Gives every pressed point of cylinders that move in the plane, and its cylinder; there is room for
+    /// `B` coordinates of the border.
+    pub(crate) fn each_reached<const B: usize>(
         &self,
         (surface, law): (&Surface<'_>, &Impact),
         state: &ChainState,
-        mut visit: impl FnMut(usize, &Reached),
+        mut visit: impl FnMut(usize, &Reached<B>),
     ) {
         let seen = (surface, 0.0, surface.modes() + 1);
         let points = &state.points;
         for (k, &j) in points.cylinders().iter().enumerate() {
             for i in points.touching(k) {
                 let touch = points.touch((k, i), surface, law);
-                let point = Derivatives::<BORDER>::new(seen, &state.plane[j], &touch);
+                let point = Derivatives::<B>::new(seen, &state.plane[j], &touch);
                 let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
                 let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
                 let by_rate = touch.law.by_rate;

@@ -7,7 +7,7 @@
 //! Seen from a point, the coordinates are those of its cylinder that move it (`x`, `y` and the
 //! angles that turn the axis), then those of the border. With the derivatives `G` of the penetration
 //! and `F` of the force by all of them, a point adds `G F^T` and the force times what bends.
-use super::contact_point::{BORDER, Derivatives, OWN};
+use super::contact_point::{BORDER, Derivatives, FEW, OWN};
 use super::parts::Chain;
 use super::points::{Points, Touch};
 use super::state::ChainState;
@@ -16,9 +16,6 @@ use crate::linear::Bordered;
 use crate::model::contact::Surface;
 use crate::model::layout::Motion;
 use crate::model::pose::InPlane;
-
-/// Those of a usual head, whose sums are short enough to be unrolled.
-pub(super) const FEW: usize = 8;
 
 /// One chain's contact while its tangent is added up; there is room for `B` coordinates of the border.
 pub(super) struct Tangent<'a, const B: usize> {

@@ -81,7 +81,7 @@ struct Follower<'a, 'o> {
 
 /// Buffers.
 struct Room {
-    /// The stages of a step; the first one serves the equilibrium too.
+    /// Stages of a step, all of them or one after the other; the first one serves the equilibrium too.
     stages: Vec<Linearized>,
     matrix: Bordered,
     bases: Bases,

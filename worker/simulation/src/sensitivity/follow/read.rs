@@ -1,5 +1,5 @@
 //! What is read more at a sample.
-use super::super::active::Sample;
+use super::super::active::{Active, Sample};
 use super::super::block::{add_column, shaft, stress};
 use super::{Follower, Room};
 use crate::integrator::dense::Weights;
@@ -28,11 +28,17 @@ impl Follower<'_, '_> {
         else {
             return;
         };
-        self.own
-            .torque_by(scratch, state, (&mut *torque, &mut *beside));
+        if !self.blocks.is_empty() {
+            let torque = (&mut *torque, &mut *beside);
+            self.own.torque_by(scratch, state, torque);
+        }
         let read = self.own.shaft(scratch, state);
         let room = (&mut force[..], &mut *beside);
-        let (own, known) = self.own.gradient(scratch, state, room, gradient.as_mut());
+        let asked = !self.own.machine.hooks.has_readings()
+            && !self.active.iter().all(Active::moves);
+        let by_state = gradient.as_mut().filter(|_| !self.blocks.is_empty());
+        let asked = (asked, by_state);
+        let (own, known) = self.own.gradient(scratch, state, room, asked);
         for (curve, reading) in self.read.iter_mut().zip(own) {
             curve.push(reading);
         }
@@ -42,7 +48,7 @@ impl Follower<'_, '_> {
             ends: [from, to],
             own,
             shaft: read,
-            known: (!self.own.machine.hooks.has_readings()).then_some(known),
+            known,
             turned: (&self.settings, index),
         };
         let weights = Weights::at([from.t, to.t], state.t);

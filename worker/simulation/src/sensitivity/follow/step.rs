@@ -13,6 +13,10 @@ use crate::model::{Individual, Scratch};
 use crate::observe::{Gradient, TorqueBy};
 use crate::system::{Equations, State, System};
 
+/// As many blocks as stay in cache beside a stage: they take a stage one after the other, more of them a
+/// whole step.
+const FEW: usize = 6;
+
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "steps and samples are files of their own"
@@ -77,7 +81,8 @@ impl Follower<'_, '_> {
         }
     }
 
-    /// Takes the columns through a step: a block through all of its stages, so that it stays in cache.
+    /// Takes the columns through a step: a block through as many of its stages as are kept, so that it stays
+    /// in cache.
     pub(super) fn follow(
         &mut self,
         system: &mut System<Individual<'_>>,
@@ -85,28 +90,37 @@ impl Follower<'_, '_> {
         stages: Stages<'_>,
     ) -> Result<(), Missing> {
         let h = ends[1].t - ends[0].t;
-        if let (Some(room), false) = (&mut self.room, self.blocks.is_empty()) {
-            for (k, at) in room.stages.iter_mut().enumerate() {
-                let buffers = (&mut room.force[0][..], &mut room.matrix);
-                let made = at.stage(system, (k + 1, stages), ends, buffers);
-                made.map_err(|_| Missing::Singular)?;
-                room.factorizations += 1;
-            }
-        }
-        for block in 0..self.blocks.len() {
-            for k in 0..stages.tableau.stages() - 1 {
-                self.right((block, k), &mut system.equations);
-                if let Some(room) = &mut self.room {
-                    self.blocks[block].stage(
-                        &system.equations,
-                        &room.stages[k],
-                        (stages.tableau, k + 1, h),
-                        &mut room.right,
-                        &mut room.bases,
-                    );
+        let kept = self.room.as_ref().map_or(1, |room| room.stages.len());
+        let mut after = 1..stages.tableau.stages();
+        while !after.is_empty() && !self.blocks.is_empty() {
+            let first = after.start;
+            let several = first..after.end.min(first + kept);
+            after.start = several.end;
+            if let Some(room) = &mut self.room {
+                for (i, at) in several.clone().zip(&mut room.stages) {
+                    let buffers = (&mut room.force[0][..], &mut room.matrix);
+                    let made = at.stage(system, (i, stages), ends, buffers);
+                    made.map_err(|_| Missing::Singular)?;
+                    room.factorizations += 1;
                 }
             }
-            self.blocks[block].accept();
+            for block in 0..self.blocks.len() {
+                for i in several.clone() {
+                    self.right((block, i - first), &mut system.equations);
+                    if let Some(room) = &mut self.room {
+                        self.blocks[block].stage(
+                            &system.equations,
+                            &room.stages[i - first],
+                            (stages.tableau, i, h),
+                            &mut room.right,
+                            &mut room.bases,
+                        );
+                    }
+                }
+            }
+        }
+        for block in &mut self.blocks {
+            block.accept();
         }
         for (end, now) in self.ends.iter_mut().zip(ends) {
             end.clone_from(now);
@@ -137,10 +151,11 @@ impl Follower<'_, '_> {
             Motion::Plane if asked => n,
             Motion::Plane | Motion::Space => 0,
         };
+        let kept = if blocks > FEW { stages - 1 } else { 1 };
         let own = &system.equations;
         let zeros = || vec![0.0; n];
         let mut room = Room {
-            stages: (1..stages)
+            stages: (0..kept)
                 .map(|_| Linearized::new(own, state, units))
                 .collect(),
             matrix: own.matrix(),
