@@ -1,7 +1,7 @@
 //! A state of the equations of motion, and what is asked of it: plain data.
 
 /// Coordinates, rates and accelerations at a time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Debug, PartialEq)]
 pub struct State {
     /// Time \[s\].
     pub t: f64,
@@ -11,6 +11,25 @@ pub struct State {
     pub v: Vec<f64>,
     /// Accelerations.
     pub a: Vec<f64>,
+}
+
+/// Written out, since a derived one allocates where it overwrites.
+impl Clone for State {
+    fn clone(&self) -> Self {
+        Self {
+            t: self.t,
+            q: self.q.clone(),
+            v: self.v.clone(),
+            a: self.a.clone(),
+        }
+    }
+
+    fn clone_from(&mut self, other: &Self) {
+        self.t = other.t;
+        self.q.clone_from(&other.q);
+        self.v.clone_from(&other.v);
+        self.a.clone_from(&other.a);
+    }
 }
 
 impl State {

@@ -1,8 +1,11 @@
 //! What a simulation takes of the heap: nothing in a step, little in all.
+use simulation::effect::{Role, catalogue};
 use simulation::integrator::method::CATALOGUE;
+use simulation::model::description::Description;
 use simulation::model::{Individual, Machine};
 use simulation::reference;
 use simulation::run::{Observe, RunSettings, simulate};
+use simulation::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
 use simulation::system::State;
 use simulation::system::System;
 
@@ -24,6 +27,49 @@ impl Observe for Blocks {
     }
 }
 
+/// The coefficients and all sizes of the catalogue on the same unit: with their machines beside they fit
+/// into a slot's 32 MiB, and their steps and samples allocate nothing either.
+fn columns_take_little(description: &Description) {
+    let profiler = dhat::Profiler::builder().testing().build();
+    let machine = Machine::new(description.clone(), 2).unwrap();
+    let sizes = catalogue().iter().flat_map(|d| {
+        let sizes = d.parameters.iter().filter(|p| p.role == Role::Size);
+        sizes.map(|p| Column::Parameter {
+            effect: d.id.to_string(),
+            parameter: p.name.to_owned(),
+            values: Vec::new(),
+        })
+    });
+    let coefficients = Coefficient::ALL.map(Column::Coefficient);
+    let all: Vec<Column> = coefficients.into_iter().chain(sizes).collect();
+    let origin = Origin {
+        description,
+        modes: 2,
+        effects: &[],
+    };
+    let plan = Plan::new(&origin, &machine, &all).unwrap();
+    let settings = RunSettings {
+        samples: 12,
+        ..RunSettings::default()
+    };
+    let law = reference::law();
+    let mut blocks = Blocks::default();
+    let (_, found) = sensitivity::simulate(&machine, &law, &settings, &plan, &mut blocks);
+    let stats = dhat::HeapStats::get();
+    drop(profiler);
+    let found = found.unwrap().columns;
+    let curves = |one: &&Derivative| matches!(one, Derivative::Curves(_));
+    let worked_out = found.iter().filter(curves).count();
+    assert!(worked_out >= 140, "{worked_out}");
+    let in_steps = blocks.last - blocks.first.unwrap();
+    println!(
+        "{worked_out} columns: {} bytes, {in_steps} blocks in the steps",
+        stats.max_bytes
+    );
+    assert!(in_steps <= 1, "{in_steps} allocations in the steps");
+    assert!(stats.max_bytes < 32 << 20, "{} bytes", stats.max_bytes);
+}
+
 /// The real unit's 72 + 114 cylinders, one rope and two: between the first and the last sample of a
 /// revolution lie hundreds of steps with their Newton iterations and factorisations, and with no method
 /// a single allocation; a run fits into 64 MiB many times over.
@@ -36,6 +82,7 @@ fn a_step_allocates_nothing_and_a_run_little() {
         description.rope.front = 114;
     }
     let [single, twins] = descriptions;
+    columns_take_little(&single);
     let default = RunSettings::default().method;
     let mut runs: Vec<_> = CATALOGUE.map(|method| (single.clone(), method)).into();
     runs.push((twins, default));

@@ -47,6 +47,15 @@ fn modal(machine: &Machine, m: usize) -> Each {
 }
 
 impl Gradient {
+    /// Room for that of `n` coordinates.
+    pub(crate) fn new(n: usize) -> Self {
+        Self {
+            entries: Vec::with_capacity(n),
+            places: Vec::with_capacity(n),
+            ..Self::default()
+        }
+    }
+
     /// Whether a machine's gauges have one.
     pub(crate) fn serves(machine: &Machine) -> bool {
         machine.layout.motion == Motion::Plane

@@ -110,14 +110,32 @@ impl Subject {
         gauges.chain(height).chain(recorder.curves.torque).collect()
     }
 
+    /// To which side alone a parameter may move by such a step, if there are not both.
+    fn side(&self, column: &Column, step: f64) -> Option<f64> {
+        let Column::Parameter {
+            effect, parameter, ..
+        } = column
+        else {
+            return None;
+        };
+        let known = find(effect, parameter);
+        let mut own = self.effects.iter().filter(|(id, _)| id == effect);
+        let own = own.next().and_then(|(_, values)| {
+            let mut values = values.iter();
+            values.find(|(name, _)| name == parameter)
+        });
+        let value = own.map_or(known.absent, |(_, value)| *value);
+        match [value - step < known.lower, value + step > known.upper] {
+            [true, _] => Some(1.0),
+            [_, true] => Some(-1.0),
+            [false, false] => None,
+        }
+    }
+
     /// Derivative by extrapolated differences, and those of the finer step size.
     fn differenced(&self, column: &Column, step: f64, steps: &[f64]) -> [Vec<f64>; 2] {
-        let one_sided = match column {
-            Column::Coefficient(_) => false,
-            Column::Parameter {
-                effect, parameter, ..
-            } => find(effect, parameter).is_one_sided(),
-        };
+        let side = self.side(column, step);
+        let step = side.unwrap_or(1.0) * step;
         let run = |by: f64| self.moved(column, by, steps);
         let combine = |terms: &[(f64, f64)]| -> Vec<f64> {
             let mut sum = vec![0.0; 6 * self.settings.samples];
@@ -128,7 +146,7 @@ impl Subject {
             }
             sum
         };
-        let [coarse, fine] = if one_sided {
+        let [coarse, fine] = if side.is_some() {
             [
                 combine(&[(-1.5, 0.0), (2.0, 1.0), (-0.5, 2.0)]),
                 combine(&[(-3.0, 0.0), (4.0, 0.5), (-1.0, 1.0)]),

@@ -164,8 +164,8 @@ impl Follower<'_, '_> {
             right: vec![Lanes::default(); n],
             force: [zeros(), zeros()],
             state: state.clone(),
-            gradient: Gradient::serves(self.own.machine).then(Gradient::default),
-            torque: TorqueBy::default(),
+            gradient: Gradient::serves(self.own.machine).then(|| Gradient::new(n)),
+            torque: TorqueBy(Vec::with_capacity(n)),
             factorizations: 1,
         };
         let buffers = (&mut room.force[0][..], &mut room.matrix);
