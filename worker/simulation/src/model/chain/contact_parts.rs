@@ -27,10 +27,10 @@ impl Chain {
     ) {
         let border = matrices[0].border().min(surface.modes() + 1);
         let on = (surface, law);
-        if border <= FEW {
-            self.add_parts_within::<FEW>(on, state, (matrices, border));
-        } else {
-            self.add_parts_within::<BORDER>(on, state, (matrices, border));
+        match border {
+            0..=1 => self.add_parts_within::<1>(on, state, (matrices, border)),
+            2..=FEW => self.add_parts_within::<FEW>(on, state, (matrices, border)),
+            _ => self.add_parts_within::<BORDER>(on, state, (matrices, border)),
         }
     }
 

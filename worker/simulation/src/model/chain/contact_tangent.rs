@@ -53,10 +53,10 @@ impl Chain {
     ) {
         let border = matrix.border().min(surface.modes() + 1);
         let on = (surface, law);
-        if border <= FEW {
-            self.add_tangent_within::<FEW>(on, state, gamma, (matrix, border));
-        } else {
-            self.add_tangent_within::<BORDER>(on, state, gamma, (matrix, border));
+        match border {
+            0..=1 => self.add_tangent_within::<1>(on, state, gamma, (matrix, border)),
+            2..=FEW => self.add_tangent_within::<FEW>(on, state, gamma, (matrix, border)),
+            _ => self.add_tangent_within::<BORDER>(on, state, gamma, (matrix, border)),
         }
     }
 
