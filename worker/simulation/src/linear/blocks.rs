@@ -410,7 +410,7 @@ impl<const N: usize> Blocks<N> {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     pub(super) fn solve_corner<T: Entry>(&self, x: &mut [T]) {
         let m = self.border;
         for k in 0..m {

@@ -77,7 +77,7 @@ impl Lanes {
 }
 
 impl AddAssign for Lanes {
-    #[inline(always)]
+    #[inline]
     fn add_assign(&mut self, other: Self) {
         for k in 0..LANES {
             self.0[k] += other.0[k];
@@ -86,7 +86,7 @@ impl AddAssign for Lanes {
 }
 
 impl SubAssign for Lanes {
-    #[inline(always)]
+    #[inline]
     fn sub_assign(&mut self, other: Self) {
         for k in 0..LANES {
             self.0[k] -= other.0[k];
@@ -97,7 +97,7 @@ impl SubAssign for Lanes {
 impl Add for Lanes {
     type Output = Self;
 
-    #[inline(always)]
+    #[inline]
     fn add(mut self, other: Self) -> Self {
         self += other;
         self
@@ -107,7 +107,7 @@ impl Add for Lanes {
 impl Sub for Lanes {
     type Output = Self;
 
-    #[inline(always)]
+    #[inline]
     fn sub(mut self, other: Self) -> Self {
         self -= other;
         self
@@ -117,7 +117,7 @@ impl Sub for Lanes {
 impl Mul<f64> for Lanes {
     type Output = Self;
 
-    #[inline(always)]
+    #[inline]
     fn mul(self, factor: f64) -> Self {
         let mut product = self;
         for x in &mut product.0 {
@@ -130,7 +130,7 @@ impl Mul<f64> for Lanes {
 impl Div<f64> for Lanes {
     type Output = Self;
 
-    #[inline(always)]
+    #[inline]
     fn div(self, divisor: f64) -> Self {
         Self(self.0.map(|x| x / divisor))
     }

@@ -56,14 +56,13 @@ impl Machine {
         room.clear();
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
-            let both = [&mut *stiffness, &mut *room];
-            if !chain.add_joint_parts(&self.joints(k, at), state, both) {
+            let mut both = [&mut *stiffness, &mut *room];
+            if !chain.add_joint_parts(&self.joints(k, at), state, &mut both) {
                 self.tangent(at, Shift::NONE, scratch, stiffness);
                 self.tangent(at, shift, scratch, matrix);
                 return;
             }
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            let both = [&mut *stiffness, &mut *room];
             chain.add_contact_parts((&surface, &at.ropes.contact), state, both);
         }
         matrix.set_sum(stiffness, shift.damping, room);

@@ -5,7 +5,7 @@
 //! static answer leaves of it. So `d stress = sum W_g df + f W_g' ds` over the points, the like of the
 //! rope's end, and modes and beam themselves. Derivatives of the end's pull are differences of one joint.
 use crate::math::elementary::sin_cos;
-use crate::model::chain::contact_point::{BORDER, FEW, Reached};
+use crate::model::chain::contact_point::{BORDER, FEW, Reached, each_reached};
 use crate::model::description::StressRecovery;
 use crate::model::layout::{MAX_MODES, Motion};
 use crate::model::{Individual, Machine};
@@ -132,37 +132,41 @@ impl Gradient {
         let deflection = &individual.scratch.deflection;
         let surface = machine.surface(0, &state.q, &state.v, deflection);
         let law = (&surface, &individual.ropes.contact);
-        chain.each_reached(law, &individual.scratch.chains[0], |j, point: &Reached<B>| {
-            let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
-            let place = face.normal_influence.place(point.angle);
-            face.normal_influence.slopes(&place, &mut value, &mut slope);
-            let (mut shape, mut tilt) = ([0.0; MAX_MODES], [0.0; MAX_MODES]);
-            let place = face.radial.place(point.angle);
-            face.radial
-                .slopes(&place, &mut shape[..modes], &mut tilt[..modes]);
-            for m in 0..modes {
-                let unit = modal(machine, m);
-                add(&mut value, shape[m], &unit);
-                add(&mut slope, tilt[m], &unit);
-            }
-            for (by, of) in self.by_contact.iter_mut().zip(point.by_law) {
-                add(by, of, &value);
-            }
-            let first = (chain.first + j) * 3;
-            for k in 0..3 {
-                let own = self.entry(first + k);
-                add(&mut own[0], point.force_by[0][k], &value);
-                add(&mut own[0], point.force * point.angle_by[k], &slope);
-                add(&mut own[1], point.force_by[1][k], &value);
-            }
-            for k in 0..=modes {
-                let own = self.entry(beam + k);
-                add(&mut own[0], point.force_by_border[0][k], &value);
-                add(&mut own[1], point.force_by_border[1][k], &value);
-            }
-            let own = self.entry(beam);
-            add(&mut own[0], point.force * point.angle_by_beam, &slope);
-        });
+        each_reached(
+            law,
+            &individual.scratch.chains[0],
+            |j, point: &Reached<B>| {
+                let (mut value, mut slope) = ([0.0; 4], [0.0; 4]);
+                let place = face.normal_influence.place(point.angle);
+                face.normal_influence.slopes(&place, &mut value, &mut slope);
+                let (mut shape, mut tilt) = ([0.0; MAX_MODES], [0.0; MAX_MODES]);
+                let place = face.radial.place(point.angle);
+                face.radial
+                    .slopes(&place, &mut shape[..modes], &mut tilt[..modes]);
+                for m in 0..modes {
+                    let unit = modal(machine, m);
+                    add(&mut value, shape[m], &unit);
+                    add(&mut slope, tilt[m], &unit);
+                }
+                for (by, of) in self.by_contact.iter_mut().zip(point.by_law) {
+                    add(by, of, &value);
+                }
+                let first = (chain.first + j) * 3;
+                for k in 0..3 {
+                    let own = self.entry(first + k);
+                    add(&mut own[0], point.force_by[0][k], &value);
+                    add(&mut own[0], point.force * point.angle_by[k], &slope);
+                    add(&mut own[1], point.force_by[1][k], &value);
+                }
+                for k in 0..=modes {
+                    let own = self.entry(beam + k);
+                    add(&mut own[0], point.force_by_border[0][k], &value);
+                    add(&mut own[1], point.force_by_border[1][k], &value);
+                }
+                let own = self.entry(beam);
+                add(&mut own[0], point.force * point.angle_by_beam, &slope);
+            },
+        );
     }
 
     /// What the rope's end pulls more when coordinate `k` or its rate grows.

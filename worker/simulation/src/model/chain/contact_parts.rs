@@ -71,7 +71,8 @@ fn add_parts<const A: usize, const B: usize>(
             let touch = points.touch((k, i), stiff.surface, stiff.law);
             let point = Derivatives::new(seen, &poses[j], &touch);
             stiff.add_point(&point, &touch, &poses[j], &mut sums[0]);
-            damped.add_damping::<A>(&point, touch.law.by_rate, &mut sums[1]);
+            let corner = &mut damped.corner[..stiff.border];
+            add_damping::<A, B>(&point, touch.law.by_rate, &mut sums[1], corner);
         }
         let block = stiff.chain.first + j;
         stiff.add_sums::<A>(block, &sums[0], stiffness);
@@ -82,22 +83,26 @@ fn add_parts<const A: usize, const B: usize>(
     damped.add_corner(damping);
 }
 
-impl<const B: usize> Tangent<'_, B> {
-    /// Adds `c G G^T` of a point, without the rows of the border.
-    fn add_damping<const A: usize>(&mut self, point: &Derivatives<B>, c: f64, sums: &mut Sums<B>) {
-        for r in 0..2 + A {
-            let by = c * point.own[r];
-            for k in 0..2 + A {
-                sums.own[r][k] += by * point.own[k];
-            }
-            for (sum, gradient) in sums.right[r].iter_mut().zip(point.gradient) {
-                *sum += by * gradient;
-            }
+/// Adds `c G G^T` of a point to the sums of its cylinder, without the rows of the border, and to the corner.
+#[inline]
+fn add_damping<const A: usize, const B: usize>(
+    point: &Derivatives<B>,
+    c: f64,
+    sums: &mut Sums<B>,
+    corner: &mut [[f64; B]],
+) {
+    for r in 0..2 + A {
+        let by = c * point.own[r];
+        for k in 0..2 + A {
+            sums.own[r][k] += by * point.own[k];
         }
-        for (row, by) in self.corner[..self.border].iter_mut().zip(point.gradient) {
-            for (sum, gradient) in row.iter_mut().zip(point.gradient) {
-                *sum += c * by * gradient;
-            }
+        for (sum, gradient) in sums.right[r].iter_mut().zip(point.gradient) {
+            *sum += by * gradient;
+        }
+    }
+    for (row, by) in corner.iter_mut().zip(point.gradient) {
+        for (sum, gradient) in row.iter_mut().zip(point.gradient) {
+            *sum += c * by * gradient;
         }
     }
 }

@@ -1,5 +1,4 @@
 //! What one point of a chain's contact has as derivatives, of its penetration and of its force.
-use super::parts::Chain;
 use super::points::Touch;
 use super::state::ChainState;
 use crate::element::impact::Impact;
@@ -113,42 +112,35 @@ pub(crate) struct Reached<const B: usize> {
     pub(crate) angle_by_beam: f64,
 }
 
-#[expect(
-    clippy::multiple_inherent_impl,
-    reason = "one file per term of the equations"
-)]
-impl Chain {
-    /// Gives every pressed point of cylinders that move in the plane, and its cylinder; there is room for
-    /// `B` coordinates of the border.
-    pub(crate) fn each_reached<const B: usize>(
-        &self,
-        (surface, law): (&Surface<'_>, &Impact),
-        state: &ChainState,
-        mut visit: impl FnMut(usize, &Reached<B>),
-    ) {
-        let seen = (surface, 0.0, surface.modes() + 1);
-        let points = &state.points;
-        for (k, &j) in points.cylinders().iter().enumerate() {
-            for i in points.touching(k) {
-                let touch = points.touch((k, i), surface, law);
-                let point = Derivatives::<B>::new(seen, &state.plane[j], &touch);
-                let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
-                let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
-                let by_rate = touch.law.by_rate;
-                let reached = Reached {
-                    force: touch.law.force,
-                    angle: touch.angle,
-                    by_law: points.by_law((k, i), law),
-                    force_by: [
-                        own(&|r| point.own_force[r]),
-                        own(&|r| by_rate * point.own[r]),
-                    ],
-                    angle_by: own(&|r| angle_by_point.dot(&point.moved[r])),
-                    force_by_border: [point.force_by, point.gradient.map(|x| by_rate * x)],
-                    angle_by_beam,
-                };
-                visit(j, &reached);
-            }
+/// Gives every pressed point of a chain's cylinders that move in the plane, and its cylinder; there is room for
+/// `B` coordinates of the border.
+pub(crate) fn each_reached<const B: usize>(
+    (surface, law): (&Surface<'_>, &Impact),
+    state: &ChainState,
+    mut visit: impl FnMut(usize, &Reached<B>),
+) {
+    let seen = (surface, 0.0, surface.modes() + 1);
+    let points = &state.points;
+    for (k, &j) in points.cylinders().iter().enumerate() {
+        for i in points.touching(k) {
+            let touch = points.touch((k, i), surface, law);
+            let point = Derivatives::<B>::new(seen, &state.plane[j], &touch);
+            let (angle_by_point, angle_by_beam) = touch.curvature.angle_by;
+            let own = |of: &dyn Fn(usize) -> f64| std::array::from_fn(of);
+            let by_rate = touch.law.by_rate;
+            let reached = Reached {
+                force: touch.law.force,
+                angle: touch.angle,
+                by_law: points.by_law((k, i), law),
+                force_by: [
+                    own(&|r| point.own_force[r]),
+                    own(&|r| by_rate * point.own[r]),
+                ],
+                angle_by: own(&|r| angle_by_point.dot(&point.moved[r])),
+                force_by_border: [point.force_by, point.gradient.map(|x| by_rate * x)],
+                angle_by_beam,
+            };
+            visit(j, &reached);
         }
     }
 }

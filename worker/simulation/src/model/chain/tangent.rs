@@ -64,7 +64,7 @@ impl Chain {
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
-        matrices: [&mut Bordered; 2],
+        matrices: &mut [&mut Bordered; 2],
     ) -> bool {
         let [Bordered::Plane(stiffness), Bordered::Plane(damping)] = matrices else {
             return false;

@@ -1,19 +1,17 @@
 //! What is read more at a sample.
 use super::super::active::{Active, Sample};
-use super::super::block::{add_column, shaft, stress};
+use super::super::block::{Motion, add_column, shaft, stress};
+use super::super::side::Side;
 use super::{Follower, Room};
 use crate::integrator::dense::Weights;
 use crate::linear::{LANES, Lanes};
+use crate::model::Scratch;
 use crate::system::State;
 
 /// By how much the farthest coordinate is moved where readings are differenced along a column \[m\],
 /// \[rad\].
 const MOVED: f64 = 1e-8;
 
-#[expect(
-    clippy::multiple_inherent_impl,
-    reason = "steps and samples are files of their own"
-)]
 impl Follower<'_, '_> {
     /// Notes what the gauges read at a sample, and the derivatives.
     pub(super) fn read(&mut self, index: usize, state: &State) {
@@ -34,8 +32,8 @@ impl Follower<'_, '_> {
         }
         let read = self.own.shaft(scratch, state);
         let room = (&mut force[..], &mut *beside);
-        let asked = !self.own.machine.hooks.has_readings()
-            && !self.active.iter().all(Active::moves);
+        let asked =
+            !self.own.machine.hooks.has_readings() && !self.active.iter().all(Active::moves);
         let by_state = gradient.as_mut().filter(|_| !self.blocks.is_empty());
         let asked = (asked, by_state);
         let (own, known) = self.own.gradient(scratch, state, room, asked);
@@ -77,13 +75,9 @@ impl Follower<'_, '_> {
                     add(1.0, &along.map(|along| along.0[lane]));
                 }
                 (None, Some(ends)) => {
-                    let size = ends[0].size(lane).max(ends[1].size(lane));
-                    let step = MOVED / size;
-                    for step in [step, -step].into_iter().filter(|_| size > 0.0) {
-                        beside.clone_from(state);
-                        add_column(ends, lane, &weights, step, beside);
-                        add(0.5 / step, &self.own.readings(scratch, beside, force));
-                    }
+                    let room = (&mut *scratch, &mut force[..], &mut *beside);
+                    let column = (ends, lane, &weights);
+                    add(1.0, &differenced(&mut self.own, column, state, room));
                 }
                 (_, None) => {}
             }
@@ -102,4 +96,23 @@ impl Follower<'_, '_> {
             }
         }
     }
+}
+
+/// Derivatives of the readings along a column, by their difference.
+fn differenced(
+    own: &mut Side<'_>,
+    (ends, lane, weights): ([&Motion; 2], usize, &Weights),
+    state: &State,
+    (scratch, force, beside): (&mut Scratch, &mut [f64], &mut State),
+) -> [f64; 4] {
+    let size = ends[0].size(lane).max(ends[1].size(lane));
+    if size == 0.0 {
+        return [0.0; 4];
+    }
+    let [more, less] = [MOVED / size, -MOVED / size].map(|step| {
+        beside.clone_from(state);
+        add_column(ends, lane, weights, step, beside);
+        own.readings(scratch, beside, force)
+    });
+    std::array::from_fn(|k| (more[k] - less[k]) * (0.5 * size / MOVED))
 }
