@@ -1,10 +1,8 @@
 //! Columns of the state, several side by side, through the stages of a step.
 use super::linearized::Linearized;
-use crate::integrator::dense::Weights;
 use crate::integrator::tableau::Tableau;
 use crate::linear::Lanes;
-use crate::observe::{Gradient, TorqueBy};
-use crate::system::{Equations, State};
+use crate::system::Equations;
 use pulp::{Arch, Scalar, Simd, WithSimd};
 
 /// Derivatives of coordinates, rates and accelerations; n each.
@@ -238,73 +236,4 @@ impl Block {
         let [from, to] = &mut self.ends;
         std::mem::swap(from, to);
     }
-}
-
-/// Adds `step` times a column to a state: at a place between two ends.
-pub(super) fn add_column(
-    [from, to]: [&Motion; 2],
-    lane: usize,
-    weights: &Weights,
-    step: f64,
-    out: &mut State,
-) {
-    let [f0, f1] = weights.value.map(|weight| step * weight);
-    let [g0, g1] = weights.slope.map(|weight| step * weight);
-    let [r, s] = weights.linear.map(|weight| step * weight);
-    for i in 0..out.q.len() {
-        let of = |x: &[Lanes]| x[i].0[lane];
-        let [a0, a1] = [of(&from.a), of(&to.a)];
-        let [v0, v1] = [of(&from.v), of(&to.v)];
-        out.q[i] += f0 * of(&from.q) + f1 * of(&to.q) + g0 * v0 + g1 * v1;
-        out.v[i] += f0 * v0 + f1 * v1 + g0 * a0 + g1 * a1;
-        out.a[i] += r * a0 + s * a1;
-    }
-}
-
-/// Derivatives of the suspension's coordinate `height` and of the torque along the columns between two
-/// ends.
-pub(super) fn shaft(
-    [from, to]: [&Motion; 2],
-    weights: &Weights,
-    height: usize,
-    torque: &TorqueBy,
-) -> [Lanes; 2] {
-    let [f0, f1] = weights.value;
-    let [g0, g1] = weights.slope;
-    let [r, s] = weights.linear;
-    let place = |i: usize| from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1;
-    let mut sum = Lanes::default();
-    for (i, [by_place, by_rate, by_acceleration]) in &torque.0 {
-        let i = *i;
-        let v = from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1;
-        let a = from.a[i] * r + to.a[i] * s;
-        sum += place(i) * *by_place + v * *by_rate + a * *by_acceleration;
-    }
-    [place(height), sum]
-}
-
-/// Derivatives of the gauges' stress along the columns between two ends.
-pub(super) fn stress(
-    [from, to]: [&Motion; 2],
-    weights: &Weights,
-    gradient: &Gradient,
-    beam: usize,
-) -> [Lanes; 4] {
-    let [f0, f1] = weights.value;
-    let [g0, g1] = weights.slope;
-    let [r, s] = weights.linear;
-    let mut sum = [Lanes::default(); 4];
-    for (i, [by_place, by_rate]) in &gradient.entries {
-        let i = *i;
-        let q = from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1;
-        let v = from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1;
-        for (gauge, sum) in sum.iter_mut().enumerate() {
-            *sum += q * by_place[gauge] + v * by_rate[gauge];
-        }
-    }
-    let a = from.a[beam] * r + to.a[beam] * s;
-    for (sum, by) in sum.iter_mut().zip(gradient.by_acceleration) {
-        *sum += a * by;
-    }
-    sum
 }

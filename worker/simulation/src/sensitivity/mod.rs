@@ -12,6 +12,7 @@
 //!
 //! Unknown here: which columns a search wants, and what a fall-back for a missing one is.
 mod active;
+mod between;
 mod block;
 mod column;
 mod differences;

@@ -1,6 +1,7 @@
 //! What is read more at a sample.
 use super::super::active::{Active, Sample};
-use super::super::block::{Motion, add_column, shaft, stress};
+use super::super::between::{add_column, shaft, stress};
+use super::super::block::Motion;
 use super::super::side::Side;
 use super::{Follower, Room};
 use crate::integrator::dense::Weights;

@@ -1,6 +1,7 @@
 //! Columns behind a step that was taken.
 use super::super::active::Active;
-use super::super::block::{Bases, Block, add_column};
+use super::super::between::add_column;
+use super::super::block::{Bases, Block};
 use super::super::column::Missing;
 use super::super::linearized::Linearized;
 use super::super::source::Source;
