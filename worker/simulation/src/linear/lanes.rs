@@ -199,9 +199,25 @@ impl Bordered {
 mod tests {
     use super::*;
     use crate::linear::LANES;
-    use pulp::Scalar;
+    use pulp::{Arch, Scalar, WithSimd};
 
-    /// What is done side by side is done as one by one.
+    /// Product with a matrix, then solution with its factor.
+    struct Work<'a>([&'a Bordered; 2], &'a [Lanes]);
+
+    impl WithSimd for Work<'_> {
+        type Output = [Vec<Lanes>; 2];
+
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let Self([matrix, factor], x) = self;
+            let (mut product, mut solved) = (vec![Lanes::default(); x.len()], x.to_vec());
+            matrix.subtract_product_lanes(simd, x, &mut product);
+            factor.solve_lanes(simd, &mut solved);
+            [product, solved]
+        }
+    }
+
+    /// What is done side by side is done as one by one, and to the bit the same in whatever vectors the
+    /// processor has.
     #[test]
     fn columns_are_solved_and_multiplied_as_one_by_one() {
         let mut a = Bordered::plane(&[3, 5], [1, 2]);
@@ -224,12 +240,17 @@ mod tests {
         let lanes: Vec<Lanes> = (0..n)
             .map(|i| Lanes(std::array::from_fn(|lane| columns[lane][i])))
             .collect();
-        let mut products = vec![Lanes::default(); n];
-        a.subtract_product_lanes(Scalar, &lanes, &mut products);
         let mut factor = a.clone();
         factor.factorize().unwrap();
-        let mut solved = lanes;
-        factor.solve_lanes(Scalar, &mut solved);
+        let work = || Work([&a, &factor], &lanes);
+        let [products, solved] = work().with_simd(Scalar);
+        let bits = |[products, solved]: &[Vec<Lanes>; 2]| -> Vec<u64> {
+            let all = products.iter().chain(solved);
+            all.flat_map(|x| x.0.map(f64::to_bits)).collect()
+        };
+        let both = [products, solved];
+        assert_eq!(bits(&both), bits(&Arch::new().dispatch(work())));
+        let [products, solved] = both;
         for (lane, column) in columns.iter().enumerate() {
             let product = a.product(column);
             let mut x = column.clone();

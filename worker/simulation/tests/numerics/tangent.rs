@@ -1,6 +1,11 @@
-//! The tangent of a rig against differences of its forces.
+//! The tangent of a rig against differences of its forces, and both tangents of a stage of a machine
+//! against each of them alone.
 use crate::rope::*;
+use simulation::drive::Drive;
+use simulation::model::{Individual, Machine};
+use simulation::reference;
 use simulation::rig::{Drum, End, Rig, Setup};
+use simulation::settle::guess;
 use simulation::system::{Equations, Shift, StateRef, System};
 
 /// A disturbed, moving chain on a drum with a revolute base and a loaded free end:
@@ -80,6 +85,55 @@ fn tangent_is_the_derivative_of_the_forces() {
                     "row {r} column {i}: {numeric} {}",
                     column[r]
                 );
+            }
+        }
+    }
+}
+
+/// Places and rates apart, then their sum: the tangents that each would be alone, in the plane and in
+/// space.
+#[test]
+fn tangents_of_a_stage_are_those_of_each_alone() {
+    let drive = Drive {
+        start: 1.0,
+        ramp: 1.0,
+        speed: 0.5,
+    };
+    let plane = Machine::new(reference::description(), 2).unwrap();
+    for machine in [plane.clone(), plane.in_space()] {
+        let ropes = machine.ropes(&reference::law());
+        let mut system = System::new(Individual::new(&machine, ropes, drive));
+        let state = system.equations.drive_state(0.0);
+        let mut q = guess(&machine, &ropes, &state).unwrap();
+        let n = q.len();
+        let wave = |i: usize, k: f64| (k * i as f64 + 0.3).sin();
+        for (i, q) in q.iter_mut().enumerate() {
+            *q += 1e-5 * wave(i, 12.9898);
+        }
+        let v: Vec<f64> = (0..n).map(|i| 0.05 * wave(i, 78.233)).collect();
+        let a: Vec<f64> = (0..n).map(|i| wave(i, 3.7)).collect();
+        let mut force = vec![0.0; n];
+        let shift = Shift {
+            mass: 1600.0,
+            damping: 40.0,
+        };
+        let mut matrices: [_; 5] = std::array::from_fn(|_| system.equations.matrix());
+        let mut loads = system.forces(StateRef::new(0.0, &q, &v), &mut force);
+        let [alone, both, pair @ ..] = &mut matrices;
+        loads.exact_tangent(&a, Shift::NONE, alone);
+        loads.exact_tangent(&a, shift, both);
+        // one that was used is filled as a new one is
+        let [stiffness, room, matrix] = pair;
+        loads.exact_tangents(&a, shift, [&mut *stiffness, &mut *room, &mut *matrix]);
+        matrix.factorize().unwrap();
+        loads.exact_tangents(&a, shift, [&mut *stiffness, room, &mut *matrix]);
+        let x: Vec<f64> = (0..n).map(|i| wave(i, 1.1)).collect();
+        for (expected, found) in [(alone, stiffness), (both, matrix)] {
+            let [expected, found] = [expected, found].map(|matrix| matrix.product(&x));
+            let size = expected.iter().fold(0.0, |size: f64, x| size.max(x.abs()));
+            for (i, (expected, found)) in expected.iter().zip(&found).enumerate() {
+                let apart = (expected - found).abs();
+                assert!(apart < 1e-12 * size, "{i}: {expected} {found}");
             }
         }
     }
