@@ -58,6 +58,14 @@ impl ImpactForce {
     }
 }
 
+/// What a contact force has a closed derivative by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum By {
+    Stiffness,
+    Damping,
+    Penetration,
+}
+
 impl Impact {
     /// The law at one place, without branches: where there is no contact, the penetration counts as
     /// zero. `power` is the penetration to the law's exponent.
@@ -82,6 +90,15 @@ impl Impact {
             spring,
             step,
             slope: 6.0 * u * (1.0 - u) / self.full_damping_penetration,
+        }
+    }
+
+    /// Derivative of the force by one of what it depends on; zero where nothing is pressed.
+    pub(crate) fn derivative(&self, depth: f64, rate: f64, by: By) -> f64 {
+        match by {
+            By::Stiffness => self.force_by(depth, rate)[0],
+            By::Damping => self.force_by(depth, rate)[1],
+            By::Penetration => self.force(depth, rate).by_penetration,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Generalised forces, inertia, and the powers that the energy ledger adds up.
 //!
 //! The equations of motion are `M(q) a = Q(q, v, t)`; this file gives `Q` and `M a`.
+use crate::element::impact::By;
 use crate::element::plane::{PLANE_PULL, PLANE_UNITS};
 use crate::linear::Entry;
 use crate::math::elementary::sin_cos;
@@ -168,21 +169,23 @@ impl Machine {
         }
     }
 
-    /// Derivative of the contact's forces by stiffness, or by damping, of its law into `force`: of the
-    /// points that are in `scratch`, where they are pressed.
+    /// Derivative of the forces of the contact with either head, or with both, into `force`: of the points
+    /// that are in `scratch`, where they are pressed.
     pub(super) fn contact_by(
         &self,
         at: &Instant<'_>,
-        by_damping: bool,
+        (by, heads): (By, [bool; 2]),
         scratch: &mut Scratch,
         force: &mut [f64],
     ) {
         force.fill(0.0);
-        for (k, chain) in self.chains.iter().enumerate() {
+        let touching = |k: &usize| heads[self.strands[*k].rope];
+        for k in (0..self.chains.len()).filter(touching) {
+            let chain = &self.chains[k];
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             let (blocks, border) = force.split_at_mut(self.layout.beam());
             let state = &mut scratch.chains[k];
-            state.points.vary(&at.ropes.contact, by_damping);
+            state.points.vary(&at.ropes.contact, by);
             chain.add_pressed(&surface, state, blocks, border);
         }
     }

@@ -1,5 +1,6 @@
 //! A machine with one individual's ropes under its drive: equations of motion.
 use crate::drive::{Drive, DriveState};
+use crate::element::impact::By;
 use crate::element::plane::PLANE_UNITS;
 use crate::linear::{Bordered, Entry};
 use crate::math::elementary::sin_cos;
@@ -194,13 +195,13 @@ impl<'a> Individual<'a> {
         }
     }
 
-    /// Derivative of the contact's forces by stiffness, or by damping, of its law, at the points of the
-    /// last evaluation.
-    pub(crate) fn contact_by(&mut self, at: StateRef<'_>, by_damping: bool, force: &mut [f64]) {
+    /// Derivative of the forces of the contact with either head, or with both, at the points of the last
+    /// evaluation.
+    pub(crate) fn contact_by(&mut self, at: StateRef<'_>, by: (By, [bool; 2]), force: &mut [f64]) {
         self.move_to(at.t);
         let instant = instant(&self.ropes, &self.at.1, at);
         self.machine
-            .contact_by(&instant, by_damping, &mut self.scratch, force);
+            .contact_by(&instant, by, &mut self.scratch, force);
     }
 
     /// Lets laws with a past remember an accepted state.

@@ -4,6 +4,7 @@ use super::differences::Difference;
 use super::plan::Way;
 use super::side::Side;
 use super::source::{Joints, ROPES, Source};
+use crate::element::impact::By;
 use crate::integrator::dense::interpolate;
 use crate::model::description::RopeLaw;
 use crate::model::hook::Sampled;
@@ -59,13 +60,13 @@ impl<'a> Active<'a> {
                 let factor = LN_10 * *coefficient.of(&mut law.clone());
                 let source = match coefficient {
                     // laws along a rope ask for its stiffness, and remember
-                    _ if machine.hooks.has_axial() => Source::Difference(ROPES, false),
+                    _ if machine.hooks.has_axial() => Source::Difference(ROPES, false, None),
                     Coefficient::Kc => Source::Contact {
-                        by_damping: false,
+                        by: By::Stiffness,
                         factor: LN_10 * machine.ropes(law).contact.stiffness,
                     },
                     Coefficient::Cc => Source::Contact {
-                        by_damping: true,
+                        by: By::Damping,
                         factor: LN_10 * machine.ropes(law).contact.damping,
                     },
                     Coefficient::Kb1
@@ -100,8 +101,13 @@ impl<'a> Active<'a> {
                 difference,
                 differing,
             } => {
+                let radius = |machine: &Machine| machine.description.front_arc.radius;
+                let each = machines.iter().zip(difference.weights);
+                let change = each.map(|(beside, weight)| weight * radius(beside));
+                let raised = difference.own * radius(machine) + change.sum::<f64>();
+                let raised = differing.raised.then_some(raised);
                 let source = differing.terms.map_or(Source::Nothing, |(terms, inertia)| {
-                    Source::Difference(terms, inertia)
+                    Source::Difference(terms, inertia, raised)
                 });
                 let mut all = machines.iter().chain([machine]);
                 let read = all.any(|machine| machine.hooks.has_readings());
@@ -150,8 +156,9 @@ impl<'a> Active<'a> {
                     add(joints.factor * pull, by);
                 }
             }
-            (Source::Contact { by_damping, factor }, Some(gradient), _) => {
-                add(*factor, &gradient.by_contact[usize::from(*by_damping)]);
+            (Source::Contact { by, factor }, Some(gradient), _) => {
+                let by_damping = usize::from(*by == By::Damping);
+                add(*factor, &gradient.by_contact[by_damping]);
             }
             (Source::Nothing, _, Some(known)) => {
                 add(own, &sample.own);
@@ -216,7 +223,7 @@ impl<'a> Active<'a> {
     /// machines move; those without a motion come last and are not in the blocks.
     pub(super) const fn order(&self) -> u8 {
         match self.source {
-            Source::Contact { .. } => 0,
+            Source::Contact { .. } | Source::Difference(.., Some(_)) => 0,
             // what turns nothing in the plane: side by side they stay where they are
             Source::Joints(ref joints) if joints.inner.is_none() => 2,
             Source::Joints(_) | Source::Pieces(_) | Source::Difference(..) => 1,

@@ -5,8 +5,9 @@
 use super::differences::Difference;
 use super::side::Side;
 use crate::effect::Place;
+use crate::element::impact::By;
 use crate::element::plane::PLANE_UNITS;
-use crate::model::description::Head;
+use crate::model::description::{Arc, Head};
 use crate::model::forces::Terms;
 use crate::model::hook::Hooks;
 use crate::model::{Individual, Machine};
@@ -19,15 +20,16 @@ pub(super) enum Source<'a> {
     Joints(Box<Joints<'a>>),
     /// Times a factor, the contact's derivative by its stiffness, or by its damping.
     Contact {
-        /// By which.
-        by_damping: bool,
+        /// By stiffness or by damping.
+        by: By,
         /// The factor.
         factor: f64,
     },
     /// What pieces of amplitude 1 say.
     Pieces(&'a Hooks),
-    /// A difference between machines: of so many terms, of inertia or not.
-    Difference(Terms, bool),
+    /// A difference between machines: of so many terms, of inertia or not, and the contact's derivative by
+    /// the radius of the front head times that of the radius.
+    Difference(Terms, bool, Option<f64>),
     /// The motion does not know of the parameter.
     Nothing,
 }
@@ -48,6 +50,8 @@ pub(super) struct Joints<'a> {
 pub(super) struct Differing {
     /// Terms of its forces, and whether its inertia.
     pub(super) terms: Option<(Terms, bool)>,
+    /// Whether the arc of the front head has another radius, and is the same otherwise.
+    pub(super) raised: bool,
     /// Whether its head answers a given state with another stress, or another time belongs to a sample.
     pub(super) stress: bool,
 }
@@ -68,7 +72,12 @@ impl Differing {
         let driven = place == Place::Drive || any(Hooks::has_warps);
         let both = d.twins != o.twins || d.rope != o.rope;
         let back = d.back_arc != o.back_arc || head || !own.hooks.digs_as(&beside.hooks);
-        let contact = [back || both, d.front_arc != o.front_arc || both];
+        let moved = Arc {
+            radius: d.front_arc.radius,
+            ..o.front_arc
+        };
+        let front = d.front_arc != moved || both;
+        let contact = [back || both, front];
         let joints = d.rope != o.rope;
         let terms = Terms {
             rigid: true,
@@ -84,7 +93,8 @@ impl Differing {
         let still = place == Place::Gauge && !built && !joints && !terms.pulls && !touching;
         Self {
             terms: (!still).then_some((terms, inertia)),
-            stress: built || driven || touching,
+            raised: !front && d.front_arc != o.front_arc,
+            stress: back || both || driven,
         }
     }
 }
@@ -133,12 +143,12 @@ impl Source<'_> {
                 }
                 scale(sum, *factor);
             }
-            Self::Contact { by_damping, factor } => {
-                individual.contact_by(at, *by_damping, sum);
+            Self::Contact { by, factor } => {
+                individual.contact_by(at, (*by, [true; 2]), sum);
                 scale(sum, *factor);
             }
             Self::Pieces(hooks) => individual.forces_of(hooks, at, units, sum),
-            Self::Difference(terms, inertia) => {
+            Self::Difference(terms, inertia, raised) => {
                 sum.fill(0.0);
                 let asked = (*terms, *inertia);
                 let scratch = &mut individual.scratch;
@@ -149,6 +159,10 @@ impl Source<'_> {
                 for (side, weight) in sides.iter_mut().zip(difference.weights) {
                     side.residual(scratch, state, asked, one);
                     add(sum, weight, one);
+                }
+                if let Some(factor) = raised {
+                    individual.contact_by(at, (By::Penetration, [false, true]), one);
+                    add(sum, *factor, one);
                 }
             }
             Self::Nothing => sum.fill(0.0),

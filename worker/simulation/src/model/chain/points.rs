@@ -3,7 +3,7 @@
 //! vectors. Here alone are the geometry of contact and its law evaluated: forces, tangent and energy
 //! read what stands here.
 use super::parts::Chain;
-use crate::element::impact::{Impact, ImpactForce};
+use crate::element::impact::{By, Impact, ImpactForce};
 use crate::math::spline::{Place, sum::Spread};
 use crate::model::contact::{Curvature, POINTS, Surface, small_angle};
 use crate::model::pose::InPlane;
@@ -135,14 +135,14 @@ impl Points {
         );
     }
 
-    /// Puts the derivatives of the forces by the law's stiffness, or by its damping, in their place.
-    pub(crate) fn vary(&mut self, law: &Impact, by_damping: bool) {
+    /// Puts the derivatives of the forces in their place.
+    pub(crate) fn vary(&mut self, law: &Impact, by: By) {
         let n = self.cylinders.len();
         let force = self.force[..n].as_flattened_mut();
         let at = self.depth[..n].as_flattened().iter();
         for (force, (&depth, &rate)) in force.iter_mut().zip(at.zip(self.rate[..n].as_flattened()))
         {
-            *force = law.force_by(depth, rate)[usize::from(by_damping)];
+            *force = law.derivative(depth, rate, by);
         }
     }
 
