@@ -46,6 +46,7 @@ const GATED: &[(&str, &[&str])] = &[
         &["simulation", "search", "discrepancy", "oscillator"],
     ),
     ("faer", &["simulation"]),
+    ("pulp", &["simulation"]),
     ("rusqlite", &["coordinator"]),
     ("parquet", &["coordinator"]),
 ];
