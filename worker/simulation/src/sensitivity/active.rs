@@ -29,6 +29,14 @@ pub(super) struct Sample<'s> {
     pub(super) turned: (&'s RunSettings, usize),
 }
 
+/// Derivative of the front head's radius by a parameter.
+fn raised(own: &Machine, beside: &[Machine; 2], difference: &Difference) -> f64 {
+    let radius = |machine: &Machine| machine.description.front_arc.radius;
+    let each = beside.iter().zip(difference.weights);
+    let change = each.map(|(beside, weight)| weight * radius(beside));
+    difference.own * radius(own) + change.sum::<f64>()
+}
+
 /// A column that is worked out.
 pub(super) struct Active<'a> {
     /// Its place in the plan.
@@ -101,11 +109,9 @@ impl<'a> Active<'a> {
                 difference,
                 differing,
             } => {
-                let radius = |machine: &Machine| machine.description.front_arc.radius;
-                let each = machines.iter().zip(difference.weights);
-                let change = each.map(|(beside, weight)| weight * radius(beside));
-                let raised = difference.own * radius(machine) + change.sum::<f64>();
-                let raised = differing.raised.then_some(raised);
+                let raised = differing
+                    .raised
+                    .then(|| raised(machine, machines, difference));
                 let source = differing.terms.map_or(Source::Nothing, |(terms, inertia)| {
                     Source::Difference(terms, inertia, raised)
                 });

@@ -16,6 +16,7 @@ mod effect;
 mod energy;
 mod forced;
 mod frame;
+mod implicit;
 mod order;
 mod plane;
 mod reference;

@@ -117,6 +117,27 @@ pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>)
     (system, q)
 }
 
+/// A chain of 5 m bowed down between two places at one height, 4 m apart: the arc of the right length,
+/// `sin(bow) / bow = b / S`.
+pub(crate) fn bowed(count: usize, span: f64) -> Vec<f64> {
+    let bow = 1.131_102_f64;
+    let arc = 0.5 * 0.05 * count as f64 / bow;
+    (0..count)
+        .flat_map(|j| {
+            let angle = bow * ((2 * j + 1) as f64 / count as f64 - 1.0);
+            let (s, c) = angle.sin_cos();
+            [
+                0.5 * span + arc * s,
+                arc * (bow.cos() - c),
+                0.0,
+                0.0,
+                0.0,
+                angle,
+            ]
+        })
+        .collect()
+}
+
 /// Static equilibrium from a straight chain along +x.
 pub(crate) fn settled_straight(setup: &Setup) -> (System<Rig>, Vec<f64>) {
     let q = Rig::new(*setup).straight(V3::zeros(), 0.0);

@@ -35,24 +35,7 @@ fn catenary(law: &Bushing) {
         ends: [pin(0.0), pin(span)],
         ..cantilever(count, law)
     };
-    // from an arc of the right length: sin(bow) / bow = b / S
-    let bow = 1.131_102_f64;
-    let arc = 0.5 * length / bow;
-    let q = (0..count)
-        .flat_map(|j| {
-            let angle = bow * ((2 * j + 1) as f64 / count as f64 - 1.0);
-            let (s, c) = angle.sin_cos();
-            [
-                0.5 * span + arc * s,
-                arc * (bow.cos() - c),
-                0.0,
-                0.0,
-                0.0,
-                angle,
-            ]
-        })
-        .collect();
-    let (system, q) = settled(&setup, q);
+    let (system, q) = settled(&setup, bowed(count, span));
 
     // the string stretches by the mean of its tension, w sqrt(a^2 + s^2): 2e-4 of its length
     let weight = setup.chain.mass * 9.81 / 0.05;
