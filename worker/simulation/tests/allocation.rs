@@ -1,4 +1,9 @@
 //! What a simulation takes of the heap: nothing in a step, little in all.
+#![expect(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "helpers of tests; what was measured is printed"
+)]
 use simulation::effect::{Role, catalogue};
 use simulation::integrator::method::CATALOGUE;
 use simulation::model::description::Description;

@@ -37,6 +37,45 @@ fn raised(own: &Machine, beside: &[Machine; 2], difference: &Difference) -> f64 
     difference.own * radius(own) + change.sum::<f64>()
 }
 
+/// How the derivative of the forces by the decimal logarithm of a coefficient comes about.
+fn by_coefficient<'a>(
+    (machine, law): (&'a Machine, &RopeLaw),
+    settings: &RunSettings,
+    coefficient: Coefficient,
+) -> Source<'a> {
+    let factor = LN_10 * *coefficient.of(&mut law.clone());
+    match coefficient {
+        // laws along a rope ask for its stiffness, and remember
+        _ if machine.hooks.has_axial() => Source::Difference(ROPES, false, None),
+        Coefficient::Kc => Source::Contact {
+            by: By::Stiffness,
+            factor: LN_10 * machine.ropes(law).contact.stiffness,
+        },
+        Coefficient::Cc => Source::Contact {
+            by: By::Damping,
+            factor: LN_10 * machine.ropes(law).contact.damping,
+        },
+        Coefficient::Kb1
+        | Coefficient::Kb23
+        | Coefficient::Kb4
+        | Coefficient::Kb56
+        | Coefficient::Cb1
+        | Coefficient::Cb23
+        | Coefficient::Cb4
+        | Coefficient::Cb56 => {
+            let ropes = machine.ropes(&coefficient.unit(law));
+            let unit = Side::new(machine, ropes, settings.drive(machine));
+            let coefficients = unit.inner().plane_coefficients();
+            let which = coefficients.iter().position(|x| *x != 0.0);
+            Source::Joints(Box::new(Joints {
+                unit,
+                factor,
+                inner: which.map(|k| (k, coefficients[k])),
+            }))
+        }
+    }
+}
+
 /// A column that is worked out.
 pub(super) struct Active<'a> {
     /// Its place in the plan.
@@ -65,36 +104,7 @@ impl<'a> Active<'a> {
             Way::Coefficient(coefficient) => {
                 let difference = Difference::decades(machine.hooks.has_axial());
                 let moved = |step| side(machine, &coefficient.moved(law, step));
-                let factor = LN_10 * *coefficient.of(&mut law.clone());
-                let source = match coefficient {
-                    // laws along a rope ask for its stiffness, and remember
-                    _ if machine.hooks.has_axial() => Source::Difference(ROPES, false, None),
-                    Coefficient::Kc => Source::Contact {
-                        by: By::Stiffness,
-                        factor: LN_10 * machine.ropes(law).contact.stiffness,
-                    },
-                    Coefficient::Cc => Source::Contact {
-                        by: By::Damping,
-                        factor: LN_10 * machine.ropes(law).contact.damping,
-                    },
-                    Coefficient::Kb1
-                    | Coefficient::Kb23
-                    | Coefficient::Kb4
-                    | Coefficient::Kb56
-                    | Coefficient::Cb1
-                    | Coefficient::Cb23
-                    | Coefficient::Cb4
-                    | Coefficient::Cb56 => {
-                        let unit = side(machine, &coefficient.unit(law));
-                        let coefficients = unit.inner().plane_coefficients();
-                        let which = coefficients.iter().position(|x| *x != 0.0);
-                        Source::Joints(Box::new(Joints {
-                            unit,
-                            factor,
-                            inner: which.map(|k| (k, coefficients[k])),
-                        }))
-                    }
-                };
+                let source = by_coefficient((machine, law), settings, *coefficient);
                 Some(Self {
                     column,
                     source,
