@@ -64,11 +64,11 @@ fn bending(law: &Bushing) -> Bushing {
 
 /// What the coordinates of an equilibrium do per decade of whatever the forces of `part` are
 /// proportional to.
-fn column(system: &mut System<Rig>, q: &[f64], part: Setup) -> Vec<f64> {
+fn column(system: &mut System<Rig>, q: &[f64], part: &Setup) -> Vec<f64> {
     let still = vec![0.0; q.len()];
     let at = StateRef::new(0.0, q, &still);
     let mut right = still.clone();
-    System::new(Rig::new(part)).forces(at, &mut right);
+    System::new(Rig::new(*part)).forces(at, &mut right);
     let mut force = still.clone();
     let mut factor = system.equations.matrix();
     let mut loads = system.forces(at, &mut force);
@@ -102,12 +102,12 @@ fn cantilever_by_bending_by_shear_and_by_load() {
     let by_shear = load * count as f64 / law.stiffness[1];
     let last = 6 * (count - 1);
     let tip = |x: &[f64]| x[last + 1] + 0.025 * x[last + 5];
-    let mut of = |part: Setup| tip(&column(&mut system, &q, part));
-    let found = of(with(&setup, bending, 0.0));
+    let mut of = |part: &Setup| tip(&column(&mut system, &q, part));
+    let found = of(&with(&setup, bending, 0.0));
     close(found, -LN_10 * by_bending, 1e-6, "bending");
-    let found = of(with(&setup, shear, 0.0));
+    let found = of(&with(&setup, shear, 0.0));
     close(found, -LN_10 * by_shear, 1e-3, "shear");
-    let found = of(with(&setup, |_| NONE, 1.0));
+    let found = of(&with(&setup, |_| NONE, 1.0));
     close(found, LN_10 * (by_bending + by_shear), 1e-6, "load");
 }
 
@@ -136,10 +136,10 @@ fn string_by_stiffness_and_by_load() {
     let weight = setup.chain.mass * 0.0981 * count as f64 / span;
     let sag = -weight * span * span / (8.0 * law.stiffness[0] * stretch);
     close(q[middle], sag, 1e-3, "sag");
-    let found = column(&mut system, &q, with(&setup, axial, 0.0))[middle];
+    let found = column(&mut system, &q, &with(&setup, axial, 0.0))[middle];
     // the tension's share of the shear stiffness is 1e-3
     close(found, -LN_10 * q[middle], 2e-3, "stiffness");
-    let found = column(&mut system, &q, with(&setup, |_| NONE, 1.0))[middle];
+    let found = column(&mut system, &q, &with(&setup, |_| NONE, 1.0))[middle];
     close(found, LN_10 * q[middle], 1e-3, "load");
 }
 
@@ -160,10 +160,10 @@ fn catenary_by_stiffness_and_by_load() {
         ..cantilever(count, law)
     };
     let (mut system, q) = settled(&setup, bowed(count, span));
-    let mut of = |part: Setup| column(&mut system, &q, part);
-    let by_axial = of(with(&setup, axial, 0.0));
-    let by_load = of(with(&setup, |_| NONE, 1.0));
-    let others = [shear, bending].map(|part| of(with(&setup, part, 0.0)));
+    let mut of = |part: &Setup| column(&mut system, &q, part);
+    let by_axial = of(&with(&setup, axial, 0.0));
+    let by_load = of(&with(&setup, |_| NONE, 1.0));
+    let others = [shear, bending].map(|part| of(&with(&setup, part, 0.0)));
     let size = by_axial.iter().fold(0.0_f64, |size, x| size.max(x.abs()));
     for (i, (load, axial)) in by_load.iter().zip(&by_axial).enumerate() {
         let rest = load + axial + others[0][i] + others[1][i];
