@@ -3,7 +3,7 @@
 //! A worker differentiates by an unknown of the case, or by a parameter of an effect, per decade or per
 //! unit; a search counts coordinates. What is tied to an unknown changes with it.
 use crate::space::Space;
-use protocol::job::{Column, Per};
+use protocol::job::{Column, Derivative, Per};
 use std::f64::consts::LN_10;
 
 /// A column, and how much of it there is in the change by a coordinate.
@@ -23,6 +23,23 @@ impl Term {
         match per {
             Per::Decade => self.rate / (self.value * LN_10),
             Per::Unit(_) => self.rate,
+        }
+    }
+
+    /// Adds its part to a change of a curve, which is the one of this place among the derivative's; nothing
+    /// where that is not known.
+    pub fn add(&self, by: &Derivative, place: usize, sum: &mut [f64]) -> Option<()> {
+        match by {
+            Derivative::Curves { per, curves } => {
+                let own = curves.get(place).filter(|own| own.len() == sum.len())?;
+                let factor = self.factor(per);
+                for (sum, x) in sum.iter_mut().zip(own) {
+                    *sum += factor * f64::from(*x);
+                }
+                Some(())
+            }
+            Derivative::Nothing { .. } => Some(()),
+            Derivative::Missing { .. } => None,
         }
     }
 }

@@ -76,3 +76,12 @@ impl Derivative {
         columns.iter().map(none).collect()
     }
 }
+
+/// A curve in the precision in which derivatives travel.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "derivatives travel in single precision"
+)]
+pub fn single(curve: impl IntoIterator<Item = f64>) -> Vec<f32> {
+    curve.into_iter().map(|x| x as f32).collect()
+}

@@ -21,7 +21,7 @@ mod word;
 
 pub use channels::Observation;
 pub use curves::Curves;
-pub use derivative::{Column, Derivative, MOST_COLUMNS, Per};
+pub use derivative::{Column, Derivative, MOST_COLUMNS, Per, single};
 pub use failure::{Failure, WrongKind};
 pub use score::{ChannelScore, Evaluation};
 pub use simulate::{Individual, Numerics, Reply, SimulateSpec};

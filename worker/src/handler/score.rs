@@ -3,7 +3,9 @@
 //! A run that fails is graded: every complete run beats a failure in motion (the later the
 //! better), which beats a failure under static load (the more load carried the better).
 use protocol::case::{Case, ChannelRecord, Objective, Offset, Term};
-use protocol::job::{ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict};
+use protocol::job::{
+    ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict, single,
+};
 
 /// Fitness of a failure in motion just before the end, and under load just before full load; far
 /// above the error of any run that completes.
@@ -178,20 +180,12 @@ fn residual_by(objective: &Objective, names: &[&str], by: &Derivative) -> Deriva
         };
         let scale = (term.weight / n).sqrt();
         // measured less simulated
-        all.extend(curve.map(|x| single(scale * (removed - x))));
+        all.extend(single(curve.map(|x| scale * (removed - x))));
     }
     Derivative::Curves {
         per: per.clone(),
         curves: vec![all],
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "derivatives travel in single precision"
-)]
-const fn single(x: f64) -> f32 {
-    x as f32
 }
 
 #[cfg(test)]
@@ -241,7 +235,7 @@ mod tests {
         };
         let derivative = Derivative::Curves {
             per: Per::Decade,
-            curves: curves.map(|c| c.map(single).to_vec()).to_vec(),
+            curves: curves.map(single).to_vec(),
         };
         for offset in [Offset::Free, Offset::Fixed] {
             let objective = Objective {

@@ -5,8 +5,8 @@ use super::{
     reply::megapascals,
 };
 use protocol::{
-    case::{Case, Channel, EffectSetting, merged},
-    job::{self, Derivative, Failure, MOST_COLUMNS, Per, SimulateSpec},
+    case::{Case, Channel, merged},
+    job::{self, Derivative, Failure, MOST_COLUMNS, Per, SimulateSpec, single},
     pumping_unit::{self, PumpingUnit, Sensor},
 };
 use simulation::{
@@ -46,7 +46,7 @@ impl Columns {
         let description = description(&unit.machine, working)?;
         let own = effect::of_individual(&unit.case, &individual.genes)?;
         let effects = merged(&own, &individual.effects);
-        let effects: Vec<Asked<'_>> = effects.iter().map(asked).collect();
+        let effects: Vec<Asked<'_>> = effects.iter().map(effect::asked).collect();
         let columns = spec.columns.iter().enumerate().map(named);
         let columns: Vec<(Column, Per)> = columns.collect::<Result<_, _>>()?;
         let (columns, per): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
@@ -71,14 +71,6 @@ impl Columns {
         let each = found.columns.into_iter().zip(self.per);
         each.map(|(column, per)| derivative(&channels, column, per))
             .collect()
-    }
-}
-
-fn asked(setting: &EffectSetting) -> Asked<'_> {
-    let parameters = setting.parameters.iter();
-    Asked {
-        id: &setting.id,
-        parameters: parameters.map(|(name, x)| (&**name, *x)).collect(),
     }
 }
 
@@ -131,10 +123,10 @@ fn derivative(channels: &[&Channel], column: sensitivity::Derivative, per: Per) 
         sensitivity::Derivative::Curves(changes) => {
             let curve = |channel: &&Channel| match Sensor::named(&channel.name) {
                 Some(Sensor::Gauge(number)) => {
-                    single(&megapascals(&changes.gauge[usize::from(number) - 1]))
+                    single(megapascals(&changes.gauge[usize::from(number) - 1]))
                 }
-                Some(Sensor::Position) => single(&changes.suspension),
-                Some(Sensor::Torque) => single(&changes.torque),
+                Some(Sensor::Position) => single(changes.suspension.iter().copied()),
+                Some(Sensor::Torque) => single(changes.torque.iter().copied()),
                 None => Vec::new(),
             };
             Derivative::Curves {
@@ -147,12 +139,4 @@ fn derivative(channels: &[&Channel], column: sensitivity::Derivative, per: Per) 
             reason: missing.to_string(),
         },
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "derivatives travel in single precision"
-)]
-fn single(curve: &[f64]) -> Vec<f32> {
-    curve.iter().map(|&x| x as f32).collect()
 }

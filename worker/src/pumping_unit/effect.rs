@@ -44,23 +44,22 @@ fn parameter(p: &effect::Parameter) -> ParameterDescriptor {
     }
 }
 
+/// A setting in the words of the dynamics.
+pub(super) fn asked(setting: &EffectSetting) -> Asked<'_> {
+    let parameters = setting.parameters.iter();
+    Asked {
+        id: &setting.id,
+        parameters: parameters.map(|(name, x)| (&**name, *x)).collect(),
+    }
+}
+
 /// Settings checked against the catalogue.
 ///
 /// # Errors
 /// [`Failure::Misconfigured`] naming the effect or its parameter by its place in the list, and the
 /// nearest known name.
 pub(super) fn selection(settings: &[EffectSetting]) -> Result<Selection, Failure> {
-    let asked: Vec<Asked<'_>> = settings
-        .iter()
-        .map(|setting| Asked {
-            id: &setting.id,
-            parameters: setting
-                .parameters
-                .iter()
-                .map(|(name, value)| (name.as_str(), *value))
-                .collect(),
-        })
-        .collect();
+    let asked: Vec<Asked<'_>> = settings.iter().map(asked).collect();
     Selection::new(&asked).map_err(|refused| {
         let place = format!("effects[{}]", refused.effect());
         let field = match refused.parameter() {

@@ -3,7 +3,7 @@
 //! Unknowns of the case count by the coordinates of their space, parameters of effects by their scales.
 use crate::model::parameter::setting;
 use crate::model::unknowns::{Model, Point};
-use crate::record::measured::{Curves, Record, Recorded};
+use crate::record::measured::{Curves, Record};
 use protocol::announce::EffectDescriptor;
 use protocol::job::{Column, Derivative};
 use search::derivative::Term;
@@ -96,34 +96,71 @@ impl Wanted {
     ) -> Vec<Option<Curves>> {
         let mut columns = columns.iter();
         let change = |terms: &Vec<Term>| {
-            let mut sum: Option<Curves> = Some(like.iter().map(|c| vec![0.0; c.len()]).collect());
-            for (term, column) in terms.iter().zip(columns.by_ref()) {
-                sum = sum.and_then(|sum| added(sum, term, column, record));
+            let mut sum: Curves = like.iter().map(|c| vec![0.0; c.len()]).collect();
+            let mut known = !terms.is_empty();
+            for term in terms {
+                // every term takes its column, known or not
+                let column = columns.next();
+                let mut each = sum.iter_mut().zip(&record.channels);
+                known &= column.is_some_and(|column| {
+                    each.all(|(sum, own)| term.add(column, own.curve, sum).is_some())
+                });
             }
-            sum.filter(|_| !terms.is_empty())
+            known.then_some(sum)
         };
         self.changes.iter().map(change).collect()
     }
 }
 
-/// A sum and a term; nothing where the term has no column in a channel of the record.
-fn added(mut sum: Curves, term: &Term, column: &Derivative, record: &Record) -> Option<Curves> {
-    match column {
-        Derivative::Curves { per, curves } => {
-            let factor = term.factor(per);
-            let channels: &[Recorded] = &record.channels;
-            for (sum, channel) in sum.iter_mut().zip(channels) {
-                let own = curves.get(channel.curve)?;
-                if own.len() != sum.len() {
-                    return None;
-                }
-                for (sum, x) in sum.iter_mut().zip(own) {
-                    *sum += factor * f64::from(*x);
-                }
-            }
-            Some(sum)
-        }
-        Derivative::Nothing { .. } => Some(sum),
-        Derivative::Missing { .. } => None,
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::measured::{Stated, tests::recorded};
+    use protocol::case::{Scale, Tie, Unknown};
+    use protocol::job::Per;
+    use search::space::Space;
+
+    /// Two unknowns that move together, and one alone: the terms of a change are taken in order, and what
+    /// lacks a column is not known, whatever stands beside it. Never zeros.
+    #[test]
+    fn what_has_no_column_is_not_known() {
+        let unknown = |name: &str| Unknown::new(name, "mm", Scale::Linear, 2.0, [0.0, 8.0]);
+        let tie = Tie {
+            to: "a".to_owned(),
+            ratio: 1.0,
+        };
+        let tied = Unknown {
+            tie: Some(tie),
+            ..unknown("b")
+        };
+        let space = Space::new(&[unknown("a"), tied, unknown("c")]).unwrap();
+        let model = Model::plain(space);
+        let x = vec![0.0, 0.0];
+        let wanted = Wanted::new(Point { model, x }, true);
+        let names: Vec<String> = wanted.columns().into_iter().map(|c| c.name).collect();
+        assert_eq!(names, ["a", "b", "c"]);
+        let record = Record {
+            condition: 0,
+            channels: vec![recorded(1)],
+            cycles: Vec::new(),
+            held_out: false,
+            stated: Stated::default(),
+        };
+        let curve = |x: f32| Derivative::Curves {
+            per: Per::Unit("mm".to_owned()),
+            curves: vec![Vec::new(), vec![x; 3]],
+        };
+        let none = || Derivative::Missing {
+            reason: "none".to_owned(),
+        };
+        let like = vec![vec![7.0; 3]];
+        let of = |columns: &[Derivative]| wanted.changes(columns, (&record, &like));
+        // a coordinate is half the interval: 4 mm
+        let change = |x: f64| Some(vec![vec![4.0 * x; 3]]);
+        let all = [curve(1.0), curve(2.0), curve(5.0)];
+        assert_eq!(of(&all), [change(3.0), change(5.0)]);
+        assert_eq!(of(&[none(), curve(2.0), curve(5.0)]), [None, change(5.0)]);
+        assert_eq!(of(&all[..2]), [change(3.0), None]);
+        assert_eq!(of(&[]), [None, None]);
     }
 }

@@ -15,7 +15,6 @@ use crate::{
     space::Space,
 };
 use nalgebra::DVector;
-use protocol::job::Derivative;
 use serde::{Deserialize, Serialize};
 
 /// A descent of the residual vector.
@@ -148,17 +147,8 @@ fn columns(space: &Space, genes: &[f64], residual: &Residual) -> Vec<Option<DVec
     let column = |axis: usize| {
         let mut sum = DVector::zeros(residual.values.len());
         for term in terms(space, axis, &x, genes) {
-            match residual.by.get(&term.column.name)? {
-                Derivative::Curves { per, curves } => {
-                    let own = curves.first().filter(|own| own.len() == sum.len())?;
-                    let factor = term.factor(per);
-                    for (sum, x) in sum.iter_mut().zip(own) {
-                        *sum += factor * f64::from(*x);
-                    }
-                }
-                Derivative::Nothing { .. } => {}
-                Derivative::Missing { .. } => return None,
-            }
+            let by = residual.by.get(&term.column.name)?;
+            term.add(by, 0, sum.as_mut_slice())?;
         }
         Some(sum)
     };

@@ -49,12 +49,8 @@ impl Lanes {
     )]
     #[inline(always)]
     pub fn subtract_scaled<S: Simd>(&mut self, simd: S, x: &Self, factor: f64) {
-        let factor = simd.splat_f64s(factor);
-        let (x, _) = S::as_simd_f64s(&x.0);
-        let (sum, _) = S::as_mut_simd_f64s(&mut self.0);
-        for (sum, x) in sum.iter_mut().zip(x) {
-            *sum = simd.sub_f64s(*sum, simd.mul_f64s(*x, factor));
-        }
+        // a sign costs no digit
+        self.add_scaled(simd, x, -factor);
     }
 
     /// `factor self`.

@@ -26,48 +26,55 @@ pub(super) fn add_column(
     }
 }
 
+/// Columns of coordinate `i` at a place between two ends: of itself and of its rate.
+fn at([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> [Lanes; 2] {
+    let [f0, f1] = weights.value;
+    let [g0, g1] = weights.slope;
+    [
+        from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1,
+        from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1,
+    ]
+}
+
+/// The same of its acceleration.
+fn acceleration([from, to]: [&Motion; 2], weights: &Weights, i: usize) -> Lanes {
+    let [r, s] = weights.linear;
+    from.a[i] * r + to.a[i] * s
+}
+
 /// Derivatives of the suspension's coordinate `height` and of the torque along the columns between two
 /// ends.
 pub(super) fn shaft(
-    [from, to]: [&Motion; 2],
+    ends: [&Motion; 2],
     weights: &Weights,
     height: usize,
     torque: &TorqueBy,
 ) -> [Lanes; 2] {
-    let [f0, f1] = weights.value;
-    let [g0, g1] = weights.slope;
-    let [r, s] = weights.linear;
-    let place = |i: usize| from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1;
     let mut sum = Lanes::default();
     for (i, [by_place, by_rate, by_acceleration]) in &torque.0 {
-        let i = *i;
-        let v = from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1;
-        let a = from.a[i] * r + to.a[i] * s;
-        sum += place(i) * *by_place + v * *by_rate + a * *by_acceleration;
+        let [q, v] = at(ends, weights, *i);
+        let a = acceleration(ends, weights, *i);
+        sum += q * *by_place + v * *by_rate + a * *by_acceleration;
     }
-    [place(height), sum]
+    let [height, _] = at(ends, weights, height);
+    [height, sum]
 }
 
 /// Derivatives of the gauges' stress along the columns between two ends.
 pub(super) fn stress(
-    [from, to]: [&Motion; 2],
+    ends: [&Motion; 2],
     weights: &Weights,
     gradient: &Gradient,
     beam: usize,
 ) -> [Lanes; 4] {
-    let [f0, f1] = weights.value;
-    let [g0, g1] = weights.slope;
-    let [r, s] = weights.linear;
     let mut sum = [Lanes::default(); 4];
     for (i, [by_place, by_rate]) in &gradient.entries {
-        let i = *i;
-        let q = from.q[i] * f0 + to.q[i] * f1 + from.v[i] * g0 + to.v[i] * g1;
-        let v = from.v[i] * f0 + to.v[i] * f1 + from.a[i] * g0 + to.a[i] * g1;
+        let [q, v] = at(ends, weights, *i);
         for (gauge, sum) in sum.iter_mut().enumerate() {
             *sum += q * by_place[gauge] + v * by_rate[gauge];
         }
     }
-    let a = from.a[beam] * r + to.a[beam] * s;
+    let a = acceleration(ends, weights, beam);
     for (sum, by) in sum.iter_mut().zip(gradient.by_acceleration) {
         *sum += a * by;
     }

@@ -117,16 +117,7 @@ fn string_by_stiffness_and_by_load() {
     let (count, stretch) = (41, 1e-3);
     let law = string();
     let span = 0.05 * count as f64 + stretch * (count + 1) as f64;
-    let pin = |x: f64| End::Held {
-        place: V3::new(x, 0.0, 0.0),
-        angle: 0.0,
-        law: pinned(&law),
-    };
-    let setup = Setup {
-        gravity: V3::new(0.0, -0.0981, 0.0),
-        ends: [pin(0.0), pin(span)],
-        ..cantilever(count, law)
-    };
+    let setup = strung(count, law, span, 0.0981);
     let q = (0..count).flat_map(|j| {
         let x = 0.025 + stretch + (0.05 + stretch) * j as f64;
         [x, 0.0, 0.0, 0.0, 0.0, 0.0]
@@ -149,16 +140,7 @@ fn string_by_stiffness_and_by_load() {
 fn catenary_by_stiffness_and_by_load() {
     let (count, span) = (100, 4.0_f64);
     let law = string();
-    let pin = |x: f64| End::Held {
-        place: V3::new(x, 0.0, 0.0),
-        angle: 0.0,
-        law: pinned(&law),
-    };
-    let setup = Setup {
-        gravity: V3::new(0.0, -9.81, 0.0),
-        ends: [pin(0.0), pin(span)],
-        ..cantilever(count, law)
-    };
+    let setup = strung(count, law, span, 9.81);
     let (mut system, q) = settled(&setup, bowed(count, span));
     let mut of = |part: &Setup| column(&mut system, &q, part);
     let by_axial = of(&with(&setup, axial, 0.0));

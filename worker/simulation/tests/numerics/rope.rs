@@ -107,6 +107,20 @@ pub(crate) fn cantilever(count: usize, law: Bushing) -> Setup {
     }
 }
 
+/// A chain between two pins so far apart on a level, under this gravity downwards [m/s2].
+pub(crate) fn strung(count: usize, law: Bushing, span: f64, gravity: f64) -> Setup {
+    let pin = |x: f64| End::Held {
+        place: V3::new(x, 0.0, 0.0),
+        angle: 0.0,
+        law: pinned(&law),
+    };
+    Setup {
+        gravity: V3::new(0.0, -gravity, 0.0),
+        ends: [pin(0.0), pin(span)],
+        ..cantilever(count, law)
+    }
+}
+
 /// Static equilibrium from coordinates `q` on.
 pub(crate) fn settled(setup: &Setup, mut q: Vec<f64>) -> (System<Rig>, Vec<f64>) {
     let mut system = System::new(Rig::new(*setup));

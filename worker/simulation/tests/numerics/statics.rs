@@ -25,16 +25,7 @@ fn preloaded_string_is_the_catenary_of_a_shorter_one() {
 fn catenary(law: &Bushing) {
     let (count, span, length) = (100, 4.0_f64, 5.0_f64);
     let law = *law;
-    let pin = |x: f64| End::Held {
-        place: V3::new(x, 0.0, 0.0),
-        angle: 0.0,
-        law: pinned(&law),
-    };
-    let setup = Setup {
-        gravity: V3::new(0.0, -9.81, 0.0),
-        ends: [pin(0.0), pin(span)],
-        ..cantilever(count, law)
-    };
+    let setup = strung(count, law, span, 9.81);
     let (system, q) = settled(&setup, bowed(count, span));
 
     // the string stretches by the mean of its tension, w sqrt(a^2 + s^2): 2e-4 of its length

@@ -132,15 +132,7 @@ fn taut_string_sounds_its_harmonics() {
     let law = string();
     let stretch = tension / law.stiffness[0] * (count + 1) as f64;
     let length = 0.05 * count as f64 + stretch;
-    let pin = |x: f64| End::Held {
-        place: V3::new(x, 0.0, 0.0),
-        angle: 0.0,
-        law: pinned(&law),
-    };
-    let setup = Setup {
-        ends: [pin(0.0), pin(length)],
-        ..cantilever(count, law)
-    };
+    let setup = strung(count, law, length, 0.0);
     let (mut system, q) = settled_straight(&setup);
     assert!((system.equations.state.tension(40) / tension - 1.0).abs() < 1e-9);
     let per_length = setup.chain.mass * count as f64 / length;
