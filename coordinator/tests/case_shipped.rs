@@ -140,19 +140,28 @@ fn the_shipped_case_has_the_figures_of_its_readme() {
 fn the_shipped_sheets_say_how_good_the_instruments_are() {
     let loaded = case::load_with_notes(&shipped(), &Overrides::default()).unwrap();
     let sheet = [
-        ("gauge_factor", 0.005),
-        ("index_deg", 0.06),
-        ("load_cell", 0.003),
-        ("amplifier_lag_s", 0.002),
-        ("position", 0.002),
-        ("torque", 0.005),
-        ("bearing_friction_nm", 50.0),
-        ("balance_nm", 200.0),
+        ("gauge_gain", "gain_1", 0.005),
+        ("gauge_gain", "gain_2", 0.005),
+        ("gauge_gain", "gain_3", 0.005),
+        ("gauge_gain", "gain_4", 0.005),
+        ("crank_angle_offset", "angle", 0.06),
+        ("load_cell_gain", "gain", 0.003),
+        ("amplifier_lag", "lag", 0.002),
+        ("position_gain", "gain", 0.002),
+        ("torque_gain", "gain", 0.005),
+        ("pivot_friction", "moment", 50.0),
+        ("beam_balance", "moment", 200.0),
     ];
     for record in &loaded.cycles {
-        let stated = record.stated.tolerances.iter();
-        let stated: Vec<(&str, f64)> = stated.map(|(name, of)| (name.as_str(), *of)).collect();
-        assert_eq!(stated, sheet, "as the data sheets say");
+        let nuisances = &record.stated.nuisances;
+        let stated = nuisances
+            .iter()
+            .map(|own| (&*own.id, &*own.parameter, own.deviation));
+        assert_eq!(stated.collect::<Vec<_>>(), sheet, "as the data sheets say");
+        assert!(nuisances.iter().all(|own| !own.assumed));
+        let positive = nuisances.iter().filter(|own| own.never_negative);
+        let positive: Vec<&str> = positive.map(|own| &*own.id).collect();
+        assert_eq!(positive, ["amplifier_lag", "pivot_friction"]);
     }
     let lost: Vec<u64> = facts().iter().map(|facts| facts.lost).collect();
     assert_eq!(lost, [30, 43], "as the data sheets say");

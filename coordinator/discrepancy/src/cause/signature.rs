@@ -133,9 +133,10 @@ async fn differentiate<L: Laboratory>(
     effects: &[EffectDescriptor],
     probes: &mut [Probe],
 ) -> Result<(), L::Error> {
+    let point = fit.point();
     let term = |probe: &Probe| {
         let effect = &effects[probe.effect];
-        term_of_absent(&fit.model, effect, &probe.shape, probe.size)
+        term_of_absent(&point, effect, &probe.shape, probe.size)
     };
     let terms = probes.iter().map(term).collect();
     let changes = experiments.changes(fit, terms).await?;

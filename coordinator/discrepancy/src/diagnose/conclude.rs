@@ -16,6 +16,7 @@ use crate::record::measured::Split;
 use crate::record::noise::Known;
 use crate::size::estimate::estimates;
 use crate::size::force::Force;
+use crate::size::never_exact::never_exact;
 use crate::verdict::{Findings, Ground, verdict};
 
 /// Estimates, the proof and the verdict; `split` is the calibrated condition's record.
@@ -81,6 +82,7 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.notes.extend(rejection.left);
     }
     remarks(inputs, diagnosis);
+    diagnosis.nuisances = never_exact(&after, after.misfit());
     diagnosis.after = Some(after);
     Ok(())
 }

@@ -11,6 +11,7 @@ use crate::size::data_value::LookAlikes;
 use crate::size::estimate::Estimate;
 use crate::size::force::Force;
 use crate::size::limit::Limit;
+use crate::size::never_exact::NeverExact;
 use crate::verdict::Verdict;
 
 /// A finished diagnosis.
@@ -32,6 +33,8 @@ pub struct Diagnosis {
     pub preflight_after: Option<Preflight>,
     /// Detection limits of all effects.
     pub limits: Vec<Limit>,
+    /// What the instruments are off by, beside the answer.
+    pub nuisances: Vec<NeverExact>,
     /// Effects that this record cannot tell apart, and what would.
     pub look_alikes: Vec<LookAlikes>,
     /// The recalibrated model without effects.
@@ -79,6 +82,7 @@ impl Diagnosis {
             preflight: None,
             preflight_after: None,
             limits: Vec::new(),
+            nuisances: Vec::new(),
             look_alikes: Vec::new(),
             before: None,
             after: None,

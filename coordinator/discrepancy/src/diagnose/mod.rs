@@ -12,6 +12,7 @@ pub use crate::size::data_value::LookAlikes;
 pub use crate::size::estimate::{Estimate, ParameterEstimate};
 pub use crate::size::force::Force;
 pub use crate::size::limit::Limit;
+pub use crate::size::never_exact::NeverExact;
 pub use diagnosis::Diagnosis;
 
 use crate::ground::establish::establish;

@@ -10,7 +10,7 @@ use search::space::Axis;
 use search::strategy::{Plan, Told, build, preset};
 
 /// Starts for the fit: points of the search's archive, best first, that differ in the scanned unknown. The
-/// unknowns are searched; `rest` are the parameters of the model's effects, which stay.
+/// unknowns are searched; `rest` are the nuisances and the parameters of the model's effects, which stay.
 ///
 /// # Errors
 /// Those of the laboratory.

@@ -8,6 +8,7 @@ use crate::laboratory::{Laboratory, Stage};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::off::Off;
+use crate::model::tolerated::Tolerated;
 use crate::model::unknowns::{Model, Point};
 use crate::record::basis::Group;
 use crate::record::measured::{Curves, Record};
@@ -96,14 +97,16 @@ async fn first_fit<L: Laboratory>(
 ) -> Result<Option<Fit>, L::Error> {
     let model = Model {
         off: Off::of(&inputs.unknowns),
+        nuisances: Tolerated::all(&experiments.on.record.stated.nuisances, &inputs.library),
         ..Model::plain(inputs.space.clone())
     };
+    let nuisances = vec![0.0; model.standing().count()];
     let starts = match &inputs.start {
         Some(x) => vec![Point {
             model,
-            x: x.clone(),
+            x: [&x[..], &nuisances].concat(),
         }],
-        None => basin::enter(experiments, &model, &[], inputs.seed).await?,
+        None => basin::enter(experiments, &model, &nuisances, inputs.seed).await?,
     };
     let mut recalibration = experiments.during(Stage::Recalibrate);
     let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {

@@ -3,8 +3,8 @@ use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::parameter::{at_typical, sizes};
+use crate::record::input_scatter::InputScatter;
 use crate::record::measured::{Curves, difference};
-use crate::record::nuisance::Nuisance;
 use protocol::announce::EffectDescriptor;
 
 /// Curves by which cycles differ because an input of theirs did.
@@ -24,14 +24,14 @@ pub(crate) async fn input_errors<L: Laboratory>(
     let on = experiments.on;
     let cycles = (on.record.cycles.len().max(1) as f64).sqrt();
     let mut errors = Vec::new();
-    for nuisance in &on.record.stated.nuisances {
-        match nuisance {
-            Nuisance::Abscissa { tolerance } => errors.push(InputError {
+    for scatter in &on.record.stated.input_scatter {
+        match scatter {
+            InputScatter::Abscissa { tolerance } => errors.push(InputError {
                 curves: on.metric.slopes(&fit.curves),
                 // a tolerance bounds a uniform distribution
                 deviation: tolerance / 3.0_f64.sqrt() / cycles,
             }),
-            Nuisance::Effect { id, deviation } => {
+            InputScatter::Effect { id, deviation } => {
                 let Some(effect) = library.iter().find(|effect| effect.id == *id) else {
                     continue;
                 };

@@ -82,8 +82,11 @@ async fn differences<L: Laboratory>(
     let experiment = |numerics: &Numerics| point.experiment(record.condition, numerics);
     let batch = finer.iter().map(experiment).collect();
     let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
-    let less = |fine: &Curves| difference(fine, &fit.curves, 1.0);
-    Ok(seen.iter().map(|fine| fine.as_ref().map(less)).collect())
+    let less = |mut fine: Curves| {
+        point.read(record, &mut fine);
+        difference(&fine, &fit.curves, 1.0)
+    };
+    Ok(seen.into_iter().map(|fine| fine.map(less)).collect())
 }
 
 /// What a difference of the curves means beside a record, and beside a fit that absorbs a part of it.

@@ -2,6 +2,7 @@
 //!
 //! Unknowns of the case count by the coordinates of their space, parameters of effects by their scales.
 use crate::model::parameter::setting;
+use crate::model::tolerated::{Tolerated, effects, read};
 use crate::model::unknowns::{Model, Point};
 use crate::record::measured::{Curves, Record};
 use protocol::announce::EffectDescriptor;
@@ -10,8 +11,11 @@ use search::derivative::Term;
 
 /// The terms of a change by the k-th unknown of a model at a point.
 fn terms(model: &Model, x: &[f64], k: usize) -> Vec<Term> {
-    if k >= model.space.dimension() {
+    if k >= model.first_of(0) {
         return term_of_added(model, x, k).into_iter().collect();
+    }
+    if let Some((_, nuisance)) = model.placed().find(|(place, _)| *place == k) {
+        return term_of_nuisance(model, x, nuisance).into_iter().collect();
     }
     search::derivative::terms(&model.space, k, x, &model.genes(x))
 }
@@ -24,6 +28,28 @@ fn term_of_added(model: &Model, x: &[f64], k: usize) -> Option<Term> {
         column: Column::of(column_name(model, effect, &parameter.name)),
         value: parameter.absent + x[k] * parameter.scale,
         rate: parameter.scale,
+    })
+}
+
+/// Nothing of a gain, which takes no column.
+fn term_of_nuisance(model: &Model, x: &[f64], nuisance: &Tolerated) -> Option<Term> {
+    let (effect, k) = nuisance.effect()?;
+    let own = &effect.parameters[k];
+    let of_effect = model.valued(x).filter(|(one, _)| one.is(&effect.id));
+    let of_effect: Vec<(&Tolerated, f64)> = of_effect.collect();
+    let there = of_effect.iter().any(|(_, x)| *x != 0.0);
+    let (_, values) = effects(of_effect.into_iter()).pop()?;
+    Some(Term {
+        column: Column {
+            name: format!("{}.{}", effect.id, own.name),
+            values: if there {
+                Vec::new()
+            } else {
+                setting(effect, &values).parameters
+            },
+        },
+        value: own.absent + values[k] * own.scale,
+        rate: nuisance.nuisance.deviation,
     })
 }
 
@@ -42,15 +68,19 @@ fn is_off(model: &Model, effect: &EffectDescriptor) -> bool {
 }
 
 /// The change by a size of something suspected that the model does not have, at a shape: scaled values
-/// of its parameters.
+/// of its parameters. Nothing of what the point has as a nuisance.
 pub(crate) fn term_of_absent(
-    model: &Model,
+    Point { model, x }: &Point,
     effect: &EffectDescriptor,
     shape: &[f64],
     size: usize,
-) -> Term {
+) -> Option<Term> {
+    let mut nuisances = model.valued(x);
+    if nuisances.any(|(one, x)| one.is(&effect.id) && x != 0.0) {
+        return None;
+    }
     let own = &effect.parameters[size];
-    Term {
+    Some(Term {
         column: Column {
             name: column_name(model, effect, &own.name),
             values: if is_off(model, effect) {
@@ -61,14 +91,16 @@ pub(crate) fn term_of_absent(
         },
         value: own.absent,
         rate: own.scale,
-    }
+    })
 }
 
 /// A point whose curves are wanted with changes of them.
 pub(crate) struct Wanted {
     pub(crate) point: Point,
     /// The terms of each.
-    pub(crate) changes: Vec<Vec<Term>>,
+    changes: Vec<Vec<Term>>,
+    /// Whether those are the changes by all of the point's unknowns.
+    by_unknowns: bool,
 }
 
 impl Wanted {
@@ -78,7 +110,17 @@ impl Wanted {
         let changes = (0..unknowns).map(|k| terms(&point.model, &point.x, k));
         Self {
             changes: changes.collect(),
+            by_unknowns: with_changes,
             point,
+        }
+    }
+
+    /// A point and first-order changes by single terms.
+    pub(crate) fn with_terms(point: Point, terms: &[Term]) -> Self {
+        Self {
+            point,
+            changes: terms.iter().map(|term| vec![term.clone()]).collect(),
+            by_unknowns: false,
         }
     }
 
@@ -88,8 +130,33 @@ impl Wanted {
         terms.map(|term| term.column.clone()).collect()
     }
 
-    /// The changes from those columns, in the record's channels; none for one that lacks a column.
+    /// The changes from those columns, in the record's channels; none for one that lacks a column. Those of
+    /// gains follow from the curves that are simulated.
     pub(crate) fn changes(
+        &self,
+        columns: &[Derivative],
+        (record, like): (&Record, &Curves),
+    ) -> Vec<Option<Curves>> {
+        let mut changes = self.from_columns(columns, (record, like));
+        let Point { model, x } = &self.point;
+        for change in changes.iter_mut().flatten() {
+            read(model.valued(x), record, change);
+        }
+        if !self.by_unknowns {
+            return changes;
+        }
+        for (place, one) in model.placed() {
+            if let Some(channel) = one.channel(record) {
+                let mut gained: Curves = like.iter().map(|c| vec![0.0; c.len()]).collect();
+                let grown = like[channel].iter().map(|y| y * one.nuisance.deviation);
+                gained[channel] = grown.collect();
+                changes[place] = Some(gained);
+            }
+        }
+        changes
+    }
+
+    fn from_columns(
         &self,
         columns: &[Derivative],
         (record, like): (&Record, &Curves),

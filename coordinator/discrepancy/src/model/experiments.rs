@@ -59,35 +59,40 @@ impl<L: Laboratory> Experiments<'_, L> {
         let observed = self.lab.observe(self.stage, batch).await?;
         let seen = |(wanted, seen): (Wanted, Option<Observation>)| {
             let seen = seen?;
-            let curves = channels(&seen, record)?;
+            let mut curves = channels(&seen, record)?;
             let changes = wanted.changes(&seen.columns, (record, &curves));
+            wanted.point.read(record, &mut curves);
             Some(Seen { curves, changes })
         };
         Ok(wanted.into_iter().zip(observed).map(seen).collect())
     }
 
-    /// First-order changes of a fit's curves by terms of its model, as far as the laboratory knows them.
+    /// First-order changes of a fit's curves by terms of its model, as far as there is a term and the
+    /// laboratory knows them.
     pub(crate) async fn changes(
         &mut self,
         fit: &Fit,
-        terms: Vec<Term>,
+        terms: Vec<Option<Term>>,
     ) -> Result<Vec<Option<Curves>>, L::Error> {
         /// Terms of one simulation: the more, the less each costs; several occupy several slots.
         const TOGETHER: usize = 80;
+        let mut changes = vec![None; terms.len()];
         if !self.lab.differentiates() {
-            return Ok(vec![None; terms.len()]);
+            return Ok(changes);
         }
-        let together = |terms: &[Term]| Wanted {
-            point: fit.point(),
-            changes: terms.iter().map(|term| vec![term.clone()]).collect(),
-        };
+        let there = terms.into_iter().enumerate();
+        let (places, terms): (Vec<usize>, Vec<Term>) = there
+            .filter_map(|(place, term)| Some((place, term?)))
+            .unzip();
+        let together = |terms: &[Term]| Wanted::with_terms(fit.point(), terms);
         let wanted: Vec<Wanted> = terms.chunks(TOGETHER).map(together).collect();
-        let counts: Vec<usize> = terms.chunks(TOGETHER).map(<[Term]>::len).collect();
         let seen = self.seen(&self.on.record, wanted).await?;
-        let each = seen.into_iter().zip(counts);
-        Ok(each
-            .flat_map(|(seen, count)| seen.map_or_else(|| vec![None; count], |seen| seen.changes))
-            .collect())
+        for (places, seen) in places.chunks(TOGETHER).zip(seen) {
+            for (place, change) in places.iter().zip(seen.into_iter().flat_map(|s| s.changes)) {
+                changes[*place] = change;
+            }
+        }
+        Ok(changes)
     }
 
     /// Curves of a fit on a record, and their change per unit of each of its unknowns: as the laboratory

@@ -1,10 +1,12 @@
 //! The model that is fitted: the case's unknowns, and the effects that have been added to it.
 //!
-//! A point is a vector: unknowns of the case by their coordinates in the space, then the parameters of
-//! each added effect in units of their physical scale, from their absent value. What an effect does is
-//! the workers' business; here it is a name with numbers.
+//! A point is a vector: unknowns of the case by their coordinates in the space, nuisances of the record by
+//! standard deviations, then the parameters of each added effect in units of their physical scale, from
+//! their absent value. What an effect does is the workers' business; here it is a name with numbers.
 use crate::model::off::Off;
 use crate::model::parameter::{setting, variable};
+use crate::model::tolerated::{Tolerated, effects, read};
+use crate::record::measured::{Curves, Record};
 use protocol::announce::EffectDescriptor;
 use protocol::case::EffectSetting;
 use protocol::job::{Individual, Numerics, Reply, SimulateSpec};
@@ -25,6 +27,8 @@ pub struct Model {
     pub space: Space,
     /// Those of the case that are off.
     pub off: Vec<Off>,
+    /// What is never exact about the record; of these, what an added effect is does not count.
+    pub nuisances: Vec<Tolerated>,
     /// Added effects, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
 }
@@ -35,14 +39,35 @@ impl Model {
         Self {
             space,
             off: Vec::new(),
+            nuisances: Vec::new(),
             added: Vec::new(),
         }
+    }
+
+    /// Nuisances that no added effect is, in the order of their unknowns.
+    pub fn standing(&self) -> impl Iterator<Item = &Tolerated> {
+        let replaced = |one: &&Tolerated| self.added.iter().any(|effect| one.is(&effect.id));
+        self.nuisances.iter().filter(move |one| !replaced(one))
+    }
+
+    /// Those with the place of their unknown.
+    pub(crate) fn placed(&self) -> impl Iterator<Item = (usize, &Tolerated)> {
+        let first = self.space.dimension();
+        self.standing()
+            .enumerate()
+            .map(move |(k, one)| (first + k, one))
+    }
+
+    /// Those with their values at a point.
+    pub(crate) fn valued(&self, x: &[f64]) -> impl Iterator<Item = (&Tolerated, f64)> {
+        self.placed().map(|(k, one)| (one, x[k]))
     }
 
     /// Where the unknowns of an added effect begin.
     pub fn first_of(&self, position: usize) -> usize {
         let before = self.added.iter().take(position);
-        self.space.dimension() + before.map(|e| e.parameters.len()).sum::<usize>()
+        let nuisances = self.standing().count();
+        self.space.dimension() + nuisances + before.map(|e| e.parameters.len()).sum::<usize>()
     }
 
     /// The unknowns, starting at `x`; what is beyond its length starts at its typical value for a
@@ -69,7 +94,8 @@ impl Model {
             .added
             .iter()
             .flat_map(|e| e.parameters.iter().map(variable));
-        let mut all: Vec<Variable> = own.chain(effects).collect();
+        let nuisances = self.standing().map(Tolerated::variable);
+        let mut all: Vec<Variable> = own.chain(nuisances).chain(effects).collect();
         for (variable, x) in all.iter_mut().zip(x) {
             variable.start = *x;
         }
@@ -109,9 +135,21 @@ pub struct Point {
 }
 
 impl Point {
-    /// With one more effect at scaled values of its parameters.
+    /// With one more effect at scaled values of its parameters, beside what it is as a nuisance.
     #[must_use]
     pub fn with(mut self, effect: &EffectDescriptor, own: &[f64]) -> Self {
+        let mut own = own.to_vec();
+        let placed = self.model.placed().filter(|(_, one)| one.is(&effect.id));
+        let mut replaced: Vec<usize> = Vec::new();
+        for (place, one) in placed {
+            if let Some((_, k)) = one.effect() {
+                own[k] += one.in_scales(self.x[place]);
+            }
+            replaced.push(place);
+        }
+        for place in replaced.into_iter().rev() {
+            self.x.remove(place);
+        }
         self.model.added.push(effect.clone());
         self.x.extend(own);
         self
@@ -123,15 +161,30 @@ impl Point {
         let first = self.model.first_of(position);
         let effect = self.model.added.remove(position);
         self.x.drain(first..first + effect.parameters.len());
+        // what it was as a nuisance is one again
+        let placed = self.model.placed();
+        let again = placed.filter(|(_, one)| one.is(&effect.id));
+        for place in again.map(|(place, _)| place).collect::<Vec<usize>>() {
+            self.x.insert(place, 0.0);
+        }
         self
+    }
+
+    /// What a record's channels read where they would show these curves.
+    pub(crate) fn read(&self, record: &Record, curves: &mut Curves) {
+        read(self.model.valued(&self.x), record, curves);
     }
 
     /// The job that simulates it under a condition.
     pub fn experiment(&self, condition: usize, numerics: &Numerics) -> SimulateSpec {
         let Self { model, x } = self;
-        let effects = model.settings(x).filter(|(off, _)| off.is_none());
+        let added = model.settings(x).filter(|(off, _)| off.is_none());
+        let never_exact = effects(model.valued(x)).into_iter();
+        let never_exact = never_exact.map(|(effect, own)| setting(effect, &own));
         let mut individual = Individual::new(condition, model.genes(x));
-        individual.effects = effects.map(|(_, setting)| setting).collect();
+        individual.effects = never_exact
+            .chain(added.map(|(_, setting)| setting))
+            .collect();
         SimulateSpec {
             individual,
             numerics: numerics.clone(),

@@ -82,7 +82,8 @@ async fn changes<L: Laboratory>(
     fit: &Fit,
     probes: &[(&EffectDescriptor, usize)],
 ) -> Result<Vec<Option<Curves>>, L::Error> {
-    let term = |effect: &EffectDescriptor| term_of_absent(&fit.model, effect, &absent(effect), 0);
+    let point = fit.point();
+    let term = |effect: &EffectDescriptor| term_of_absent(&point, effect, &absent(effect), 0);
     let terms = probes.iter().map(|(effect, _)| term(effect)).collect();
     let mut changes = experiments.changes(fit, terms).await?;
     for ((effect, _), change) in probes.iter().zip(&mut changes) {

@@ -63,7 +63,11 @@ pub(crate) async fn compare<L: Laboratory>(
         .iter()
         .zip(observed.chunks(2))
         .filter_map(|(shown, pair)| {
-            let curves = |k: usize| channels(pair.get(k)?.as_ref()?, shown.record);
+            let curves = |k: usize| {
+                let mut curves = channels(pair.get(k)?.as_ref()?, shown.record)?;
+                points[k].read(shown.record, &mut curves);
+                Some(curves)
+            };
             let (before, after) = (curves(0)?, curves(1)?);
             Some(Row {
                 condition: shown.record.condition,

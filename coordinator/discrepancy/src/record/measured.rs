@@ -1,4 +1,5 @@
 //! What was measured, cycle by cycle, as the diagnosis takes it.
+use crate::record::input_scatter::InputScatter;
 use crate::record::nuisance::Nuisance;
 use protocol::case::Channel;
 use std::ops::Range;
@@ -67,13 +68,13 @@ pub struct Split {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Stated {
     /// What the input may be wrong by from cycle to cycle.
-    pub nuisances: Vec<Nuisance>,
+    pub input_scatter: Vec<InputScatter>,
     /// Correlation of the noise from sample to sample, over the grid.
     pub noise_correlation: f64,
     /// Variance of one cycle about the mean by channel, where more cycles than these tell it.
     pub cycle_variance: Vec<f64>,
-    /// Standard deviations of the instruments' errors, constant over the measurement, by name.
-    pub tolerances: Vec<(String, f64)>,
+    /// What may be off by a little, constant over the measurement.
+    pub nuisances: Vec<Nuisance>,
 }
 
 impl Record {

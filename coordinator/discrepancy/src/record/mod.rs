@@ -2,6 +2,7 @@
 //! the metric that follows from it. It knows no effect.
 pub mod basis;
 pub(crate) mod bins;
+pub(crate) mod input_scatter;
 pub(crate) mod measured;
 pub mod metric;
 pub mod noise;
@@ -11,5 +12,6 @@ pub(crate) mod scatter;
 pub mod spectrum;
 pub mod whitened;
 
+pub use input_scatter::InputScatter;
 pub use measured::{Curves, Record, Recorded, Split, Stated, mean_of};
-pub use nuisance::Nuisance;
+pub use nuisance::{Acts, Nuisance, WITHIN};

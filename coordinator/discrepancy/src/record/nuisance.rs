@@ -1,19 +1,37 @@
-//! What the input of a measurement may be wrong by: directions that no test counts as a disagreement.
-//! Whoever reads the data sheet knows them; here they are an abscissa, or the name of an effect.
+//! What is never exact about a measurement, constant while it lasts: gains of instruments, marks that are a
+//! little off, a friction that everybody knows is there. How good each is is known beforehand, so each
+//! is a parameter with a prior in every fit, test and interval, and no discovery while it stays within it.
 
-/// One way in which cycles differ because their input did.
+/// Something that is off by a little, one standard deviation known.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Nuisance {
-    /// The curves stand at other places than they seem to.
-    Abscissa {
-        /// Bound of the error of a cycle, in the unit of the abscissa.
-        tolerance: f64,
-    },
-    /// An effect of the library acts on the input; where the library lacks it, it is left out.
-    Effect {
-        /// Its identifier.
-        id: String,
-        /// Standard deviation of its first size from cycle to cycle, in that size's unit.
-        deviation: f64,
+pub struct Nuisance {
+    /// The effect of the library that it is, or the name of a channel's gain.
+    pub id: String,
+    /// Which of the effect's sizes.
+    pub parameter: String,
+    /// Unit of the deviation.
+    pub unit: String,
+    /// How it acts.
+    pub acts: Acts,
+    /// One standard deviation about the absent value.
+    pub deviation: f64,
+    /// Whether it is never negative: half a normal distribution.
+    pub never_negative: bool,
+    /// Whether nobody stated the deviation: it is what such instruments usually have.
+    pub assumed: bool,
+}
+
+/// How a nuisance acts on what is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Acts {
+    /// As the effect of its name does; where the library lacks it, it is left out.
+    Effect,
+    /// A channel reads `(1 + x) y`, by the place of its curve among those of its condition.
+    Gain {
+        /// That place.
+        curve: usize,
     },
 }
+
+/// So many standard deviations are within what an instrument is good to: only beyond is it a discovery.
+pub const WITHIN: f64 = 3.0;

@@ -4,3 +4,4 @@ pub mod data_value;
 pub mod estimate;
 pub mod force;
 pub mod limit;
+pub mod never_exact;

@@ -1,7 +1,7 @@
 //! The machine as it really is: marched through time, with other laws than the tool knows, and the
 //! sensors that read it. Shares the data sheet with the tool's machine and not one line of code.
 use crate::case::{RECOMMENDED, SAMPLES, SPEED, card};
-use discrepancy::record::{Curves, Nuisance, Record, Recorded, Stated};
+use discrepancy::record::{Curves, InputScatter, Record, Recorded, Stated};
 use protocol::case::{Abscissa, Channel};
 use search::random::{Phase, Stream, Streams};
 use std::f64::consts::TAU;
@@ -407,11 +407,11 @@ pub(crate) fn record(truth: &Truth, condition: usize, channels: &[usize], cycles
         cycles,
         held_out: false,
         stated: Stated {
-            nuisances: vec![
-                Nuisance::Abscissa {
+            input_scatter: vec![
+                InputScatter::Abscissa {
                     tolerance: ANGLE_TOLERANCE_DEG,
                 },
-                Nuisance::Effect {
+                InputScatter::Effect {
                     id: "load_cell_gain".to_owned(),
                     deviation: LOAD_SCATTER,
                 },

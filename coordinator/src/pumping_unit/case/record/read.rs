@@ -90,7 +90,7 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
             channels: recorded.collect(),
             cycles: cycles.single,
             held_out: false,
-            stated: sheet.stated(samples.step_deg / expected.step_deg),
+            stated: sheet.stated(samples.step_deg / expected.step_deg, &cycles.channels),
         },
         channels,
         facts,

@@ -5,7 +5,7 @@ use crate::case::{
     error::CaseError,
     note::Note,
 };
-use discrepancy::record::{Nuisance, Stated};
+use discrepancy::record::{InputScatter, Stated};
 use protocol::pumping_unit::{Sensor, TurnSense};
 use serde::Deserialize;
 use std::path::Path;
@@ -116,28 +116,24 @@ impl Sheet {
         }
     }
 
-    /// What the sheet says of the measurement, for channels that are sampled `grid` times as densely
-    /// on the output grid as in the record.
-    pub(super) fn stated(&self, grid: f64) -> Stated {
+    /// What the sheet says of the measurement, for channels of these sensors that are sampled `grid` times as
+    /// densely on the output grid as in the record.
+    pub(super) fn stated(&self, grid: f64, recorded: &[Sensor]) -> Stated {
         let positive = |value: &f64| *value > 0.0;
         let turned = self.crank.index_tolerance_deg.filter(positive);
-        let turned = turned.map(|tolerance| Nuisance::Abscissa { tolerance });
+        let turned = turned.map(|tolerance| InputScatter::Abscissa { tolerance });
         let loaded = self.load.cycle_to_cycle_variation.filter(positive);
-        let loaded = loaded.map(|deviation| Nuisance::Effect {
+        let loaded = loaded.map(|deviation| InputScatter::Effect {
             id: "load_cell_gain".to_owned(),
             deviation,
         });
         Stated {
-            nuisances: turned.into_iter().chain(loaded).collect(),
+            input_scatter: turned.into_iter().chain(loaded).collect(),
             noise_correlation: self
                 .gauges
                 .noise_correlation_per_sample
                 .map_or(0.0, |rho| libm::pow(rho, 1.0 / grid)),
-            tolerances: self
-                .tolerance
-                .stated()
-                .map(|(name, of)| (name.to_owned(), of))
-                .collect(),
+            nuisances: self.tolerance.nuisances(recorded),
             ..Stated::default()
         }
     }

@@ -1,4 +1,7 @@
-//! How good the instruments of a test are, as its data sheet states it.
+//! How good the instruments of a test are, as its data sheet states it, and what each error does: an
+//! effect of the library, or the gain of a channel.
+use discrepancy::record::{Acts, Nuisance};
+use protocol::pumping_unit::Sensor;
 use serde::Deserialize;
 
 /// One standard deviation of each instrument's error, constant over a test; none where the sheet states
@@ -24,20 +27,136 @@ pub(super) struct Tolerance {
     balance_nm: Option<f64>,
 }
 
+/// What an instrument's error is.
+enum Means {
+    /// A size of an effect of the library.
+    Effect(&'static str, &'static str),
+    /// One that only a sensor shows.
+    Seen(Sensor, &'static str, &'static str),
+    /// The gain of a sensor.
+    Gain(Sensor, &'static str),
+}
+
+/// A key of the table: its name, what is usual of it where nothing is stated, with the unit, whether it
+/// is never negative, and what it means. Usual are a good foil gauge, a mark that was set by hand, a load
+/// cell of class 0.3.
+type Key = (&'static str, f64, &'static str, bool, &'static [Means]);
+
+/// All keys, in the table's order.
+const KEYS: [Key; 8] = [
+    (
+        "gauge_factor",
+        0.005,
+        "1",
+        false,
+        &[
+            Means::Seen(Sensor::Gauge(1), "gauge_gain", "gain_1"),
+            Means::Seen(Sensor::Gauge(2), "gauge_gain", "gain_2"),
+            Means::Seen(Sensor::Gauge(3), "gauge_gain", "gain_3"),
+            Means::Seen(Sensor::Gauge(4), "gauge_gain", "gain_4"),
+        ],
+    ),
+    (
+        "index_deg",
+        0.06,
+        "deg",
+        false,
+        &[Means::Effect("crank_angle_offset", "angle")],
+    ),
+    (
+        "load_cell",
+        0.003,
+        "1",
+        false,
+        &[Means::Effect("load_cell_gain", "gain")],
+    ),
+    (
+        "amplifier_lag_s",
+        0.002,
+        "s",
+        true,
+        &[Means::Effect("amplifier_lag", "lag")],
+    ),
+    (
+        "position",
+        0.002,
+        "1",
+        false,
+        &[Means::Gain(Sensor::Position, "position_gain")],
+    ),
+    (
+        "torque",
+        0.005,
+        "1",
+        false,
+        &[Means::Gain(Sensor::Torque, "torque_gain")],
+    ),
+    (
+        "bearing_friction_nm",
+        50.0,
+        "N.m",
+        true,
+        &[Means::Effect("pivot_friction", "moment")],
+    ),
+    (
+        "balance_nm",
+        200.0,
+        "N.m",
+        false,
+        &[Means::Effect("beam_balance", "moment")],
+    ),
+];
+
 impl Tolerance {
+    /// What is stated of each key.
+    const fn values(&self) -> [Option<f64>; KEYS.len()] {
+        [
+            self.gauge_factor,
+            self.index_deg,
+            self.load_cell,
+            self.amplifier_lag_s,
+            self.position,
+            self.torque,
+            self.bearing_friction_nm,
+            self.balance_nm,
+        ]
+    }
+
     /// What is stated, by the names of its keys.
     pub(super) fn stated(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let all = [
-            ("gauge_factor", self.gauge_factor),
-            ("index_deg", self.index_deg),
-            ("load_cell", self.load_cell),
-            ("amplifier_lag_s", self.amplifier_lag_s),
-            ("position", self.position),
-            ("torque", self.torque),
-            ("bearing_friction_nm", self.bearing_friction_nm),
-            ("balance_nm", self.balance_nm),
-        ];
-        let stated = |(name, value): (_, Option<f64>)| value.map(|value| (name, value));
-        all.into_iter().filter_map(stated)
+        let stated = |((name, ..), value): (Key, Option<f64>)| Some((name, value?));
+        KEYS.into_iter().zip(self.values()).filter_map(stated)
+    }
+
+    /// All errors that a record of these sensors shows, with what is usual where nothing is stated.
+    pub(super) fn nuisances(&self, recorded: &[Sensor]) -> Vec<Nuisance> {
+        let of_key = |((_, usual, unit, never_negative, means), stated): (Key, Option<f64>)| {
+            means.iter().filter_map(move |means| {
+                let (id, parameter, sensor, acts) = match *means {
+                    Means::Effect(id, parameter) => (id, parameter, None, Acts::Effect),
+                    Means::Seen(sensor, id, parameter) => {
+                        (id, parameter, Some(sensor), Acts::Effect)
+                    }
+                    Means::Gain(sensor, id) => {
+                        let curve = Sensor::ALL.iter().position(|own| *own == sensor)?;
+                        (id, "gain", Some(sensor), Acts::Gain { curve })
+                    }
+                };
+                let shown = sensor.is_none_or(|sensor| recorded.contains(&sensor));
+                shown.then(|| Nuisance {
+                    id: id.to_owned(),
+                    parameter: parameter.to_owned(),
+                    unit: unit.to_owned(),
+                    acts,
+                    deviation: stated.unwrap_or(usual),
+                    never_negative,
+                    assumed: stated.is_none(),
+                })
+            })
+        };
+        KEYS.into_iter()
+            .zip(self.values())
+            .flat_map(of_key)
+            .collect()
     }
 }

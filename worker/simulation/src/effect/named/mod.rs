@@ -1,5 +1,6 @@
 //! Effects that have a cause and a name: one file each, and its two lines here.
 mod amplifier_lag;
+mod beam_balance;
 mod beam_inertia;
 mod card_smoothing;
 mod card_time_shift;
@@ -48,6 +49,7 @@ const IN_ORDER: &[fn() -> Descriptor] = &[
     front_head_radius::descriptor,
     front_rope_bending_loss::descriptor,
     beam_inertia::descriptor,
+    beam_balance::descriptor,
     pivot_friction::descriptor,
     post_compliance::descriptor,
     head_profile_wear::descriptor,

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::report::diagnosis::Subject;
 use discrepancy::{
-    diagnose::{Diagnosis, Limit, LookAlikes},
+    diagnose::{Diagnosis, Limit, LookAlikes, NeverExact},
     ground::preflight::Preflight,
     verdict::Verdict,
 };
@@ -34,6 +34,8 @@ pub(crate) struct DiagnoseOutput {
     whereabouts: Option<WhereOutput>,
     wander: WanderedOutput,
     detection_limits: Vec<Limit>,
+    /// What the instruments are off by, beside the answer.
+    nuisances: Vec<NeverExact>,
     /// Pairs that this record cannot tell apart at three times their detection limits.
     inseparable: Vec<[String; 2]>,
     /// What would part those pairs, in their order.
@@ -116,6 +118,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         whereabouts: whereabouts(subject),
         wander: wandered(subject),
         detection_limits: diagnosis.limits.clone(),
+        nuisances: diagnosis.nuisances.clone(),
         inseparable: diagnosis
             .look_alikes
             .iter()

@@ -1,0 +1,14 @@
+//! Beam and heads are not balanced as described: another moment of their own weight about the saddle,
+//! `M = (M_0 + m) cos(theta)`, positive towards the well.
+//!
+//! Source: structural unbalance: API Spec 11E, *Pumping Units* (2013); Takacs, *Sucker-Rod Pumping Handbook*
+//! (2015).
+use crate::effect::descriptor::{Descriptor, Place};
+use crate::effect::unit::Unit;
+
+pub(super) fn descriptor() -> Descriptor {
+    Descriptor::new("beam_balance", "Balance of beam and heads")
+        .at("saddle", Place::Dynamics)
+        .size("moment", Unit::NewtonMetre, 5000.0, [-5e4, 5e4])
+        .edits(|v, d| d.beam_gravity_moment += v.get("moment"))
+}
