@@ -21,6 +21,15 @@ pub(crate) fn decide(
         return None;
     }
     let lengths = [&base.fit, current, &best.fit].map(Fit::chi_squared);
+    let further = !current.model.added.is_empty();
+    if further && share(lengths[1] - lengths[2], lengths[1], base.noise()) < FURTHER {
+        round.reason = Some(format!(
+            "{} removes less than half of what is left beside what was found: as likely as it are laws of \
+             another shape under the names that were found",
+            best.id
+        ));
+        return None;
+    }
     let (removed, trace) = trace(lengths, base.noise(), thresholds.practical);
     if trace {
         round.reason = Some(format!(
@@ -37,6 +46,14 @@ pub(crate) fn decide(
     Some(best.fit.clone())
 }
 
+/// Share of what is left above the noise that an effect must remove which is not the first.
+const FURTHER: f64 = 0.5;
+
+/// What is removed, over what is left above the noise.
+fn share(removed: f64, left: f64, noise: f64) -> f64 {
+    removed / (left - noise).max(1.0)
+}
+
 /// Share of what is left above the noise whose removal is no trace, however large the gap was at first.
 const NEARLY_ALL: f64 = 0.8;
 
@@ -44,7 +61,7 @@ const NEARLY_ALL: f64 = 0.8;
 /// is but a trace: beside a large effect a second one may be small and yet all that is missing. From the
 /// squared lengths of the residual at first, now and with the effect, and what noise alone would leave.
 fn trace([first, now, then]: [f64; 3], noise: f64, practical: f64) -> (f64, bool) {
-    let share = |of: f64| (now - then) / (of - noise).max(1.0);
+    let share = |of: f64| share(now - then, of, noise);
     let rough = now >= ROUGH * noise;
     let rest = rough && share(now) >= NEARLY_ALL;
     (share(first), share(first) < practical && !rest)

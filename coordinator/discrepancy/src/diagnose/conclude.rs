@@ -2,49 +2,58 @@
 //!
 //! Where the tests do not stand on firm ground (assumed noise, a model that was never held against a
 //! finer one), what was found is taken out of the answer again: it stays visible as a suspect, with its
-//! size and its nats, and the reason says what it would take to name it.
+//! size and its nats, and the reason says what it would take to name it. So does what does not carry.
 use crate::cause::decide::widen;
+use crate::diagnose::carry;
+use crate::diagnose::claim::{claim, no_answer};
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::diagnose::reason::{Rejection, left, reason, remarks};
+use crate::ground::base::Base;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::place::wander::refit::wander;
 use crate::place::whereabouts;
-use crate::proof::compare::{Portion, Shown, compare};
-use crate::record::measured::Split;
+use crate::proof::compare::{Shown, compare};
 use crate::record::noise::Known;
 use crate::size::estimate::estimates;
 use crate::size::force::Force;
 use crate::size::never_exact::never_exact;
 use crate::verdict::{Findings, Ground, verdict};
 
-/// Estimates, the proof and the verdict; `split` is the calibrated condition's record.
+/// Estimates, the proof and the verdict; `shown` is what it is proved on.
 pub(crate) async fn conclude<L: Laboratory>(
     session: &mut Session<'_, L>,
-    after: Fit,
-    split: &Split,
+    answer: Fit,
+    shown: &[Shown<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
     let (base, inputs) = (session.base, session.inputs);
-    let claims = !after.model.added.is_empty() || diagnosis.generic.is_some();
+    let claims = !answer.model.added.is_empty() || diagnosis.generic.is_some();
     let ground = ground(session, claims, diagnosis);
-    if widen(&mut diagnosis.rounds, after.chi_squared(), base.noise()) {
+    if widen(&mut diagnosis.rounds, answer.chi_squared(), base.noise()) {
         diagnosis.notes.push(format!(
             "the answer leaves {:.1} times the noise, so its law is not quite that of the machine, and a \
              law of its rivals need not be either: names that leave not much more stand in one set with it",
-            after.chi_squared() / base.noise()
+            answer.chi_squared() / base.noise()
         ));
     }
-    diagnosis.effects = estimates(&diagnosis.rounds, &after);
-    let (after, suspect) = match ground {
-        Ground::Firm => (after, None),
-        Ground::NoiseAssumed
-        | Ground::NoiseUnknown
-        | Ground::NothingConsidered
-        | Ground::Unsound => (base.fit.clone(), withhold(diagnosis)),
+    diagnosis.effects = estimates(&diagnosis.rounds, &answer);
+    prove(session, &answer, shown, diagnosis).await?;
+    let firm = matches!(ground, Ground::Firm);
+    let doubt = if firm {
+        doubt(base, &answer, shown, diagnosis)
+    } else {
+        None
     };
-    prove(session, &after, split, diagnosis).await?;
+    let (after, suspect) = if firm && doubt.is_none() {
+        (answer, None)
+    } else {
+        let suspect = withhold(diagnosis, !firm);
+        // what is not named is not shown as an answer, either
+        prove(session, &base.fit, shown, diagnosis).await?;
+        (base.fit.clone(), suspect)
+    };
     diagnosis.whiteness = Some([&base.fit, &after].map(|fit| whereabouts::white(base, fit)));
     let mut experiments = session.experiments(Stage::Show);
     diagnosis.wander = wander(&mut experiments, &base.fit, inputs.others()).await?;
@@ -60,6 +69,7 @@ pub(crate) async fn conclude<L: Laboratory>(
             .first()
             .is_some_and(|r| r.p_value < thresholds.alpha),
         suspect,
+        doubt,
         left: misfit.then(|| left(base, &after)),
     };
     let seen = diagnosis.whereabouts.as_ref();
@@ -104,8 +114,24 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> G
     }
 }
 
-/// Takes what was added, or the force that beats every name, out of the answer; says what it was.
-fn withhold(diagnosis: &mut Diagnosis) -> Option<String> {
+/// Why an answer is not named, if it is not.
+fn doubt(base: &Base, answer: &Fit, shown: &[Shown<'_>], diagnosis: &Diagnosis) -> Option<String> {
+    if answer.model.added.is_empty() {
+        return None;
+    }
+    let claim = claim((answer, base), &diagnosis.effects, (shown, &diagnosis.rows));
+    let sets = || {
+        diagnosis
+            .rounds
+            .iter()
+            .find_map(|round| no_answer(base, round))
+    };
+    carry::doubt(&claim).or_else(sets)
+}
+
+/// Takes what was added, and the force that beats every name if that is doubted as well, out of the
+/// answer; says what it was.
+fn withhold(diagnosis: &mut Diagnosis, force_too: bool) -> Option<String> {
     let nats = |id: &str, nats: f64| format!("{id}, at {nats:.0} nats");
     let mut suspects = Vec::new();
     for round in &mut diagnosis.rounds {
@@ -116,7 +142,7 @@ fn withhold(diagnosis: &mut Diagnosis) -> Option<String> {
         suspects.push(nats(&id, own.map_or(f64::NAN, |own| own.ln_evidence)));
         round.withdraw(format!("{id} is the likeliest, but no name is given here"));
     }
-    if diagnosis.generic.take().is_some() {
+    if force_too && diagnosis.generic.take().is_some() {
         let force = diagnosis.force.as_ref();
         let said = |force: &Force| nats(&format!("a force {}", force.id), force.ln_evidence);
         suspects.extend(force.map(said));
@@ -128,32 +154,21 @@ fn withhold(diagnosis: &mut Diagnosis) -> Option<String> {
 async fn prove<L: Laboratory>(
     session: &mut Session<'_, L>,
     after: &Fit,
-    split: &Split,
+    shown: &[Shown<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
     let base = session.base;
-    let others = session.inputs.records.iter().skip(1);
-    let mut records = vec![
-        (&split.fitted, Portion::Fitted),
-        (&split.cycles, Portion::Cycles),
-        (&split.channels, Portion::Channels),
-    ];
-    records.extend(others.map(|record| (record, Portion::Condition)));
-    records.retain(|(record, _)| !record.cycles.is_empty() && !record.channels.is_empty());
-    let records: Vec<Shown<'_>> = records
-        .into_iter()
-        .map(|(record, part)| Shown { record, part })
-        .collect();
     let mut experiments = session.experiments(Stage::Show);
     let before = &base.fit;
-    diagnosis.rows = compare(&mut experiments, &records, before, after).await?;
+    diagnosis.rows = compare(&mut experiments, shown, before, after).await?;
+    diagnosis.rival = None;
     let rival = diagnosis.rejected().map(|(_, rival)| rival.clone());
     if let Some(rival) = rival {
-        let rows = compare(&mut experiments, &records, before, &rival.fit).await?;
+        let rows = compare(&mut experiments, shown, before, &rival.fit).await?;
         diagnosis.rival = Some((rival.id, rows));
     }
     if let Some(force) = &mut diagnosis.force {
-        force.rows = compare(&mut experiments, &records, before, &force.fit).await?;
+        force.rows = compare(&mut experiments, shown, before, &force.fit).await?;
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ use crate::place::wander::shifts::Wander;
 use crate::place::whereabouts::Where;
 use crate::proof::compare::Row;
 use crate::record::noise::Known;
+use crate::size::absorbed::Absorbed;
 use crate::size::data_value::LookAlikes;
 use crate::size::estimate::Estimate;
 use crate::size::force::Force;
@@ -35,6 +36,8 @@ pub struct Diagnosis {
     pub limits: Vec<Limit>,
     /// What the instruments are off by, beside the answer.
     pub nuisances: Vec<NeverExact>,
+    /// Effects that this record cannot show, and what would.
+    pub absorbed: Vec<Absorbed>,
     /// Effects that this record cannot tell apart, and what would.
     pub look_alikes: Vec<LookAlikes>,
     /// The recalibrated model without effects.
@@ -83,6 +86,7 @@ impl Diagnosis {
             preflight_after: None,
             limits: Vec::new(),
             nuisances: Vec::new(),
+            absorbed: Vec::new(),
             look_alikes: Vec::new(),
             before: None,
             after: None,

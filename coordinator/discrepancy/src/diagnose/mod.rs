@@ -1,13 +1,17 @@
 //! A diagnosis from the record to the verdict: the order of the four questions and what they hand on.
 mod belief;
+mod carry;
+mod claim;
 mod conclude;
 pub(crate) mod diagnosis;
 mod prune;
 mod reason;
 mod rounds;
+mod swap;
 
 pub use crate::cause::round::Round;
 pub use crate::inputs::Inputs;
+pub use crate::size::absorbed::Absorbed;
 pub use crate::size::data_value::LookAlikes;
 pub use crate::size::estimate::{Estimate, ParameterEstimate};
 pub use crate::size::force::Force;
@@ -19,6 +23,7 @@ use crate::ground::establish::establish;
 use crate::ground::session::Session;
 use crate::laboratory::Laboratory;
 use crate::place::whereabouts;
+use crate::proof::compare::shown;
 use conclude::conclude;
 use rounds::rounds;
 
@@ -74,7 +79,8 @@ pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Dia
         ));
         return Ok(diagnosis);
     }
-    let after = rounds(&mut session, &mut diagnosis).await?;
-    conclude(&mut session, after, &split, &mut diagnosis).await?;
+    let shown = shown(&split, inputs.records.get(1..).unwrap_or_default());
+    let after = rounds(&mut session, &shown, &mut diagnosis).await?;
+    conclude(&mut session, after, &shown, &mut diagnosis).await?;
     Ok(diagnosis)
 }

@@ -16,6 +16,8 @@ pub(crate) struct Rejection {
     pub(crate) names: bool,
     /// What was found and cannot be named.
     pub(crate) suspect: Option<String>,
+    /// Why that is not named, where the tests themselves mean what they say.
+    pub(crate) doubt: Option<String>,
     /// What is left and is no noise, in words.
     pub(crate) left: Option<String>,
 }
@@ -50,9 +52,14 @@ pub(crate) fn reason(
     let Rejection {
         names,
         suspect,
+        doubt,
         left,
     } = rejection;
     let what = match (suspect, left) {
+        (Some(suspect), _) if doubt.is_some() => format!(
+            "the likeliest suspect is {suspect}, but it is no name: {}",
+            doubt.as_deref().unwrap_or_default()
+        ),
         (Some(suspect), _) => format!("the likeliest suspect is {suspect}"),
         (None, Some(left)) if !*names => {
             round.map_or_else(|| left.clone(), |round| format!("{left}; {round}"))

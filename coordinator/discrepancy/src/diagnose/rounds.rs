@@ -7,10 +7,13 @@ use crate::cause::{suspect, valley_search};
 use crate::diagnose::belief::believe;
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::diagnose::prune::prune;
+use crate::diagnose::swap::swap;
 use crate::ground::preflight;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
+use crate::proof::compare::Shown;
+use crate::size::absorbed::absorbed;
 use crate::size::data_value;
 use crate::size::limit::limits;
 use protocol::announce::EffectDescriptor;
@@ -23,6 +26,7 @@ const RIVALS: usize = 3;
 /// Rounds of suspicion until nothing is gained; the model of the answer.
 pub(crate) async fn rounds<L: Laboratory>(
     session: &mut Session<'_, L>,
+    shown: &[Shown<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
@@ -41,6 +45,7 @@ pub(crate) async fn rounds<L: Laboratory>(
             let limits = limits(&round, &current, inputs.thresholds.alpha);
             diagnosis.look_alikes = data_value::weigh(session, &current, &round, &limits).await?;
             diagnosis.limits = limits;
+            diagnosis.absorbed = absorbed(&round, &current);
         }
         let next = believe(session, &current, &mut round, diagnosis).await?;
         diagnosis.rounds.push(round);
@@ -50,7 +55,8 @@ pub(crate) async fn rounds<L: Laboratory>(
         }
     }
     let added = current.model.added.len();
-    let answer = prune(session, current, diagnosis).await?;
+    let answer = prune(session, current, shown, diagnosis).await?;
+    swap(session, &answer, diagnosis).await?;
     if answer.model.added.len() < added {
         let mut finer = session.experiments(Stage::Preflight);
         diagnosis.preflight_after =

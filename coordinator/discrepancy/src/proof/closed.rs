@@ -2,10 +2,10 @@
 //! and under a condition that took no part.
 //!
 //! By channel `g = (MSE - se^2) / var`, both curves without their means; over the scored channels the mean.
-//! `closed = 1 - g_after / g_before`; intervals by resampling the cycles, before and after on the
-//! same resample. A gap that closes does not prove a name: a wrong effect often closes most of it,
+//! `closed = 1 - g_after / g_before`; intervals by resampling cycles, before and after on the same
+//! resample: its own, or of one that holds more of the same. A gap that closes does not prove a name: a wrong effect often closes most of it,
 //! which is why the best rejected rival is always shown beside.
-use crate::record::measured::{Curves, Record, mean_of, variance};
+use crate::record::measured::{Curves, Record, mean_of, scatter, variance};
 use search::random::{Phase, Stream, Streams};
 use serde::Serialize;
 
@@ -18,7 +18,7 @@ pub struct Closed {
     pub after: f64,
     /// `1 - after / before`.
     pub closed: f64,
-    /// 95 % interval of `closed`; none with fewer than two cycles.
+    /// 95 % interval of `closed`; none where fewer than two cycles are known.
     #[serde(rename = "ci95")]
     pub interval: Option<[f64; 2]>,
 }
@@ -28,12 +28,13 @@ pub fn gap(record: &Record, simulated: &Curves) -> f64 {
     Ruler::new(record).gap(simulated)
 }
 
-/// Before and after, with the interval.
+/// Before and after, with the interval. `alike` are cycles of the same channels and condition that scatter
+/// as the record's own do, its own among them.
 ///
 /// A mean of drawn cycles scatters about the record's mean as that one does about the truth, so its
 /// squared residual holds that scatter once more: it is taken off too, and the draws lie about the
 /// gap that is printed.
-pub fn closed(record: &Record, before: &Curves, after: &Curves) -> Closed {
+pub fn closed(record: &Record, alike: &[Curves], before: &Curves, after: &Curves) -> Closed {
     const DRAWS: usize = 1000;
     let ratio = |[before, after]: [f64; 2]| {
         if before > 0.0 {
@@ -44,14 +45,15 @@ pub fn closed(record: &Record, before: &Curves, after: &Curves) -> Closed {
     };
     let ruler = Ruler::new(record);
     let gaps = [before, after].map(|curves| ruler.gap(curves));
-    let interval = (record.cycles.len() >= 2).then(|| {
-        // that of the record's own cycles, whatever else tells its noise
-        let noise = ruler.noise + ruler.explained_by(&record.scatter());
+    let pool = Pool::new(alike);
+    let interval = pool.map(|pool| {
+        // that of the cycles that are drawn, whatever else tells the record's noise
+        let noise = ruler.noise + ruler.explained_by(&scatter(alike));
         let streams = Streams::new(0x7368_6f77, 0);
         let mut draws: Vec<f64> = (0..DRAWS)
             .map(|draw| {
                 let stream = &mut streams.at(0, Phase::Resample, draw);
-                let drawn = drawn(record, &ruler.mean, stream);
+                let drawn = pool.drawn(record.cycles.len(), &ruler.mean, stream);
                 let left = |curves| (ruler.mse(&drawn, curves) - noise).max(0.0);
                 ratio([before, after].map(left))
             })
@@ -67,19 +69,34 @@ pub fn closed(record: &Record, before: &Curves, after: &Curves) -> Closed {
     }
 }
 
-/// The mean of as many cycles as there are, drawn with replacement, and moved away from the record's
-/// mean by as much as a few cycles scatter less about their own mean than about the truth.
-fn drawn(record: &Record, mean: &Curves, stream: &mut Stream) -> Curves {
-    let n = record.cycles.len();
-    let drawn: Vec<&Curves> = (0..n).map(|_| &record.cycles[stream.index(n)]).collect();
-    let stretch = (n as f64 / (n as f64 - 1.0)).sqrt();
-    let mut drawn = mean_of(&drawn);
-    for (drawn, mean) in drawn.iter_mut().zip(mean) {
-        for (y, mean) in drawn.iter_mut().zip(mean) {
-            *y = mean + stretch * (*y - mean);
-        }
+/// Cycles to draw from: at least two.
+struct Pool<'a> {
+    cycles: &'a [Curves],
+    mean: Curves,
+}
+
+impl<'a> Pool<'a> {
+    fn new(cycles: &'a [Curves]) -> Option<Self> {
+        (cycles.len() >= 2).then(|| Self {
+            cycles,
+            mean: mean_of(&cycles.iter().collect::<Vec<_>>()),
+        })
     }
-    drawn
+
+    /// The mean of so many cycles, drawn with replacement, and moved away from a record's mean by as much as
+    /// a few cycles scatter less about their own mean than about the truth.
+    fn drawn(&self, count: usize, about: &Curves, stream: &mut Stream) -> Curves {
+        let n = self.cycles.len();
+        let drawn: Vec<&Curves> = (0..count).map(|_| &self.cycles[stream.index(n)]).collect();
+        let stretch = (n as f64 / (n as f64 - 1.0)).sqrt();
+        let mut drawn = mean_of(&drawn);
+        for ((drawn, mean), about) in drawn.iter_mut().zip(&self.mean).zip(about) {
+            for ((y, mean), about) in drawn.iter_mut().zip(mean).zip(about) {
+                *y = about + stretch * (*y - mean);
+            }
+        }
+        drawn
+    }
 }
 
 /// What curves are held against: the mean of a record's channels, in units of their variance.
@@ -164,12 +181,12 @@ mod tests {
             .zip(wave(1.0, 1.0))
             .map(|(a, b)| a + b + 5.0)
             .collect();
-        let shown = closed(&record, &vec![off.clone()], &vec![truth]);
+        let shown = closed(&record, &record.cycles, &vec![off.clone()], &vec![truth]);
         assert!((shown.before - 0.01).abs() < 1e-3, "{shown:?}");
         assert!(shown.closed > 0.98, "{shown:?}");
         let [low, high] = shown.interval.unwrap();
         assert!(low > 0.9 && high <= 1.0 && low <= shown.closed, "{shown:?}");
-        let same = closed(&record, &vec![off.clone()], &vec![off]);
+        let same = closed(&record, &record.cycles, &vec![off.clone()], &vec![off]);
         assert!(same.closed.abs() < 1e-12);
         // a single held-out cycle takes its noise from the others
         let one = record.split().cycles.part(0..1);
@@ -179,6 +196,7 @@ mod tests {
         assert!(
             closed(
                 &record.part(0..1),
+                &record.cycles[..1],
                 &vec![wave(1.0, 0.0)],
                 &vec![wave(2.0, 0.0)]
             )
@@ -221,7 +239,7 @@ mod tests {
                 let mut held = 0;
                 for seed in 0..sets {
                     let record = scattered(seed, &truth, cycles);
-                    let shown = closed(&record, &vec![off(2.0)], &vec![off(size)]);
+                    let shown = closed(&record, &record.cycles, &vec![off(2.0)], &vec![off(size)]);
                     let [low, high] = shown.interval.unwrap();
                     assert!(low <= shown.closed && shown.closed <= high, "{shown:?}");
                     held += u64::from((low..=high).contains(&expected));

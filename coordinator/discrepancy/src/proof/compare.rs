@@ -3,7 +3,7 @@ use crate::laboratory::{Laboratory, channels};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::proof::closed::{Closed, closed};
-use crate::record::measured::{Curves, Record};
+use crate::record::measured::{Curves, Record, Split};
 
 /// The gap before and after on one record.
 #[derive(Clone, Debug)]
@@ -20,6 +20,13 @@ pub struct Row {
     pub after: Curves,
 }
 
+impl Row {
+    /// What it was shown on, in words.
+    pub(crate) fn words(&self) -> String {
+        self.part.words(self.condition)
+    }
+}
+
 /// Which part of the records a gap is counted on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Portion {
@@ -33,13 +40,48 @@ pub enum Portion {
     Condition,
 }
 
+impl Portion {
+    /// In words, of a condition.
+    pub(crate) fn words(self, condition: usize) -> String {
+        match self {
+            Self::Fitted => "the cycles that were fitted".to_owned(),
+            Self::Cycles => "the cycles that were held out".to_owned(),
+            Self::Channels => "the channels that were held out".to_owned(),
+            Self::Condition => format!("condition {} of the case", condition + 1),
+        }
+    }
+}
+
 /// A record of the proof.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Shown<'a> {
     /// What was measured.
     pub(crate) record: &'a Record,
+    /// Cycles that scatter as its own do, its own among them.
+    pub(crate) alike: Vec<Curves>,
     /// What of the records it is.
     pub(crate) part: Portion,
+}
+
+/// Everything that an answer is shown on: the calibrated condition's record in parts, then the others.
+pub(crate) fn shown<'a>(split: &'a Split, others: &'a [Record]) -> Vec<Shown<'a>> {
+    let cycles = || [&split.fitted.cycles[..], &split.cycles.cycles].concat();
+    let own = |record: &'a Record, part: Portion| Shown {
+        alike: record.cycles.clone(),
+        record,
+        part,
+    };
+    let mut all = vec![
+        own(&split.fitted, Portion::Fitted),
+        Shown {
+            alike: cycles(),
+            ..own(&split.cycles, Portion::Cycles)
+        },
+        own(&split.channels, Portion::Channels),
+    ];
+    all.extend(others.iter().map(|record| own(record, Portion::Condition)));
+    all.retain(|one| !one.record.cycles.is_empty() && !one.record.channels.is_empty());
+    all
 }
 
 /// Compares two models on records; nothing for a record on which one of them fails.
@@ -72,7 +114,7 @@ pub(crate) async fn compare<L: Laboratory>(
             Some(Row {
                 condition: shown.record.condition,
                 part: shown.part,
-                closed: closed(shown.record, &before, &after),
+                closed: closed(shown.record, &shown.alike, &before, &after),
                 before,
                 after,
             })

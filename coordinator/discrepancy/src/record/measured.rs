@@ -190,26 +190,30 @@ impl Record {
 
     /// Variance of these cycles about their mean, by channel; zeros for fewer than two.
     pub(crate) fn scatter(&self) -> Vec<f64> {
-        let n = self.cycles.len();
-        if n < 2 {
+        if self.cycles.len() < 2 {
             return vec![0.0; self.channels.len()];
         }
-        let whole = self.mean();
-        let scatter = |cycle: &Curves, c: usize| {
-            let d: Vec<f64> = cycle[c].iter().zip(&whole[c]).map(|(y, m)| y - m).collect();
-            variance(&d)
-        };
-        let of = |c: usize| {
-            let sum: f64 = self.cycles.iter().map(|cycle| scatter(cycle, c)).sum();
-            sum / (n - 1) as f64
-        };
-        (0..self.channels.len()).map(of).collect()
+        scatter(&self.cycles)
     }
 
     /// Mean over the cycles.
     pub fn mean(&self) -> Curves {
         mean_of(&self.cycles.iter().collect::<Vec<_>>())
     }
+}
+
+/// Variance of cycles about their mean, by channel; at least two.
+pub(crate) fn scatter(cycles: &[Curves]) -> Vec<f64> {
+    let whole = mean_of(&cycles.iter().collect::<Vec<_>>());
+    let of_cycle = |cycle: &Curves, c: usize| {
+        let d: Vec<f64> = cycle[c].iter().zip(&whole[c]).map(|(y, m)| y - m).collect();
+        variance(&d)
+    };
+    let of = |c: usize| {
+        let sum: f64 = cycles.iter().map(|cycle| of_cycle(cycle, c)).sum();
+        sum / (cycles.len() - 1) as f64
+    };
+    (0..whole.len()).map(of).collect()
 }
 
 /// Curves less others, per so much of whatever has changed between them.

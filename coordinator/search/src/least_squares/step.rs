@@ -51,20 +51,49 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
     worst
 }
 
-/// Residual after an undamped step of the free variables.
+/// Residual after an undamped step inside the box.
 pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
-    let (gradient, curvature) = normal(at, variables);
-    let free = free(at, variables, &gradient, &curvature);
-    let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| {
-        // twelve digits below the diagonal: decides nothing, keeps the factor
-        let ridge = if i == j { 1.0 + 1e-12 } else { 1.0 };
-        ridge * curvature[(free[i], free[j])]
-    });
-    let right = DVector::from_fn(free.len(), |i, _| -gradient[free[i]]);
-    matrix.cholesky().map_or_else(
+    // twelve digits below the diagonal: decides nothing, keeps the factor
+    let step = step(at, variables, 1e-12);
+    step.map_or_else(
         || at.residual.clone(),
-        |factor| &at.residual + at.jacobian.select_columns(&free) * factor.solve(&right),
+        |step| &at.residual + &at.jacobian * step,
     )
+}
+
+/// A damped step that stays in the box: what would leave it goes to its bound, and the others go where
+/// that is best for them. Nothing where the curvature has no factor, or nothing may move.
+fn step(at: &Linearized, variables: &[Variable], damping: f64) -> Option<DVector<f64>> {
+    let (gradient, curvature) = normal(at, variables);
+    let mut free = free(at, variables, &gradient, &curvature);
+    let mut step = DVector::zeros(variables.len());
+    if free.is_empty() {
+        return None;
+    }
+    let mut right = -gradient;
+    loop {
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| {
+            let own = curvature[(free[i], free[j])];
+            if i == j { own * (1.0 + damping) } else { own }
+        });
+        let own = DVector::from_fn(free.len(), |i, _| right[free[i]]);
+        let solved = matrix.cholesky()?.solve(&own);
+        let mut kept = Vec::with_capacity(free.len());
+        for (&k, &moved) in free.iter().zip(solved.iter()) {
+            let inside = moved.clamp(variables[k].lower - at.x[k], variables[k].upper - at.x[k]);
+            step[k] = inside;
+            // a step that is not a number is kept: it is refused later
+            if inside < moved || inside > moved {
+                right -= curvature.column(k) * inside;
+            } else {
+                kept.push(k);
+            }
+        }
+        if kept.len() == free.len() || kept.is_empty() {
+            return Some(step);
+        }
+        free = kept;
+    }
 }
 
 /// Variables that a step may move: not those that press against a bound, nor those that change
@@ -83,28 +112,16 @@ fn free(
 /// The damped steps from a linearised point: dampings with the points they lead to. Variables that
 /// press against a bound stay; a variable that changes nothing stays.
 pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<(f64, Vec<f64>)> {
-    let (gradient, curvature) = normal(at, variables);
-    let free = free(at, variables, &gradient, &curvature);
-    if free.is_empty() {
-        return Vec::new();
-    }
     let mut fan: Vec<(f64, Vec<f64>)> = Vec::new();
     for factor in FAN {
         let damping = damping * factor;
-        let mut matrix =
-            DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
-        for i in 0..free.len() {
-            matrix[(i, i)] *= 1.0 + damping;
-        }
-        let right = DVector::from_fn(free.len(), |i, _| -gradient[free[i]]);
-        let Some(factor) = matrix.cholesky() else {
+        let Some(step) = step(at, variables, damping) else {
             continue;
         };
-        let step = factor.solve(&right);
-        let mut x = at.x.clone();
-        for (i, &k) in free.iter().enumerate() {
-            x[k] = (x[k] + step[i]).clamp(variables[k].lower, variables[k].upper);
-        }
+        let moved = at.x.iter().zip(step.iter()).zip(variables);
+        let x: Vec<f64> = moved
+            .map(|((x, step), v)| (x + step).clamp(v.lower, v.upper))
+            .collect();
         let met = x == at.x || fan.iter().any(|(_, other)| *other == x);
         if x.iter().all(|x| x.is_finite()) && !met {
             fan.push((damping, x));

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::report::diagnosis::Subject;
 use discrepancy::{
-    diagnose::{Diagnosis, Limit, LookAlikes, NeverExact},
+    diagnose::{Absorbed, Diagnosis, Estimate, Limit, LookAlikes, NeverExact},
     ground::preflight::Preflight,
     verdict::Verdict,
 };
@@ -22,8 +22,8 @@ pub(crate) struct DiagnoseOutput {
     verdict: Verdict,
     /// Why, where the verdict needs a reason.
     reason: Option<String>,
-    /// Added effects, then the other members of their ambiguity sets; the best first. Where the
-    /// verdict is unresolved, suspects, of which none is added.
+    /// Added effects, then the other members of their ambiguity sets; the best first. Empty where the
+    /// verdict names nothing: suspects stand in the rounds.
     effects: Vec<EffectOutput>,
     /// Form and joint of a force that beats every name.
     generic: Option<String>,
@@ -36,6 +36,8 @@ pub(crate) struct DiagnoseOutput {
     detection_limits: Vec<Limit>,
     /// What the instruments are off by, beside the answer.
     nuisances: Vec<NeverExact>,
+    /// Effects that this record cannot show, for the unknowns take them up, the largest share first.
+    absorbed: Vec<Absorbed>,
     /// Pairs that this record cannot tell apart at three times their detection limits.
     inseparable: Vec<[String; 2]>,
     /// What would part those pairs, in their order.
@@ -107,8 +109,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         case: subject.case.name.clone(),
         verdict: diagnosis.verdict,
         reason: diagnosis.reason.clone(),
-        effects: diagnosis
-            .effects
+        effects: named(diagnosis)
             .iter()
             .map(|e| effect(diagnosis, e))
             .collect(),
@@ -119,6 +120,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         wander: wandered(subject),
         detection_limits: diagnosis.limits.clone(),
         nuisances: diagnosis.nuisances.clone(),
+        absorbed: diagnosis.absorbed.clone(),
         inseparable: diagnosis
             .look_alikes
             .iter()
@@ -155,6 +157,14 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             })
             .collect(),
         wall_s: subject.wall_s,
+    }
+}
+
+/// Effects of an answer that names some.
+fn named(diagnosis: &Diagnosis) -> &[Estimate] {
+    match diagnosis.verdict {
+        Verdict::Named | Verdict::Ambiguous | Verdict::Unlisted => &diagnosis.effects,
+        Verdict::NothingDetected | Verdict::Unresolved => &[],
     }
 }
 

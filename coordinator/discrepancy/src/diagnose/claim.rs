@@ -1,0 +1,180 @@
+//! What an answer claims, gathered from its fit, its estimates and the gaps that it closes.
+use crate::cause::round::Round;
+use crate::cause::suspect::Suspect;
+use crate::diagnose::carry::{Claim, Elsewhere, Size};
+use crate::ground::base::Base;
+use crate::model::fit::Fit;
+use crate::proof::compare::{Portion, Row, Shown};
+use crate::size::estimate::{Estimate, ParameterEstimate};
+use nalgebra::{Complex, DVector};
+use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role};
+
+/// The claim of an answer, shown on records with these rows.
+pub(crate) fn claim(
+    (answer, base): (&Fit, &Base),
+    effects: &[Estimate],
+    (shown, rows): (&[Shown<'_>], &[Row]),
+) -> Claim {
+    let row = |part: Portion, condition: usize| {
+        let mut all = rows.iter();
+        all.find(|row| row.part == part && row.condition == condition)
+            .map(|row| row.closed)
+    };
+    let elsewhere = shown.iter().filter(|one| one.part != Portion::Fitted);
+    let added = answer.model.added.iter();
+    let sizes = added.filter_map(|effect| {
+        let own = effects.iter().find(|own| own.id == effect.id)?;
+        Some(sizes(answer, effect, own))
+    });
+    Claim {
+        sizes: sizes.flatten().collect(),
+        fitted: rows
+            .iter()
+            .find(|row| row.part == Portion::Fitted)
+            .map(|row| row.closed),
+        elsewhere: elsewhere
+            .map(|one| Elsewhere {
+                record: one.part.words(one.record.condition),
+                claimed: true,
+                closed: row(one.part, one.record.condition),
+            })
+            .collect(),
+        left: answer.chi_squared() / base.noise(),
+    }
+}
+
+/// Sizes of an added effect.
+fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size> {
+    let both = effect.parameters.iter().zip(&found.parameters);
+    let sizes = both.filter(|(p, _)| p.role == Role::Size);
+    let size = |(p, own): (&ParameterDescriptor, &ParameterEstimate)| {
+        let mut nuisances = answer.model.nuisances.iter();
+        let tolerated =
+            nuisances.find(|one| one.is(&effect.id) && one.nuisance.parameter == p.name);
+        Size {
+            effect: effect.id.clone(),
+            parameter: p.name.clone(),
+            value: own.value,
+            interval: own.interval,
+            bounds: [p.lower, p.upper],
+            absent: p.absent,
+            tolerance: tolerated.map(|one| one.nuisance.deviation),
+        }
+    };
+    sizes.map(size).collect()
+}
+
+/// Names that may be equally likely and still be an answer.
+const MOST: usize = 4;
+
+/// Why the set of a round is no answer, if it is none: too many names, or names of which nothing is common.
+pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
+    let of_set = |id: &String| round.suspects.iter().find(|own| own.effect.id == *id);
+    let members: Vec<&Suspect> = round.set.iter().filter_map(of_set).collect();
+    let traits: Vec<Traits> = members.iter().map(|own| Traits::of(base, own)).collect();
+    let common = Common::of(&traits);
+    if round.set.len() > MOST {
+        return Some(format!(
+            "{} names explain it about equally well ({}); {}",
+            round.set.len(),
+            round.set.join(", "),
+            common.words(base)
+        ));
+    }
+    (members.len() > 1 && common.is_nothing()).then(|| {
+        format!(
+            "{} explain it about equally well and have neither joint nor order nor channel in common",
+            round.set.join(", ")
+        )
+    })
+}
+
+/// Where an effect acts, and where it shows most.
+struct Traits {
+    joint: String,
+    channel: Option<usize>,
+    order: Option<usize>,
+}
+
+impl Traits {
+    fn of(base: &Base, suspect: &Suspect) -> Self {
+        let sizes = suspect.score.as_ref().map(|score| score.size.clone());
+        let shown = sizes
+            .filter(|sizes| sizes.len() == suspect.signature.ncols())
+            .map(|sizes| {
+                base.fit
+                    .tangent()
+                    .project(&(&suspect.signature * DVector::from_vec(sizes)))
+            });
+        let waves = shown
+            .map(|shown| base.on.metric.waves(&shown))
+            .unwrap_or_default();
+        let power = |own: &Vec<Complex<f64>>| own.iter().map(Complex::norm_sqr).sum::<f64>();
+        let highest = waves.iter().map(Vec::len).max().unwrap_or_default();
+        let of_order = |k: usize| -> f64 {
+            let own = waves.iter().filter_map(|own| own.get(k));
+            own.map(Complex::norm_sqr).sum()
+        };
+        Self {
+            joint: suspect.effect.joint.clone(),
+            channel: strongest(waves.iter().map(power)),
+            order: strongest((0..highest).map(of_order)),
+        }
+    }
+}
+
+/// The place of the largest.
+fn strongest(powers: impl Iterator<Item = f64>) -> Option<usize> {
+    let by_power = |(_, a): &(usize, f64), (_, b): &(usize, f64)| a.total_cmp(b);
+    powers.enumerate().max_by(by_power).map(|(k, _)| k)
+}
+
+/// What several have in common.
+struct Common {
+    joint: Option<String>,
+    channel: Option<usize>,
+    order: Option<usize>,
+}
+
+impl Common {
+    fn of(all: &[Traits]) -> Self {
+        let [first, rest @ ..] = all else {
+            return Self {
+                joint: None,
+                channel: None,
+                order: None,
+            };
+        };
+        let shared = |same: &dyn Fn(&Traits) -> bool| rest.iter().all(same);
+        Self {
+            joint: shared(&|own| own.joint == first.joint).then(|| first.joint.clone()),
+            channel: first
+                .channel
+                .filter(|c| shared(&|own| own.channel == Some(*c))),
+            order: first.order.filter(|k| shared(&|own| own.order == Some(*k))),
+        }
+    }
+
+    const fn is_nothing(&self) -> bool {
+        self.joint.is_none() && self.channel.is_none() && self.order.is_none()
+    }
+
+    fn words(&self, base: &Base) -> String {
+        let channels = &base.on.record.channels;
+        let channel = self.channel.and_then(|c| channels.get(c));
+        let parts = [
+            self.joint
+                .as_ref()
+                .map(|joint| format!("act at the {}", joint.replace('_', " "))),
+            channel.map(|own| format!("show most in {}", own.channel.title)),
+            self.order
+                .map(|k| format!("are strongest in order {}", k + 1)),
+        ];
+        let parts: Vec<String> = parts.into_iter().flatten().collect();
+        if parts.is_empty() {
+            "nothing of where they act or show is common to all".to_owned()
+        } else {
+            format!("all of them {}", parts.join(", "))
+        }
+    }
+}

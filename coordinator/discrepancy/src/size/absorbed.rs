@@ -1,0 +1,81 @@
+//! Effects that a record cannot show, since the unknowns take them up, and the measurement that would.
+use crate::cause::round::Round;
+use crate::cause::suspect::Suspect;
+use crate::linear::tangent::Tangent;
+use crate::model::fit::Fit;
+use nalgebra::DMatrix;
+use search::least_squares::Variable;
+use serde::Serialize;
+
+/// An effect that recalibration takes up.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Absorbed {
+    /// Identifier.
+    pub id: String,
+    /// Share of what it does to the record that the unknowns take up, 0 to 1.
+    pub share: f64,
+    /// What would show it.
+    pub measurement: String,
+}
+
+/// Share from which an effect counts as taken up.
+const MOST: f64 = 0.9;
+/// How many are told.
+const TOLD: usize = 8;
+/// Share that must show before a known unknown is said to show the effect.
+const SHOWS: f64 = 0.2;
+
+/// Effects of a round at a fit of which next to nothing shows, the largest share first.
+pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
+    let tangent = fit.tangent();
+    let visible = round.suspects.iter().filter(|s| s.signature.ncols() > 0);
+    let mut all: Vec<(f64, &Suspect)> = visible
+        .map(|suspect| (taken(&suspect.signature, &tangent), suspect))
+        .filter(|(share, _)| *share >= MOST)
+        .collect();
+    all.sort_by(|(a, one), (b, other)| b.total_cmp(a).then(one.effect.id.cmp(&other.effect.id)));
+    all.truncate(TOLD);
+    let told = |(share, suspect): (f64, &Suspect)| Absorbed {
+        id: suspect.effect.id.clone(),
+        share,
+        measurement: measurement(suspect, fit),
+    };
+    all.into_iter().map(told).collect()
+}
+
+/// Share of a signature that a tangent space takes up.
+fn taken(signature: &DMatrix<f64>, tangent: &Tangent) -> f64 {
+    let whole = signature.norm_squared();
+    let left = signature.dot(&tangent.project_columns(signature));
+    if whole > 0.0 {
+        (1.0 - left / whole).clamp(0.0, 1.0)
+    } else {
+        1.0
+    }
+}
+
+/// The unknown that takes most of it up, known from elsewhere, or a sensor where the effect acts.
+fn measurement(suspect: &Suspect, fit: &Fit) -> String {
+    let axes = fit.model.space.axes();
+    let without = |k: usize| {
+        let mut variables: Vec<Variable> = fit.variables().to_vec();
+        // what stands at its bound takes nothing up
+        variables[k].lower = fit.x()[k];
+        taken(
+            &suspect.signature,
+            &Tangent::new(fit.search.best(), &variables),
+        )
+    };
+    let least = (0..axes.len())
+        .map(|k| (without(k), k))
+        .min_by(|(a, _), (b, _)| a.total_cmp(b));
+    let sensor = format!("a sensor at the {}", suspect.effect.joint.replace('_', " "));
+    match least {
+        Some((share, k)) if 1.0 - share >= SHOWS => format!(
+            "{} known from a test of its own (then {:.0} % of it shows), or {sensor}",
+            axes[k].unknown.name,
+            100.0 * (1.0 - share)
+        ),
+        _ => format!("{sensor}, or its resonance"),
+    }
+}
