@@ -58,6 +58,12 @@ pub trait Laboratory {
         false
     }
 
+    /// Whether a stage may begin something that it could do without.
+    fn may(&mut self, stage: Stage) -> bool {
+        let _ = stage;
+        true
+    }
+
     /// Does a batch; observations in its order, nothing for an experiment that did not run to its
     /// end.
     ///

@@ -1,4 +1,5 @@
 //! Thresholds of a diagnosis, fixed before any record is seen.
+use crate::laboratory::Stage;
 use serde::{Deserialize, Serialize};
 
 /// How a diagnosis decides. The defaults are those of every published result.
@@ -35,6 +36,9 @@ pub struct Thresholds {
     /// Size of the elements of the numerical check, as a share of the case's. The fits keep the case's:
     /// what a finer model changes counts as noise.
     pub refinement: f64,
+    /// Plain simulations after which a stage begins nothing more that it could do without, in the stages'
+    /// order; one with derivatives counts as five, and a tenth for each.
+    pub budget: [u32; Stage::ALL.len()],
     /// Effects that are not considered.
     pub without: Vec<String>,
 }
@@ -56,6 +60,7 @@ impl Default for Thresholds {
             draws: 400,
             step: 0.7,
             refinement: 0.5,
+            budget: [2000, 1200, 100, 200, 2000, 2400, 400],
             without: Vec::new(),
         }
     }

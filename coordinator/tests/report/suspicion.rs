@@ -6,7 +6,7 @@ use coordinator::study::{Diagnosed, StageCost};
 use discrepancy::cause::refit::Refitted;
 use discrepancy::cause::suspect::Suspect;
 use discrepancy::diagnose::{
-    Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round,
+    Absorbed, Diagnosis, Estimate, Force, Limit, LookAlikes, NeverExact, ParameterEstimate, Round,
 };
 use discrepancy::ground::preflight::Preflight;
 use discrepancy::laboratory::Stage;
@@ -228,7 +228,7 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
         .map(|(record, part)| Row {
             condition: record.condition,
             part,
-            closed: closed(&record, &curves(1.0), &curves(after)),
+            closed: closed(&record, &record.cycles, &curves(1.0), &curves(after)),
             before: curves(1.0),
             after: curves(after),
         })
@@ -466,6 +466,22 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         preflight: Some(preflight()),
         preflight_after: added.then(preflight),
         limits: limits(&library),
+        nuisances: vec![NeverExact {
+            id: "gauge_gain".to_owned(),
+            parameter: "gain_2".to_owned(),
+            value: 0.006,
+            unit: "1".to_owned(),
+            interval: [0.003, 0.009],
+            tolerance: 0.005,
+            within: true,
+            assumed: true,
+        }],
+        absorbed: vec![Absorbed {
+            id: "post_compliance".to_owned(),
+            share: 0.99,
+            measurement: "kb1 known from a test of its own, or a sensor at the saddle".to_owned(),
+        }],
+        ran_out: Vec::new(),
         look_alikes: vec![LookAlikes {
             effects: ["pin_clearance".to_owned(), "gauge_drift".to_owned()],
             cycles: 2.4,

@@ -50,6 +50,11 @@ impl Sensor {
         }
     }
 
+    /// Whether it is a strain gauge.
+    pub const fn is_gauge(self) -> bool {
+        matches!(self, Self::Gauge(_))
+    }
+
     /// Name of its channel.
     pub fn name(self) -> String {
         match self {

@@ -46,6 +46,9 @@ pub(crate) async fn search<L: Laboratory>(
     let genes = current.model.space.dimension();
     let mut found = Vec::new();
     for place in leaders(round, LOOSE * lost) {
+        if !session.lab.may(Stage::Refit) {
+            break;
+        }
         let fit = &round.refits[place].fit;
         let starts = from_rivals(round, place, genes);
         let other = valley::follow(&mut session.experiments(Stage::Refit), fit, starts).await?;
@@ -54,7 +57,9 @@ pub(crate) async fn search<L: Laboratory>(
     settle(session, current, round, found).await?;
     deeper(session, current, round).await?;
     // from the start, with the likeliest effect where it is now
-    if let Some(&place) = leaders(round, lost).first() {
+    if let Some(&place) = leaders(round, lost).first()
+        && session.lab.may(Stage::Refit)
+    {
         let fit = &round.refits[place].fit;
         let (seed, rest) = (session.inputs.seed, &fit.x()[genes..]);
         let mut experiments = session.experiments(Stage::Refit);
@@ -63,7 +68,7 @@ pub(crate) async fn search<L: Laboratory>(
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
-    if round.phi > lost {
+    if round.phi > lost && session.lab.may(Stage::Refit) {
         let found = from_low_orders(session, current, round).await?;
         if !found.is_empty() {
             settle(session, current, round, found).await?;
@@ -82,6 +87,9 @@ async fn deeper<L: Laboratory>(
     for _ in 0..DEEPER {
         let mut found = Vec::new();
         for place in leaders(round, LOOSE * session.inputs.thresholds.valley) {
+            if !session.lab.may(Stage::Refit) {
+                break;
+            }
             let fit = &round.refits[place].fit;
             let other = valley::enter(&mut session.experiments(Stage::Refit), fit).await?;
             found.extend(other.map(|fit| Found { place, fit }));

@@ -70,6 +70,9 @@ async fn contested<L: Laboratory>(
     let Some(challenger) = challenge(session, current, round).await? else {
         return Ok(None);
     };
+    if !session.lab.may(Stage::Refit) {
+        return Ok(Some(challenger));
+    }
     // two effects at once may look like a third thing to each of them
     let mut experiments = session.experiments(Stage::Refit);
     let pair = pair::best(&mut experiments, current, &round.suspects).await?;

@@ -2,6 +2,7 @@
 use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
 use crate::ground::preflight::Preflight;
+use crate::laboratory::Stage;
 use crate::model::fit::Fit;
 use crate::place::wander::shifts::Wander;
 use crate::place::whereabouts::Where;
@@ -60,6 +61,8 @@ pub struct Diagnosis {
     pub force: Option<Force>,
     /// How the noise is known.
     pub noise: Known,
+    /// Stages that used up their part of the simulations.
+    pub ran_out: Vec<Stage>,
     /// What else should be known.
     pub notes: Vec<String>,
 }
@@ -98,6 +101,7 @@ impl Diagnosis {
             generic: None,
             force: None,
             noise: Known::Seen,
+            ran_out: Vec::new(),
             notes: Vec::new(),
         }
     }

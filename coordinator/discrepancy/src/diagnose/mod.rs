@@ -19,6 +19,7 @@ pub use crate::size::limit::Limit;
 pub use crate::size::never_exact::NeverExact;
 pub use diagnosis::Diagnosis;
 
+use crate::ground::budget::Budgeted;
 use crate::ground::establish::establish;
 use crate::ground::session::Session;
 use crate::laboratory::Laboratory;
@@ -36,6 +37,23 @@ const PROMISED: f64 = 0.1;
 /// # Errors
 /// Those of the laboratory: nobody simulates any more, or the user stopped.
 pub async fn diagnose<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
+    let mut counted = Budgeted::new(lab, &inputs.thresholds.budget);
+    let mut diagnosis = within(&mut counted, inputs).await?;
+    diagnosis
+        .notes
+        .extend(counted.ran_out().iter().map(|stage| {
+            format!(
+                "ran out of simulations in the stage \"{}\": it may cost {} and began nothing more",
+                stage.name(),
+                inputs.thresholds.budget[*stage as usize]
+            )
+        }));
+    diagnosis.ran_out = counted.ran_out().to_vec();
+    Ok(diagnosis)
+}
+
+/// Diagnoses in a laboratory that counts.
+async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis, L::Error> {
     let Some(record) = inputs
         .records
         .first()

@@ -35,6 +35,9 @@ pub(crate) async fn rounds<L: Laboratory>(
     let mut current = base.fit.clone();
     let mut in_valley = false;
     for number in 0..inputs.thresholds.rounds {
+        if number > 0 && !(session.lab.may(Stage::What) && session.lab.may(Stage::Refit)) {
+            break;
+        }
         open.retain(|effect| current.model.added.iter().all(|a| a.id != effect.id));
         let mut round = suspicion(session, &current, &open, &generic).await?;
         // the valley does not move far once it is found; a second effect may hide it from the first

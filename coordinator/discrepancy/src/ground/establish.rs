@@ -113,6 +113,7 @@ async fn first_fit<L: Laboratory>(
         return Ok(None);
     };
     if first.misfit() > inputs.thresholds.valley
+        && experiments.lab.may(Stage::Basin)
         && let Some(other) = valley::enter(experiments, &first).await?
     {
         return Ok(Some(other));

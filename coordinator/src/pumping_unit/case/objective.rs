@@ -4,7 +4,7 @@ use crate::case::{
     document::{Document, Step, nearest},
     error::CaseError,
 };
-use protocol::case::{Objective, Offset, Term};
+use protocol::case::{Channel, Objective, Offset, Term};
 use protocol::pumping_unit::Sensor;
 
 /// The objective, with its condition by index. A case without gauge records needs none: it has nothing
@@ -71,6 +71,40 @@ pub(super) fn read(
     })
 }
 
+/// Takes the objective over those of its gauges that its condition's record has; over all that were
+/// measured if it has none of them. Says so; none where there is nothing to say.
+pub(super) fn over_recorded(objective: &mut Objective, channels: &[Channel]) -> Option<String> {
+    let own = channels
+        .iter()
+        .filter(|own| own.condition == objective.condition);
+    let recorded: Vec<&Channel> = own.filter(|own| own.record.is_some()).collect();
+    let there = |term: &Term| recorded.iter().any(|own| own.name == term.channel);
+    if recorded.is_empty() || objective.terms.iter().all(there) {
+        return None;
+    }
+    let (kept, lost): (Vec<Term>, Vec<Term>) = std::mem::take(&mut objective.terms)
+        .into_iter()
+        .partition(there);
+    let without: Vec<&str> = lost.iter().map(|term| &*term.channel).collect();
+    let all = || {
+        recorded.iter().map(|own| Term {
+            channel: own.name.clone(),
+            weight: 1.0,
+        })
+    };
+    objective.terms = if kept.is_empty() {
+        all().collect()
+    } else {
+        kept
+    };
+    let over: Vec<&str> = objective.terms.iter().map(|term| &*term.channel).collect();
+    Some(format!(
+        "the record lacks {}: the objective is taken over {}",
+        without.join(", "),
+        over.join(", ")
+    ))
+}
+
 fn term(gauge: u8, weight: f64) -> Term {
     Term {
         channel: Sensor::Gauge(gauge).name(),
@@ -119,4 +153,50 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::case::ChannelRecord;
+
+    #[test]
+    fn an_objective_is_taken_over_the_gauges_that_are_there() {
+        let over = |gauges: &[u8]| {
+            let channel = |sensor: Sensor| {
+                let mut own = sensor.channel(0, vec![0.0, 180.0]);
+                own.record =
+                    gauges
+                        .iter()
+                        .any(|g| Sensor::Gauge(*g) == sensor)
+                        .then(|| ChannelRecord {
+                            cycles: 5,
+                            mean: vec![0.0; 2],
+                            spread: vec![0.0; 2],
+                        });
+                own
+            };
+            let mut objective = Objective {
+                condition: 0,
+                terms: vec![term(1, 1.0), term(3, 2.0)],
+                offset: Offset::Free,
+            };
+            let said = over_recorded(&mut objective, &Sensor::ALL.map(channel));
+            let terms = objective.terms.iter();
+            let terms: Vec<(String, f64)> = terms.map(|t| (t.channel.clone(), t.weight)).collect();
+            (terms, said)
+        };
+        let named = |all: &[(u8, f64)]| -> Vec<(String, f64)> {
+            all.iter()
+                .map(|(g, w)| (Sensor::Gauge(*g).name(), *w))
+                .collect()
+        };
+        assert_eq!(over(&[1, 2, 3]), (named(&[(1, 1.0), (3, 2.0)]), None));
+        let (terms, said) = over(&[3, 4]);
+        assert_eq!(terms, named(&[(3, 2.0)]));
+        assert!(said.unwrap().contains("gauge_1"));
+        assert_eq!(over(&[2, 4]).0, named(&[(2, 1.0), (4, 1.0)]));
+        // no record at all: nothing to take it over
+        assert_eq!(over(&[]), (named(&[(1, 1.0), (3, 2.0)]), None));
+    }
 }

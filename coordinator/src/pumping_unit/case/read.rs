@@ -13,6 +13,7 @@ use crate::case::{
     effect::{self, CaseEffect},
     error::{CaseError, damaged},
     loaded::{Loaded, Records},
+    note::Note,
     source::Source,
 };
 use discrepancy::record::Record;
@@ -63,7 +64,7 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
     let envelope = machine::check(document, &file)?;
     let head = flexible::read(folder, document, &file)?;
     machine::check_arc(document, &file, &head.head.arc_deg, &envelope)?;
-    let objective = objective::read(document, file.objective.as_ref(), &file.conditions)?;
+    let mut objective = objective::read(document, file.objective.as_ref(), &file.conditions)?;
     effect::check(document, &file.effects, &EFFECT_UNITS)?;
     let (mut notes, mut facts) = (Vec::new(), Vec::new());
     let (mut cycles, mut channels) = (Vec::new(), Vec::new());
@@ -76,6 +77,11 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
+    let said = objective::over_recorded(&mut objective, &channels);
+    notes.extend(said.map(|text| Note {
+        path: document.path.clone(),
+        text,
+    }));
     let mut unknowns = genes::declared(document, &file.genes, &Bodies::of(&file))?;
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let machine = Machine {

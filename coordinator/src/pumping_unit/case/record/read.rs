@@ -112,17 +112,19 @@ fn sheet_path(record: &Path) -> PathBuf {
     record.with_file_name(format!("{stem}.toml"))
 }
 
-/// Gives the gauges, which come first, their averaged records; every grid angle must have a value.
+/// Gives the gauges that were recorded their averaged records; every grid angle must have a value.
 fn average(
     path: &Path,
     cycles: &resample::Cycles,
     channels: &mut [Channel],
     step_deg: f64,
 ) -> Result<(), CaseError> {
-    for (channel, (mean, spread)) in channels
-        .iter_mut()
-        .zip(cycles.mean.iter().zip(&cycles.spread))
-    {
+    let averaged = cycles.mean.iter().zip(&cycles.spread);
+    for (sensor, (mean, spread)) in cycles.channels.iter().zip(averaged) {
+        let place = Sensor::ALL.iter().position(|own| own == sensor);
+        let Some(channel) = place.and_then(|at| channels.get_mut(at)) else {
+            continue;
+        };
         if let Some(first) = mean.iter().position(Option::is_none) {
             let gap = mean.iter().skip(first);
             let length = gap.take_while(|value| value.is_none()).count();

@@ -24,7 +24,7 @@ pub(super) struct Cycles {
     pub(super) spread: Vec<Vec<f64>>,
     /// Grid angles that some whole cycle lacks.
     pub(super) gaps: usize,
-    /// Which channel each curve of a cycle is.
+    /// Which channel each curve of a cycle is, gauges first.
     pub(super) channels: Vec<Sensor>,
     /// Every whole cycle; where it has a gap, the mean of the others stands. Empty where every cycle
     /// lacks an angle.
@@ -50,33 +50,23 @@ pub(super) fn cycles(samples: &Samples, step_deg: f64) -> Cycles {
             continue;
         }
         whole.push(cycle);
-        let resample = |stress: &Vec<f64>| {
-            let at = |window: &Option<Window>| window.as_ref().map(|w| w.apply(stress));
+        let resample = |(_, curve): &(Sensor, Vec<f64>)| {
+            let at = |window: &Option<Window>| window.as_ref().map(|w| w.apply(curve));
             windows.iter().map(at).collect()
         };
-        let others = samples.others.iter().map(|(_, curve)| curve);
-        values.push(
-            samples
-                .stress_mpa
-                .iter()
-                .chain(others)
-                .map(resample)
-                .collect(),
-        );
+        values.push(samples.curves.iter().map(resample).collect());
     }
-    let gauges = (1..)
-        .zip(&samples.stress_mpa)
-        .map(|(number, _)| Sensor::Gauge(number));
-    let others = samples.others.iter().map(|(sensor, _)| *sensor);
+    let channels: Vec<Sensor> = samples.curves.iter().map(|(sensor, _)| *sensor).collect();
+    let gauges = channels.iter().filter(|sensor| sensor.is_gauge()).count();
     let mut cycles = Cycles {
         gaps: 0,
         mean: Vec::new(),
         spread: Vec::new(),
         whole,
-        channels: gauges.chain(others).collect(),
+        channels,
         single: filled(&values),
     };
-    for gauge in 0..samples.stress_mpa.len() {
+    for gauge in 0..gauges {
         let column = |at: usize| {
             values
                 .iter()

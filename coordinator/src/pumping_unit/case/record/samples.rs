@@ -7,17 +7,14 @@ use protocol::pumping_unit::Sensor;
 use std::path::Path;
 
 /// Columns that a record must have.
-pub(super) const COLUMNS: [&str; 6] = [
-    "time_s",
-    "crank_deg",
-    "stress_1_mpa",
-    "stress_2_mpa",
-    "stress_3_mpa",
-    "stress_4_mpa",
-];
+const COLUMNS: [&str; 2] = ["time_s", "crank_deg"];
 
-/// Columns that a diagnosis uses where there are any.
-const OPTIONAL: [(&str, Sensor); 2] = [
+/// What is recorded over them: gauges, of which there must be one, then what a diagnosis uses beside them.
+const CURVES: [(&str, Sensor); 6] = [
+    ("stress_1_mpa", Sensor::Gauge(1)),
+    ("stress_2_mpa", Sensor::Gauge(2)),
+    ("stress_3_mpa", Sensor::Gauge(3)),
+    ("stress_4_mpa", Sensor::Gauge(4)),
     ("polished_rod_position_m", Sensor::Position),
     ("crank_torque_nm", Sensor::Torque),
 ];
@@ -27,10 +24,8 @@ const OPTIONAL: [(&str, Sensor); 2] = [
 pub(super) struct Samples {
     /// Crank angle, counted on over the cycles: cycle x 360 + angle \[deg\]; never falls.
     pub(super) angle_deg: Vec<f64>,
-    /// Stress of gauges 1 to 4 \[MPa\].
-    pub(super) stress_mpa: Vec<Vec<f64>>,
-    /// What was recorded beside the gauges (m, N m).
-    pub(super) others: Vec<(Sensor, Vec<f64>)>,
+    /// What was recorded (MPa, m, N m), gauges first.
+    pub(super) curves: Vec<(Sensor, Vec<f64>)>,
     /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
     /// Usual time between samples \[s\].
@@ -46,13 +41,27 @@ impl Samples {
     ///
     /// # Errors
     /// Everything a table may have wrong; times that repeat or run backwards; angles outside
-    /// 0 to 360 or running backwards; stress that is not MPa by its magnitude; a dead gauge.
+    /// 0 to 360 or running backwards; no gauge; stress that is not MPa by its magnitude; a dead gauge.
     pub(super) fn read(path: &Path, bytes: &[u8]) -> Result<Self, CaseError> {
-        let table = Table::read_with(path, bytes, &COLUMNS, &OPTIONAL.map(|(name, _)| name))?;
+        let table = Table::read_with(path, bytes, &COLUMNS, &CURVES.map(|(name, _)| name))?;
         let [time, crank, rest @ ..] = table.columns.as_slice() else {
             return Err(damaged(path, "no columns", "copy it again"));
         };
-        let (stress, others) = rest.split_at(COLUMNS.len() - 2);
+        let names = table.names.iter().skip(COLUMNS.len());
+        let sensors = names.filter_map(|name| CURVES.iter().find(|(known, _)| known == name));
+        let sensors = sensors.map(|(_, sensor)| *sensor);
+        let curves: Vec<(Sensor, Vec<f64>)> = sensors.zip(rest.iter().cloned()).collect();
+        let gauges = curves
+            .iter()
+            .filter(|(sensor, _)| sensor.is_gauge())
+            .count();
+        if gauges == 0 {
+            return Err(damaged(
+                path,
+                "no column of a gauge: stress_1_mpa, stress_2_mpa, stress_3_mpa or stress_4_mpa",
+                "a record needs one gauge at least; name its column by the gauge's number",
+            ));
+        }
         if time.len() < 4 {
             return Err(damaged(
                 path,
@@ -62,8 +71,8 @@ impl Samples {
         }
         check_time(path, &table, time)?;
         let (angle_deg, pulses_s) = unwrap_angle(path, &table, time, crank)?;
-        for (index, values) in stress.iter().enumerate() {
-            check_stress(path, &table, index + 2, values)?;
+        for (index, (_, values)) in curves.iter().take(gauges).enumerate() {
+            check_stress(path, &table, index + COLUMNS.len(), values)?;
         }
         let step_s = median(time.iter().zip(time.iter().skip(1)).map(|(a, b)| b - a));
         let step_deg = median(
@@ -78,17 +87,7 @@ impl Samples {
             .map(|(a, b)| whole(((b - a) / step_s).round() - 1.0))
             .sum();
         Ok(Self {
-            stress_mpa: stress.to_vec(),
-            others: table
-                .names
-                .iter()
-                .skip(COLUMNS.len())
-                .zip(others)
-                .filter_map(|(name, values)| {
-                    let sensor = OPTIONAL.iter().find(|(known, _)| known == name)?.1;
-                    Some((sensor, values.clone()))
-                })
-                .collect(),
+            curves,
             angle_deg,
             pulses_s,
             step_s,

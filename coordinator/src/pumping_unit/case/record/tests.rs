@@ -3,6 +3,8 @@ use super::{
     resample::{self, Cycles},
     samples::{Samples, whole},
 };
+use protocol::pumping_unit::Sensor;
+use std::path::Path;
 
 /// A record of one gauge: a sample each `step_deg`, from `start_deg` on, over `turns`, where `keep`
 /// says so; the stress is a function of the counted-on crank angle.
@@ -19,8 +21,10 @@ fn sampled(
         .collect();
     let last = angle_deg.last().unwrap();
     Samples {
-        others: Vec::new(),
-        stress_mpa: vec![angle_deg.iter().map(|angle| stress(*angle)).collect()],
+        curves: vec![(
+            Sensor::Gauge(1),
+            angle_deg.iter().map(|angle| stress(*angle)).collect(),
+        )],
         pulses_s: (1..=floor(last / 360.0))
             .map(|turn| turn as f64 * 12.0)
             .collect(),
@@ -166,7 +170,8 @@ fn noise_is_averaged() {
     let mut state = 12345_u64;
     let samples = sampled((0.0, 0.3, 8.001), |_| true, |_| 0.0);
     let noisy = Samples {
-        stress_mpa: vec![
+        curves: vec![(
+            Sensor::Gauge(1),
             samples
                 .angle_deg
                 .iter()
@@ -177,7 +182,7 @@ fn noise_is_averaged() {
                     (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
                 })
                 .collect(),
-        ],
+        )],
         ..samples
     };
     let cycles = resample::cycles(&noisy, 0.5);
@@ -190,4 +195,38 @@ fn noise_is_averaged() {
     println!("noise {ours}");
     // linear interpolation between two samples keeps 0.82 of the noise; so do we, at least
     assert!((0.4..0.82).contains(&ours), "{ours}");
+}
+
+/// A table of these columns that every gauge and sensor moves in.
+fn table(columns: &[&str]) -> String {
+    let row = |at: usize| {
+        let angle = 0.5 * at as f64 % 360.0;
+        let of = |name: &&str| match *name {
+            "time_s" => format!("{}", 0.01 * at as f64),
+            "crank_deg" => format!("{angle}"),
+            _ => format!("{}", 30.0 + angle.to_radians().sin()),
+        };
+        columns.iter().map(of).collect::<Vec<_>>().join(",")
+    };
+    let rows = (0..2000).map(row);
+    std::iter::once(columns.join(","))
+        .chain(rows)
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// Any gauge will do, position and torque need not be there; a record without a gauge is none.
+#[test]
+fn any_gauges_make_a_record() {
+    let read = |columns: &[&str]| Samples::read(Path::new("test.csv"), table(columns).as_bytes());
+    let two = read(&["time_s", "stress_3_mpa", "crank_deg", "stress_1_mpa"]).unwrap();
+    let cycles = resample::cycles(&two, 0.5);
+    assert_eq!(cycles.channels, [Sensor::Gauge(1), Sensor::Gauge(3)]);
+    assert_eq!((cycles.mean.len(), cycles.single[0].len()), (2, 2));
+    let one = read(&["time_s", "crank_deg", "stress_4_mpa", "crank_torque_nm"]).unwrap();
+    let cycles = resample::cycles(&one, 0.5);
+    assert_eq!(cycles.channels, [Sensor::Gauge(4), Sensor::Torque]);
+    assert_eq!((cycles.mean.len(), cycles.single[0].len()), (1, 2));
+    let none = read(&["time_s", "crank_deg", "crank_torque_nm"]).unwrap_err();
+    assert!(none.to_string().contains("stress_1_mpa"), "{none}");
 }

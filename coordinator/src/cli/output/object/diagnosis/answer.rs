@@ -48,6 +48,8 @@ pub(crate) struct DiagnoseOutput {
     assumed_noise: bool,
     numerical_error: Option<NumericalOutput>,
     genes: BTreeMap<String, f64>,
+    /// Stages that used up the simulations that they may cost.
+    ran_out: Vec<&'static str>,
     stages: Vec<StageOutput>,
     wall_s: f64,
 }
@@ -144,6 +146,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .zip(genes)
             .map(|(unknown, value)| (unknown.name.clone(), value))
             .collect(),
+        ran_out: diagnosis.ran_out.iter().map(|stage| stage.name()).collect(),
         stages: subject
             .diagnosed
             .accounts
