@@ -2,9 +2,12 @@
 //!
 //! It knows the round's tests and refits, not who made them; what a finer model says of the answer is
 //! another matter.
+use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
+use crate::cause::together::Together;
 use crate::ground::base::Base;
 use crate::linear::evidence::ambiguity_set;
+use crate::linear::isolability::likeness;
 use crate::model::fit::Fit;
 use crate::thresholds::Thresholds;
 
@@ -45,6 +48,55 @@ pub(crate) fn decide(
     round.added = Some(best.id.clone());
     Some(best.fit.clone())
 }
+
+/// Whether several effects at once are believed instead of the best one alone: the round becomes that of the
+/// first, and once more itself for each of the others.
+pub(crate) fn decide_together(
+    round: &mut Round,
+    current: &Fit,
+    both: &Together,
+    (base, thresholds): (&Base, &Thresholds),
+) -> Option<Vec<Round>> {
+    let best = round.refits.first();
+    let left = best.map_or(current.chi_squared(), |best| best.fit.chi_squared());
+    let left = left.min(current.chi_squared());
+    let removed = left - both.fit.chi_squared();
+    let phi = both.fit.misfit();
+    let evidence = best.map_or(f64::NEG_INFINITY, |best| best.log_evidence);
+    let gained = both.fit.log_evidence() - evidence.max(round.null_evidence);
+    let clear = gained > thresholds.gain * phi * phi && round.p_value <= thresholds.alpha;
+    if !clear || share(removed, left, base.noise()) < FURTHER {
+        return None;
+    }
+    let tangent = current.tangent();
+    let of_id = |id: &String| round.suspects.iter().find(|own| own.effect.id == *id);
+    let set = |id: &String| -> Vec<String> {
+        let own = of_id(id);
+        let like = |other: &&Refitted| {
+            let pair = own.zip(of_id(&other.id));
+            !both.members.contains(&other.id)
+                && pair.is_some_and(|(a, b)| likeness(&a.signature, &b.signature, &tangent) > ALIKE)
+        };
+        let rivals = round.refits.iter().filter(like);
+        let rivals = rivals.map(|rival| rival.id.clone());
+        std::iter::once(id.clone()).chain(rivals).collect()
+    };
+    let sets: Vec<Vec<String>> = both.members.iter().map(set).collect();
+    round.phi = phi;
+    let mut rounds = both.members.iter().zip(sets).map(|(id, set)| Round {
+        added: Some(id.clone()),
+        set,
+        reason: None,
+        ..round.clone()
+    });
+    let first = rounds.next()?;
+    let beside = rounds.collect();
+    *round = first;
+    Some(beside)
+}
+
+/// Squared cosine of projected signatures from which one effect may stand in another's place beside a third.
+const ALIKE: f64 = 0.5;
 
 /// Share of what is left above the noise that an effect must remove which is not the first.
 const FURTHER: f64 = 0.5;

@@ -4,9 +4,9 @@
 pub(crate) mod challenge;
 pub(crate) mod decide;
 pub mod low_orders;
-pub(crate) mod pair;
 pub mod refit;
 pub(crate) mod round;
 pub mod signature;
 pub mod suspect;
+pub(crate) mod together;
 pub(crate) mod valley_search;

@@ -1,25 +1,36 @@
 //! Whether a round's likeliest name is believed: beside the forces without a cause that challenge it, and
 //! beside a finer model.
 use crate::cause::challenge::{Challenger, challenge};
-use crate::cause::decide::decide;
-use crate::cause::pair;
+use crate::cause::decide::{decide, decide_together};
 use crate::cause::round::Round;
+use crate::cause::together::{Together, together};
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::ground::believed::{Checked, believed};
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
 use crate::size::force::force;
+use crate::thresholds::Thresholds;
 
-/// The next model, if the best name of a round is believed; else the round and the diagnosis say why not.
+/// What is believed after a round.
+pub(crate) struct Believed {
+    /// The next model.
+    pub(crate) fit: Fit,
+    /// The round once more for each effect that was added beside its first.
+    pub(crate) beside: Vec<Round>,
+}
+
+/// The next model, if the best names of a round are believed; else the round and the diagnosis say why not.
 pub(crate) async fn believe<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
     round: &mut Round,
     diagnosis: &mut Diagnosis,
-) -> Result<Option<Fit>, L::Error> {
+) -> Result<Option<Believed>, L::Error> {
     let (base, thresholds) = (session.base, &session.inputs.thresholds);
-    if let Some(challenger) = contested(session, current, round).await? {
+    let challenger = challenge(session, current, round).await?;
+    let together = likeliest_together(session, current, round, challenger.is_some()).await?;
+    if let Some(challenger) = challenger.filter(|own| beats(own, together.as_ref(), thresholds)) {
         let (id, fit) = (&challenger.id, &challenger.fit);
         if let Some(reason) = drowned(session, current, fit, id, diagnosis).await? {
             round.reason = Some(reason);
@@ -29,6 +40,20 @@ pub(crate) async fn believe<L: Laboratory>(
         }
         return Ok(None);
     }
+    if let Some(both) = together
+        && let Some(beside) = decide_together(round, current, &both, (base, thresholds))
+    {
+        let id = both.members.join(" with ");
+        let reason = drowned(session, current, &both.fit, &id, diagnosis).await?;
+        if let Some(reason) = reason {
+            round.withdraw(reason);
+            return Ok(None);
+        }
+        return Ok(Some(Believed {
+            fit: both.fit,
+            beside,
+        }));
+    }
     let Some(next) = decide(round, current, base, thresholds) else {
         return Ok(None);
     };
@@ -37,7 +62,44 @@ pub(crate) async fn believe<L: Laboratory>(
         round.withdraw(reason);
         return Ok(None);
     }
-    Ok(Some(next))
+    Ok(Some(Believed {
+        fit: next,
+        beside: Vec::new(),
+    }))
+}
+
+/// Several effects at once that explain a round best, where no single one leaves but noise or a force
+/// without a cause challenges it.
+async fn likeliest_together<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    current: &Fit,
+    round: &Round,
+    challenged: bool,
+) -> Result<Option<Together>, L::Error> {
+    let thresholds = &session.inputs.thresholds;
+    let (base, adequacy) = (session.base, thresholds.adequacy);
+    let most = thresholds.rounds.saturating_sub(current.model.added.len());
+    let enough = |fit: &Fit| base.is_noise(fit.chi_squared(), fit.x().len(), adequacy);
+    let single = round.refits.iter().any(|refit| enough(&refit.fit));
+    if most < 2 || (!challenged && (single || round.refits.is_empty())) {
+        return Ok(None);
+    }
+    if !session.lab.may(Stage::Refit) {
+        return Ok(None);
+    }
+    let mut experiments = session.experiments(Stage::Refit);
+    let found = together(&mut experiments, current, &round.suspects, most).await?;
+    let evidence = |own: &Together| own.fit.log_evidence();
+    Ok(found
+        .into_iter()
+        .max_by(|a, b| evidence(a).total_cmp(&evidence(b))))
+}
+
+/// Whether a force explains more than any effects together.
+fn beats(force: &Challenger, together: Option<&Together>, thresholds: &Thresholds) -> bool {
+    let phi = force.fit.misfit();
+    let margin = thresholds.gain * phi * phi;
+    together.is_none_or(|own| own.fit.log_evidence() <= force.log_evidence - margin)
 }
 
 /// Why what a finer model says of an answer is enough to doubt it, if it is; the check is kept.
@@ -59,27 +121,6 @@ async fn drowned<L: Laboratory>(
              model changes there as noise, {gain:.1} nats are left and {needed:.0} are needed"
         )
     }))
-}
-
-/// A force that beats the best name, and the best two names together.
-async fn contested<L: Laboratory>(
-    session: &mut Session<'_, L>,
-    current: &Fit,
-    round: &Round,
-) -> Result<Option<Challenger>, L::Error> {
-    let Some(challenger) = challenge(session, current, round).await? else {
-        return Ok(None);
-    };
-    if !session.lab.may(Stage::Refit) {
-        return Ok(Some(challenger));
-    }
-    // two effects at once may look like a third thing to each of them
-    let mut experiments = session.experiments(Stage::Refit);
-    let pair = pair::best(&mut experiments, current, &round.suspects).await?;
-    let phi = challenger.fit.misfit();
-    let margin = session.inputs.thresholds.gain * phi * phi;
-    let explained = pair.is_some_and(|evidence| evidence > challenger.log_evidence - margin);
-    Ok((!explained).then_some(challenger))
 }
 
 /// A force without a cause beats every name of this round. Beside names that explain more than it

@@ -52,9 +52,11 @@ pub(crate) async fn rounds<L: Laboratory>(
         }
         let next = believe(session, &current, &mut round, diagnosis).await?;
         diagnosis.rounds.push(round);
-        match next {
-            Some(fit) => current = fit,
-            None => break,
+        let Some(next) = next else { break };
+        diagnosis.rounds.extend(next.beside);
+        current = next.fit;
+        if current.model.added.len() >= inputs.thresholds.rounds {
+            break;
         }
     }
     let added = current.model.added.len();

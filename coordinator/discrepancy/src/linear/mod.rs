@@ -4,4 +4,5 @@
 pub mod evidence;
 pub mod isolability;
 pub mod score;
+pub(crate) mod subset;
 pub mod tangent;

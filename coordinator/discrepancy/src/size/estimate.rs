@@ -1,5 +1,4 @@
 //! Effects of the answer, with their sizes and intervals.
-use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
 use crate::linear::score::family_wise;
 use crate::model::fit::Fit;
@@ -49,9 +48,8 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
                 .iter()
                 .filter(|id| (round.added.as_ref() == Some(id)) == added_first);
             for id in members {
-                let refitted = round.refits.iter().find(|r| r.id == *id);
-                if let Some(refitted) = refitted.filter(|_| found.iter().all(|e| e.id != *id)) {
-                    found.push(estimate(round, refitted, after));
+                if found.iter().all(|e| e.id != *id) {
+                    found.extend(estimate(round, id, after));
                 }
             }
         }
@@ -61,10 +59,13 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
 
 /// Sizes of an added effect are those of the final model, beside everything else that was added; of
 /// a rival, those of its own refit.
-fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
-    let place = |fit: &Fit| fit.model.added.iter().position(|e| e.id == refitted.id);
-    let fit = place(after).map_or(&refitted.fit, |_| after);
-    let position = place(fit).unwrap_or_default();
+fn estimate(round: &Round, id: &str, after: &Fit) -> Option<Estimate> {
+    let place = |fit: &Fit| fit.model.added.iter().position(|e| e.id == id);
+    let refitted = round.refits.iter().find(|r| r.id == id);
+    let own = refitted.map(|refitted| &refitted.fit);
+    let fit = place(after).map_or(own, |_| Some(after))?;
+    let log_evidence = refitted.map_or_else(|| fit.log_evidence(), |own| own.log_evidence);
+    let position = place(fit)?;
     let effect = &fit.model.added[position];
     let first = fit.model.first_of(position);
     let covariance = fit.covariance(round.phi);
@@ -81,18 +82,18 @@ fn estimate(round: &Round, refitted: &Refitted, after: &Fit) -> Estimate {
             interval: [(value - half).max(p.lower), (value + half).min(p.upper)],
         }
     });
-    let suspect = round.suspects.iter().find(|s| s.effect.id == refitted.id);
-    Estimate {
-        id: refitted.id.clone(),
+    let suspect = round.suspects.iter().find(|s| s.effect.id == id);
+    Some(Estimate {
+        id: id.to_owned(),
         title: effect.title.clone(),
         unknown: fit
             .model
             .off
             .iter()
-            .find(|off| off.suspect.id == refitted.id)
+            .find(|off| off.suspect.id == id)
             .map(|off| off.position),
         parameters: parameters.collect(),
         p_value: suspect.map_or(1.0, |s| family_wise(s.p_value(), round.suspects.len())),
-        ln_evidence: round.nats(refitted.log_evidence),
-    }
+        ln_evidence: round.nats(log_evidence),
+    })
 }

@@ -1,0 +1,74 @@
+//! Several effects at once.
+//!
+//! Where two or three effects act, each alone may explain less than another that resembles their sum. All
+//! pairs and triples are tried on the projected linear system; what it proposes, refits with every unknown
+//! free judge.
+use crate::cause::suspect::Suspect;
+use crate::laboratory::Laboratory;
+use crate::linear::subset::{Subset, Subsets};
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::parameter::{positive, sized};
+use crate::model::unknowns::Point;
+use search::least_squares::Settings;
+
+/// How many effects at once, and how many such proposals are refitted.
+const TRIED: [(usize, usize); 2] = [(2, 3), (3, 1)];
+
+/// Several effects, refitted together.
+#[derive(Clone, Debug)]
+pub(crate) struct Together {
+    /// Their identifiers, the one that explains most by itself first.
+    pub(crate) members: Vec<String>,
+    /// The fit; the last effects of its model are these.
+    pub(crate) fit: Fit,
+}
+
+/// Refits of the best pairs and triples of suspects, at most so many at once; those that cannot be simulated
+/// are left out.
+pub(crate) async fn together<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    suspects: &[Suspect],
+    most: usize,
+) -> Result<Vec<Together>, L::Error> {
+    let able = suspects.iter().filter(|s| s.signature.ncols() > 0);
+    let able: Vec<&Suspect> = able.collect();
+    let signatures = able
+        .iter()
+        .map(|own| (&own.signature, positive(&own.effect)));
+    let residual = fit.search.settled_residual();
+    let subsets = Subsets::new(&residual, &signatures.collect::<Vec<_>>(), &fit.tangent());
+    let tried = TRIED.into_iter().filter(|(count, _)| *count <= most);
+    let proposals: Vec<Subset> = tried
+        .flat_map(|(count, kept)| subsets.best(count, kept))
+        .collect();
+    let starts = proposals.iter().map(|own| started(fit, &able, own));
+    let fits = experiments
+        .fits(starts.collect(), Settings::short(6))
+        .await?;
+    let members = |subset: &Subset| {
+        let mut own: Vec<&Suspect> = subset.members.iter().map(|&k| able[k]).collect();
+        own.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
+        own.into_iter().map(|own| own.effect.id.clone()).collect()
+    };
+    let refitted = proposals.iter().zip(fits);
+    Ok(refitted
+        .filter_map(|(subset, fit)| {
+            Some(Together {
+                members: members(subset),
+                fit: fit?,
+            })
+        })
+        .collect())
+}
+
+/// A fit with all of them at their estimates, in the shapes that suit each alone.
+fn started(fit: &Fit, able: &[&Suspect], subset: &Subset) -> Point {
+    let mut estimates = subset.sizes.iter();
+    let members = subset.members.iter().map(|&k| able[k]);
+    members.fold(fit.point(), |point, one| {
+        let own = sized(&one.effect, one.start.clone(), &mut estimates);
+        point.with(&one.effect, &own)
+    })
+}
