@@ -19,7 +19,11 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
             },
             Block::Table,
         ));
-        let rest = [tables::genes(subject), tables::stages(subject)];
+        let rest = [
+            tables::instruments(subject),
+            tables::genes(subject),
+            tables::stages(subject),
+        ];
         blocks.extend(rest.into_iter().flatten().map(Block::Table));
     }
     Section {

@@ -45,6 +45,7 @@ fn blocks(subject: &Subject<'_>) -> Vec<Block> {
             "The widest margin has {force}, and it is only suspected."
         )));
     }
+    blocks.extend(tables::absorbed(subject).map(Block::Table));
     blocks.extend(tables::look_alikes(subject).map(Block::Table));
     let limits = tables::limits(subject).map(Block::Table);
     blocks.extend(

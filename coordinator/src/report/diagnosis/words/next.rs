@@ -1,5 +1,6 @@
 //! What to do next: one sentence each.
 use crate::report::diagnosis::subject::Subject;
+use crate::report::number::percent;
 use crate::report::words::{command, listed};
 use discrepancy::diagnose::Diagnosis;
 use discrepancy::verdict::Verdict;
@@ -16,6 +17,17 @@ pub(in crate::report::diagnosis) fn next(subject: &Subject<'_>) -> Vec<String> {
         steps.push(format!(
             "Record {} too: the more places a record has, the fewer effects look alike in it.",
             listed(&missing, "and")
+        ));
+    }
+    if diagnosis.verdict == Verdict::Unresolved
+        && let Some(hidden) = diagnosis.absorbed.first()
+    {
+        steps.push(format!(
+            "Consider what this record cannot show, {} above all: {} of it is taken up by the unknowns. It \
+             would show with {}.",
+            hidden.id,
+            percent(hidden.share),
+            hidden.measurement
         ));
     }
     if subject.records.len() < 2 {
