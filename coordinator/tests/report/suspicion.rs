@@ -18,6 +18,7 @@ use discrepancy::place::whereabouts::Where;
 use discrepancy::place::{along, joint, order};
 use discrepancy::proof::closed::closed;
 use discrepancy::proof::compare::{self, Row};
+use discrepancy::proof::weighed::Weighed;
 use discrepancy::record::noise::Known;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::verdict::Verdict;
@@ -228,6 +229,10 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
         .map(|(record, part)| Row {
             condition: record.condition,
             part,
+            weighed: Weighed {
+                closed: 1.0 - after,
+                interval: [0.9 - after, 1.0],
+            },
             closed: closed(&record, &record.cycles, &curves(1.0), &curves(after)),
             before: curves(1.0),
             after: curves(after),

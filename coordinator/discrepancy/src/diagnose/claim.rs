@@ -18,7 +18,7 @@ pub(crate) fn claim(
     let row = |part: Portion, condition: usize| {
         let mut all = rows.iter();
         all.find(|row| row.part == part && row.condition == condition)
-            .map(|row| row.closed)
+            .map(|row| row.weighed)
     };
     let elsewhere = shown.iter().filter(|one| one.part != Portion::Fitted);
     let added = answer.model.added.iter();
@@ -31,7 +31,7 @@ pub(crate) fn claim(
         fitted: rows
             .iter()
             .find(|row| row.part == Portion::Fitted)
-            .map(|row| row.closed),
+            .map(|row| row.weighed),
         elsewhere: elsewhere
             .map(|one| Elsewhere {
                 record: one.part.words(one.record.condition),

@@ -70,11 +70,11 @@ async fn idle<L: Laboratory>(
 ) -> Result<Option<(usize, Fit, String)>, L::Error> {
     for (position, fit) in without {
         let rows = compare(experiments, elsewhere, &fit, answer).await?;
-        let nothing = |row: &&Row| row.closed.interval.is_some_and(|[low, _]| low <= 0.0);
+        let nothing = |row: &&Row| row.weighed.interval[0] <= 0.0;
         if let Some(row) = rows.iter().find(nothing) {
             let reason = format!(
                 "closes {:.0} % of what is left without it on {}, and may close none of it",
-                100.0 * row.closed.closed,
+                100.0 * row.weighed.closed,
                 row.words()
             );
             return Ok(Some((position, fit, reason)));

@@ -12,7 +12,8 @@ pub(crate) async fn swap<L: Laboratory>(
     answer: &Fit,
     diagnosis: &mut Diagnosis,
 ) -> Result<(), L::Error> {
-    if answer.model.added.len() < 2 {
+    // a set of one round alone was judged with it
+    if diagnosis.rounds.len() < 2 {
         return Ok(());
     }
     let phi = answer.misfit();

@@ -89,6 +89,10 @@ pub(crate) async fn establish<L: Laboratory>(
     }))
 }
 
+/// Misfit from which a first fit may lie outside the valley: a model that lacks nothing leaves less, and the
+/// look costs little beside tests at a wrong place.
+const DOUBTFUL: f64 = 1.3;
+
 /// A fit under the record's own noise alone, in the valley in which the resonances fit as far as the model
 /// without effects has one.
 async fn first_fit<L: Laboratory>(
@@ -112,7 +116,7 @@ async fn first_fit<L: Laboratory>(
     let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {
         return Ok(None);
     };
-    if first.misfit() > inputs.thresholds.valley
+    if first.misfit() > DOUBTFUL
         && experiments.lab.may(Stage::Basin)
         && let Some(other) = valley::enter(experiments, &first).await?
     {

@@ -36,9 +36,12 @@ pub fn gap(record: &Record, simulated: &Curves) -> f64 {
 /// gap that is printed.
 pub fn closed(record: &Record, alike: &[Curves], before: &Curves, after: &Curves) -> Closed {
     const DRAWS: usize = 1000;
+    // where noise explains all that there was, all is closed or nothing
     let ratio = |[before, after]: [f64; 2]| {
         if before > 0.0 {
-            1.0 - after / before
+            1.0 - after.max(0.0) / before
+        } else if after < before {
+            1.0
         } else {
             0.0
         }
@@ -54,7 +57,7 @@ pub fn closed(record: &Record, alike: &[Curves], before: &Curves, after: &Curves
             .map(|draw| {
                 let stream = &mut streams.at(0, Phase::Resample, draw);
                 let drawn = pool.drawn(record.cycles.len(), &ruler.mean, stream);
-                let left = |curves| (ruler.mse(&drawn, curves) - noise).max(0.0);
+                let left = |curves| ruler.mse(&drawn, curves) - noise;
                 ratio([before, after].map(left))
             })
             .collect();

@@ -3,7 +3,9 @@ use crate::laboratory::{Laboratory, channels};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::proof::closed::{Closed, closed};
+use crate::proof::weighed::{Scale, Weighed};
 use crate::record::measured::{Curves, Record, Split};
+use crate::record::whitened::WhitenedRecord;
 
 /// The gap before and after on one record.
 #[derive(Clone, Debug)]
@@ -14,6 +16,8 @@ pub struct Row {
     pub part: Portion,
     /// The gap.
     pub closed: Closed,
+    /// How far it closes in the metric of the tests.
+    pub weighed: Weighed,
     /// Curves before, by channel.
     pub before: Curves,
     /// Curves after.
@@ -59,29 +63,48 @@ pub(crate) struct Shown<'a> {
     pub(crate) record: &'a Record,
     /// Cycles that scatter as its own do, its own among them.
     pub(crate) alike: Vec<Curves>,
+    /// Where it counts by its noise.
+    scale: Scale,
     /// What of the records it is.
     pub(crate) part: Portion,
 }
 
-/// Everything that an answer is shown on: the calibrated condition's record in parts, then the others.
-pub(crate) fn shown<'a>(split: &'a Split, others: &'a [Record]) -> Vec<Shown<'a>> {
-    let cycles = || [&split.fitted.cycles[..], &split.cycles.cycles].concat();
-    let own = |record: &'a Record, part: Portion| Shown {
-        alike: record.cycles.clone(),
-        record,
-        part,
+/// Everything that an answer is shown on: the calibrated condition's record in parts, then the others. `on` is
+/// what was fitted, in the metric of the tests; elsewhere orders up to `highest` count.
+pub(crate) fn shown<'a>(
+    split: &'a Split,
+    others: &'a [Record],
+    (on, highest): (&WhitenedRecord, usize),
+) -> Vec<Shown<'a>> {
+    let own = |record: &'a Record, part: Portion| {
+        let there = !record.cycles.is_empty() && !record.channels.is_empty();
+        there.then(|| {
+            let fitted = split.fitted.cycles.len();
+            let (alike, scale) = match part {
+                Portion::Fitted | Portion::Cycles => (
+                    [&split.fitted.cycles[..], &split.cycles.cycles].concat(),
+                    Scale::of(record, &on.metric, fitted),
+                ),
+                Portion::Channels | Portion::Condition => (
+                    record.cycles.clone(),
+                    Scale::own(record, highest, &on.numerics),
+                ),
+            };
+            Shown {
+                alike,
+                scale,
+                record,
+                part,
+            }
+        })
     };
-    let mut all = vec![
+    let parts = [
         own(&split.fitted, Portion::Fitted),
-        Shown {
-            alike: cycles(),
-            ..own(&split.cycles, Portion::Cycles)
-        },
+        own(&split.cycles, Portion::Cycles),
         own(&split.channels, Portion::Channels),
     ];
-    all.extend(others.iter().map(|record| own(record, Portion::Condition)));
-    all.retain(|one| !one.record.cycles.is_empty() && !one.record.channels.is_empty());
-    all
+    let others = others.iter().map(|record| own(record, Portion::Condition));
+    parts.into_iter().chain(others).flatten().collect()
 }
 
 /// Compares two models on records; nothing for a record on which one of them fails.
@@ -114,6 +137,7 @@ pub(crate) async fn compare<L: Laboratory>(
             Some(Row {
                 condition: shown.record.condition,
                 part: shown.part,
+                weighed: shown.scale.weighed(&before, &after),
                 closed: closed(shown.record, &shown.alike, &before, &after),
                 before,
                 after,

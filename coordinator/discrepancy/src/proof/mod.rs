@@ -3,3 +3,4 @@
 pub mod closed;
 pub mod compare;
 pub mod gap;
+pub mod weighed;

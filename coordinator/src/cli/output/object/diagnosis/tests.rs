@@ -16,6 +16,7 @@ use discrepancy::{
     proof::{
         closed::Closed,
         compare::{Portion, Row},
+        weighed::Weighed,
     },
     record::{Record, Recorded, Stated, noise::Known},
     verdict::Verdict,
@@ -42,6 +43,10 @@ fn row(part: Portion, closed: f64) -> Row {
             after: 0.04 * (1.0 - closed),
             closed,
             interval: (part == Portion::Fitted).then_some([closed - 0.1, closed + 0.1]),
+        },
+        weighed: Weighed {
+            closed,
+            interval: [closed - 0.1, closed + 0.1],
         },
         before: Vec::new(),
         after: Vec::new(),
@@ -192,6 +197,9 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
                 "rounds",
                 "where",
                 "detection_limits",
+                "nuisances",
+                "absorbed",
+                "ran_out",
                 "gap",
                 "rival",
                 "reason",
@@ -290,6 +298,10 @@ fn wandering_genes_have_their_values() {
 fn a_diagnosis_that_stopped_has_empty_lists_and_nulls() {
     let said = printed(bare(Verdict::Unresolved));
     assert_eq!(said["reason"], "because");
+    // suspects are no effects of an answer
+    let suspected = printed(full(Verdict::Unresolved));
+    assert_eq!(suspected["effects"], Value::Array(Vec::new()));
+    assert_eq!(suspected["rounds"].as_array().map(Vec::len), Some(1));
     for list in [
         "effects",
         "rounds",
@@ -329,6 +341,7 @@ fn effects_gaps_and_limits_are_as_documented() {
     ] {
         assert_eq!(gap[part]["closed"], closed, "{part}");
         assert_eq!(gap[part]["before"], 0.04);
+        assert_eq!(gap[part]["weighed"]["closed"], closed);
     }
     assert!(gap["calibration"]["ci95"].is_array() && gap["held_out"]["ci95"].is_null());
     assert_eq!(said["rival"]["id"], "rope_toe");
