@@ -79,16 +79,17 @@ pub(crate) fn shown<'a>(
     let own = |record: &'a Record, part: Portion| {
         let there = !record.cycles.is_empty() && !record.channels.is_empty();
         there.then(|| {
-            let fitted = split.fitted.cycles.len();
-            let (alike, scale) = match part {
-                Portion::Fitted | Portion::Cycles => (
-                    [&split.fitted.cycles[..], &split.cycles.cycles].concat(),
-                    Scale::of(record, &on.metric, fitted),
-                ),
-                Portion::Channels | Portion::Condition => (
-                    record.cycles.clone(),
-                    Scale::own(record, highest, &on.numerics),
-                ),
+            let alike = match part {
+                Portion::Fitted | Portion::Cycles => {
+                    [&split.fitted.cycles[..], &split.cycles.cycles].concat()
+                }
+                Portion::Channels | Portion::Condition => record.cycles.clone(),
+            };
+            let scale = match part {
+                Portion::Fitted | Portion::Cycles => {
+                    Scale::of(record, &alike, &on.metric, split.fitted.cycles.len())
+                }
+                Portion::Channels | Portion::Condition => Scale::own(record, highest, &on.numerics),
             };
             Shown {
                 alike,

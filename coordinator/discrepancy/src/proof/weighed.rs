@@ -2,7 +2,8 @@
 //! mean squares of single channels, and what decides whether a name carries.
 //!
 //! With whitened residuals `r` before and after, `D = |r_b|^2 - |r_a|^2` is what is closed; under noise of
-//! variance 1 its standard deviation is `2 |r_b - r_a|`. Of `|r_b|^2 - n` all could be closed.
+//! variance 1 its standard deviation is `2 |r_b - r_a|`, and where cycles scatter more along that difference
+//! (their input did), it is what they show. Of `|r_b|^2 - n` all could be closed.
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::whitened::WhitenedRecord;
@@ -27,14 +28,21 @@ pub(crate) struct Scale {
     /// What a unit of the metric is, in standard deviations of this record's mean.
     unit: f64,
     measured: DVector<f64>,
+    /// Cycles that scatter as the record's own do, its own among them.
+    alike: Vec<DVector<f64>>,
+    /// How many are its own.
+    cycles: usize,
 }
 
 impl Scale {
-    /// A record in the metric of the mean of so many cycles of the same condition and channels.
-    pub(crate) fn of(record: &Record, metric: &Metric, cycles: usize) -> Self {
+    /// A record in the metric of the mean of so many cycles of the same condition and channels; `alike` are
+    /// cycles that scatter as its own do, its own among them.
+    pub(crate) fn of(record: &Record, alike: &[Curves], metric: &Metric, cycles: usize) -> Self {
         Self {
             unit: (record.cycles.len() as f64 / cycles.max(1) as f64).sqrt(),
             measured: metric.whiten(&record.mean()),
+            alike: alike.iter().map(|cycle| metric.whiten(cycle)).collect(),
+            cycles: record.cycles.len(),
             metric: metric.clone(),
         }
     }
@@ -42,11 +50,7 @@ impl Scale {
     /// A record under its own noise.
     pub(crate) fn own(record: &Record, highest: usize, numerics: &Numerics) -> Self {
         let own = WhitenedRecord::under_own_noise(record.clone(), highest, numerics.clone());
-        Self {
-            unit: 1.0,
-            measured: own.measured,
-            metric: own.metric,
-        }
+        Self::of(record, &record.cycles, &own.metric, record.cycles.len())
     }
 
     /// What is left of a record by curves.
@@ -60,12 +64,76 @@ impl Scale {
         const QUANTILE: f64 = 1.96;
         let [before, after] = [before, after].map(|curves| self.left(curves));
         let closed = before.norm_squared() - after.norm_squared();
-        let half = QUANTILE * 2.0 * (&before - &after).norm();
+        let half = QUANTILE * 2.0 * self.deviation(&(&before - &after));
         let gap = before.norm_squared() - before.len() as f64;
         let whole = gap.max(closed.abs()).max(1.0);
         Weighed {
             closed: closed / whole,
             interval: [(closed - half) / whole, ((closed + half) / whole).min(1.0)],
         }
+    }
+
+    /// Standard deviation of the record's mean along a change of its curves, times that change.
+    fn deviation(&self, change: &DVector<f64>) -> f64 {
+        let along = self.alike.iter().map(|cycle| self.unit * cycle.dot(change));
+        let along: Vec<f64> = along.collect();
+        let n = along.len() as f64;
+        if along.len() < 2 {
+            return change.norm();
+        }
+        let mean = along.iter().sum::<f64>() / n;
+        let square: f64 = along.iter().map(|x| (x - mean) * (x - mean)).sum();
+        let seen = (square / (n - 1.0) / self.cycles.max(1) as f64).sqrt();
+        change.norm().max(seen)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::record::measured::{Stated, tests::recorded};
+    use search::random::{Phase, Streams};
+
+    /// Of records whose gap is about as large as their noise, a change that has nothing to do with it is
+    /// hardly ever taken for one that closes it, and the right one mostly is.
+    #[test]
+    fn intervals_are_as_wide_as_the_noise() {
+        const SAMPLES: usize = 240;
+        let step = 360.0 / SAMPLES as f64;
+        let wave = |size: f64, order: f64| -> Vec<f64> {
+            let value = |i: usize| size * libm::sin((order * step * i as f64).to_radians());
+            (0..SAMPLES).map(value).collect()
+        };
+        let mut channel = recorded(0);
+        channel.channel.abscissa.points = (0..SAMPLES).map(|i| step * i as f64).collect();
+        let streams = Streams::new(11, 0);
+        let (mut idle, mut closing) = (0, 0);
+        for draw in 0..200 {
+            let mut stream = streams.at(0, Phase::Initial, draw);
+            let truth = wave(0.25, 3.0);
+            let mut cycle = || {
+                vec![
+                    truth
+                        .iter()
+                        .map(|y| y + stream.normal())
+                        .collect::<Vec<f64>>(),
+                ]
+            };
+            let record = Record {
+                condition: 0,
+                channels: vec![channel.clone()],
+                cycles: (0..8).map(|_| cycle()).collect(),
+                held_out: false,
+                stated: Stated::default(),
+            };
+            let scale = Scale::own(&record, 60, &Numerics::default());
+            let weighed = |after| scale.weighed(&vec![wave(0.0, 1.0)], &vec![after]);
+            idle += usize::from(weighed(wave(0.1, 7.0)).interval[0] > 0.0);
+            let right = weighed(wave(0.25, 3.0));
+            closing += usize::from(right.interval[0] > 0.0);
+            assert!(right.closed <= 1.0 && right.interval[1] <= 1.0);
+        }
+        assert!(idle <= 10, "{idle}");
+        assert!(closing >= 180, "{closing}");
     }
 }
