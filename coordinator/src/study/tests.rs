@@ -368,11 +368,10 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     }
 }
 
-#[tokio::test]
-async fn a_comparison_that_cannot_be_made_names_the_individual() {
+/// What a comparison of one individual fails with where each of its jobs does.
+async fn comparison_fails(failure: Failure) -> StudyError {
     let case = case();
-    let answer =
-        |_: &Space, _: u64, _: &Individual| Outcome::Failed(Failure::Deadline { limit_ms: 1500 });
+    let answer = |_: &Space, _: u64, _: &Individual| Outcome::Failed(failure.clone());
     let mut oracle = Oracle::new(&case, 1, answer);
     let (_sender, mut stop) = watch::channel(false);
     let individuals = vec![("recommended".to_owned(), case.start())];
@@ -382,14 +381,30 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
         pictures: 0,
         columns: Vec::new(),
     }];
-    let error = compare(&mut oracle, &case, &wanted, &mut stop)
-        .await
-        .err()
-        .unwrap();
+    let compared = compare(&mut oracle, &case, &wanted, &mut stop).await;
+    compared.err().unwrap()
+}
+
+#[tokio::test]
+async fn a_comparison_that_cannot_be_made_names_the_individual() {
+    let error = comparison_fails(Failure::Deadline { limit_ms: 1500 }).await;
     assert_eq!(
         error.to_string(),
         "the recommended individual at 5rpm could not be evaluated: it ran longer than 1.5 s"
     );
+    assert_eq!(error.help().unwrap(), "the same command tries again");
+}
+
+/// The same command would be refused again.
+#[tokio::test]
+async fn a_column_that_does_not_exist_is_said_to_be_wrong() {
+    let problem = "there is no `kb7`; did you mean `kb1`?";
+    let error = comparison_fails(Failure::misconfigured("columns[0]", problem)).await;
+    assert_eq!(
+        error.to_string(),
+        format!("the workers cannot differentiate by this: {problem}")
+    );
+    assert!(error.help().unwrap().contains("EFFECT.PARAMETER"));
 }
 
 /// Asks for one individual after the other, and calls none of them initial.
