@@ -240,7 +240,6 @@ impl Bushing {
         let e = j.axis;
         let side = across(&e);
         let mut pull = self.preload + (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
-        let turned = side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
         if let Some(further) = further {
             pull += further.force;
             k1 += further.by_extension;
@@ -248,6 +247,7 @@ impl Bushing {
         }
         let stiff = |x: V2| x * k2 + e * ((k1 - k2) * e.dot(&x));
         let damp = |x: V2| x * c2 + e * ((c1 - c2) * e.dot(&x));
+        let turned = side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
         let arm = d + j.rho;
         let [damp_x, damp_y, damp_i] = [V2::x(), V2::y(), i.rho].map(damp);
         let turn_i = across(&i.rho);

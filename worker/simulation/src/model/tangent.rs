@@ -58,7 +58,7 @@ impl Machine {
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
             let joints = self.joints(k, at);
-            if !chain.add_joint_parts(&joints, state, gamma, [stiffness, matrix]) {
+            if !chain.add_joint_parts(&joints, state, gamma, stiffness, matrix) {
                 self.tangent(at, Shift::NONE, scratch, stiffness);
                 self.tangent(at, shift, scratch, matrix);
                 return;

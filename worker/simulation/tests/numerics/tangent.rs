@@ -2,6 +2,7 @@
 //! against each of them alone.
 use crate::rope::*;
 use simulation::drive::Drive;
+use simulation::effect::{Asked, Selection};
 use simulation::model::{Individual, Machine};
 use simulation::reference;
 use simulation::rig::{Drum, End, Rig, Setup};
@@ -100,7 +101,13 @@ fn tangents_of_a_stage_are_those_of_each_alone() {
         speed: 0.5,
     };
     let plane = Machine::new(reference::description(), 2).unwrap();
-    for machine in [plane.clone(), plane.in_space()] {
+    let toe = Asked {
+        id: "rope_toe",
+        parameters: vec![("strain", 7.5e-4), ("tension", 6e4)],
+    };
+    let toe = Selection::new(&[toe]).unwrap();
+    let toe = Machine::with_effects(reference::description(), 2, toe.effects()).unwrap();
+    for machine in [plane.clone(), plane.in_space(), toe] {
         let ropes = machine.ropes(&reference::law());
         let mut system = System::new(Individual::new(&machine, ropes, drive));
         let state = system.equations.drive_state(0.0);

@@ -76,14 +76,26 @@ struct Parts<'a, 'm, const B: usize> {
 impl<const B: usize> WithSimd for Parts<'_, '_, B> {
     type Output = ();
 
-    #[expect(clippy::inline_always, reason = "compiled for each set of instructions")]
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        add_parts(self.tangent, self.gamma, self.points, self.poses, self.matrices);
+        add_parts(
+            self.tangent,
+            self.gamma,
+            self.points,
+            self.poses,
+            self.matrices,
+        );
     }
 }
 
-#[expect(clippy::inline_always, reason = "compiled for each set of instructions")]
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
 #[inline(always)]
 fn add_parts<const A: usize, const B: usize>(
     mut tangent: Tangent<'_, B>,
@@ -119,24 +131,11 @@ fn add_parts<const A: usize, const B: usize>(
     tangent.add_corner(matrix);
 }
 
-impl<const B: usize> Sums<B> {
-    /// Adds what rates change: rows and columns of the border alike.
-    fn add_damping(&mut self, damped: &Self) {
-        let pairs = [
-            (self.own.as_flattened_mut(), damped.own.as_flattened()),
-            (self.right.as_flattened_mut(), damped.right.as_flattened()),
-            (self.bottom.as_flattened_mut(), damped.right.as_flattened()),
-        ];
-        for (sums, damped) in pairs {
-            for (sum, damped) in sums.iter_mut().zip(damped) {
-                *sum += damped;
-            }
-        }
-    }
-}
-
 /// Adds `c G G^T` of a point to the sums of its cylinder, without the rows of the border, and to the corner.
-#[expect(clippy::inline_always, reason = "compiled for each set of instructions")]
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
 #[inline(always)]
 fn add_damping<const A: usize, const B: usize>(
     point: &Derivatives<B>,

@@ -76,9 +76,10 @@ impl Chain {
         joints: &Joints<'_>,
         state: &ChainState,
         gamma: f64,
-        matrices: [&mut Bordered; 2],
+        stiffness: &mut Bordered,
+        matrix: &mut Bordered,
     ) -> bool {
-        let [Bordered::Plane(stiffness), Bordered::Plane(matrix)] = matrices else {
+        let (Bordered::Plane(stiffness), Bordered::Plane(matrix)) = (stiffness, matrix) else {
             return false;
         };
         self.add_plane_parts(joints, state, gamma, [stiffness, matrix]);
