@@ -2,12 +2,13 @@
 //! mean squares of single channels, and what decides whether a name carries.
 //!
 //! With whitened residuals `r` before and after, `D = |r_b|^2 - |r_a|^2` is what is closed; under noise of
-//! variance 1 its standard deviation is `2 |r_b - r_a|`, and where cycles scatter more along that difference
-//! (their input did), it is what they show. Of `|r_b|^2 - n` all could be closed.
+//! variance 1 its standard deviation is `2 |r_b - r_a|`. Of `|r_b|^2 - n` all could be closed. Along the
+//! directions in which cycles differ from their mean (their input did) a record says less: with `E` the
+//! deviations of the mean that they show, `(I + E E^T)^(-1/2)` is applied to every residual.
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::whitened::WhitenedRecord;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use protocol::job::Numerics;
 use serde::Serialize;
 
@@ -28,22 +29,21 @@ pub(crate) struct Scale {
     /// What a unit of the metric is, in standard deviations of this record's mean.
     unit: f64,
     measured: DVector<f64>,
-    /// Cycles that scatter as the record's own do, its own among them.
-    alike: Vec<DVector<f64>>,
-    /// How many are its own.
-    cycles: usize,
+    /// Orthonormal directions in which cycles differ, and by how much each is shortened.
+    shortened: Option<(DMatrix<f64>, DVector<f64>)>,
 }
 
 impl Scale {
     /// A record in the metric of the mean of so many cycles of the same condition and channels; `alike` are
     /// cycles that scatter as its own do, its own among them.
     pub(crate) fn of(record: &Record, alike: &[Curves], metric: &Metric, cycles: usize) -> Self {
+        let unit = (record.cycles.len() as f64 / cycles.max(1) as f64).sqrt();
+        let own = record.cycles.len();
         Self {
-            unit: (record.cycles.len() as f64 / cycles.max(1) as f64).sqrt(),
             measured: metric.whiten(&record.mean()),
-            alike: alike.iter().map(|cycle| metric.whiten(cycle)).collect(),
-            cycles: record.cycles.len(),
+            shortened: shortened(metric, alike, unit / (own.max(1) as f64).sqrt()),
             metric: metric.clone(),
+            unit,
         }
     }
 
@@ -55,7 +55,12 @@ impl Scale {
 
     /// What is left of a record by curves.
     fn left(&self, curves: &Curves) -> DVector<f64> {
-        (&self.measured - self.metric.whiten(curves)) * self.unit
+        let mut left = (&self.measured - self.metric.whiten(curves)) * self.unit;
+        if let Some((u, lost)) = &self.shortened {
+            let parts = u.tr_mul(&left).component_mul(lost);
+            left -= u * parts;
+        }
+        left
     }
 
     /// How far the gap closes between two models.
@@ -64,7 +69,7 @@ impl Scale {
         const QUANTILE: f64 = 1.96;
         let [before, after] = [before, after].map(|curves| self.left(curves));
         let closed = before.norm_squared() - after.norm_squared();
-        let half = QUANTILE * 2.0 * self.deviation(&(&before - &after));
+        let half = QUANTILE * 2.0 * (&before - &after).norm();
         let gap = before.norm_squared() - before.len() as f64;
         let whole = gap.max(closed.abs()).max(1.0);
         Weighed {
@@ -72,20 +77,28 @@ impl Scale {
             interval: [(closed - half) / whole, ((closed + half) / whole).min(1.0)],
         }
     }
+}
 
-    /// Standard deviation of the record's mean along a change of its curves, times that change.
-    fn deviation(&self, change: &DVector<f64>) -> f64 {
-        let along = self.alike.iter().map(|cycle| self.unit * cycle.dot(change));
-        let along: Vec<f64> = along.collect();
-        let n = along.len() as f64;
-        if along.len() < 2 {
-            return change.norm();
-        }
-        let mean = along.iter().sum::<f64>() / n;
-        let square: f64 = along.iter().map(|x| (x - mean) * (x - mean)).sum();
-        let seen = (square / (n - 1.0) / self.cycles.max(1) as f64).sqrt();
-        change.norm().max(seen)
+/// The directions in which whitened cycles differ from their mean, `deviation` of each being what it is in a
+/// record's mean; nothing of fewer than two.
+fn shortened(
+    metric: &Metric,
+    cycles: &[Curves],
+    deviation: f64,
+) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    if cycles.len() < 2 {
+        return None;
     }
+    let whitened: Vec<DVector<f64>> = cycles.iter().map(|cycle| metric.whiten(cycle)).collect();
+    let count = whitened.len() as f64;
+    let mean = whitened.iter().sum::<DVector<f64>>() / count;
+    let scale = deviation / (count - 1.0).sqrt();
+    let each: Vec<DVector<f64>> = whitened.iter().map(|own| (own - &mean) * scale).collect();
+    let svd = DMatrix::from_columns(&each).svd(true, false);
+    let lost = svd
+        .singular_values
+        .map(|s| 1.0 - 1.0 / (1.0 + s * s).sqrt());
+    svd.u.map(|u| (u, lost))
 }
 
 #[cfg(test)]
