@@ -232,6 +232,7 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
             weighed: Weighed {
                 closed: 1.0 - after,
                 interval: [0.9 - after, 1.0],
+                shows: true,
             },
             closed: closed(&record, &record.cycles, &curves(1.0), &curves(after)),
             before: curves(1.0),

@@ -128,7 +128,7 @@ fn gap_doubt(claim: &Claim) -> Option<String> {
             return Some(format!("it does not run under {record}"));
         };
         let [low, high] = closed.interval;
-        if low <= 0.0 {
+        if closed.speaks_against() {
             return Some(format!(
                 "it closes {:.0} % of the gap on {record}, with an interval from {:.0} to {:.0} %: it may \
                  close none of it",
@@ -175,7 +175,11 @@ mod tests {
     }
 
     const fn closed(closed: f64, interval: [f64; 2]) -> Weighed {
-        Weighed { closed, interval }
+        Weighed {
+            closed,
+            interval,
+            shows: true,
+        }
     }
 
     fn claim(elsewhere: Weighed, left: f64) -> Claim {
@@ -239,6 +243,13 @@ mod tests {
         assert_eq!(doubt(&claim(closed(0.4, [0.1, 0.6]), 1.0)), None);
         let may_not = doubt(&claim(closed(0.4, [-0.1, 0.6]), 1.0)).unwrap();
         assert!(may_not.contains("may close none"), "{may_not}");
+        // a record that could not show it says nothing, unless it speaks against it
+        let hidden = |interval: [f64; 2]| Weighed {
+            shows: false,
+            ..closed(0.4, interval)
+        };
+        assert_eq!(doubt(&claim(hidden([-2.0, 0.9]), 1.0)), None);
+        assert!(doubt(&claim(hidden([-2.0, -0.1]), 1.0)).is_some());
         let mut gone = claim(closed(0.4, [0.1, 0.6]), 1.0);
         gone.elsewhere[0].closed = None;
         assert!(doubt(&gone).unwrap().contains("does not run"));

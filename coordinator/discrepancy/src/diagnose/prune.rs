@@ -70,7 +70,7 @@ async fn idle<L: Laboratory>(
 ) -> Result<Option<(usize, Fit, String)>, L::Error> {
     for (position, fit) in without {
         let rows = compare(experiments, elsewhere, &fit, answer).await?;
-        let nothing = |row: &&Row| row.weighed.interval[0] <= 0.0;
+        let nothing = |row: &&Row| row.weighed.speaks_against();
         if let Some(row) = rows.iter().find(nothing) {
             let reason = format!(
                 "closes {:.0} % of what is left without it on {}, and may close none of it",

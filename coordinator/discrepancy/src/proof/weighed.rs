@@ -20,6 +20,17 @@ pub struct Weighed {
     /// Its 95 % interval.
     #[serde(rename = "ci95")]
     pub interval: [f64; 2],
+    /// Whether the record would show what the models differ by, if it were all that is missing.
+    pub shows: bool,
+}
+
+impl Weighed {
+    /// Whether the record would show that the gap closes and does not, or shows that it widens: what it could not
+    /// show it says nothing of.
+    pub fn speaks_against(&self) -> bool {
+        let [low, high] = self.interval;
+        low <= 0.0 && (self.shows || high <= 0.0)
+    }
 }
 
 /// A record's mean in a metric.
@@ -69,12 +80,15 @@ impl Scale {
         const QUANTILE: f64 = 1.96;
         let [before, after] = [before, after].map(|curves| self.left(curves));
         let closed = before.norm_squared() - after.norm_squared();
-        let half = QUANTILE * 2.0 * (&before - &after).norm();
+        let change = (&before - &after).norm();
+        let half = QUANTILE * 2.0 * change;
         let gap = before.norm_squared() - before.len() as f64;
         let whole = gap.max(closed.abs()).max(1.0);
         Weighed {
             closed: closed / whole,
             interval: [(closed - half) / whole, ((closed + half) / whole).min(1.0)],
+            // all that is missing would close by the square of the change
+            shows: change * change > half,
         }
     }
 }

@@ -83,7 +83,7 @@ fn step(at: &Linearized, variables: &[Variable], damping: f64) -> Option<DVector
             let inside = moved.clamp(variables[k].lower - at.x[k], variables[k].upper - at.x[k]);
             step[k] = inside;
             // a step that is not a number is kept: it is refused later
-            if inside < moved || inside > moved {
+            if (inside - moved).abs() > 0.0 {
                 right -= curvature.column(k) * inside;
             } else {
                 kept.push(k);

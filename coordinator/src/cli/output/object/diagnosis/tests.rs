@@ -47,6 +47,7 @@ fn row(part: Portion, closed: f64) -> Row {
         weighed: Weighed {
             closed,
             interval: [closed - 0.1, closed + 0.1],
+            shows: true,
         },
         before: Vec::new(),
         after: Vec::new(),
