@@ -77,6 +77,7 @@ fn cost(fit: &Fit, weights: &DVector<f64>, error: &DVector<f64>) -> f64 {
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
         step: 1.0,
+        longest: f64::INFINITY,
         prior: Some(Prior {
             mean: 0.0,
             deviation: 1.0,

@@ -84,6 +84,7 @@ mod tests {
             lower: -99.0,
             upper: 99.0,
             step: 0.1,
+            longest: f64::INFINITY,
             prior: Some(Prior {
                 mean: 0.0,
                 deviation: s,

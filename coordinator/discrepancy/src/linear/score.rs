@@ -126,6 +126,7 @@ mod tests {
             lower: -9.0,
             upper: 9.0,
             step: 0.1,
+            longest: f64::INFINITY,
             prior: None,
         };
         let at = Linearized {

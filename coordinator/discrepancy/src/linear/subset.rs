@@ -1,7 +1,7 @@
 //! Which few of many effects explain a residual together, to first order: every pair and every triple, on
 //! signatures of which recalibration has taken its share. What it proposes, refits judge.
 use crate::linear::tangent::Tangent;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix};
 
 /// Several effects, by their places, with their joint estimate.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +37,7 @@ impl Subsets {
         let mut positive = Vec::new();
         for (signature, signs) in signatures {
             columns.push((all.len(), signature.ncols()));
-            all.extend(signature.column_iter().map(|column| column.into_owned()));
+            all.extend(signature.column_iter().map(Matrix::into_owned));
             positive.extend(signs.iter().copied());
         }
         let all = if all.is_empty() {

@@ -74,6 +74,7 @@ mod tests {
             lower: -9.0,
             upper: 9.0,
             step: 0.1,
+            longest: f64::INFINITY,
             prior: prior.map(|deviation| Prior {
                 mean: 0.0,
                 deviation,

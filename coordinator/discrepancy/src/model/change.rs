@@ -137,7 +137,7 @@ impl Wanted {
         columns: &[Derivative],
         (record, like): (&Record, &Curves),
     ) -> Vec<Option<Curves>> {
-        let mut changes = self.from_columns(columns, (record, like));
+        let mut changes = self.by_columns(columns, (record, like));
         let Point { model, x } = &self.point;
         for change in changes.iter_mut().flatten() {
             read(model.valued(x), record, change);
@@ -156,7 +156,7 @@ impl Wanted {
         changes
     }
 
-    fn from_columns(
+    fn by_columns(
         &self,
         columns: &[Derivative],
         (record, like): (&Record, &Curves),

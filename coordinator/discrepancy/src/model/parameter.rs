@@ -25,6 +25,7 @@ pub(crate) fn variable(parameter: &ParameterDescriptor) -> Variable {
         lower,
         upper,
         step: 0.05,
+        longest: f64::INFINITY,
         prior: Some(Prior {
             mean: start,
             deviation,

@@ -70,6 +70,7 @@ impl Tolerated {
             lower,
             upper,
             step: STEP,
+            longest: f64::INFINITY,
             prior: Some(Prior {
                 mean: 0.0,
                 deviation: 1.0,

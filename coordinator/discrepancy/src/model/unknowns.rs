@@ -19,6 +19,8 @@ use search::space::Space;
 const USUAL_DEVIATION: f64 = 1.5;
 /// First difference step of an unknown of the case (coordinate).
 const STEP: f64 = 0.02;
+/// Longest step of one (coordinate): resonances move with a twentieth of it.
+const LONGEST: f64 = 0.7;
 
 /// A case with added effects.
 #[derive(Clone, Debug)]
@@ -84,6 +86,7 @@ impl Model {
                 lower: interval.from,
                 upper: interval.to,
                 step: STEP,
+                longest: LONGEST,
                 prior: prior.or(Some(Prior {
                     mean: 0.0,
                     deviation: USUAL_DEVIATION,

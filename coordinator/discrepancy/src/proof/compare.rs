@@ -92,9 +92,9 @@ pub(crate) fn shown<'a>(
                 Portion::Channels | Portion::Condition => Scale::own(record, highest, &on.numerics),
             };
             Shown {
+                record,
                 alike,
                 scale,
-                record,
                 part,
             }
         })

@@ -12,6 +12,8 @@ pub struct Variable {
     pub upper: f64,
     /// First difference step; later ones follow what a step changes.
     pub step: f64,
+    /// How far one step of the search may move it: what hardly changes the residual would else go to a bound.
+    pub longest: f64,
     /// What is known beforehand.
     pub prior: Option<Prior>,
 }

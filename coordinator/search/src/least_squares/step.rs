@@ -54,7 +54,7 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
 /// Residual after an undamped step inside the box.
 pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
     // twelve digits below the diagonal: decides nothing, keeps the factor
-    let step = step(at, variables, 1e-12);
+    let step = step(at, variables, 1e-12, false);
     step.map_or_else(
         || at.residual.clone(),
         |step| &at.residual + &at.jacobian * step,
@@ -62,8 +62,13 @@ pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
 }
 
 /// A damped step that stays in the box: what would leave it goes to its bound, and the others go where
-/// that is best for them. Nothing where the curvature has no factor, or nothing may move.
-fn step(at: &Linearized, variables: &[Variable], damping: f64) -> Option<DVector<f64>> {
+/// that is best for them. `limited` steps are none of them longer than a variable's longest. Nothing where the curvature has no factor, or nothing may move.
+fn step(
+    at: &Linearized,
+    variables: &[Variable],
+    damping: f64,
+    limited: bool,
+) -> Option<DVector<f64>> {
     let (gradient, curvature) = normal(at, variables);
     let mut free = free(at, variables, &gradient, &curvature);
     let mut step = DVector::zeros(variables.len());
@@ -80,7 +85,11 @@ fn step(at: &Linearized, variables: &[Variable], damping: f64) -> Option<DVector
         let solved = matrix.cholesky()?.solve(&own);
         let mut kept = Vec::with_capacity(free.len());
         for (&k, &moved) in free.iter().zip(solved.iter()) {
-            let inside = moved.clamp(variables[k].lower - at.x[k], variables[k].upper - at.x[k]);
+            let v = &variables[k];
+            let mut inside = moved.clamp(v.lower - at.x[k], v.upper - at.x[k]);
+            if limited {
+                inside = inside.clamp(-v.longest, v.longest);
+            }
             step[k] = inside;
             // a step that is not a number is kept: it is refused later
             if (inside - moved).abs() > 0.0 {
@@ -115,7 +124,7 @@ pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<
     let mut fan: Vec<(f64, Vec<f64>)> = Vec::new();
     for factor in FAN {
         let damping = damping * factor;
-        let Some(step) = step(at, variables, damping) else {
+        let Some(step) = step(at, variables, damping, true) else {
             continue;
         };
         let moved = at.x.iter().zip(step.iter()).zip(variables);

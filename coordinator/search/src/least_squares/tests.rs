@@ -8,6 +8,7 @@ fn variable(start: f64, lower: f64, upper: f64) -> Variable {
         lower,
         upper,
         step: 1e-4,
+        longest: f64::INFINITY,
         prior: None,
     }
 }

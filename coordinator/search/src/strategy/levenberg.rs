@@ -134,6 +134,7 @@ impl Levenberg {
                 lower: interval.from,
                 upper: interval.to,
                 step: self.settings.step,
+                longest: f64::INFINITY,
                 prior: None,
             }
         })

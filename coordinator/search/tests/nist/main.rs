@@ -35,6 +35,7 @@ fn fit(set: &Set, start: &[f64], exact: bool) -> Fit {
         upper: f64::INFINITY,
         // the cube root of rounding, which suits central differences
         step: 6e-6 * start.abs(),
+        longest: f64::INFINITY,
         prior: None,
     };
     let settings = Settings {
