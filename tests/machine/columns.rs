@@ -172,8 +172,9 @@ fn columns_that_do_not_exist_are_refused() {
     };
     for (name, says) in [
         ("kb7", "there is no `kb7`"),
-        ("pivot_friction.momment", "there is no"),
-        ("nothing.at_all", "pivot_friction.moment"),
+        ("pivot_friction.momment", "did you mean `pivot_friction.moment`?"),
+        ("pivot_frction.moment", "did you mean `pivot_friction.moment`?"),
+        ("quite_another", "known are kb1, "),
         ("", "there is no ``"),
     ] {
         let (field, problem) = refused(vec![Column::of("kb1"), Column::of(name)]);

@@ -106,10 +106,8 @@ pub async fn compare<E: Evaluator>(
         let pair = pairs.entry(place).or_default();
         let id = completed.id;
         let answer = completed.outcome.done();
-        let answer = answer.map_err(|failure| StudyError::Unavailable {
-            what: name(case, wanted, place),
-            failure,
-        })?;
+        let answer =
+            answer.map_err(|failure| StudyError::of(failure, || name(case, wanted, place)))?;
         let wrong = |_| StudyError::WrongKind { id };
         if answer.evaluation().is_some() {
             pair.evaluation = Some(answer.into_scored().map_err(wrong)?);

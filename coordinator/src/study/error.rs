@@ -41,6 +41,12 @@ pub enum StudyError {
         /// What is wrong with it.
         problem: String,
     },
+    /// What is to be differentiated by is unknown.
+    #[error("the workers cannot differentiate by this: {problem}")]
+    Column {
+        /// What is wrong, and what was probably meant.
+        problem: String,
+    },
     /// The workers do not do this kind of job.
     #[error("the workers refuse this job: {reason}")]
     Refused {
@@ -81,6 +87,9 @@ impl StudyError {
     /// one job alone.
     pub(super) fn hopeless(failure: &Failure) -> Option<Self> {
         match failure.clone() {
+            Failure::Misconfigured { field, problem } if field.starts_with("columns") => {
+                Some(Self::Column { problem })
+            }
             Failure::Misconfigured { field, problem } => {
                 Some(Self::Misconfigured { field, problem })
             }
@@ -104,6 +113,9 @@ impl StudyError {
             Self::Settings(_) => "correct that setting; `--preset paper` is always valid",
             Self::Misconfigured { .. } => {
                 "`horsehead case check CASE` checks what can be checked without a worker"
+            }
+            Self::Column { .. } => {
+                "give unknowns of the case, or EFFECT.PARAMETER of an effect that the workers know"
             }
             Self::Refused { .. } => "start workers of the same version as this program",
             Self::AllFailed {

@@ -368,11 +368,9 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     }
 }
 
-#[tokio::test]
-async fn a_comparison_that_cannot_be_made_names_the_individual() {
+/// What a comparison of one individual fails with where each of its jobs does.
+async fn comparison_fails(answer: fn(&Space, u64, &Individual) -> Outcome) -> StudyError {
     let case = case();
-    let answer =
-        |_: &Space, _: u64, _: &Individual| Outcome::Failed(Failure::Deadline { limit_ms: 1500 });
     let mut oracle = Oracle::new(&case, 1, answer);
     let (_sender, mut stop) = watch::channel(false);
     let individuals = vec![("recommended".to_owned(), case.start())];
@@ -382,14 +380,33 @@ async fn a_comparison_that_cannot_be_made_names_the_individual() {
         pictures: 0,
         columns: Vec::new(),
     }];
-    let error = compare(&mut oracle, &case, &wanted, &mut stop)
-        .await
-        .err()
-        .unwrap();
+    let compared = compare(&mut oracle, &case, &wanted, &mut stop).await;
+    compared.err().unwrap()
+}
+
+#[tokio::test]
+async fn a_comparison_that_cannot_be_made_names_the_individual() {
+    let error =
+        comparison_fails(|_, _, _| Outcome::Failed(Failure::Deadline { limit_ms: 1500 })).await;
     assert_eq!(
         error.to_string(),
         "the recommended individual at 5rpm could not be evaluated: it ran longer than 1.5 s"
     );
+    assert_eq!(error.help().unwrap(), "the same command tries again");
+}
+
+/// The same command would be refused again.
+#[tokio::test]
+async fn a_column_that_does_not_exist_is_said_to_be_wrong() {
+    let refused = |_: &Space, _: u64, _: &Individual| {
+        Outcome::Failed(Failure::misconfigured("columns[0]", "there is no `kb7`"))
+    };
+    let error = comparison_fails(refused).await;
+    assert_eq!(
+        error.to_string(),
+        "the workers cannot differentiate by this: there is no `kb7`"
+    );
+    assert!(error.help().unwrap().contains("EFFECT.PARAMETER"));
 }
 
 /// Asks for one individual after the other, and calls none of them initial.

@@ -247,7 +247,8 @@ impl Equations for Rig {
         chain.add_inertia_blocks(at.state().q, mass, matrix);
         let joints = self.setup.joints();
         chain.add_joint_tangent(&joints, &self.state, damping, matrix);
-        chain.add_end_tangent(&joints, &self.state, damping, matrix);
+        let ends = chain.ends(&joints, &self.state);
+        chain.add_end_tangent(&ends, damping, matrix);
         if let Some((surface, law)) = self.surface() {
             chain.add_contact_tangent(&surface, &law, &self.state, damping, matrix);
         }

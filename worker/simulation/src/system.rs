@@ -22,8 +22,8 @@ pub trait Equations {
     /// Fills `matrix` with `mass M - damping D - K`.
     fn tangent(&self, at: Loaded<'_>, shift: Shift, matrix: &mut Bordered);
 
-    /// Fills the first matrix with `-K`, the last as [`Equations::tangent`] does; the one between is room.
-    fn tangents(&self, at: Loaded<'_>, shift: Shift, [stiffness, _, matrix]: [&mut Bordered; 3]) {
+    /// Fills the first matrix with `-K`, the second as [`Equations::tangent`] does.
+    fn tangents(&self, at: Loaded<'_>, shift: Shift, [stiffness, matrix]: [&mut Bordered; 2]) {
         self.tangent(at, Shift::NONE, stiffness);
         self.tangent(at, shift, matrix);
     }
@@ -190,13 +190,12 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
         equations.add_spin_tangent(self.state(), a, shift.damping, matrix);
     }
 
-    /// Fills the first matrix with the complete `-K`, the last as [`Self::exact_tangent`] does; the one
-    /// between is room.
+    /// Fills the first matrix with the complete `-K`, the second as [`Self::exact_tangent`] does.
     pub fn exact_tangents(
         &mut self,
         a: &[f64],
         shift: Shift,
-        [stiffness, room, matrix]: [&mut Bordered; 3],
+        [stiffness, matrix]: [&mut Bordered; 2],
     ) {
         let System {
             equations,
@@ -204,7 +203,7 @@ impl<'s, 'q, E: Equations> Loads<'s, 'q, E> {
             ..
         } = &mut *self.system;
         statistics.jacobians += 1;
-        equations.tangents(self.at, shift, [&mut *stiffness, room, &mut *matrix]);
+        equations.tangents(self.at, shift, [&mut *stiffness, &mut *matrix]);
         let at = self.at.state();
         equations.add_spin_tangent(at, a, 0.0, stiffness);
         equations.add_spin_tangent(at, a, shift.damping, matrix);

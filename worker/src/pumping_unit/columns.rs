@@ -94,10 +94,15 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
         Some((effect, found))
     });
     let Some((effect, parameter)) = known else {
-        let problem = format!(
-            "there is no `{name}`; there are the ten coefficients, as kb1, and parameters of effects, as \
-             pivot_friction.moment"
-        );
+        let of_effects = catalogue().iter().flat_map(|one| {
+            let each = one.parameters.iter();
+            each.map(|parameter| format!("{}.{}", one.id, parameter.name))
+        });
+        let of_effects: Vec<String> = of_effects.collect();
+        let coefficients = pumping_unit::Coefficient::ALL.map(pumping_unit::Coefficient::as_str);
+        let known = coefficients.into_iter();
+        let known = known.chain(of_effects.iter().map(String::as_str));
+        let problem = format!("there is no `{name}`; {}", effect::meant(name, known));
         return Err(Failure::misconfigured(format!("columns[{at}]"), problem));
     };
     let column = Column::Parameter {

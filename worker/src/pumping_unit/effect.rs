@@ -183,7 +183,7 @@ fn problem(refused: &Refused) -> String {
 }
 
 /// The nearest known name if one is near, otherwise all of them that have no `.` in them.
-fn meant<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> String {
+pub(super) fn meant<'a, I: Iterator<Item = &'a str> + Clone>(name: &str, known: I) -> String {
     let alike = known
         .clone()
         .map(|other| (strsim::normalized_damerau_levenshtein(name, other), other))

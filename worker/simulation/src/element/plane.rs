@@ -100,6 +100,16 @@ fn deformation(i: &PlaneMarker, j: &PlaneMarker) -> Deformation {
     }
 }
 
+impl PlaneColumn {
+    fn opposite(self) -> Self {
+        Self {
+            force: -self.force,
+            torque_i: -self.torque_i,
+            torque_j: -self.torque_j,
+        }
+    }
+}
+
 impl PlaneLoad {
     /// Adds a further pull between two markers.
     #[inline]
@@ -214,38 +224,60 @@ impl Bushing {
         ]
     }
 
-    /// Of these derivatives the part that `gamma` multiplies: by rates alone.
-    #[inline]
-    pub fn plane_damping(
+    /// The same without what rates change, then with it, of both at once.
+    #[expect(clippy::inline_always, reason = "too much to be handed over by copies")]
+    #[inline(always)]
+    pub fn plane_tangents(
         &self,
         (i, j): (&PlaneMarker, &PlaneMarker),
+        force: &V2,
+        gamma: f64,
         further: Option<&Pull>,
-    ) -> [[PlaneColumn; 3]; 2] {
+    ) -> [[[PlaneColumn; 3]; 2]; 2] {
+        let [mut k1, k2] = self.stiffness;
         let [mut c1, c2] = self.damping;
-        c1 += further.map_or(0.0, |further| further.by_rate);
-        let bend = self.rotational_damping[1];
+        let Deformation { d, V, w, .. } = deformation(i, j);
         let e = j.axis;
-        let damp = |x: V2| -(x * c2 + e * ((c1 - c2) * e.dot(&x)));
-        let Deformation { d, .. } = deformation(i, j);
+        let side = across(&e);
+        let mut pull = self.preload + (k1 - k2) * e.dot(&d) + (c1 - c2) * e.dot(&V);
+        if let Some(further) = further {
+            pull += further.force;
+            k1 += further.by_extension;
+            c1 += further.by_rate;
+        }
+        let stiff = |x: V2| x * k2 + e * ((k1 - k2) * e.dot(&x));
+        let damp = |x: V2| x * c2 + e * ((c1 - c2) * e.dot(&x));
+        let turned = side.dot(&(d * (k1 - k2) + V * (c1 - c2)));
         let arm = d + j.rho;
-        let column = |by: V2, torque: f64| PlaneColumn {
-            force: by,
-            torque_i: torque + moment(&i.rho, &by),
-            torque_j: -torque - moment(&arm, &by),
+        let [damp_x, damp_y, damp_i] = [V2::x(), V2::y(), i.rho].map(damp);
+        let turn_i = across(&i.rho);
+        // by x, y and the angle of I, by the angle of J
+        let by_place = [
+            damp_y * j.w - stiff(V2::x()),
+            -damp_x * j.w - stiff(V2::y()),
+            damp_i * w - stiff(turn_i),
+            stiff(across(&j.rho)) - side * pull - e * turned,
+        ];
+        let by_rate = [-damp_x, -damp_y, -damp(turn_i), damp(across(&arm))];
+        let along = force.dot(&i.rho);
+        let columns = |by: [V2; 4], bend: f64| {
+            let column = |by: V2, torque: f64, own: f64, reaction: f64| PlaneColumn {
+                force: by,
+                torque_i: torque + moment(&i.rho, &by) + own,
+                torque_j: -torque - moment(&arm, &by) + reaction,
+            };
+            let [x, y] = [
+                column(by[0], 0.0, 0.0, -force.y),
+                column(by[1], 0.0, 0.0, force.x),
+            ];
+            [
+                [x, y, column(by[2], -bend, -along, along)],
+                [x.opposite(), y.opposite(), column(by[3], bend, 0.0, 0.0)],
+            ]
         };
-        let [force_x, force_y] = [damp(V2::x()), damp(V2::y())];
-        [
-            [
-                column(force_x, 0.0),
-                column(force_y, 0.0),
-                column(damp(across(&i.rho)), -bend),
-            ],
-            [
-                column(-force_x, 0.0),
-                column(-force_y, 0.0),
-                column(-damp(across(&arm)), bend),
-            ],
-        ]
+        let [k5, c5] = [self.rotational_stiffness[1], self.rotational_damping[1]];
+        let whole = std::array::from_fn(|k| by_place[k] + by_rate[k] * gamma);
+        [columns(by_place, k5), columns(whole, k5 + gamma * c5)]
     }
 
     /// The coefficients that [`Self::plane_units`] are multiplied by.

@@ -52,15 +52,6 @@ impl Bordered {
         either!(self, blocks => blocks.clear());
     }
 
-    /// Becomes `first + factor second`, assembled matrices of the same shape.
-    pub fn set_sum(&mut self, first: &Self, factor: f64, second: &Self) {
-        match (self, first, second) {
-            (Self::Plane(sum), Self::Plane(a), Self::Plane(b)) => sum.set_sum(a, factor, b),
-            (Self::Space(sum), Self::Space(a), Self::Space(b)) => sum.set_sum(a, factor, b),
-            (sum, ..) => debug_assert!(false, "{} unknowns of another width", sum.len()),
-        }
-    }
-
     /// Adds `value` to a diagonal block.
     #[inline]
     pub fn add_diagonal(&mut self, block: usize, row: usize, column: usize, value: f64) {
@@ -121,6 +112,14 @@ impl Bordered {
     /// [`SingularPivot`] with the unknown whose pivot vanished.
     pub fn factorize(&mut self) -> Result<(), SingularPivot> {
         either!(self, blocks => blocks.factorize())
+    }
+
+    /// The same with inverses of blocks in the plane in closed form: other bits in less time.
+    ///
+    /// # Errors
+    /// [`SingularPivot`] with an unknown of the block that is singular.
+    pub(crate) fn factorize_closed(&mut self) -> Result<(), SingularPivot> {
+        either!(self, blocks => blocks.factorize_closed())
     }
 
     /// Solves in place with the factorised matrix.

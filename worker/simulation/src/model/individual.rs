@@ -284,7 +284,7 @@ impl Equations for Individual<'_> {
         self.machine.tangent(&instant, shift, &self.scratch, matrix);
     }
 
-    fn tangents(&self, at: Loaded<'_>, shift: Shift, matrices: [&mut Bordered; 3]) {
+    fn tangents(&self, at: Loaded<'_>, shift: Shift, matrices: [&mut Bordered; 2]) {
         let instant = self.instant(at.state());
         self.machine
             .tangents(&instant, shift, &self.scratch, matrices);

@@ -36,7 +36,7 @@ impl Machine {
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
             chain.add_joint_tangent(&self.joints(k, at), state, damping, matrix);
-            self.end_tangents(k, at, scratch, damping, matrix);
+            self.end_tangents(k, at, scratch, &mut [(damping, matrix)]);
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
             chain.add_contact_tangent(&surface, &at.ropes.contact, state, damping, matrix);
         }
@@ -44,62 +44,65 @@ impl Machine {
     }
 
     /// Fills `stiffness` with `-K` and `matrix` with `mass M - damping D - K` in one pass over what moves
-    /// in the plane; `room` is overwritten.
+    /// in the plane.
     pub(super) fn tangents(
         &self,
         at: &Instant<'_>,
         shift: Shift,
         scratch: &Scratch,
-        [stiffness, room, matrix]: [&mut Bordered; 3],
+        [stiffness, matrix]: [&mut Bordered; 2],
     ) {
         stiffness.clear();
-        room.clear();
+        matrix.clear();
+        let gamma = shift.damping;
         for (k, chain) in self.chains.iter().enumerate() {
             let state = &scratch.chains[k];
-            let mut both = [&mut *stiffness, &mut *room];
-            if !chain.add_joint_parts(&self.joints(k, at), state, &mut both) {
+            let joints = self.joints(k, at);
+            if !chain.add_joint_parts(&joints, state, gamma, stiffness, matrix) {
                 self.tangent(at, Shift::NONE, scratch, stiffness);
                 self.tangent(at, shift, scratch, matrix);
                 return;
             }
             let surface = self.surface(k, at.q, at.v, &scratch.deflection);
-            chain.add_contact_parts((&surface, &at.ropes.contact), state, both);
+            let on = (&surface, &at.ropes.contact);
+            chain.add_contact_parts(on, state, gamma, [stiffness, matrix]);
+            let both = &mut [(0.0, &mut *stiffness), (gamma, &mut *matrix)];
+            self.end_tangents(k, at, scratch, both);
         }
-        matrix.set_sum(stiffness, shift.damping, room);
         for (Shift { mass, damping }, matrix) in [(Shift::NONE, stiffness), (shift, matrix)] {
             self.inertia_blocks(at.q, mass, matrix);
             self.rigid_tangent(at, damping, matrix);
-            for k in 0..self.chains.len() {
-                self.end_tangents(k, at, scratch, damping, matrix);
-            }
             self.hooks.add_tangent(at, damping, matrix);
         }
     }
 
-    /// Adds the tangent of the joints that hold a chain's ends.
+    /// Adds the tangent of the joints that hold a chain's ends to each matrix, in which rates change so
+    /// many times as much as coordinates.
     fn end_tangents(
         &self,
         chain: usize,
         at: &Instant<'_>,
         scratch: &Scratch,
-        damping: f64,
-        matrix: &mut Bordered,
+        matrices: &mut [(f64, &mut Bordered)],
     ) {
         let (own, state) = (&self.chains[chain], &scratch.chains[chain]);
         let joints = self.joints(chain, at);
-        let [base, head] = own.add_end_tangent(&joints, state, damping, matrix);
-        if let Some(base) = base {
-            self.base_tangent(chain, &base, &state.pose(0), damping, matrix);
-        }
-        if let (Some(end), Some(load)) = (head, state.joints.last()) {
-            let anchor = Anchor {
-                chain,
-                block: own.first + own.count - 1,
-                end: &end,
-                load,
-                pose: &state.pose(own.count - 1),
-            };
-            self.anchor_tangent(&anchor, at, damping, matrix);
+        let ends = own.ends(&joints, state);
+        for (damping, matrix) in matrices {
+            let [base, head] = own.add_end_tangent(&ends, *damping, matrix);
+            if let Some(base) = base {
+                self.base_tangent(chain, &base, &state.pose(0), *damping, matrix);
+            }
+            if let (Some(end), Some(load)) = (head, state.joints.last()) {
+                let anchor = Anchor {
+                    chain,
+                    block: own.first + own.count - 1,
+                    end: &end,
+                    load,
+                    pose: &state.pose(own.count - 1),
+                };
+                self.anchor_tangent(&anchor, at, *damping, matrix);
+            }
         }
     }
 

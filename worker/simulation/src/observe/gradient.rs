@@ -9,7 +9,7 @@ use crate::model::chain::contact_point::{BORDER, FEW, Reached, each_reached};
 use crate::model::description::StressRecovery;
 use crate::model::layout::{MAX_MODES, Motion};
 use crate::model::{Individual, Machine};
-use crate::system::{State, StateRef};
+use crate::system::State;
 
 /// Four gauges.
 type Each = [f64; 4];
@@ -86,8 +86,11 @@ impl Gradient {
         }
         self.by_pull = by_pull(machine);
         let last = machine.chains[0].range().end;
+        room.q.copy_from_slice(&state.q);
+        room.v.copy_from_slice(&state.v);
+        room.t = state.t;
         for k in (last - 3..last).chain(beam..=beam + layout.modes) {
-            self.by_end(individual, state, room, k);
+            self.by_end(individual, room, k);
         }
     }
 
@@ -169,27 +172,21 @@ impl Gradient {
         );
     }
 
-    /// What the rope's end pulls more when coordinate `k` or its rate grows.
-    fn by_end(
-        &mut self,
-        individual: &mut Individual<'_>,
-        state: &State,
-        room: &mut State,
-        k: usize,
-    ) {
+    /// What the rope's end pulls more when coordinate `k` of `state` or its rate grows.
+    fn by_end(&mut self, individual: &mut Individual<'_>, state: &mut State, k: usize) {
         let by_pull = self.by_pull;
+        let was = [state.q[k], state.v[k]];
         for (part, step) in STEPS.into_iter().enumerate() {
             let mut by = [0.0; 2];
             for step in [step, -step] {
-                room.q.copy_from_slice(&state.q);
-                room.v.copy_from_slice(&state.v);
-                [&mut room.q, &mut room.v][part][k] += step;
-                let at = StateRef::new(state.t, &room.q, &room.v);
+                [&mut state.q, &mut state.v][part][k] = was[part] + step;
+                let at = state.motion();
                 let pull = individual.anchor_pull(at);
                 for (by, pull) in by.iter_mut().zip(pull) {
                     *by += pull * (0.5 / step);
                 }
             }
+            [state.q[k], state.v[k]] = was;
             let own = &mut self.entry(k)[part];
             add(own, by[0], &by_pull[0]);
             add(own, by[1], &by_pull[1]);

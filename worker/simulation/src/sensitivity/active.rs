@@ -240,10 +240,8 @@ impl<'a> Active<'a> {
     pub(super) const fn order(&self) -> u8 {
         match self.source {
             Source::Contact { .. } | Source::Difference(.., Some(_)) => 0,
-            // what turns nothing in the plane: side by side they stay where they are
-            Source::Joints(ref joints) if joints.inner.is_none() => 2,
             Source::Joints(_) | Source::Pieces(_) | Source::Difference(..) => 1,
-            Source::Nothing => 3,
+            Source::Nothing => 2,
         }
     }
 

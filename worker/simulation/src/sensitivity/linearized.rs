@@ -6,9 +6,6 @@ use crate::linear::{Bordered, SingularPivot};
 use crate::model::{Individual, Scratch};
 use crate::system::{Equations, Shift, State, System};
 
-/// Room for generalised forces and for a matrix.
-pub(super) type Buffers<'a> = (&'a mut [f64], &'a mut Bordered);
-
 /// State of a stage, its `-K'` and the factor of its `S`, and what its forces left behind.
 #[derive(Debug)]
 pub(super) struct Linearized {
@@ -44,10 +41,10 @@ impl Linearized {
         &mut self,
         system: &mut System<Individual<'_>>,
         state: &State,
-        room: Buffers<'_>,
+        force: &mut [f64],
     ) -> Result<(), SingularPivot> {
         self.state.clone_from(state);
-        self.linearize(system, Shift::NONE, room)
+        self.linearize(system, Shift::NONE, force)
     }
 
     /// Linearises stage `i` of the step between two states.
@@ -59,7 +56,7 @@ impl Linearized {
         system: &mut System<Individual<'_>>,
         (i, stages): (usize, Stages<'_>),
         [from, to]: [&State; 2],
-        room: Buffers<'_>,
+        force: &mut [f64],
     ) -> Result<(), SingularPivot> {
         let h = to.t - from.t;
         let c = stages.tableau.diagonal * h;
@@ -81,20 +78,20 @@ impl Linearized {
             mass: damping * damping,
             damping,
         };
-        self.linearize(system, shift, room)
+        self.linearize(system, shift, force)
     }
 
     fn linearize(
         &mut self,
         system: &mut System<Individual<'_>>,
         shift: Shift,
-        (force, matrix): Buffers<'_>,
+        force: &mut [f64],
     ) -> Result<(), SingularPivot> {
         // what columns cost is no work of the run's
         let kept = system.statistics;
         let State { a, .. } = &self.state;
         let mut loads = system.forces(self.state.motion(), force);
-        let matrices = [&mut self.stiffness, matrix, &mut self.factor];
+        let matrices = [&mut self.stiffness, &mut self.factor];
         loads.exact_tangents(a, shift, matrices);
         system.statistics = kept;
         let individual = &mut system.equations;
@@ -105,6 +102,6 @@ impl Linearized {
         for (run, stage) in chains.zip(&mut self.scratch.chains) {
             std::mem::swap(&mut run.memory, &mut stage.memory);
         }
-        self.factor.factorize()
+        self.factor.factorize_closed()
     }
 }

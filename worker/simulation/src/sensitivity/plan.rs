@@ -79,6 +79,12 @@ impl Plan {
     ) -> Result<Self, Refused> {
         let own = chosen(origin.effects)?;
         let ways = columns.iter().enumerate().map(|(at, column)| match column {
+            // nothing is twisted in the plane
+            Column::Coefficient(Coefficient::Kb4 | Coefficient::Cb4)
+                if machine.layout.motion == Motion::Plane =>
+            {
+                Ok(Way::Nothing)
+            }
             Column::Coefficient(coefficient) => Ok(Way::Coefficient(*coefficient)),
             Column::Parameter {
                 effect,

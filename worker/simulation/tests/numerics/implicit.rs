@@ -1,5 +1,6 @@
 //! Derivatives of equilibria as columns come by them, one exact factor and the forces of ropes that have a
-//! coefficient of 1 and no other, against what is known of cantilever, string and catenary.
+//! coefficient of 1 and no other, by length a difference of forces at the same place, against what is known
+//! of cantilever, string and catenary.
 use crate::rope::*;
 use simulation::element::bushing::Bushing;
 use simulation::rig::{End, Rig, Setup};
@@ -69,13 +70,38 @@ fn column(system: &mut System<Rig>, q: &[f64], part: &Setup) -> Vec<f64> {
     let at = StateRef::new(0.0, q, &still);
     let mut right = still.clone();
     System::new(Rig::new(*part)).forces(at, &mut right);
-    let mut force = still.clone();
+    let right = solved(system, at, right);
+    right.iter().map(|x| LN_10 * x).collect()
+}
+
+/// What the coordinates of an equilibrium do per metre by which each cylinder is longer: forces at the same
+/// place, differenced.
+fn by_pitch(system: &mut System<Rig>, q: &[f64], setup: &Setup) -> Vec<f64> {
+    const STEP: f64 = 1e-6;
+    let still = vec![0.0; q.len()];
+    let at = StateRef::new(0.0, q, &still);
+    let force = |step: f64| {
+        let mut longer = *setup;
+        longer.chain.pitch += step;
+        let mut force = still.clone();
+        System::new(Rig::new(longer)).forces(at, &mut force);
+        force
+    };
+    let (more, less) = (force(STEP), force(-STEP));
+    let right = more.iter().zip(&less).map(|(x, y)| (x - y) / (2.0 * STEP));
+    solved(system, at, right.collect())
+}
+
+/// Solves with the exact factor of an equilibrium.
+fn solved(system: &mut System<Rig>, at: StateRef<'_>, mut right: Vec<f64>) -> Vec<f64> {
+    let mut force = vec![0.0; right.len()];
     let mut factor = system.equations.matrix();
     let mut loads = system.forces(at, &mut force);
+    let still = vec![0.0; right.len()];
     loads.exact_tangent(&still, Shift::NONE, &mut factor);
     factor.factorize().unwrap();
     factor.solve(&mut right);
-    right.iter().map(|x| LN_10 * x).collect()
+    right
 }
 
 fn close(found: f64, expected: f64, share: f64, what: &str) {
@@ -85,7 +111,7 @@ fn close(found: f64, expected: f64, share: f64, what: &str) {
 
 /// `w = F sum (L - x_j)^2 / K_55 + n F / K_22` at the tip, over the joints at `x_j`.
 #[test]
-fn cantilever_by_bending_by_shear_and_by_load() {
+fn cantilever_by_bending_by_shear_by_load_and_by_length() {
     let (count, load) = (20, 1e-3);
     let mut setup = cantilever(count, recommended().bushing);
     setup.ends[1] = End::Free {
@@ -109,11 +135,15 @@ fn cantilever_by_bending_by_shear_and_by_load() {
     close(found, -LN_10 * by_shear, 1e-3, "shear");
     let found = of(&with(&setup, |_| NONE, 1.0));
     close(found, LN_10 * (by_bending + by_shear), 1e-6, "load");
+    let longer = by_pitch(&mut system, &q, &setup);
+    // the tip lies half a cylinder beyond its centre
+    let found = tip(&longer) + 0.5 * q[last + 5];
+    close(found, 2.0 * by_bending / 0.05, 1e-6, "length");
 }
 
 /// A taut string sags with its weight over its tension, which its stretch gives: `K_11` times it.
 #[test]
-fn string_by_stiffness_and_by_load() {
+fn string_by_stiffness_by_load_and_by_length() {
     let (count, stretch) = (41, 1e-3);
     let law = string();
     let span = 0.05 * count as f64 + stretch * (count + 1) as f64;
@@ -132,12 +162,16 @@ fn string_by_stiffness_and_by_load() {
     close(found, -LN_10 * q[middle], 2e-3, "stiffness");
     let found = column(&mut system, &q, &with(&setup, |_| NONE, 1.0))[middle];
     close(found, LN_10 * q[middle], 1e-3, "load");
+    // a longer string is stretched less: n cylinders share what the span leaves to n + 1 joints
+    let found = by_pitch(&mut system, &q, &setup)[middle];
+    let slack = count as f64 / ((count + 1) as f64 * stretch);
+    close(found, sag * slack, 3e-3, "length");
 }
 
 /// A hanging string whose stiffnesses and loads grow alike hangs as before; its stretch lets it sag by
 /// `d sag / d S` of the catenary of length `S`.
 #[test]
-fn catenary_by_stiffness_and_by_load() {
+fn catenary_by_stiffness_by_load_and_by_length() {
     let (count, span) = (100, 4.0_f64);
     let law = string();
     let setup = strung(count, law, span, 9.81);
@@ -171,4 +205,6 @@ fn catenary_by_stiffness_and_by_load() {
     let middle = 6 * (count / 2) + 1;
     let expected = LN_10 * slope * tension / law.stiffness[0];
     close(by_axial[middle], expected, 0.01, "stiffness");
+    let found = by_pitch(&mut system, &q, &setup)[middle];
+    close(found, -slope * count as f64, 0.01, "length");
 }

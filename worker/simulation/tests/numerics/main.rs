@@ -12,6 +12,7 @@
 mod bounce;
 mod box_of_genes;
 mod determinism;
+mod dual;
 mod effect;
 mod energy;
 mod forced;

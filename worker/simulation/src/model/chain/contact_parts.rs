@@ -1,4 +1,4 @@
-//! A chain's contact in two matrices, of places and of rates apart.
+//! A chain's contact in two matrices, without what rates change and whole.
 //!
 //! With the derivatives `G` of a point's penetration and `c` of its force by the penetration's rate, the
 //! rates' part is `c G G^T`: it bends nothing.
@@ -11,26 +11,27 @@ use crate::element::impact::Impact;
 use crate::linear::Bordered;
 use crate::model::contact::Surface;
 use crate::model::layout::Motion;
-use crate::model::pose::InPlane;
+use crate::model::pose::{InPlane, PlanePose};
+use pulp::{Arch, Simd, WithSimd};
 
 #[expect(
     clippy::multiple_inherent_impl,
     reason = "one file per term of the equations"
 )]
 impl Chain {
-    /// Adds the contact's `-K` to the first matrix and its `-D` to the second.
+    /// Adds the contact's `-K` to the first matrix and its `-gamma D - K` to the second.
     pub(crate) fn add_contact_parts(
         &self,
-        (surface, law): (&Surface<'_>, &Impact),
+        on: (&Surface<'_>, &Impact),
         state: &ChainState,
+        gamma: f64,
         matrices: [&mut Bordered; 2],
     ) {
-        let border = matrices[0].border().min(surface.modes() + 1);
-        let on = (surface, law);
+        let border = matrices[0].border().min(on.0.modes() + 1);
         match border {
-            0..=1 => self.add_parts_within::<1>(on, state, (matrices, border)),
-            2..=FEW => self.add_parts_within::<FEW>(on, state, (matrices, border)),
-            _ => self.add_parts_within::<BORDER>(on, state, (matrices, border)),
+            0..=1 => self.add_parts_within::<1>(on, state, gamma, (matrices, border)),
+            2..=FEW => self.add_parts_within::<FEW>(on, state, gamma, (matrices, border)),
+            _ => self.add_parts_within::<BORDER>(on, state, gamma, (matrices, border)),
         }
     }
 
@@ -38,53 +39,104 @@ impl Chain {
         &self,
         (surface, law): (&Surface<'_>, &Impact),
         state: &ChainState,
+        gamma: f64,
         (matrices, border): ([&mut Bordered; 2], usize),
     ) {
-        let mut parts = [(); 2].map(|()| Tangent::<B> {
+        let tangent = Tangent::<B> {
             chain: self,
             surface,
             law,
             gamma: 0.0,
             border,
             corner: [[0.0; B]; B],
-        });
+        };
+        let points = &state.points;
         match self.motion {
-            Motion::Plane => add_parts(&mut parts, &state.points, &state.plane, matrices),
-            Motion::Space => add_parts(&mut parts, &state.points, &state.poses, matrices),
+            Motion::Plane => Arch::new().dispatch(Parts {
+                tangent,
+                gamma,
+                points,
+                poses: &state.plane,
+                matrices,
+            }),
+            Motion::Space => add_parts(tangent, gamma, points, &state.poses, matrices),
         }
     }
 }
 
+/// A chain's contact in the plane, compiled for each set of instructions.
+struct Parts<'a, 'm, const B: usize> {
+    tangent: Tangent<'a, B>,
+    gamma: f64,
+    points: &'a Points,
+    poses: &'a [PlanePose],
+    matrices: [&'m mut Bordered; 2],
+}
+
+impl<const B: usize> WithSimd for Parts<'_, '_, B> {
+    type Output = ();
+
+    #[expect(
+        clippy::inline_always,
+        reason = "compiled for each set of instructions"
+    )]
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        add_parts(
+            self.tangent,
+            self.gamma,
+            self.points,
+            self.poses,
+            self.matrices,
+        );
+    }
+}
+
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
 fn add_parts<const A: usize, const B: usize>(
-    [stiff, damped]: &mut [Tangent<'_, B>; 2],
+    mut tangent: Tangent<'_, B>,
+    gamma: f64,
     points: &Points,
     poses: &[impl InPlane<A>],
-    [stiffness, damping]: [&mut Bordered; 2],
+    [stiffness, matrix]: [&mut Bordered; 2],
 ) {
-    let seen = (stiff.surface, 0.0, stiff.border);
+    let seen = (tangent.surface, 0.0, tangent.border);
+    let mut corner = [[0.0; B]; B];
     for (k, &j) in points.cylinders().iter().enumerate() {
         if points.touching(k).next().is_none() {
             continue;
         }
-        let mut sums = [Sums::zero(), Sums::zero()];
+        let (mut sums, mut damped) = (Sums::zero(), Sums::zero());
         for i in points.touching(k) {
-            let touch = points.touch((k, i), stiff.surface, stiff.law);
+            let touch = points.touch((k, i), tangent.surface, tangent.law);
             let point = Derivatives::new(seen, &poses[j], &touch);
-            stiff.add_point(&point, &touch, &poses[j], &mut sums[0]);
-            let corner = &mut damped.corner[..stiff.border];
-            add_damping::<A, B>(&point, touch.law.by_rate, &mut sums[1], corner);
+            tangent.add_point(&point, &touch, &poses[j], &mut sums);
+            let by_rate = gamma * touch.law.by_rate;
+            add_damping::<A, B>(&point, by_rate, &mut damped, &mut corner[..seen.2]);
         }
-        let block = stiff.chain.first + j;
-        stiff.add_sums::<A>(block, &sums[0], stiffness);
-        sums[1].bottom = sums[1].right;
-        damped.add_sums::<A>(block, &sums[1], damping);
+        let block = tangent.chain.first + j;
+        tangent.add_sums::<A>(block, &sums, stiffness);
+        sums.add_damping(&damped);
+        tangent.add_sums::<A>(block, &sums, matrix);
     }
-    stiff.add_corner(stiffness);
-    damped.add_corner(damping);
+    tangent.add_corner(stiffness);
+    let rows = tangent.corner.as_flattened_mut().iter_mut();
+    for (entry, damped) in rows.zip(corner.as_flattened()) {
+        *entry += damped;
+    }
+    tangent.add_corner(matrix);
 }
 
 /// Adds `c G G^T` of a point to the sums of its cylinder, without the rows of the border, and to the corner.
-#[inline]
+#[expect(
+    clippy::inline_always,
+    reason = "compiled for each set of instructions"
+)]
+#[inline(always)]
 fn add_damping<const A: usize, const B: usize>(
     point: &Derivatives<B>,
     c: f64,

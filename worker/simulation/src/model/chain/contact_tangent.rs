@@ -92,6 +92,20 @@ impl<const B: usize> Sums<B> {
             bottom: [[0.0; B]; OWN],
         }
     }
+
+    /// Adds what rates change: rows and columns of the border alike.
+    pub(super) fn add_damping(&mut self, damped: &Self) {
+        let pairs = [
+            (self.own.as_flattened_mut(), damped.own.as_flattened()),
+            (self.right.as_flattened_mut(), damped.right.as_flattened()),
+            (self.bottom.as_flattened_mut(), damped.right.as_flattened()),
+        ];
+        for (sums, damped) in pairs {
+            for (sum, damped) in sums.iter_mut().zip(damped) {
+                *sum += damped;
+            }
+        }
+    }
 }
 
 impl<const B: usize> Tangent<'_, B> {

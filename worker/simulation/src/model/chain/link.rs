@@ -9,7 +9,7 @@ use crate::model::pose::{PlanePose, Pose};
 use nalgebra::{Matrix3, Vector2};
 
 /// Which body of a joint a block's rows belong to.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub(super) enum Side {
     I,
     J,

@@ -109,22 +109,22 @@ impl Chain {
         }
     }
 
-    /// Subtracts the same by coordinates and by rates apart, each from a matrix of its own.
+    /// Subtracts the same without what rates change from the first matrix, whole from the second.
     pub(super) fn add_plane_parts(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
-        [stiffness, damping]: [&mut Blocks<3>; 2],
+        gamma: f64,
+        [stiffness, matrix]: [&mut Blocks<3>; 2],
     ) {
         for joint in 1..self.count {
             let [i, j] = self.plane_markers(joint, &state.plane);
             let force = state.joints[joint].force.xy();
             let further = self.pull(joint, joints, state);
             let (between, law) = ((&i, &j), joints.inner);
-            let by_place = law.plane_tangent(between, &force, 0.0, further.as_ref());
-            let by_rate = law.plane_damping(between, further.as_ref());
-            subtract_joint(stiffness, self.first + joint, &by_place);
-            subtract_joint(damping, self.first + joint, &by_rate);
+            let [alone, whole] = law.plane_tangents(between, &force, gamma, further.as_ref());
+            subtract_joint(stiffness, self.first + joint, &alone);
+            subtract_joint(matrix, self.first + joint, &whole);
         }
     }
 }

@@ -23,6 +23,17 @@ pub(crate) struct CylinderColumns {
     angles: [M3; 3],
 }
 
+/// An end joint, differentiated: by its cylinder and by the body that holds it, whatever their rates are of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct HeldEnd {
+    side: Side,
+    /// Block and pose of the cylinder.
+    block: usize,
+    pose: Pose,
+    by_own: LinkTangent,
+    by_body: LinkTangent,
+}
+
 /// Tangent of an end joint, for the body that holds the chain there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct EndTangent {
@@ -58,30 +69,25 @@ impl Chain {
         }
     }
 
-    /// The same by coordinates and by rates apart, each to a matrix of its own; whether there is such a
+    /// The same without what rates change to the first matrix, whole to the second; whether there is such a
     /// thing, which is so in the plane.
     pub(crate) fn add_joint_parts(
         &self,
         joints: &Joints<'_>,
         state: &ChainState,
-        matrices: &mut [&mut Bordered; 2],
+        gamma: f64,
+        stiffness: &mut Bordered,
+        matrix: &mut Bordered,
     ) -> bool {
-        let [Bordered::Plane(stiffness), Bordered::Plane(damping)] = matrices else {
+        let (Bordered::Plane(stiffness), Bordered::Plane(matrix)) = (stiffness, matrix) else {
             return false;
         };
-        self.add_plane_parts(joints, state, [stiffness, damping]);
+        self.add_plane_parts(joints, state, gamma, [stiffness, matrix]);
         true
     }
 
-    /// Adds the tangent of the joints at base and head to the own blocks of the cylinders that they
-    /// hold; returns it for their holders.
-    pub(crate) fn add_end_tangent(
-        &self,
-        joints: &Joints<'_>,
-        state: &ChainState,
-        gamma: f64,
-        matrix: &mut Bordered,
-    ) -> [Option<EndTangent>; 2] {
+    /// The joints that hold the chain at base and head, differentiated.
+    pub(crate) fn ends(&self, joints: &Joints<'_>, state: &ChainState) -> [Option<HeldEnd>; 2] {
         [(0, 0, Side::I), (self.count, self.count - 1, Side::J)].map(|(joint, cylinder, side)| {
             let ([i, j], law) = self.link(joint, joints, state)?;
             let [by_i, by_j] = law.tangent(&i, &j, &state.joints[joint]);
@@ -89,18 +95,37 @@ impl Chain {
                 Side::I => (by_i, by_j),
                 Side::J => (by_j, by_i),
             };
-            let pose = state.pose(cylinder);
-            let by_cylinder = CylinderColumns::new(&by_own, &pose, gamma);
+            Some(HeldEnd {
+                side,
+                block: self.first + cylinder,
+                pose: state.pose(cylinder),
+                by_own,
+                by_body,
+            })
+        })
+    }
+
+    /// Adds the tangent of the joints at base and head to the own blocks of the cylinders that they
+    /// hold; returns it for their holders.
+    pub(crate) fn add_end_tangent(
+        &self,
+        ends: &[Option<HeldEnd>; 2],
+        gamma: f64,
+        matrix: &mut Bordered,
+    ) -> [Option<EndTangent>; 2] {
+        ends.each_ref().map(|end| {
+            let end = end.as_ref()?;
+            let by_cylinder = CylinderColumns::new(&end.by_own, &end.pose, gamma);
             let mut own = Block::zeros();
-            subtract_own(&mut own, &by_cylinder, &pose.angular(), side);
+            subtract_own(&mut own, &by_cylinder, &end.pose.angular(), end.side);
             let kept = self.motion.kept();
             for (c, &column) in kept.iter().enumerate() {
                 for (r, &row) in kept.iter().enumerate() {
-                    matrix.add_diagonal(self.first + cylinder, r, c, own[(row, column)]);
+                    matrix.add_diagonal(end.block, r, c, own[(row, column)]);
                 }
             }
             Some(EndTangent {
-                by_body,
+                by_body: end.by_body,
                 by_cylinder,
             })
         })

@@ -12,7 +12,7 @@ use super::side::Side;
 use super::source::add;
 use crate::integrator::method::Method;
 use crate::integrator::stepper::Stages;
-use crate::linear::{Bordered, Lanes};
+use crate::linear::Lanes;
 use crate::model::description::RopeLaw;
 use crate::model::{Individual, Machine, Scratch};
 use crate::observe::{Gradient, TorqueBy};
@@ -83,7 +83,6 @@ struct Follower<'a, 'o> {
 struct Room {
     /// Stages of a step, all of them or one after the other; the first one serves the equilibrium too.
     stages: Vec<Linearized>,
-    matrix: Bordered,
     bases: Bases,
     scratch: Scratch,
     right: Vec<Lanes>,

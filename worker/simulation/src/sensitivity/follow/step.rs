@@ -12,7 +12,7 @@ use crate::linear::{LANES, Lanes};
 use crate::model::layout::Motion;
 use crate::model::{Individual, Scratch};
 use crate::observe::{Gradient, TorqueBy};
-use crate::system::{Equations, State, System};
+use crate::system::{State, System};
 
 /// As many blocks as stay in cache beside a stage: they take a stage one after the other, more of them a
 /// whole step.
@@ -99,8 +99,7 @@ impl Follower<'_, '_> {
             after.start = several.end;
             if let Some(room) = &mut self.room {
                 for (i, at) in several.clone().zip(&mut room.stages) {
-                    let buffers = (&mut room.force[0][..], &mut room.matrix);
-                    let made = at.stage(system, (i, stages), ends, buffers);
+                    let made = at.stage(system, (i, stages), ends, &mut room.force[0]);
                     made.map_err(|_| Missing::Singular)?;
                     room.factorizations += 1;
                 }
@@ -159,7 +158,6 @@ impl Follower<'_, '_> {
             stages: (0..kept)
                 .map(|_| Linearized::new(own, state, units))
                 .collect(),
-            matrix: own.matrix(),
             bases: Bases::new(n),
             scratch: Scratch::new(own.machine),
             right: vec![Lanes::default(); n],
@@ -169,8 +167,7 @@ impl Follower<'_, '_> {
             torque: TorqueBy(Vec::with_capacity(n)),
             factorizations: 1,
         };
-        let buffers = (&mut room.force[0][..], &mut room.matrix);
-        let made = room.stages[0].rest(system, state, buffers);
+        let made = room.stages[0].rest(system, state, &mut room.force[0]);
         made.map_err(|_| Missing::Singular)?;
         self.room = Some(room);
         let curves = self.active.iter_mut();
