@@ -172,8 +172,14 @@ fn columns_that_do_not_exist_are_refused() {
     };
     for (name, says) in [
         ("kb7", "there is no `kb7`"),
-        ("pivot_friction.momment", "did you mean `pivot_friction.moment`?"),
-        ("pivot_frction.moment", "did you mean `pivot_friction.moment`?"),
+        (
+            "pivot_friction.momment",
+            "did you mean `pivot_friction.moment`?",
+        ),
+        (
+            "pivot_frction.moment",
+            "did you mean `pivot_friction.moment`?",
+        ),
         ("quite_another", "known are kb1, "),
         ("", "there is no ``"),
     ] {
