@@ -9,6 +9,7 @@ use super::{
     watch::{View, Watch},
 };
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
+use discrepancy::ground::budget::cost;
 use discrepancy::laboratory::{Laboratory, Stage};
 use protocol::{
     announce::EffectDescriptor,
@@ -32,7 +33,7 @@ pub struct StageCost {
 }
 
 /// How far a stage has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageView {
     /// The stage.
     pub stage: Stage,
@@ -40,6 +41,10 @@ pub struct StageView {
     pub done: u64,
     /// How many more of their batch are awaited.
     pub open: usize,
+    /// What all stages have cost so far, in plain simulations.
+    pub spent: f64,
+    /// What this stage may still cost.
+    pub left: f64,
 }
 
 impl View for StageView {
@@ -88,6 +93,8 @@ pub async fn diagnose_on<E: Evaluator>(
         next_id: LIBRARY + 1,
         differentiates: !inputs.differences,
         costs: BTreeMap::new(),
+        spent: 0.0,
+        left: inputs.thresholds.budget.map(f64::from),
     };
     let diagnosis = diagnose(&mut jobs, inputs).await?;
     Ok(Diagnosed {
@@ -104,6 +111,10 @@ struct Jobs<'a, E> {
     next_id: u64,
     differentiates: bool,
     costs: BTreeMap<Stage, StageCost>,
+    /// What came back so far, in plain simulations.
+    spent: f64,
+    /// What each stage has left of its budget.
+    left: [f64; Stage::ALL.len()],
 }
 
 impl<E: Evaluator> Laboratory for Jobs<'_, E> {
@@ -122,6 +133,7 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
         let first = self.next_id;
         let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
         let mut open = batch.len();
+        let prices: Vec<f64> = batch.iter().map(cost).collect();
         for spec in batch {
             self.watch.asked(self.next_id, &stage);
             self.evaluator
@@ -138,6 +150,12 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
             let Some(slot) = place.and_then(|k| results.get_mut(k)) else {
                 continue;
             };
+            let price = place
+                .and_then(|k| prices.get(k))
+                .copied()
+                .unwrap_or_default();
+            self.spent += price;
+            self.left[stage as usize] -= price;
             let cost = self.costs.entry(stage).or_default();
             cost.experiments += 1;
             let id = completed.id;
@@ -156,8 +174,13 @@ impl<E: Evaluator> Laboratory for Jobs<'_, E> {
             }
             open -= 1;
             let evaluator = &*self.evaluator;
-            let done = cost.experiments;
-            let view = StageView { stage, done, open };
+            let view = StageView {
+                stage,
+                done: cost.experiments,
+                open,
+                spent: self.spent,
+                left: self.left[stage as usize].max(0.0),
+            };
             self.watch.progress(&view, &|| evaluator.crew());
         }
         let cost = self.costs.entry(stage).or_default();

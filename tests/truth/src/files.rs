@@ -1,11 +1,69 @@
 //! A test record as a delivered folder: load cards, samples and data sheets by condition.
 use crate::chain::{Sample, Sensors};
-use anyhow::Context as _;
+use crate::law::Tolerance;
+use anyhow::{Context as _, ensure};
 use flate2::{Compression, write::GzEncoder};
-use std::fmt::Write as _;
+use serde::{Deserialize, Serialize};
+use std::fmt::{self, Display, Formatter, Write as _};
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
+
+/// What is recorded beside angle and load.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Channels {
+    /// Which of gauges 1 to 4.
+    pub gauges: [bool; 4],
+    /// Whether position and torque are.
+    pub others: bool,
+}
+
+impl Default for Channels {
+    fn default() -> Self {
+        Self {
+            gauges: [true; 4],
+            others: true,
+        }
+    }
+}
+
+impl Channels {
+    /// Gauges 1 and 3 and nothing else, as the paper's.
+    pub const TWO: Self = Self {
+        gauges: [true, false, true, false],
+        others: false,
+    };
+
+    /// With these gauges alone.
+    ///
+    /// # Errors
+    /// None of them, or one that is none of 1 to 4.
+    pub fn with_gauges(self, numbers: &[usize]) -> anyhow::Result<Self> {
+        let known = numbers.iter().all(|number| (1..=4).contains(number));
+        ensure!(
+            known && !numbers.is_empty(),
+            "gauges are 1 to 4, one at least"
+        );
+        Ok(Self {
+            gauges: [1, 2, 3, 4].map(|gauge| numbers.contains(&gauge)),
+            ..self
+        })
+    }
+
+    /// Places of the gauges that are there.
+    fn gauges(self) -> impl Iterator<Item = usize> {
+        (0..4).filter(move |k| self.gauges[*k])
+    }
+}
+
+impl Display for Channels {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        for gauge in self.gauges() {
+            write!(f, "{}", gauge + 1)?;
+        }
+        f.write_str(if self.others { "+" } else { "" })
+    }
+}
 
 /// What is delivered of one condition.
 #[derive(Clone, Debug)]
@@ -22,6 +80,8 @@ pub struct Delivered<'a> {
     pub samples: &'a [Sample],
     /// Samples that did not.
     pub lost: usize,
+    /// What is recorded.
+    pub channels: Channels,
 }
 
 /// Writes `card_C.csv`, `test_C.csv.gz` and `test_C.toml` into a folder.
@@ -31,7 +91,7 @@ pub struct Delivered<'a> {
 pub fn write(
     folder: &Path,
     name: &str,
-    sensors: &Sensors,
+    (sensors, tolerance): (&Sensors, &Tolerance),
     delivered: &Delivered<'_>,
 ) -> anyhow::Result<()> {
     let condition = delivered.condition;
@@ -40,35 +100,45 @@ pub fn write(
         fs::write(&path, content).with_context(|| format!("writing {}", path.display()))
     };
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(samples(delivered.samples)?.as_bytes())?;
+    let lines = samples(delivered.samples, delivered.channels)?;
+    encoder.write_all(lines.as_bytes())?;
     put(format!("test_{condition}.csv.gz"), &encoder.finish()?)?;
     put(
         format!("card_{condition}.csv"),
         card(delivered.card)?.as_bytes(),
     )?;
-    let sheet = sheet(name, sensors, delivered);
+    let sheet = sheet(name, sensors, delivered) + &stated(tolerance)?;
     put(format!("test_{condition}.toml"), sheet.as_bytes())
 }
 
-fn samples(samples: &[Sample]) -> Result<String, std::fmt::Error> {
-    let mut text = "time_s,crank_deg,stress_1_mpa,stress_2_mpa,stress_3_mpa,stress_4_mpa,\
-                    polished_rod_load_n,polished_rod_position_m,crank_torque_nm\n"
-        .to_owned();
+fn samples(samples: &[Sample], channels: Channels) -> Result<String, fmt::Error> {
+    let mut text = "time_s,crank_deg".to_owned();
+    for gauge in channels.gauges() {
+        write!(text, ",stress_{}_mpa", gauge + 1)?;
+    }
+    text.push_str(",polished_rod_load_n");
+    if channels.others {
+        text.push_str(",polished_rod_position_m,crank_torque_nm");
+    }
+    text.push('\n');
     for s in samples {
         // to tenths of a degree; it never reads 360
         let crank = (10.0 * s.crank).round().rem_euclid(3600.0) / 10.0;
         write!(text, "{:.2},{crank:.1}", s.time)?;
-        for stress in s.stress {
-            write!(text, ",{stress:.3}")?;
+        for gauge in channels.gauges() {
+            write!(text, ",{:.3}", s.stress[gauge])?;
         }
         let tens = |value: f64| 10.0 * (0.1 * value).round();
-        let (load, torque) = (tens(s.load), tens(s.torque));
-        writeln!(text, ",{load:.0},{:.3},{torque:.0}", s.position)?;
+        write!(text, ",{:.0}", tens(s.load))?;
+        if channels.others {
+            write!(text, ",{:.3},{:.0}", s.position, tens(s.torque))?;
+        }
+        text.push('\n');
     }
     Ok(text)
 }
 
-fn card(load: &[f64]) -> Result<String, std::fmt::Error> {
+fn card(load: &[f64]) -> Result<String, fmt::Error> {
     let mut text = "turn_deg,polished_rod_load_n\n".to_owned();
     let step = 360.0 / load.len() as f64;
     for (i, load) in load.iter().enumerate() {
@@ -96,6 +166,19 @@ fn sheet(name: &str, sensors: &Sensors, delivered: &Delivered<'_>) -> String {
         cycles: [load, _],
         ..
     } = sensors;
+    let others = if delivered.channels.others {
+        format!(
+            "[position]
+noise_rms_m = {position}
+[torque]
+noise_rms_nm = {torque}
+meaning = \"net torque at the crank shaft including counterweight\"
+
+"
+        )
+    } else {
+        String::new()
+    };
     format!(
         "# test record
 name = \"{name}\"
@@ -127,21 +210,48 @@ channel = \"polished_rod_load_n replays the dynamometer card of a separate sessi
 speed; it is not a simultaneous measurement\"
 cycle_to_cycle_variation = {load}
 
-[position]
-noise_rms_m = {position}
-[torque]
-noise_rms_nm = {torque}
-meaning = \"net torque at the crank shaft including counterweight\"
-
-[tolerance]  # the instruments of this record are exact but for their noise
-gauge_factor = 0
-index_deg = 0
-load_cell = 0
-amplifier_lag_s = 0
-position = 0
-torque = 0
-bearing_friction_nm = 0
-balance_nm = 0
-"
+{others}"
     )
+}
+
+/// How good each instrument is.
+fn stated(tolerance: &Tolerance) -> anyhow::Result<String> {
+    let keys = toml::to_string(tolerance)?;
+    Ok(format!(
+        "[tolerance]  # one standard deviation, constant over the test\n{keys}"
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_recorded_has_no_column() {
+        let sample = Sample {
+            time: 0.01,
+            crank: 0.3,
+            stress: [1.0, 2.0, 3.0, 4.0],
+            load: 50_004.0,
+            position: 0.5,
+            torque: 12.0,
+        };
+        let whole = samples(&[sample], Channels::default()).unwrap();
+        assert!(whole.ends_with("0.01,0.3,1.000,2.000,3.000,4.000,50000,0.500,10\n"));
+        let two = samples(&[sample], Channels::TWO).unwrap();
+        let expected = "time_s,crank_deg,stress_1_mpa,stress_3_mpa,polished_rod_load_n\n\
+                        0.01,0.3,1.000,3.000,50000\n";
+        assert_eq!(two, expected);
+        assert_eq!(Channels::TWO.to_string(), "13");
+        assert!(Channels::TWO.with_gauges(&[5]).is_err());
+        assert!(Channels::TWO.with_gauges(&[]).is_err());
+    }
+
+    #[test]
+    fn a_sheet_states_how_good_the_instruments_are() {
+        let text = stated(&Tolerance::USUAL).unwrap();
+        let read: toml::Table = toml::from_str(&text).unwrap();
+        assert_eq!(read["tolerance"]["balance_nm"].as_float(), Some(200.0));
+        assert_eq!(read["tolerance"].as_table().map(toml::Table::len), Some(8));
+    }
 }

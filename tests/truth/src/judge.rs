@@ -1,6 +1,7 @@
 //! What a verdict is worth, once the answer is open.
+use crate::law::Nuisances;
 use crate::plan::{Answer, AnswerEffect, Stratum};
-use crate::verdict::{Limit, Verdict};
+use crate::verdict::{Limit, Nuisance, Verdict};
 
 /// One set with its answer and its verdict.
 #[derive(Clone, Debug)]
@@ -67,6 +68,29 @@ impl Trial {
         Some(((size.value / effect.value - 1.0).abs(), covered))
     }
 
+    /// Whether the verdict says that the record cannot show the first hidden effect.
+    pub fn said_absorbed(&self) -> bool {
+        let first = self.answer.effects.first();
+        first.is_some_and(|effect| self.verdict.absorbed.iter().any(|own| own.id == effect.id))
+    }
+
+    /// Whether it names nothing and nobody.
+    pub fn names_nobody(&self) -> bool {
+        self.verdict.added().next().is_none()
+    }
+
+    /// Intervals of instruments that hold what was drawn, and how many there are; with an effect of the same
+    /// kind hidden there is none.
+    pub fn nuisances_held(&self) -> [usize; 2] {
+        let judged = self.verdict.nuisances.iter().filter_map(|own| {
+            let truth = drawn(&self.answer.nuisances, own)?;
+            let named = self.hides(&own.id) || self.verdict.added().any(|id| id == own.id);
+            (!named).then_some((own.ci95[0]..=own.ci95[1]).contains(&truth))
+        });
+        let judged: Vec<bool> = judged.collect();
+        [judged.iter().filter(|held| **held).count(), judged.len()]
+    }
+
     /// One word on a self.
     pub fn mark(&self) -> &'static str {
         if self.false_names() > 0 {
@@ -81,6 +105,8 @@ impl Trial {
             "right"
         } else if self.covered() {
             "in the set"
+        } else if self.names_nobody() && self.said_absorbed() {
+            "listed as absorbed"
         } else if self.verdict.verdict == "unlisted" {
             if self.answer.stratum == Stratum::Outside {
                 "right"
@@ -98,4 +124,18 @@ impl Trial {
 fn same(parameter: &str, effect: &AnswerEffect) -> bool {
     let stem = parameter.trim_end_matches(|c: char| c.is_ascii_digit());
     parameter == effect.parameter || stem.trim_end_matches('_') == effect.parameter
+}
+
+/// What was drawn of what a verdict gives an interval of.
+fn drawn(truth: &Nuisances, own: &Nuisance) -> Option<f64> {
+    let gauge = own.parameter.strip_prefix("gain_").map(str::parse::<usize>);
+    match (own.id.as_str(), gauge) {
+        ("gauge_gain", Some(Ok(gauge))) => truth.gauge_factor.get(gauge.checked_sub(1)?).copied(),
+        ("crank_angle_offset", _) => Some(truth.index_deg),
+        ("amplifier_lag", _) => Some(truth.amplifier_lag_s),
+        ("pivot_friction", _) => Some(truth.bearing_friction_nm),
+        ("position_gain", _) => Some(truth.position),
+        ("torque_gain", _) => Some(truth.torque),
+        _ => None,
+    }
 }

@@ -1,5 +1,7 @@
 //! Tests of judge and table: what a few verdicts are worth, and how they are counted.
+use crate::files::Channels;
 use crate::judge::Trial;
+use crate::law::Nuisances;
 use crate::plan::{Answer, AnswerEffect, Stratum};
 use crate::table::table;
 use std::collections::BTreeMap;
@@ -22,6 +24,8 @@ fn answer(stratum: Stratum, ids: &[&str]) -> Answer {
         cycles: 5,
         genes: BTreeMap::new(),
         effects: effects.collect(),
+        nuisances: Nuisances::default(),
+        channels: Channels::default(),
     }
 }
 
@@ -82,10 +86,31 @@ fn claims_are_counted_by_stratum() {
         "| outside, detected: unlisted | >= 90 % | 1/1 = 100 % [2-100] |",
         "| double: exactly both | >= 60 % | 0/1 = 0 % [0-98] |",
         "| double: at least one | >= 85 % | 1/1 = 100 % [2-100] |",
-        "| single, at least 3 x limit: first name right | >= 85 % | 1/1 = 100 % [2-100] |",
+        "| single, at least 3 x limit: first name right, or listed as absorbed | >= 90 % | 1/1 = 100 % [2-100] |",
         "| false names of all names | <= 10 % | 1/3 = 33 % [1-91] |",
         "7 sets judged, 2 without a verdict.",
     ] {
         assert!(table.contains(line), "{line}\n{table}");
     }
+}
+
+#[test]
+fn what_is_listed_as_absorbed_and_intervals_of_instruments_count() {
+    let said = r#"{"verdict": "unresolved", "effects": [],
+        "absorbed": [{"id": "post_compliance", "share": 0.99, "measurement": "a gauge on the post"}],
+        "nuisances": [{"id": "crank_angle_offset", "parameter": "angle", "ci95": [0.01, 0.2]},
+                      {"id": "gauge_gain", "parameter": "gain_2", "ci95": [-0.001, 0.001]},
+                      {"id": "position_gain", "parameter": "gain", "ci95": [0.1, 0.2]}]}"#;
+    let mut post = trial(Stratum::Single, &["post_compliance"], said);
+    post.answer.nuisances.index_deg = 0.1;
+    post.answer.nuisances.gauge_factor[1] = 0.004;
+    assert!(post.said_absorbed() && post.names_nobody());
+    assert_eq!(post.mark(), "listed as absorbed");
+    assert_eq!(post.nuisances_held(), [1, 3]);
+    let table = table(&[post], 0).unwrap();
+    assert!(
+        table.contains("or listed as absorbed | >= 90 % | 1/1 = 100 %"),
+        "{table}"
+    );
+    assert!(table.contains("| 95 % intervals of instruments hold | 90 to 98 % | 1/3 = 33 %"));
 }

@@ -1,7 +1,7 @@
 //! The machine as it really is: the case's drawing, discretised and integrated otherwise than the
 //! program that is judged does it, with the hidden effects in it.
 use crate::draw::Draw;
-use crate::law::Hidden;
+use crate::law::Law;
 use crate::turn::{Turn, Watch};
 use anyhow::{Context as _, anyhow, bail};
 use protocol::{
@@ -106,14 +106,14 @@ impl Effect for Variation {
     }
 }
 
-/// One turn of the machine with its hidden effects, as its sensors see it.
+/// One turn of the machine with the laws that act in it, as its sensors see it.
 ///
 /// # Errors
 /// A case that cannot be refined so, or a machine that does not come round.
 pub fn turn(
     unit: &PumpingUnit,
     condition: usize,
-    (genes, hidden): (&[f64], &[Hidden]),
+    (genes, laws): (&[f64], &[Arc<dyn Law>]),
     variation: Variation,
     fineness: &Fineness,
 ) -> anyhow::Result<Turn> {
@@ -128,12 +128,12 @@ pub fn turn(
     let plain = worker::pumping_unit::machine(&unit, condition).map_err(|why| refused(&why))?;
     let mut description = plain.description;
     description.crank.speed *= 1.0 + variation.speed;
-    let laws = hidden.iter().map(|hidden| {
-        let effect: Arc<dyn Effect> = Arc::clone(&hidden.law) as Arc<dyn Effect>;
+    let acting = laws.iter().map(|law| {
+        let effect: Arc<dyn Effect> = Arc::clone(law) as Arc<dyn Effect>;
         effect
     });
     let varied: Arc<dyn Effect> = Arc::new(variation);
-    let effects: Vec<Arc<dyn Effect>> = laws.chain([varied]).collect();
+    let effects: Vec<Arc<dyn Effect>> = acting.chain([varied]).collect();
     let machine = Machine::with_effects(description, plain.layout.modes, &effects)?;
     let settings = RunSettings {
         method: Method::from(&TR_BDF2),
@@ -151,8 +151,8 @@ pub fn turn(
         bail!("the machine does not come round: {:?}", result.verdict);
     }
     let mut turn = watch.turn(&machine, &law);
-    for hidden in hidden {
-        hidden.law.read(&mut turn);
+    for law in laws {
+        law.read(&mut turn);
     }
     Ok(turn)
 }

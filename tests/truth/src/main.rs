@@ -1,14 +1,18 @@
-//! `truth make` and `truth open`.
+//! `truth make`, `truth open`, and `truth run`, which does both with a diagnosis in between.
 use anyhow::{Context as _, bail, ensure};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use protocol::pumping_unit::PumpingUnit;
 use std::fs;
 use std::io::{self, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use truth::files::Channels;
 use truth::judge::Trial;
+use truth::law::Tolerance;
 use truth::machine::Fineness;
 use truth::plan::{Order, Stratum, asked_kind, make};
 use truth::seal::Sealed;
+use truth::suite::Suite;
 use truth::table::table;
 use truth::verdict::Verdict;
 
@@ -23,6 +27,7 @@ struct Cli {
 enum Command {
     Make(Make),
     Open(Open),
+    Run(Run),
 }
 
 /// Make sets of records, each in a folder with a random name, and seal what they hide.
@@ -55,6 +60,15 @@ struct Make {
     /// Cycles of each record.
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=200))]
     cycles: u16,
+    /// Factor on what instruments, saddle bearing and balance are off by; 0 for a record without.
+    #[arg(long, default_value_t = 1.0)]
+    nuisances: f64,
+    /// Gauges that are recorded.
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3,4")]
+    gauges: Vec<usize>,
+    /// Leave position and torque out.
+    #[arg(long)]
+    without_others: bool,
     /// Cylinders of 75 mm, for a case whose own are longer.
     #[arg(long)]
     coarse: bool,
@@ -70,6 +84,7 @@ enum StratumChoice {
     Double,
     Outside,
     Below,
+    Card,
 }
 
 impl From<StratumChoice> for Stratum {
@@ -80,8 +95,45 @@ impl From<StratumChoice> for Stratum {
             StratumChoice::Double => Self::Double,
             StratumChoice::Outside => Self::Outside,
             StratumChoice::Below => Self::Below,
+            StratumChoice::Card => Self::Card,
         }
     }
+}
+
+/// Make sets, diagnose each, and print what the verdicts are worth. What is there already is not done again:
+/// a run that was stopped goes on.
+#[derive(Debug, Args)]
+struct Run {
+    /// Case folder whose machine it is.
+    #[arg(long)]
+    case: PathBuf,
+    /// Where records, answers, verdicts and the table go.
+    #[arg(long)]
+    out: PathBuf,
+    /// The program that is judged; its worker lies beside it.
+    #[arg(long)]
+    horsehead: PathBuf,
+    /// What everything is drawn from.
+    #[arg(long)]
+    seed: u64,
+    /// Sets with one effect. Of four sets one has gauges 1 and 3 alone.
+    #[arg(long, default_value_t = 30)]
+    singles: u16,
+    /// Sets without any.
+    #[arg(long, default_value_t = 20)]
+    zeros: u16,
+    /// Sets with two.
+    #[arg(long, default_value_t = 12)]
+    doubles: u16,
+    /// Sets with one that the library does not name.
+    #[arg(long, default_value_t = 10)]
+    outside: u16,
+    /// Sets with a card that was cut to its first harmonics.
+    #[arg(long, default_value_t = 4)]
+    cards: u16,
+    /// Begin no further set after so many hours.
+    #[arg(long, value_name = "H")]
+    hours: Option<f64>,
 }
 
 /// Open the answers and print what the verdicts are worth.
@@ -103,6 +155,7 @@ fn main() -> anyhow::Result<()> {
     match Cli::parse().command {
         Command::Make(arguments) => make_sets(&arguments),
         Command::Open(arguments) => open(&arguments),
+        Command::Run(arguments) => run_all(&arguments),
     }
 }
 
@@ -112,6 +165,10 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
     ensure!(
         arguments.noise > 0.0 && arguments.noise < 1e3,
         "--noise must be a factor above 0"
+    );
+    ensure!(
+        (0.0..1e3).contains(&arguments.nuisances),
+        "--nuisances must be a factor of at least 0"
     );
     let effect = arguments.effect.as_deref().map(asked_kind).transpose()?;
     let mut sealed = Sealed::load_or_new(&arguments.answers)?;
@@ -129,6 +186,12 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
             } else {
                 Fineness::FULL
             },
+            tolerance: Tolerance::USUAL.times(arguments.nuisances),
+            channels: Channels {
+                others: !arguments.without_others,
+                ..Channels::default()
+            }
+            .with_gauges(&arguments.gauges)?,
         };
         let name = sealed.name();
         let folder = arguments.out.join(&name);
@@ -151,10 +214,42 @@ fn open(arguments: &Open) -> anyhow::Result<()> {
     {
         bail!("the answers are not those that were committed to: {commitment}");
     }
+    let judged = judged(sealed, &arguments.verdicts)?;
+    say(&format!("commitment {commitment}\n\n{judged}"))
+}
+
+fn run_all(arguments: &Run) -> anyhow::Result<()> {
+    let case = coordinator::case::load(&arguments.case, &coordinator::case::Overrides::default())?;
+    let suite = Suite {
+        unit: PumpingUnit::of(case)?,
+        case: &arguments.case,
+        out: &arguments.out,
+        horsehead: &arguments.horsehead,
+        seed: arguments.seed,
+        until: arguments
+            .hours
+            .map(|hours| Duration::from_secs_f64(3600.0 * hours)),
+    };
+    let counts = [
+        (Stratum::Single, arguments.singles),
+        (Stratum::Zero, arguments.zeros),
+        (Stratum::Double, arguments.doubles),
+        (Stratum::Outside, arguments.outside),
+        (Stratum::Card, arguments.cards),
+    ];
+    suite.run(&counts, &mut |line| say(&format!("{line}\n")))?;
+    let (sealed, _) = Sealed::load(&suite.answers())?;
+    let judged = judged(sealed, &suite.verdicts())?;
+    fs::write(arguments.out.join("table.md"), &judged)?;
+    say(&judged)
+}
+
+/// The table of all sets that have a verdict.
+fn judged(sealed: Sealed, verdicts: &Path) -> anyhow::Result<String> {
     let mut trials = Vec::new();
     let mut without = 0;
     for (name, answer) in sealed.sets {
-        let path = arguments.verdicts.join(format!("{name}.json"));
+        let path = verdicts.join(format!("{name}.json"));
         if !path.is_file() {
             without += 1;
             continue;
@@ -165,10 +260,7 @@ fn open(arguments: &Open) -> anyhow::Result<()> {
             answer,
         });
     }
-    say(&format!(
-        "commitment {commitment}\n\n{}",
-        table(&trials, without)?
-    ))
+    Ok(table(&trials, without)?)
 }
 
 /// To standard output; a reader that has gone is no error.

@@ -1,8 +1,8 @@
 //! What is hidden in a set of records: effects, their sizes and coefficients, all drawn from a seed.
 use crate::chain::{MORE_LOAD, MORE_SPEED, Sample, Sensors, Turns, record};
 use crate::draw::Draw;
-use crate::files::{Delivered, write};
-use crate::law::{CATALOGUE, Hidden, Kind, Law, OUTSIDE, by_id};
+use crate::files::{Channels, Delivered, write};
+use crate::law::{CATALOGUE, CUT_CARD, Hidden, Kind, Law, Nuisances, OUTSIDE, Tolerance, by_id};
 use crate::machine::{Fineness, Variation, genes, turn};
 use anyhow::Context as _;
 use protocol::pumping_unit::PumpingUnit;
@@ -24,16 +24,19 @@ pub enum Stratum {
     Outside,
     /// One effect that it names, too small to be seen.
     Below,
+    /// A delivered card that lacks the load's higher harmonics.
+    Card,
 }
 
 impl Stratum {
     /// All of them, in the order of tables.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Single,
         Self::Zero,
         Self::Double,
         Self::Outside,
         Self::Below,
+        Self::Card,
     ];
 
     /// As it is written.
@@ -44,13 +47,14 @@ impl Stratum {
             Self::Double => "double",
             Self::Outside => "outside",
             Self::Below => "below",
+            Self::Card => "card",
         }
     }
 
     /// Sizes are drawn log-uniform between these, in units of an effect's typical size.
     const fn sizes(self) -> [f64; 2] {
         match self {
-            Self::Single | Self::Double | Self::Outside | Self::Zero => [0.5, 5.0],
+            Self::Single | Self::Double | Self::Outside | Self::Zero | Self::Card => [0.5, 5.0],
             Self::Below => [0.01, 0.1],
         }
     }
@@ -73,6 +77,10 @@ pub struct Order {
     pub cycles: usize,
     /// How finely the machine is computed.
     pub fineness: Fineness,
+    /// How good the instruments are.
+    pub tolerance: Tolerance,
+    /// What is recorded.
+    pub channels: Channels,
 }
 
 /// Pairs whose records look alike: no sensible test would ask for both at once.
@@ -94,6 +102,10 @@ impl Order {
     /// An effect that is asked for and does not exist.
     pub fn effects(&self) -> anyhow::Result<Vec<Hidden>> {
         let mut draw = Draw::new(self.seed, "effects");
+        if self.stratum == Stratum::Card {
+            let harmonics = self.times.unwrap_or(6.0 + draw.index(5) as f64);
+            return Ok(vec![CUT_CARD.hide(harmonics, &mut draw)]);
+        }
         let any = |draw: &mut Draw, from: &[Kind]| from[draw.index(from.len())];
         let from: &[Kind] = if self.stratum == Stratum::Outside {
             &OUTSIDE
@@ -140,6 +152,12 @@ pub struct Answer {
     pub genes: std::collections::BTreeMap<String, f64>,
     /// What is hidden.
     pub effects: Vec<AnswerEffect>,
+    /// By how much instruments, bearing and balance are off.
+    #[serde(default)]
+    pub nuisances: Nuisances,
+    /// What is recorded.
+    #[serde(default)]
+    pub channels: Channels,
 }
 
 /// An effect that is sealed.
@@ -187,13 +205,18 @@ pub fn make(
     name: &str,
 ) -> anyhow::Result<Answer> {
     let hidden = order.effects()?;
+    let ids: Vec<&str> = hidden.iter().map(|one| one.kind.id).collect();
+    let mut draw = Draw::new(order.seed, "nuisances");
+    let nuisances = Nuisances::draw(&order.tolerance, &mut draw, &ids);
+    let own = hidden.iter().map(|one| Arc::clone(&one.law));
+    let laws: Vec<Arc<dyn Law>> = own.chain(nuisances.laws()).collect();
     let sensors = Sensors::with_noise(order.noise);
     let mut attempt = 0;
     let (values, all) = loop {
         let mut draw = Draw::new(order.seed, &format!("genes {attempt}"));
         let values = genes(&unit.case, &mut draw)?;
         let all: anyhow::Result<Vec<Turns>> = (0..unit.case.conditions.len())
-            .map(|condition| turns(unit, condition, (&values, &hidden), &order.fineness))
+            .map(|condition| turns(unit, condition, (&values, &laws), &order.fineness))
             .collect();
         match all {
             Ok(all) => break (values, all),
@@ -207,7 +230,6 @@ pub fn make(
     for ((condition, working), turns) in conditions.zip(all) {
         let mut draw = Draw::new(order.seed, &format!("sensors {}", condition.name));
         let mut card = working.card.load_n.clone();
-        let laws: Vec<Arc<dyn Law>> = hidden.iter().map(|h| Arc::clone(&h.law)).collect();
         for law in &laws {
             law.deliver(&mut card, crate::chain::speed(working.speed_rpm));
         }
@@ -220,8 +242,9 @@ pub fn make(
             card: &card,
             samples: &samples,
             lost,
+            channels: order.channels,
         };
-        write(folder, name, &sensors, &delivered)?;
+        write(folder, name, (&sensors, &order.tolerance), &delivered)?;
     }
     let named = unit.case.unknowns.iter().zip(&values);
     Ok(Answer {
@@ -234,6 +257,8 @@ pub fn make(
             .map(|(gene, value)| (gene.name.clone(), *value))
             .collect(),
         effects: hidden.iter().map(AnswerEffect::of).collect(),
+        nuisances,
+        channels: order.channels,
     })
 }
 
@@ -241,7 +266,7 @@ pub fn make(
 fn turns(
     unit: &PumpingUnit,
     condition: usize,
-    machine: (&[f64], &[Hidden]),
+    machine: (&[f64], &[Arc<dyn Law>]),
     fineness: &Fineness,
 ) -> anyhow::Result<Turns> {
     let with = |load: f64, speed: f64| {
@@ -285,6 +310,8 @@ mod tests {
             noise: 1.0,
             cycles: 5,
             fineness: Fineness::COARSE,
+            tolerance: Tolerance::USUAL,
+            channels: Channels::default(),
         }
     }
 
@@ -307,6 +334,8 @@ mod tests {
             assert!(OUTSIDE.iter().any(|kind| kind.id == outside[0].kind.id));
             let below = order(Stratum::Below, seed).effects().unwrap();
             assert!((below[0].size / below[0].kind.scale).abs() <= 0.1);
+            let card = order(Stratum::Card, seed).effects().unwrap();
+            assert!((6.0..=10.0).contains(&card[0].size));
         }
         assert_eq!(ids.len(), CATALOGUE.len(), "all of them come up");
     }

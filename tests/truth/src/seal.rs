@@ -82,7 +82,11 @@ impl Sealed {
     pub fn save(&self, path: &Path) -> anyhow::Result<String> {
         let mut text = serde_json::to_string_pretty(self)?;
         text.push('\n');
-        fs::write(path, &text).with_context(|| format!("writing {}", path.display()))?;
+        // whole or not at all: a stop in between loses no answer
+        let beside = path.with_extension("json.part");
+        fs::write(&beside, &text)
+            .and_then(|()| fs::rename(&beside, path))
+            .with_context(|| format!("writing {}", path.display()))?;
         Ok(commitment(text.as_bytes()))
     }
 }
@@ -106,6 +110,8 @@ mod tests {
             cycles: 5,
             genes: BTreeMap::new(),
             effects: Vec::new(),
+            nuisances: crate::law::Nuisances::default(),
+            channels: crate::files::Channels::default(),
         }
     }
 

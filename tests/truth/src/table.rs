@@ -74,20 +74,25 @@ impl<'a> Table<'a> {
 
     fn singles(&mut self) -> Result {
         let single = self.of(Stratum::Single);
-        let large = |trial: &&Trial| trial.over_limit().is_some_and(|times| times >= 3.0);
+        // what the record cannot show has no limit; it is right to be listed so
+        let listed = |trial: &Trial| trial.names_nobody() && trial.said_absorbed();
+        let large =
+            |trial: &&Trial| listed(trial) || trial.over_limit().is_some_and(|times| times >= 3.0);
         let large: Vec<&Trial> = single.iter().copied().filter(large).collect();
         self.share(
-            "single, at least 3 x limit: first name right",
-            ">= 85 %",
+            "single, at least 3 x limit: first name right, or listed as absorbed",
+            ">= 90 %",
             &large,
-            Trial::first_is_right,
+            |trial| trial.first_is_right() || listed(trial),
         )?;
         self.share(
-            "the same: set holds the truth",
+            "the same: set holds the truth, or listed as absorbed",
             ">= 95 %",
             &large,
-            Trial::covered,
+            |trial| trial.covered() || listed(trial),
         )?;
+        let small = (single.len() - large.len()).to_string();
+        self.line("single, below that or without a limit", "", &small)?;
         self.share(
             "single, all: first name right",
             "",
@@ -120,6 +125,7 @@ impl<'a> Table<'a> {
         let claims = |trial: &Trial| trial.verdict.claims();
         let zero = self.of(Stratum::Zero);
         self.share("zero: any claim", "<= 5 %", &zero, claims)?;
+        self.share("zero: nobody named", ">= 95 %", &zero, Trial::names_nobody)?;
         let double = self.of(Stratum::Double);
         let exact = |trial: &Trial| trial.right() == 2 && trial.verdict.added().count() == 2;
         self.share("double: exactly both", ">= 60 %", &double, exact)?;
@@ -132,6 +138,17 @@ impl<'a> Table<'a> {
         self.share("outside, detected: unlisted", ">= 90 %", &outside, |t| {
             t.verdict.verdict == "unlisted"
         })?;
+        let outside = self.of(Stratum::Outside);
+        self.share(
+            "outside: nobody named",
+            ">= 90 %",
+            &outside,
+            Trial::names_nobody,
+        )?;
+        let cards = self.of(Stratum::Card);
+        self.share("card cut: nobody else named", ">= 90 %", &cards, |trial| {
+            trial.false_names() == 0
+        })?;
         let below = self.of(Stratum::Below);
         self.share("below the limit: any claim", "<= 5 %", &below, claims)
     }
@@ -143,7 +160,14 @@ impl<'a> Table<'a> {
         self.line("size of a right name: median error", "<= 10 %", &error)?;
         let covered = sizes.iter().filter(|(_, covered)| *covered).count();
         let covered = share(covered, sizes.len());
-        self.line("its 95 % interval holds it", ">= 85 %", &covered)?;
+        self.line("its 95 % interval holds it", "90 to 98 %", &covered)?;
+        let each = self.trials.iter().map(Trial::nuisances_held);
+        let [held, all] = each.fold([0, 0], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+        self.line(
+            "95 % intervals of instruments hold",
+            "90 to 98 %",
+            &share(held, all),
+        )?;
         let right = self.trials.iter().filter(|trial| trial.first_is_right());
         let closed = median(
             right
@@ -161,8 +185,8 @@ impl<'a> Table<'a> {
     /// Every trial: what was hidden, what was said.
     fn list(&mut self) -> Result {
         self.text.push_str(
-            "| set | stratum | noise | hidden | times limit | verdict | named (set) | mark |\n\
-             |---|---|---|---|---|---|---|---|\n",
+            "| set | stratum | channels | noise | hidden | times limit | verdict | named (set) | mark |\n\
+             |---|---|---|---|---|---|---|---|---|\n",
         );
         let mut sorted: Vec<&Trial> = self.trials.iter().collect();
         let first = |trial: &Trial| trial.answer.effects.first().map(|effect| effect.id.clone());
@@ -175,9 +199,10 @@ impl<'a> Table<'a> {
             let over = trial.over_limit();
             writeln!(
                 self.text,
-                "| {} | {} | {} | {} | {} | {} | {} | {} |",
+                "| {} | {} | {} | {} | {} | {} | {} | {} | {} |",
                 trial.name,
                 trial.answer.stratum.name(),
+                trial.answer.channels,
                 trial.answer.noise,
                 hidden.join(" + "),
                 over.map_or("-".to_owned(), |times| format!("{times:.1}")),

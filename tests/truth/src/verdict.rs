@@ -22,6 +22,30 @@ pub struct Verdict {
     /// Share of the gap that closed.
     #[serde(default)]
     pub gap: Gap,
+    /// Effects that the unknowns take up, so that the record cannot show them.
+    #[serde(default)]
+    pub absorbed: Vec<Absorbed>,
+    /// What the instruments are off by.
+    #[serde(default)]
+    pub nuisances: Vec<Nuisance>,
+}
+
+/// An effect that the record cannot show.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Absorbed {
+    /// What it is.
+    pub id: String,
+}
+
+/// What an instrument is off by.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Nuisance {
+    /// The effect that it is, or the gain of a channel.
+    pub id: String,
+    /// Which of its numbers.
+    pub parameter: String,
+    /// The 95 % interval.
+    pub ci95: [f64; 2],
 }
 
 /// An effect of a verdict.

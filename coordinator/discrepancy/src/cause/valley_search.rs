@@ -2,8 +2,8 @@
 //!
 //! Refits begin where the model without effects was fitted. If that is not the valley of the true
 //! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
-//! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
-//! whole way from the start; all others are refitted from the deepest, and all are judged again. If even
+//! try where their rivals arrived, the likeliest then where the case begins, then they look for valleys of
+//! their own, and at last the likeliest goes the whole way from the start; all others are refitted from the deepest, and all are judged again. If even
 //! that is no valley, the low orders of the period say which effects to begin with.
 use crate::cause::low_orders;
 use crate::cause::refit::Refitted;
@@ -55,6 +55,18 @@ pub(crate) async fn search<L: Laboratory>(
         found.extend(other.map(|fit| Found { place, fit }));
     }
     settle(session, current, round, found).await?;
+    // without the effect the fit may have moved its unknowns far: once more from where the case begins
+    if let Some(&place) = leaders(round, LOOSE * lost).first()
+        && session.lab.may(Stage::Refit)
+    {
+        let fit = &round.refits[place].fit;
+        let mut from = fit.point();
+        let standing = from.model.standing().count();
+        from.x[..genes + standing].fill(0.0);
+        let other = valley::enter(&mut session.experiments(Stage::Refit), fit, &from).await?;
+        let found = other.map(|fit| Found { place, fit }).into_iter().collect();
+        settle(session, current, round, found).await?;
+    }
     deeper(session, current, round).await?;
     // from the start, with the likeliest effect where it is now
     if let Some(&place) = leaders(round, lost).first()
@@ -91,7 +103,8 @@ async fn deeper<L: Laboratory>(
                 break;
             }
             let fit = &round.refits[place].fit;
-            let other = valley::enter(&mut session.experiments(Stage::Refit), fit).await?;
+            let other =
+                valley::enter(&mut session.experiments(Stage::Refit), fit, &fit.point()).await?;
             found.extend(other.map(|fit| Found { place, fit }));
         }
         if found.is_empty() {
@@ -118,7 +131,9 @@ async fn from_low_orders<L: Laboratory>(
     let least = left.fold(current.chi_squared(), f64::min);
     let mut found = Vec::new();
     for fit in fits.into_iter().flatten() {
-        let fit = valley::enter(&mut experiments, &fit).await?.unwrap_or(fit);
+        let fit = valley::enter(&mut experiments, &fit, &fit.point())
+            .await?
+            .unwrap_or(fit);
         let Some(effect) = fit.model.added.last() else {
             continue;
         };

@@ -31,7 +31,7 @@ impl<'a, L> Budgeted<'a, L> {
 }
 
 /// What a simulation costs, in plain ones: derivatives four more, and each a tenth.
-fn cost(spec: &SimulateSpec) -> f64 {
+pub fn cost(spec: &SimulateSpec) -> f64 {
     let columns = spec.columns.len() as f64;
     if spec.columns.is_empty() {
         1.0

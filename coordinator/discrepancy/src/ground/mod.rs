@@ -3,7 +3,7 @@
 pub(crate) mod base;
 pub mod basin;
 pub(crate) mod believed;
-pub(crate) mod budget;
+pub mod budget;
 pub(crate) mod establish;
 pub(crate) mod input_error;
 pub mod preflight;

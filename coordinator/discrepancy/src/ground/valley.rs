@@ -19,20 +19,21 @@ const APART: f64 = 0.05;
 pub(crate) const BETTER: f64 = 0.9;
 
 /// A clearly better fit of the same model in another valley, if there is one; none where no unknown has a
-/// narrow valley.
+/// narrow valley. The valley is scanned with everything else as it is at a point.
 ///
 /// # Errors
 /// Those of the laboratory.
 pub async fn enter<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
+    from: &Point,
 ) -> Result<Option<Fit>, L::Error> {
     let axes = fit.model.space.axes().iter().enumerate();
     let mut valleys = axes.filter_map(|(k, axis)| Some((k, axis.unknown.valley.as_ref()?)));
     let Some((scanned, valley)) = valleys.next() else {
         return Ok(None);
     };
-    let stations = stations(&fit.point(), scanned, valley);
+    let stations = stations(from, scanned, valley);
     let curves = experiments.curves(&stations).await?;
     let left = |curves| experiments.on.residual(&curves).norm_squared();
     let seen = stations.into_iter().zip(curves);

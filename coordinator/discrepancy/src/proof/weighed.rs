@@ -20,7 +20,7 @@ pub struct Weighed {
     /// Its 95 % interval.
     #[serde(rename = "ci95")]
     pub interval: [f64; 2],
-    /// Whether the record would show what the models differ by, if it were all that is missing.
+    /// Whether the record would show what the models differ by in 95 of 100 cases, if it were all that is missing.
     pub shows: bool,
 }
 
@@ -78,6 +78,8 @@ impl Scale {
     pub(crate) fn weighed(&self, before: &Curves, after: &Curves) -> Weighed {
         /// Normal quantile of a two-sided 95 % interval.
         const QUANTILE: f64 = 1.96;
+        /// Normal quantile of what is missed in one case of twenty.
+        const MISSED: f64 = 1.645;
         let [before, after] = [before, after].map(|curves| self.left(curves));
         let closed = before.norm_squared() - after.norm_squared();
         let change = (&before - &after).norm();
@@ -87,8 +89,8 @@ impl Scale {
         Weighed {
             closed: closed / whole,
             interval: [(closed - half) / whole, ((closed + half) / whole).min(1.0)],
-            // all that is missing would close by the square of the change
-            shows: change * change > half,
+            // all that is missing would close by the square of the change, with the deviation above
+            shows: change > 2.0 * (QUANTILE + MISSED),
         }
     }
 }

@@ -5,6 +5,7 @@ use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::event::Spent;
 use std::{
+    collections::VecDeque,
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
 };
@@ -57,6 +58,7 @@ pub(crate) struct StageDisplay {
     bar: Option<ProgressBar>,
     last: Instant,
     stage: Option<Stage>,
+    pace: Pace,
 }
 
 impl StageDisplay {
@@ -70,6 +72,7 @@ impl StageDisplay {
             bar,
             last: Instant::now(),
             stage: None,
+            pace: Pace::default(),
         }
     }
 
@@ -83,8 +86,11 @@ impl StageDisplay {
 
 impl Watch<StageView> for StageDisplay {
     fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> Crew) {
-        let StageView { stage, done, open } = *view;
+        let StageView {
+            stage, done, open, ..
+        } = *view;
         let now = Instant::now();
+        let pace = self.pace.of(now, view.spent);
         let silent = now.duration_since(self.last);
         let patience = if self.bar.is_some() { LOOK } else { SILENCE };
         if self.stage == Some(stage) && silent < patience {
@@ -98,9 +104,13 @@ impl Watch<StageView> for StageDisplay {
             .count();
         let workers = at_work(&crew());
         let line = format!(
-            "stage {number} of {}: {}  {done} simulations, {open} open  {workers}",
+            "stage {number} of {}: {}  {done} simulations, {open} open  {}{workers}",
             Stage::ALL.len(),
-            stage.name()
+            stage.name(),
+            pace.map_or_else(String::new, |pace| {
+                let left = Duration::from_secs_f64(view.left / pace);
+                format!("at most {} more  ", clock(left))
+            })
         );
         match &self.bar {
             Some(bar) => {
@@ -109,6 +119,31 @@ impl Watch<StageView> for StageDisplay {
             }
             None => terminal::tell(&line),
         }
+    }
+}
+
+/// What comes back in a second, over the last while: what a journal gives again comes at once and is soon
+/// forgotten.
+#[derive(Default)]
+struct Pace {
+    seen: VecDeque<(Instant, f64)>,
+}
+
+impl Pace {
+    /// With so much come back until now; nothing before a few seconds were seen.
+    fn of(&mut self, now: Instant, spent: f64) -> Option<f64> {
+        const WINDOW: Duration = Duration::from_secs(45);
+        const ENOUGH: Duration = Duration::from_secs(8);
+        self.seen.push_back((now, spent));
+        while let [(then, _), ..] = self.seen.make_contiguous()
+            && now.duration_since(*then) > WINDOW
+        {
+            self.seen.pop_front();
+        }
+        let (then, before) = *self.seen.front()?;
+        let passed = now.duration_since(then);
+        let pace = (spent - before) / passed.as_secs_f64();
+        (passed > ENOUGH && pace > 0.0).then_some(pace)
     }
 }
 

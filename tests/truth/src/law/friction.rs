@@ -21,6 +21,15 @@ pub(super) fn plain_bearing(size: f64, draw: &mut Draw, shape: &mut Shape) -> Ar
     })
 }
 
+/// A greased one: the same moment at every speed.
+pub(super) fn sliding(moment: f64) -> Arc<dyn Law> {
+    Arc::new(Bearing {
+        moment,
+        peak: 0.0,
+        speed: 0.01,
+    })
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Bearing {
     /// Moment at the mean load [N m].

@@ -112,6 +112,29 @@ impl Law for MovingAverage {
     }
 }
 
+/// The card was delivered as its mean and so many harmonics.
+pub(super) fn cut(size: f64, _: &mut Draw, _: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Cut { harmonics: size })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Cut {
+    harmonics: f64,
+}
+
+impl Effect for Cut {}
+
+impl Law for Cut {
+    fn deliver(&self, card: &mut Vec<f64>, _: f64) {
+        *card = filter(card, u32::MAX, |harmonic| {
+            [
+                f64::from(u8::from(f64::from(harmonic) <= self.harmonics)),
+                0.0,
+            ]
+        });
+    }
+}
+
 /// A pump that does not fill: the plunger carries its load down until it meets the liquid, loses it by
 /// an exponential, and the rods ring.
 pub(super) fn pound(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {

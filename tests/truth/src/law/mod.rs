@@ -8,12 +8,14 @@ mod friction;
 mod gauge;
 mod kind;
 mod load;
+mod nuisance;
 mod outside;
 mod post;
 mod rope;
 mod structure;
 
 pub use kind::{Hidden, Kind, Law, Shape};
+pub use nuisance::{Nuisances, Tolerance};
 
 use kind::{at_most, kind, signed};
 
@@ -46,14 +48,21 @@ pub const CATALOGUE: [Kind; 24] = [
     at_most(3.0, kind("rod_string_reaction", ("impedance", "N.s/m"), 20500.0, load::rods)),
 ];
 
+/// What a delivered card may lack, whatever else is hidden: everything above so many harmonics. The library
+/// has another form of the same effect.
+pub const CUT_CARD: Kind = kind("card_smoothing", ("harmonics", "1"), 1.0, load::cut);
+
 /// Effects that it does not name.
 #[rustfmt::skip]
-pub const OUTSIDE: [Kind; 5] = [
+pub const OUTSIDE: [Kind; 8] = [
     signed(kind("saddle_cubic_spring", ("moment", "N.m"), 4000.0, outside::cubic_spring)),
     kind("beam_quadratic_drag", ("moment", "N.m"), 4000.0, outside::drag),
     kind("crosshead_harmonic", ("force", "N"), 1500.0, outside::crosshead),
     signed(kind("beam_gust", ("moment", "N.m"), 5000.0, outside::gust)),
     kind("loose_ballast", ("mass", "kg"), 150.0, outside::ballast),
+    at_most(3.0, kind("tuned_mass", ("mass", "kg"), 300.0, outside::tuned_mass)),
+    kind("carrier_bar_rub", ("force", "N"), 2000.0, outside::rub),
+    at_most(3.0, kind("gear_eccentricity", ("angle", "deg"), 0.3, outside::gear)),
 ];
 
 /// The kind of an identifier.

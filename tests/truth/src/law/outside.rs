@@ -5,6 +5,7 @@ use crate::draw::Draw;
 use libm::{cos, exp, sqrt};
 use simulation::drive::DriveState;
 use simulation::effect::{Along, Dashpot, Effect, Hooks, LineForce, Site};
+use simulation::math::spline::Splines;
 use simulation::model::description::{AddedMode, Description};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -169,6 +170,84 @@ impl Effect for Ballast {
 }
 
 impl Law for Ballast {}
+
+/// A heavy part on a soft foot, as a guard or a platform on its brackets: the beam's turning drives it near
+/// its own frequency.
+pub(super) fn tuned_mass(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Ballast {
+        mass: size,
+        arm: note(shape, "arm_m", draw.between(2.5, 3.5)),
+        frequency: note(shape, "frequency_hz", draw.between(1.5, 4.0)),
+    })
+}
+
+/// The carrier bar rubs along a stretch of its guide: friction there, and nowhere else.
+pub(super) fn rub(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Rub {
+        force: size,
+        at: note(shape, "place_1", draw.between(0.2, 0.8)),
+        width: note(shape, "width_1", draw.between(0.06, 0.15)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rub {
+    force: f64,
+    /// Middle of the stretch, a share of the stroke.
+    at: f64,
+    width: f64,
+}
+
+impl Effect for Rub {
+    fn install(&self, site: &Site<'_>, hooks: &mut Hooks) {
+        let height = curve(|turn| site.cycle.beam(turn).value);
+        let (low, high) = height
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| {
+                (low.min(*y), high.max(*y))
+            });
+        let force = curve(|turn| {
+            let beam = site.cycle.beam(turn);
+            let u = ((beam.value - low) / (high - low) - self.at) / self.width;
+            // Coulomb's law, softened where the rod turns round
+            -self.force * exp(-u * u) * libm::tanh(beam.first / RUB)
+        });
+        hooks.on(site.layout.suspension(), Scheduled::new(force));
+    }
+}
+
+impl Law for Rub {}
+
+/// Angle of the beam per angle of the crank at which the rub is nearly whole.
+const RUB: f64 = 0.01;
+
+/// A gear wheel off its centre: the crank runs ahead and behind several times a turn.
+pub(super) fn gear(size: f64, draw: &mut Draw, shape: &mut Shape) -> Arc<dyn Law> {
+    Arc::new(Gear {
+        angle: size,
+        order: note(shape, "order_1", 3.0 + draw.index(5) as f64),
+        phase: note(shape, "phase_rad", draw.between(0.0, TAU)),
+    })
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Gear {
+    /// [deg].
+    angle: f64,
+    order: f64,
+    phase: f64,
+}
+
+impl Effect for Gear {
+    fn install(&self, _: &Site<'_>, hooks: &mut Hooks) {
+        let angle = self.angle.to_radians();
+        let ahead = curve(|turn| angle * (cos(self.order * turn + self.phase) - cos(self.phase)));
+        let step = TAU / ahead.len() as f64;
+        hooks.add_warp(Splines::periodic(0.0, step, &[ahead]));
+    }
+}
+
+impl Law for Gear {}
 
 /// Damping ratio of the swinging ballast.
 const SLOSH: f64 = 0.08;

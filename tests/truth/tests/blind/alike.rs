@@ -2,8 +2,9 @@
 //! effect of that name does, in shape, sign and size.
 use protocol::{case::EffectSetting, pumping_unit::PumpingUnit};
 use std::path::Path;
+use std::sync::Arc;
 use truth::draw::Draw;
-use truth::law::{CATALOGUE, Hidden};
+use truth::law::{CATALOGUE, Hidden, Law};
 use truth::machine::{Fineness, Variation, genes, turn};
 use truth::turn::Turn;
 
@@ -91,7 +92,8 @@ fn what_is_hidden_under_a_name_looks_like_the_effect_of_that_name() {
     let unit = unit();
     let values = genes(&unit.case, &mut Draw::new(1, "genes")).unwrap();
     let run = |unit: &PumpingUnit, hidden: &[Hidden]| {
-        turn(unit, 0, (&values, hidden), Variation::default(), &FINENESS).unwrap()
+        let laws: Vec<Arc<dyn Law>> = hidden.iter().map(|own| Arc::clone(&own.law)).collect();
+        turn(unit, 0, (&values, &laws), Variation::default(), &FINENESS).unwrap()
     };
     let plain = run(&unit, &[]);
     for kind in CATALOGUE {

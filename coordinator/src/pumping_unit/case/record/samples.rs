@@ -87,8 +87,8 @@ impl Samples {
             .map(|(a, b)| whole(((b - a) / step_s).round() - 1.0))
             .sum();
         Ok(Self {
-            curves,
             angle_deg,
+            curves,
             pulses_s,
             step_s,
             lost,

@@ -1,0 +1,240 @@
+//! A whole suite: sets are made, diagnosed by the judged program, and kept; it goes on where it was stopped.
+//!
+//! A set's name comes from the salt of the answers and its number, so what was half made is made again under
+//! the same name; records and verdicts get their names only when they are whole.
+use crate::files::Channels;
+use crate::law::Tolerance;
+use crate::machine::Fineness;
+use crate::plan::{Order, Stratum, make};
+use crate::seal::Sealed;
+use anyhow::{Context as _, bail};
+use protocol::pumping_unit::PumpingUnit;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What is run, and where.
+#[derive(Debug)]
+pub struct Suite<'a> {
+    /// The machine.
+    pub unit: PumpingUnit,
+    /// Its case folder.
+    pub case: &'a Path,
+    /// Where everything goes.
+    pub out: &'a Path,
+    /// The program that is judged.
+    pub horsehead: &'a Path,
+    /// What everything is drawn from.
+    pub seed: u64,
+    /// After so long no further set is begun.
+    pub until: Option<Duration>,
+}
+
+/// Seeds of a stratum begin so far from those of the one before.
+const APART: u64 = 1000;
+/// Of so many sets one has two gauges alone.
+const TWO_GAUGES: u64 = 4;
+
+impl Suite<'_> {
+    /// File of the answers.
+    pub fn answers(&self) -> PathBuf {
+        self.out.join("answers.json")
+    }
+
+    /// Folder of the verdicts.
+    pub fn verdicts(&self) -> PathBuf {
+        self.out.join("verdicts")
+    }
+
+    /// Makes and diagnoses so many sets of each stratum, those first that come first in all of them; `say` is
+    /// told of each. A diagnosis that fails leaves its set without a verdict, and is said.
+    ///
+    /// # Errors
+    /// What the file system refuses; a machine that never comes round; a program that does not start.
+    pub fn run(
+        &self,
+        counts: &[(Stratum, u16)],
+        say: &mut dyn FnMut(&str) -> anyhow::Result<()>,
+    ) -> anyhow::Result<()> {
+        for folder in [
+            self.verdicts(),
+            self.out.join("sets"),
+            self.out.join("runs"),
+        ] {
+            fs::create_dir_all(&folder).with_context(|| format!("making {}", folder.display()))?;
+        }
+        let orders = self.orders(counts);
+        let begun = Instant::now();
+        let (mut done, total) = (0_usize, orders.len());
+        for (number, order) in orders.iter().enumerate() {
+            if self.until.is_some_and(|until| begun.elapsed() > until) {
+                return say(&format!("{number} of {total} sets done; out of time"));
+            }
+            let name = self.set(order)?;
+            let verdict = self.verdicts().join(format!("{name}.json"));
+            if verdict.is_file() {
+                continue;
+            }
+            let what = self.diagnose(&name, &verdict)?;
+            done += 1;
+            let left = begun.elapsed() / u32::try_from(done)? * u32::try_from(total - number - 1)?;
+            say(&format!(
+                "{} of {total}: {} {name} {what}; some {} min left",
+                number + 1,
+                order.stratum.name(),
+                left.as_secs() / 60
+            ))?;
+        }
+        Ok(())
+    }
+
+    /// Every set, strata mixed: what is stopped early has some of each.
+    fn orders(&self, counts: &[(Stratum, u16)]) -> Vec<Order> {
+        let place = |stratum: Stratum| {
+            let all = Stratum::ALL.iter().position(|other| *other == stratum);
+            all.map_or(0, |place| place as u64)
+        };
+        let all = counts.iter().flat_map(|&(stratum, count)| {
+            (0..count).map(move |k| (f64::from(k) / f64::from(count), stratum, u64::from(k)))
+        });
+        let mut all: Vec<(f64, Stratum, u64)> = all.collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let order = |(_, stratum, k): (f64, Stratum, u64)| Order {
+            seed: self.seed + APART * place(stratum) + k,
+            stratum,
+            effect: None,
+            times: None,
+            noise: 1.0,
+            cycles: 5,
+            fineness: Fineness::FULL,
+            tolerance: Tolerance::USUAL,
+            channels: if k % TWO_GAUGES == TWO_GAUGES - 1 {
+                Channels::TWO
+            } else {
+                Channels::default()
+            },
+        };
+        all.into_iter().map(order).collect()
+    }
+
+    /// The set of an order, made if it is not there yet; its name.
+    fn set(&self, order: &Order) -> anyhow::Result<String> {
+        let mut sealed = Sealed::load_or_new(&self.answers())?;
+        let same = |answer: &crate::plan::Answer| {
+            answer.seed == order.seed && answer.stratum == order.stratum
+        };
+        if let Some((name, _)) = sealed.sets.iter().find(|(_, answer)| same(answer)) {
+            return Ok(name.clone());
+        }
+        let name = sealed.name();
+        let folder = self.out.join("sets").join(&name);
+        if folder.exists() {
+            fs::remove_dir_all(&folder)
+                .with_context(|| format!("removing {}", folder.display()))?;
+        }
+        fs::create_dir_all(&folder).with_context(|| format!("making {}", folder.display()))?;
+        let answer = make(&self.unit, order, &folder, &name)?;
+        sealed.sets.insert(name.clone(), answer);
+        sealed.save(&self.answers())?;
+        Ok(name)
+    }
+
+    /// Diagnoses a set into a verdict; in a few words how that went.
+    fn diagnose(&self, name: &str, verdict: &Path) -> anyhow::Result<String> {
+        let begun = Instant::now();
+        let run = self.out.join("runs").join(name);
+        let part = verdict.with_extension("part");
+        let file =
+            fs::File::create(&part).with_context(|| format!("writing {}", part.display()))?;
+        let status = Command::new(self.horsehead)
+            .arg("diagnose")
+            .arg(self.case)
+            .arg("--measured")
+            .arg(self.out.join("sets").join(name))
+            .arg("--run")
+            .arg(&run)
+            .args(["--output", "json"])
+            .stdin(Stdio::null())
+            .stdout(file)
+            .stderr(Stdio::null())
+            .status()
+            .with_context(|| format!("starting {}", self.horsehead.display()))?;
+        if !status.success() {
+            if status.code().is_none() {
+                bail!("the diagnosis of {name} was stopped; `truth run` goes on with it");
+            }
+            return Ok(format!("failed ({status}): see {}", run.display()));
+        }
+        fs::rename(&part, verdict).with_context(|| format!("writing {}", verdict.display()))?;
+        // its journal takes tens of megabytes, and the verdict is all that is judged
+        fs::remove_dir_all(&run).with_context(|| format!("removing {}", run.display()))?;
+        Ok(format!("in {} s", begun.elapsed().as_secs()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt as _;
+
+    fn suite<'a>(out: &'a Path, horsehead: &'a Path) -> Suite<'a> {
+        Suite {
+            unit: PumpingUnit::of(shipped()).expect("the case"),
+            case: Path::new("case"),
+            out,
+            horsehead,
+            seed: 5,
+            until: None,
+        }
+    }
+
+    fn shipped() -> protocol::case::Case {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
+        coordinator::case::load(&folder, &coordinator::case::Overrides::default())
+            .expect("the case")
+    }
+
+    #[test]
+    fn strata_are_mixed_and_seeds_are_their_own() {
+        let none = Path::new("none");
+        let orders = suite(none, none).orders(&[(Stratum::Single, 30), (Stratum::Zero, 10)]);
+        assert_eq!(orders.len(), 40);
+        let zeros = |orders: &[Order]| {
+            let zero = orders.iter().filter(|order| order.stratum == Stratum::Zero);
+            zero.count()
+        };
+        assert_eq!(zeros(&orders[..20]), 5);
+        let seeds: std::collections::BTreeSet<u64> = orders.iter().map(|o| o.seed).collect();
+        assert_eq!(seeds.len(), 40);
+        let two = orders
+            .iter()
+            .filter(|order| order.channels == Channels::TWO);
+        assert_eq!(two.count(), 9);
+    }
+
+    /// The judged program is one of a few lines here: it makes its run folder, and does well or not.
+    #[test]
+    fn a_verdict_gets_its_name_when_it_is_whole() {
+        let scratch = tempfile::tempdir().expect("a folder");
+        let program = scratch.path().join("judged");
+        let text = "#!/bin/sh\nmkdir -p \"$6\"\necho '{\"verdict\": \"nothing_detected\"}'\n\
+                    test ! -e \"$6/../fails\"\n";
+        fs::write(&program, text).expect("a program");
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).expect("it may run");
+        let suite = suite(scratch.path(), &program);
+        fs::create_dir_all(suite.verdicts()).expect("a folder");
+        let runs = scratch.path().join("runs");
+        fs::create_dir(&runs).expect("a folder");
+        fs::write(runs.join("fails"), "").expect("a file");
+        let verdict = suite.verdicts().join("set.json");
+        let said = suite.diagnose("set", &verdict).expect("it starts");
+        assert!(said.contains("failed") && !verdict.exists(), "{said}");
+        assert!(runs.join("set").exists(), "what failed can be looked at");
+        fs::remove_file(runs.join("fails")).expect("a file");
+        suite.diagnose("set", &verdict).expect("it starts");
+        let read = crate::verdict::Verdict::load(&verdict).expect("a verdict");
+        assert_eq!(read.verdict, "nothing_detected");
+        assert!(!runs.join("set").exists());
+    }
+}
