@@ -9,6 +9,7 @@ use crate::cause::low_orders;
 use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
 use crate::ground::session::Session;
+use crate::ground::valley::{FAR, NEAR};
 use crate::ground::{basin, valley};
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
@@ -51,7 +52,8 @@ pub(crate) async fn search<L: Laboratory>(
         }
         let fit = &round.refits[place].fit;
         let starts = from_rivals(round, place, genes);
-        let other = valley::follow(&mut session.experiments(Stage::Refit), fit, starts).await?;
+        let other =
+            valley::follow(&mut session.experiments(Stage::Refit), fit, (starts, NEAR)).await?;
         found.extend(other.map(|fit| Found { place, fit }));
     }
     settle(session, current, round, found).await?;
@@ -63,7 +65,8 @@ pub(crate) async fn search<L: Laboratory>(
         let mut from = fit.point();
         let standing = from.model.standing().count();
         from.x[..genes + standing].fill(0.0);
-        let other = valley::enter(&mut session.experiments(Stage::Refit), fit, &from).await?;
+        let other =
+            valley::enter(&mut session.experiments(Stage::Refit), fit, (&from, FAR)).await?;
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
@@ -76,7 +79,7 @@ pub(crate) async fn search<L: Laboratory>(
         let (seed, rest) = (session.inputs.seed, &fit.x()[genes..]);
         let mut experiments = session.experiments(Stage::Refit);
         let starts = basin::enter(&mut experiments, &fit.model, rest, seed).await?;
-        let other = valley::follow(&mut experiments, fit, starts).await?;
+        let other = valley::follow(&mut experiments, fit, (starts, NEAR)).await?;
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
@@ -103,8 +106,12 @@ async fn deeper<L: Laboratory>(
                 break;
             }
             let fit = &round.refits[place].fit;
-            let other =
-                valley::enter(&mut session.experiments(Stage::Refit), fit, &fit.point()).await?;
+            let other = valley::enter(
+                &mut session.experiments(Stage::Refit),
+                fit,
+                (&fit.point(), NEAR),
+            )
+            .await?;
             found.extend(other.map(|fit| Found { place, fit }));
         }
         if found.is_empty() {
@@ -131,7 +138,7 @@ async fn from_low_orders<L: Laboratory>(
     let least = left.fold(current.chi_squared(), f64::min);
     let mut found = Vec::new();
     for fit in fits.into_iter().flatten() {
-        let fit = valley::enter(&mut experiments, &fit, &fit.point())
+        let fit = valley::enter(&mut experiments, &fit, (&fit.point(), NEAR))
             .await?
             .unwrap_or(fit);
         let Some(effect) = fit.model.added.last() else {

@@ -118,7 +118,8 @@ async fn first_fit<L: Laboratory>(
     };
     if first.misfit() > DOUBTFUL
         && experiments.lab.may(Stage::Basin)
-        && let Some(other) = valley::enter(experiments, &first, &first.point()).await?
+        && let Some(other) =
+            valley::enter(experiments, &first, (&first.point(), valley::NEAR)).await?
     {
         return Ok(Some(other));
     }

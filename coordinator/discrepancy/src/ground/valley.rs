@@ -18,15 +18,20 @@ const APART: f64 = 0.05;
 /// A fit lies in another valley if it leaves less than this share of what the first one left.
 pub(crate) const BETTER: f64 = 0.9;
 
+/// Steps after which starts near a fit are compared with it, and those far from it.
+pub(crate) const NEAR: u32 = 3;
+pub(crate) const FAR: u32 = 10;
+
 /// A clearly better fit of the same model in another valley, if there is one; none where no unknown has a
-/// narrow valley. The valley is scanned with everything else as it is at a point.
+/// narrow valley. The valley is scanned with everything else as it is at a point, and the best stations are
+/// compared with the fit after so many steps.
 ///
 /// # Errors
 /// Those of the laboratory.
 pub async fn enter<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    from: &Point,
+    (from, steps): (&Point, u32),
 ) -> Result<Option<Fit>, L::Error> {
     let axes = fit.model.space.axes().iter().enumerate();
     let mut valleys = axes.filter_map(|(k, axis)| Some((k, axis.unknown.valley.as_ref()?)));
@@ -48,10 +53,10 @@ pub async fn enter<L: Laboratory>(
             starts.push(point);
         }
     }
-    follow(experiments, fit, starts).await
+    follow(experiments, fit, (starts, steps)).await
 }
 
-/// The best of several starts, where it becomes clearly better than a fit of the same model: a few steps of
+/// The best of several starts, where it becomes clearly better than a fit of the same model: so many steps of
 /// each, then on with the best.
 ///
 /// # Errors
@@ -59,9 +64,9 @@ pub async fn enter<L: Laboratory>(
 pub async fn follow<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    starts: Vec<Point>,
+    (starts, steps): (Vec<Point>, u32),
 ) -> Result<Option<Fit>, L::Error> {
-    let best = closest(experiments.fits(starts, Settings::short(3)).await?);
+    let best = closest(experiments.fits(starts, Settings::short(steps)).await?);
     let better = |best: &Fit| best.chi_squared() < BETTER * fit.chi_squared();
     let Some(best) = best.filter(better) else {
         return Ok(None);
