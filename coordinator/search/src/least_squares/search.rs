@@ -225,7 +225,7 @@ impl LeastSquares {
     }
 
     fn plan_fan(&mut self) {
-        let fan = step::fan(&self.at, &self.variables, self.damping);
+        let fan = step::fan(&self.at, &self.variables, &self.settings, self.damping);
         self.phase = if fan.is_empty() {
             Phase::Over(Ended::Stalled)
         } else {

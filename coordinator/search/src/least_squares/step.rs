@@ -1,5 +1,5 @@
 //! Damped Gauss-Newton steps inside a box.
-use super::problem::{Linearized, Variable};
+use super::problem::{Linearized, Settings, Variable};
 use nalgebra::{DMatrix, DVector};
 
 /// Dampings that are tried at once, relative to the last one that was taken.
@@ -82,12 +82,19 @@ fn free(
 
 /// The damped steps from a linearised point: dampings with the points they lead to. Variables that
 /// press against a bound stay; a variable that changes nothing stays.
-pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<(f64, Vec<f64>)> {
+pub(super) fn fan(
+    at: &Linearized,
+    variables: &[Variable],
+    settings: &Settings,
+    damping: f64,
+) -> Vec<(f64, Vec<f64>)> {
     let (gradient, curvature) = normal(at, variables);
     let free = free(at, variables, &gradient, &curvature);
     if free.is_empty() {
         return Vec::new();
     }
+    let total: f64 = free.iter().map(|&k| curvature[(k, k)]).sum();
+    let level = settings.level * total / free.len() as f64;
     let mut fan: Vec<(f64, Vec<f64>)> = Vec::new();
     for factor in FAN {
         let damping = damping * factor;
@@ -95,6 +102,7 @@ pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<
             DMatrix::from_fn(free.len(), free.len(), |i, j| curvature[(free[i], free[j])]);
         for i in 0..free.len() {
             matrix[(i, i)] *= 1.0 + damping;
+            matrix[(i, i)] += damping * level;
         }
         let right = DVector::from_fn(free.len(), |i, _| -gradient[free[i]]);
         let Some(factor) = matrix.cholesky() else {
@@ -103,7 +111,8 @@ pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<
         let step = factor.solve(&right);
         let mut x = at.x.clone();
         for (i, &k) in free.iter().enumerate() {
-            x[k] = (x[k] + step[i]).clamp(variables[k].lower, variables[k].upper);
+            let step = step[i].clamp(-settings.longest, settings.longest);
+            x[k] = (x[k] + step).clamp(variables[k].lower, variables[k].upper);
         }
         let met = x == at.x || fan.iter().any(|(_, other)| *other == x);
         if x.iter().all(|x| x.is_finite()) && !met {
