@@ -40,6 +40,9 @@ pub struct Settings {
     pub change: f64,
     /// How far the difference step may move from its first value, as a factor either way.
     pub step_range: f64,
+    /// What a step is damped by beside a variable's own curvature: this share of the mean one. Without it what
+    /// hardly changes the residual goes to its bound at any damping.
+    pub level: f64,
     /// Whether columns are central differences: twice the points, second-order accurate.
     pub central: bool,
     /// Whether whoever evaluates may know columns: they are asked for, and only those that it has not are
@@ -65,6 +68,7 @@ impl Default for Settings {
             decrease: 1e-3,
             change: 2.0,
             step_range: 10.0,
+            level: 0.0,
             central: false,
             exact: false,
         }

@@ -225,7 +225,11 @@ impl LeastSquares {
     }
 
     fn plan_fan(&mut self) {
-        let fan = step::fan(&self.at, &self.variables, self.damping);
+        let fan = step::fan(
+            &self.at,
+            &self.variables,
+            (self.damping, self.settings.level),
+        );
         self.phase = if fan.is_empty() {
             Phase::Over(Ended::Stalled)
         } else {

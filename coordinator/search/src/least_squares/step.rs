@@ -54,7 +54,7 @@ pub(super) fn gradient_ratio(at: &Linearized, variables: &[Variable], cost: f64)
 /// Residual after an undamped step inside the box.
 pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
     // twelve digits below the diagonal: decides nothing, keeps the factor
-    let step = step(at, variables, 1e-12, false);
+    let step = step(at, variables, [1e-12, 0.0], false);
     step.map_or_else(
         || at.residual.clone(),
         |step| &at.residual + &at.jacobian * step,
@@ -62,11 +62,13 @@ pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
 }
 
 /// A damped step that stays in the box: what would leave it goes to its bound, and the others go where
-/// that is best for them. `limited` steps are none of them longer than a variable's longest. Nothing where the curvature has no factor, or nothing may move.
+/// that is best for them. Each is damped by its own curvature, and by a share `level` of the mean one.
+/// `limited` steps are none of them longer than a variable's longest. Nothing where the curvature has no
+/// factor, or nothing may move.
 fn step(
     at: &Linearized,
     variables: &[Variable],
-    damping: f64,
+    [damping, level]: [f64; 2],
     limited: bool,
 ) -> Option<DVector<f64>> {
     let (gradient, curvature) = normal(at, variables);
@@ -76,10 +78,16 @@ fn step(
         return None;
     }
     let mut right = -gradient;
+    let whole: f64 = free.iter().map(|&k| curvature[(k, k)]).sum();
+    let held = damping * level * whole / free.len() as f64;
     loop {
         let matrix = DMatrix::from_fn(free.len(), free.len(), |i, j| {
             let own = curvature[(free[i], free[j])];
-            if i == j { own * (1.0 + damping) } else { own }
+            if i == j {
+                own * (1.0 + damping) + held
+            } else {
+                own
+            }
         });
         let own = DVector::from_fn(free.len(), |i, _| right[free[i]]);
         let solved = matrix.cholesky()?.solve(&own);
@@ -120,11 +128,15 @@ fn free(
 
 /// The damped steps from a linearised point: dampings with the points they lead to. Variables that
 /// press against a bound stay; a variable that changes nothing stays.
-pub(super) fn fan(at: &Linearized, variables: &[Variable], damping: f64) -> Vec<(f64, Vec<f64>)> {
+pub(super) fn fan(
+    at: &Linearized,
+    variables: &[Variable],
+    (damping, level): (f64, f64),
+) -> Vec<(f64, Vec<f64>)> {
     let mut fan: Vec<(f64, Vec<f64>)> = Vec::new();
     for factor in FAN {
         let damping = damping * factor;
-        let Some(step) = step(at, variables, damping, true) else {
+        let Some(step) = step(at, variables, [damping, level], true) else {
             continue;
         };
         let moved = at.x.iter().zip(step.iter()).zip(variables);

@@ -1,7 +1,12 @@
 //! Initial designs: where to look first, before anything is known.
+use super::{
+    archive::{Archive, Evaluated},
+    piece::{Batch, Draft, Piece},
+    proposal::Purpose,
+};
 use crate::{
     random::{Phase, Streams},
-    space::Interval,
+    space::{Interval, Space},
 };
 
 /// A Latin hypercube: along every axis each of the `count` equal parts of its interval holds
@@ -23,6 +28,51 @@ pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) 
         }
     }
     points
+}
+
+/// Points as a piece of a strategy: one batch.
+pub(super) struct Points {
+    /// Those that have not been asked for.
+    drafts: Vec<Draft>,
+    /// How many are being evaluated.
+    running: usize,
+}
+
+impl Points {
+    /// Those of these coordinates.
+    pub(super) fn new(space: &Space, points: &[Vec<f64>]) -> Self {
+        let drafts = points.iter().map(|point| Draft {
+            genes: space.values(point),
+            purpose: Purpose::Initial,
+        });
+        Self {
+            drafts: drafts.collect(),
+            running: 0,
+        }
+    }
+}
+
+impl Piece for Points {
+    fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
+        let drafts = std::mem::take(&mut self.drafts);
+        self.running = drafts.len();
+        (!drafts.is_empty()).then_some(Batch {
+            generation: 0,
+            drafts,
+        })
+    }
+
+    fn absorb(&mut self, _results: &[Evaluated]) {
+        self.running = 0;
+    }
+
+    fn generations(&self) -> u32 {
+        0
+    }
+
+    fn remaining(&self) -> u64 {
+        (self.drafts.len() + self.running) as u64
+    }
 }
 
 #[cfg(test)]

@@ -29,6 +29,12 @@ pub struct LevenbergSettings {
     pub apart: f64,
     /// First difference step (coordinate).
     pub step: f64,
+    /// How far one step moves a gene (coordinate).
+    pub longest: f64,
+    /// What a step is damped by beside a gene's own curvature, as a share of the mean one.
+    pub level: f64,
+    /// Rounds after which the worse half of the descents is given up.
+    pub heat: u32,
     /// How columns come about.
     pub derivatives: Derivatives,
 }
@@ -66,11 +72,29 @@ pub(super) const SETTINGS: &[Setting] = &[
         "first difference step [decade]",
     ),
     Setting::new(
+        "longest",
+        Values::Real(1e-3, 100.0),
+        "how far one step may move a gene [decade]",
+    ),
+    Setting::new(
+        "level",
+        Values::Real(0.0, 1.0),
+        "share of the mean curvature that holds genes of next to none where they are",
+    ),
+    Setting::new(
+        "heat",
+        Values::Whole(1, 1000),
+        "rounds after which the worse half of the descents is given up",
+    ),
+    Setting::new(
         "derivatives",
         Values::Words(&["exact", "differences"]),
         "columns from one simulation where the model gives them, or from one each",
     ),
 ];
+
+/// Rounds after which most descents are at their floor.
+const USUAL: u32 = 14;
 
 /// Descents as a piece of a strategy.
 pub struct Levenberg {
@@ -117,12 +141,27 @@ impl Levenberg {
                 iterations: self.settings.iterations,
                 // a tenth of the residual: far above rounding, within what is nearly linear
                 change: 0.1 * libm::sqrt(fitness),
+                level: self.settings.level,
                 exact: self.settings.derivatives == Derivatives::Exact,
                 ..Settings::default()
             };
             (LeastSquares::new(self.variables(&x), settings), 0)
         };
         starts.into_iter().map(search).collect()
+    }
+
+    /// Gives up the worse half of the descents after every heat: the last one goes to its floor.
+    fn select(&mut self) {
+        let heat_over = self.round > 0 && self.round.is_multiple_of(self.settings.heat);
+        if let Some(searches) = self.searches.as_mut().filter(|_| heat_over) {
+            searches.sort_by(|(a, _), (b, _)| a.cost().total_cmp(&b.cost()));
+            searches.truncate(searches.len().div_ceil(2));
+        }
+    }
+
+    /// Two rounds per Jacobian, its columns and the fan; most descents end long before the last.
+    fn expected_rounds(&self) -> u32 {
+        (1 + 2 * self.settings.iterations).min(USUAL)
     }
 
     fn variables(&self, x: &[f64]) -> Vec<Variable> {
@@ -134,7 +173,7 @@ impl Levenberg {
                 lower: interval.from,
                 upper: interval.to,
                 step: self.settings.step,
-                longest: f64::INFINITY,
+                longest: self.settings.longest,
                 prior: None,
             }
         })
@@ -161,6 +200,7 @@ impl Piece for Levenberg {
         if self.searches.is_none() {
             self.searches = Some(self.begin(archive));
         }
+        self.select();
         let mut drafts = Vec::new();
         for (search, awaited) in self.searches.iter_mut().flatten() {
             let points = search.plan();
@@ -207,22 +247,31 @@ impl Piece for Levenberg {
         }
     }
 
-    /// Two rounds per Jacobian: its columns, and the fan.
     fn generations(&self) -> u32 {
         match &self.searches {
             Some(searches) if searches.iter().all(|(s, _)| s.ended().is_some()) => self.round,
-            Some(_) | None => (1 + 2 * self.settings.iterations).max(self.round),
+            Some(_) | None => self.expected_rounds().max(self.round),
         }
     }
 
     fn remaining(&self) -> u64 {
-        let rounds = self.generations().saturating_sub(self.round);
-        let per_round = u64::midpoint(self.space.dimension() as u64, 5);
-        let awaited = self
-            .searches
-            .iter()
-            .flatten()
-            .map(|(_, awaited)| *awaited as u64);
-        awaited.sum::<u64>() + u64::from(rounds) * per_round * self.settings.starts as u64
+        let mut live = self.settings.starts;
+        let mut running = 0;
+        if let Some(searches) = &self.searches {
+            let going = searches
+                .iter()
+                .filter(|(search, _)| search.ended().is_none());
+            live = going.count();
+            running = searches.iter().map(|(_, awaited)| *awaited).sum();
+        }
+        let per_round = usize::midpoint(self.space.dimension(), 5);
+        let mut ahead = 0;
+        for round in self.round..self.generations() {
+            if round > 0 && round.is_multiple_of(self.settings.heat) {
+                live = live.div_ceil(2);
+            }
+            ahead += live * per_round;
+        }
+        (running + ahead) as u64
     }
 }

@@ -4,13 +4,14 @@
 //! A fitness with resonances has a valley in a stiffness that is a hundred times narrower than the
 //! box, so a population finds the plateau around it but not the valley; and on the plateau more
 //! damping always looks better, because it removes the oscillation whose phase does not fit. Hence the
-//! order: population, scan at several levels of damping, refinement, fine scan, refinement. Which
-//! unknown has such a valley, and what hides it, the case says; where it says nothing, nothing is
+//! order: population, scan at several levels of damping, refinement, fine scan, refinement. Descents of
+//! the residual vector enter the valley from farther away: a few points and a coarse scan are enough to
+//! begin with, and a race tells which of them is the deepest. Which unknown has such a valley, and what hides it, the case says; where it says nothing, nothing is
 //! scanned.
 use super::{
     ask_tell::Strategy,
     conductor::Conductor,
-    design::hypercube,
+    design::{Points, hypercube},
     levenberg::{self, Derivatives, Levenberg, LevenbergSettings},
     memetic::{
         generations::Memetic,
@@ -20,7 +21,7 @@ use super::{
     piece::Piece,
     refine::{self, Refine, RefineSettings},
     scan::{self, Center, Scan, ScanSettings, Shift},
-    setting::{Setting, SettingsError, require},
+    setting::{Setting, SettingsError, Values, require},
     settings::{Recipe, Settings, build_as},
 };
 use crate::{
@@ -56,26 +57,28 @@ pub const QUICK: Preset = Preset {
 /// The search with descents of the residual vector.
 pub const LEAST_SQUARES: Preset = Preset {
     name: "least-squares",
-    summary: "a short memetic search and line scans, then Levenberg-Marquardt on the residual",
+    summary: "a few points and a line scan, then Levenberg-Marquardt on the residual",
     settings: |plan| Settings::of(&QuickSettings::least_squares(plan.space)),
     groups: &[
-        MEMETIC,
+        part("", "/parts/0/points", POINTS),
         part("scan_", "/parts/1/scan", scan::SETTINGS),
         part("descent_", "/parts/2/least_squares", levenberg::SETTINGS),
-        part("fine_scan_", "/parts/3/scan", scan::SETTINGS),
-        part(
-            "fine_descent_",
-            "/parts/4/least_squares",
-            levenberg::SETTINGS,
-        ),
     ],
     promise: Promise {
         one_basin: 1e-8,
+        many_basins: 3.0,
         distance: 1e-4,
         ..QUICK.promise
     },
     ..QUICK
 };
+
+/// What can be set of the first points by name.
+const POINTS: &[Setting] = &[Setting::new(
+    "points",
+    Values::Whole(1, 100_000),
+    "first points: the start and a Latin hypercube",
+)];
 
 /// The memetic part's table.
 const MEMETIC: Group = part("", "/parts/0/memetic", memetic_settings::SETTINGS);
@@ -96,6 +99,11 @@ const fn part(named: &'static str, place: &'static str, table: &'static [Setting
 pub enum Part {
     /// The memetic algorithm in the trust box, from the start and a Latin hypercube.
     Memetic(MemeticSettings),
+    /// The start and a Latin hypercube in the trust box.
+    Points {
+        /// How many in all.
+        points: usize,
+    },
     /// A line scan around the best points.
     Scan(ScanSettings),
     /// No scan, where no unknown has a narrow valley.
@@ -164,24 +172,27 @@ impl QuickSettings {
         }
     }
 
-    /// The same with descents of the residual vector in place of the refinements.
+    /// A few points and a scan from which descents of the residual vector begin: about 300 evaluations,
+    /// some 40 of them with columns.
     pub fn least_squares(space: &Space) -> Self {
-        let mut settings = Self::for_space(space);
-        let starts = [3, 1];
-        let refinements = settings
-            .parts
-            .iter_mut()
-            .filter(|p| matches!(p, Part::Refine(_)));
-        for (part, starts) in refinements.zip(starts) {
-            *part = Part::LeastSquares(LevenbergSettings {
-                starts,
-                iterations: 6,
-                apart: 0.03,
-                step: 0.01,
-                derivatives: Derivatives::Exact,
-            });
+        let Self { trust, mut parts } = Self::for_space(space);
+        parts.truncate(2);
+        parts[0] = Part::Points { points: 24 };
+        if let Part::Scan(scan) = &mut parts[1] {
+            // a descent enters the valley from several of its widths away
+            scan.step *= 7.0;
         }
-        settings
+        parts.push(Part::LeastSquares(LevenbergSettings {
+            starts: 4,
+            iterations: 25,
+            apart: 0.03,
+            step: 0.01,
+            longest: 1.5,
+            level: 1e-3,
+            heat: 6,
+            derivatives: Derivatives::Exact,
+        }));
+        Self { trust, parts }
     }
 }
 
@@ -227,17 +238,22 @@ impl Recipe for QuickSettings {
         require(intervals == space.dimension(), "trust", intervals, one_each)?;
         let mut pieces: Vec<Box<dyn Piece>> = Vec::with_capacity(self.parts.len());
         let mut reuse_clones = true;
+        let start = |points: usize, streams| {
+            let mut start = vec![vec![0.0; space.dimension()]];
+            let others = points.saturating_sub(1);
+            start.extend(hypercube(&self.trust, others, streams));
+            start
+        };
         for (scope, part) in (1..).zip(&self.parts) {
             let streams = Streams::new(seed, scope);
             pieces.push(match part {
                 Part::Memetic(memetic) => {
                     reuse_clones &= memetic.reuse_clones;
-                    let mut start = vec![vec![0.0; space.dimension()]];
-                    let others = memetic.population.saturating_sub(1);
-                    start.extend(hypercube(&self.trust, others, streams));
                     let inside = (space, self.trust.clone());
+                    let start = start(memetic.population, streams);
                     Box::new(Memetic::new(memetic.clone(), inside, &start, streams)?)
                 }
+                Part::Points { points } => Box::new(Points::new(space, &start(*points, streams))),
                 Part::Scan(scan) => Box::new(Scan::new(scan.clone(), space)?),
                 Part::NoScan => continue,
                 Part::Refine(refine) => Box::new(Refine::new(refine.clone(), space, streams)?),

@@ -4,13 +4,10 @@
 //! One batch: a Latin hypercube over the trust intervals or over the whole box, so that every part
 //! of every gene's interval is met.
 use super::{
-    archive::{Archive, Evaluated},
     ask_tell::Strategy,
     conductor::Conductor,
-    design::hypercube,
+    design::{Points, hypercube},
     offer::{Group, Preset, Promise},
-    piece::{Batch, Draft, Piece},
-    proposal::Purpose,
     setting::{Setting, SettingsError, Values, check},
     settings::{Recipe, Settings, build_as},
 };
@@ -83,45 +80,7 @@ impl Recipe for RandomSettings {
         };
         let intervals: Vec<_> = space.axes().iter().map(interval).collect();
         let points = hypercube(&intervals, self.points, Streams::new(seed, 0));
-        let drafts = points.iter().map(|point| Draft {
-            genes: space.values(point),
-            purpose: Purpose::Initial,
-        });
-        let piece = Points {
-            drafts: drafts.collect(),
-            running: 0,
-        };
+        let piece = Points::new(space, &points);
         Ok(Box::new(Conductor::new(vec![Box::new(piece)], false)))
-    }
-}
-
-/// The points as a piece of a strategy.
-struct Points {
-    /// Those that have not been asked for.
-    drafts: Vec<Draft>,
-    /// How many are being evaluated.
-    running: usize,
-}
-
-impl Piece for Points {
-    fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
-        let drafts = std::mem::take(&mut self.drafts);
-        self.running = drafts.len();
-        (!drafts.is_empty()).then_some(Batch {
-            generation: 0,
-            drafts,
-        })
-    }
-
-    fn absorb(&mut self, _results: &[Evaluated]) {
-        self.running = 0;
-    }
-
-    fn generations(&self) -> u32 {
-        0
-    }
-
-    fn remaining(&self) -> u64 {
-        (self.drafts.len() + self.running) as u64
     }
 }

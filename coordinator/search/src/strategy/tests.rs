@@ -112,7 +112,7 @@ impl Record {
 fn the_bits_of_every_preset_stay() {
     let frozen = [
         ("quick", 0xaff2_9ab8_8a60_5ccc),
-        ("least-squares", 0x2682_ac7f_9cca_4beb),
+        ("least-squares", 0x57db_faa1_539e_81d0),
         ("paper", 0xf6d4_4582_7373_c45c),
         ("paper-batch", 0xedd7_0ec3_b5b0_1ef7),
         ("window", 0xd885_4af3_a20d_69fd),
@@ -139,12 +139,8 @@ fn the_seed_decides_and_ids_are_consecutive() {
     for preset in CATALOGUE {
         let one = run_preset(preset, &SPHERE, 5, None);
         assert_eq!(one, run_preset(preset, &SPHERE, 5, None), "{}", preset.name);
-        assert_ne!(
-            one.best,
-            run_preset(preset, &SPHERE, 6, None).best,
-            "{}",
-            preset.name
-        );
+        let other = run_preset(preset, &SPHERE, 6, None);
+        assert_ne!(one.asked, other.asked, "{}", preset.name);
         for (id, proposal) in (0..).zip(&one.asked) {
             assert_eq!(proposal.id, id, "{}", preset.name);
         }
@@ -162,8 +158,13 @@ fn a_replay_of_the_first_results_gives_the_same_state() {
         let cut = whole.told.len() / 3;
         let mut again = made(preset, &space, 2);
         let mut asked = again.ask();
-        for (id, told) in (0..).zip(&whole.told[..cut]) {
-            again.tell(id, *told);
+        for (proposal, told) in whole.asked.iter().zip(&whole.told[..cut]) {
+            if proposal.purpose.wants_residual() {
+                let values = SPHERE.residual(&space, &proposal.genes);
+                let by = BTreeMap::new();
+                again.tell_residual(proposal.id, Residual { values, by });
+            }
+            again.tell(proposal.id, *told);
             asked.extend(again.ask());
         }
         assert_eq!(asked[..], whole.asked[..asked.len()], "{}", preset.name);
@@ -394,7 +395,7 @@ const SMALL: &[(&str, &str)] = &[
 const BESIDE: &[(&str, &str, &str)] = &[
     ("real_step", "encoding", "real"),
     ("reuse_clones", "mutation_probability", "0"),
-    ("fine_descent_apart", "fine_descent_starts", "3"),
+    ("descent_apart", "scan_step", "0.02"),
     ("speculation", "acceptance", "first"),
 ];
 

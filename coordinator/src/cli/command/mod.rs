@@ -3,6 +3,7 @@
 //! A command is a file with its `Arguments` and the function `run`; here it costs its name in two
 //! lists. Its help shows examples and the exit codes, its options have twins in the environment, and
 //! its results go through [`terminal`].
+mod ask_tell;
 mod bench;
 mod calibrate;
 mod case;
@@ -63,6 +64,7 @@ macro_rules! commands {
 commands! {
     Simulate: simulate,
     Calibrate: calibrate,
+    AskTell: ask_tell,
     Verify: verify,
     Diagnose: diagnose,
     Head: head,

@@ -1,0 +1,222 @@
+//! A talk with whoever evaluates: what it says becomes results of a search, which says what is asked next. It
+//! knows lines, not where they come from.
+use super::words::{Answer, Answers, Axis, Best, Line, Point, Refused, Scale, read};
+use crate::cli::argument::settings::SettingsChoice;
+use protocol::case::{self, Unknown};
+use search::{
+    space::Space,
+    strategy::{Finish, Plan, Residual, Strategy, Told, build, preset},
+};
+use std::collections::BTreeMap;
+
+pub(super) use super::words::Opening;
+
+/// A talk that has begun.
+pub(super) struct Talk {
+    strategy: Box<dyn Strategy>,
+    /// Points that may still be asked for.
+    left: u64,
+    /// How many were asked for: their ids are below.
+    asked: u64,
+    /// Those that were not told.
+    open: BTreeMap<u64, Vec<f64>>,
+    told: u64,
+    /// The best that was told, whether or not the strategy has come to it.
+    best: Option<Best>,
+}
+
+impl Axis {
+    fn unknown(self) -> Unknown {
+        let (scale, middle) = match self.scale {
+            Scale::Linear => (case::Scale::Linear, 0.5 * (self.lower + self.upper)),
+            Scale::Log => {
+                let middle = libm::sqrt(self.lower) * libm::sqrt(self.upper);
+                (case::Scale::Logarithmic, middle)
+            }
+        };
+        let start = self.start.unwrap_or(middle);
+        Unknown::new(self.name, "1", scale, start, [self.lower, self.upper])
+    }
+}
+
+impl Opening {
+    /// Reads the first line.
+    pub(super) fn read(line: &str) -> Result<Self, Refused> {
+        let example = "{\"space\": [{\"name\": \"x\", \"lower\": -1, \"upper\": 1}]}";
+        read(line, example)
+    }
+
+    /// Begins a talk.
+    pub(super) fn begin(self, strategy: &str) -> Result<Talk, Refused> {
+        let unknowns: Vec<Unknown> = self.space.into_iter().map(Axis::unknown).collect();
+        let bounds = "give each a name of its own, finite lower < upper with the start between, above \
+                      0 on a log scale";
+        let space = Space::new(&unknowns);
+        let space = space.map_err(|error| Refused::new(format!("space: {error}"), bounds))?;
+        let preset = preset(strategy).ok_or_else(|| {
+            Refused::new(format!("there is no strategy `{strategy}`"), "see --help")
+        })?;
+        let set = self.settings.into_iter().map(|(key, value)| {
+            let words = value.as_str().map(str::to_owned);
+            (key, words.unwrap_or_else(|| value.to_string()))
+        });
+        let set = set.collect();
+        let plan = Plan {
+            space: &space,
+            workers: 1,
+        };
+        let chosen = SettingsChoice { set }.choose(preset, &plan);
+        let chosen = chosen.map_err(|usage| Refused::new(usage.message, usage.help))?;
+        let strategy = build(&chosen.settings, &space, self.seed);
+        let strategy = strategy.map_err(|error| {
+            Refused::new(
+                format!("settings: {error}"),
+                "`horsehead calibrate --help` lists what every setting may be",
+            )
+        })?;
+        let left = self.budget.unwrap_or(u64::MAX);
+        if left == 0 {
+            return Err(Refused::new(
+                "budget is 0",
+                "give at least 1, or leave it out",
+            ));
+        }
+        Ok(Talk {
+            strategy,
+            left,
+            asked: 0,
+            open: BTreeMap::new(),
+            told: 0,
+            best: None,
+        })
+    }
+}
+
+impl Talk {
+    /// What may be evaluated now.
+    pub(super) fn ask(&mut self) -> Line {
+        let mut asked = self.strategy.ask();
+        asked.truncate(usize::try_from(self.left).unwrap_or(usize::MAX));
+        self.left -= asked.len() as u64;
+        self.asked += asked.len() as u64;
+        let open = asked.iter();
+        self.open
+            .extend(open.map(|proposal| (proposal.id, proposal.genes.clone())));
+        let ask = asked.into_iter().map(Point::from).collect();
+        Line::Ask { ask }
+    }
+
+    /// Takes a line of answers, whole or not at all; what is said to it.
+    pub(super) fn take(&mut self, line: &str) -> Result<Line, Refused> {
+        let answers: Answers = read(line, "{\"tell\": [{\"id\": 0, \"f\": 3.5}]}")?;
+        let mut told = BTreeMap::new();
+        for answer in answers.tell {
+            let id = answer.id;
+            if !self.open.contains_key(&id) {
+                return Err(self.stranger(id));
+            }
+            if told.insert(id, answer.into_told()?).is_some() {
+                return Err(Refused::new(
+                    format!("point {id} is told twice in it"),
+                    "tell every point once",
+                ));
+            }
+        }
+        for (id, (result, residual)) in told {
+            self.told += 1;
+            let f = result.fitness;
+            let better = self.best.as_ref().is_none_or(|best| f < best.f);
+            if let Some(x) = self.open.remove(&id).filter(|_| result.complete && better) {
+                self.best = Some(Best { id, x, f });
+            }
+            if let Some(residual) = residual {
+                self.strategy.tell_residual(id, residual);
+            }
+            self.strategy.tell(id, result);
+        }
+        let done = match self.strategy.finished() {
+            Some(Finish::Planned) => "planned",
+            Some(Finish::Threshold) => "threshold",
+            None => {
+                let asked = self.ask();
+                if !self.open.is_empty() {
+                    return Ok(asked);
+                }
+                "budget"
+            }
+        };
+        self.end(done)
+    }
+
+    /// The end of the input.
+    pub(super) fn close(&self) -> Result<Line, Refused> {
+        self.end("input")
+    }
+
+    /// How many points were told, and the best of them.
+    pub(super) fn found(&self) -> (u64, Option<Best>) {
+        (self.told, self.best.clone())
+    }
+
+    fn end(&self, done: &'static str) -> Result<Line, Refused> {
+        let (evaluations, best) = self.found();
+        let failed = || match evaluations {
+            0 => Refused::new(
+                "the input ended, and no point was told",
+                "tell what came of the points that are asked",
+            ),
+            _ => Refused::new(
+                format!("all of the {evaluations} points failed"),
+                "check the evaluation at the start, and the bounds",
+            ),
+        };
+        let best = best.ok_or_else(failed)?;
+        Ok(Line::Done {
+            done,
+            evaluations,
+            best,
+        })
+    }
+
+    /// Why an answer is to no open point.
+    fn stranger(&self, id: u64) -> Refused {
+        let open: Vec<String> = self.open.keys().take(9).map(u64::to_string).collect();
+        let help = format!("open are {}", open.join(", "));
+        let why = if id < self.asked {
+            "has been told before"
+        } else {
+            "was not asked for"
+        };
+        Refused::new(format!("point {id} {why}"), help)
+    }
+}
+
+impl Answer {
+    fn into_told(self) -> Result<(Told, Option<Residual>), Refused> {
+        let id = self.id;
+        let refuse = |why: &str| {
+            let help = "say \"f\" with a number, or \"failed\": true";
+            Err(Refused::new(format!("point {id} {why}"), help))
+        };
+        match (self.f, self.failed) {
+            (Some(fitness), false) => {
+                let by = BTreeMap::new();
+                let residual = (!self.residual.is_empty()).then_some(Residual {
+                    values: self.residual,
+                    by,
+                });
+                let complete = true;
+                Ok((Told { fitness, complete }, residual))
+            }
+            (None, true) => Ok((
+                Told {
+                    fitness: f64::INFINITY,
+                    complete: false,
+                },
+                None,
+            )),
+            (Some(_), true) => refuse("has a number and failed"),
+            (None, false) => refuse("has no number"),
+        }
+    }
+}
