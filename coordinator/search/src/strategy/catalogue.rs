@@ -1,6 +1,7 @@
 //! The catalogue of presets.
 use super::{
     ask_tell::Strategy,
+    cma_es, l_shade,
     memetic::{generations, window},
     offer::Preset,
     quick, random,
@@ -13,10 +14,15 @@ use crate::space::Space;
 pub const CATALOGUE: &[Preset] = &[
     quick::QUICK,
     quick::LEAST_SQUARES,
+    quick::HYBRID,
     generations::PAPER,
     generations::PAPER_BATCH,
     window::WINDOW,
+    cma_es::CMA_ES,
+    l_shade::L_SHADE,
     random::RANDOM,
+    random::LATIN_HYPERCUBE,
+    random::SOBOL,
 ];
 
 /// The preset of a name.

@@ -20,8 +20,11 @@
 pub mod archive;
 pub mod ask_tell;
 mod catalogue;
+pub mod cma_es;
 mod conductor;
+mod covariance;
 mod design;
+pub mod l_shade;
 pub mod levenberg;
 pub mod memetic;
 pub mod offer;
@@ -34,6 +37,7 @@ pub mod refine;
 pub mod scan;
 pub mod setting;
 pub mod settings;
+mod sobol;
 #[cfg(test)]
 mod tests;
 mod told;

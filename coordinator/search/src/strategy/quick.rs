@@ -73,6 +73,19 @@ pub const LEAST_SQUARES: Preset = Preset {
     ..QUICK
 };
 
+/// A global search first, then descents of the residual vector.
+pub const HYBRID: Preset = Preset {
+    name: "hybrid",
+    summary: "a short memetic search and line scans, then several descents of the residual",
+    settings: |plan| Settings::of(&QuickSettings::hybrid(plan.space)),
+    groups: &[
+        MEMETIC,
+        part("scan_", "/parts/1/scan", scan::SETTINGS),
+        part("descent_", "/parts/2/least_squares", levenberg::SETTINGS),
+    ],
+    ..LEAST_SQUARES
+};
+
 /// What can be set of the first points by name.
 const POINTS: &[Setting] = &[Setting::new(
     "points",
@@ -169,6 +182,27 @@ impl QuickSettings {
                 }),
             ],
             trust,
+        }
+    }
+
+    /// A global stage of some 300 evaluations, a coarse scan, and eight descents, half of which are given up
+    /// after every heat.
+    pub fn hybrid(space: &Space) -> Self {
+        let Self { trust, parts } = Self::for_space(space);
+        let Self {
+            parts: descents, ..
+        } = Self::least_squares(space);
+        let mut hybrid: Vec<Part> = parts.into_iter().take(1).collect();
+        if let Some(Part::Memetic(memetic)) = hybrid.first_mut() {
+            memetic.generations = 2;
+        }
+        hybrid.extend(descents.into_iter().skip(1));
+        if let Some(Part::LeastSquares(descent)) = hybrid.last_mut() {
+            descent.starts = 8;
+        }
+        Self {
+            trust,
+            parts: hybrid,
         }
     }
 

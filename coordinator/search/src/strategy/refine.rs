@@ -1,13 +1,10 @@
 //! Local refinement around the best point: an evolution strategy with covariance adaptation.
 //!
-//! Each round draws a batch about a mean, `x = m + s L z` with `C = L L^T`, and moves the mean and
-//! the covariance towards the better half (Hansen, "The CMA Evolution Strategy: A Tutorial",
-//! arXiv 1604.00772, equations 38 to 47; the whitened step of the mean is the weighted mean of the `z`, so no
-//! inverse is needed). It learns which unknowns make up for each other, which no search along the
-//! axes does. It uses only the order of the results, so failures are
-//! merely last.
+//! Each round draws a batch and moves the distribution towards the better half ([`super::covariance`]). It uses
+//! only the order of the results, so failures are merely last.
 use super::{
     archive::{Archive, Evaluated},
+    covariance::{Distribution, normal, ranked},
     piece::{Batch, Draft, Piece},
     proposal::Purpose,
     setting::{Setting, SettingsError, Values, check, require},
@@ -16,7 +13,7 @@ use crate::{
     random::{Phase, Streams},
     space::Space,
 };
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 /// A local refinement.
@@ -73,12 +70,7 @@ pub struct Refine {
 struct State {
     /// The point the refinement started from, all genes (coordinate).
     base: Vec<f64>,
-    mean: DVector<f64>,
-    covariance: DMatrix<f64>,
-    factor: DMatrix<f64>,
-    sigma: f64,
-    sigma_path: DVector<f64>,
-    covariance_path: DVector<f64>,
+    distribution: Distribution,
     /// The normal numbers behind the running batch.
     drawn: Vec<DVector<f64>>,
 }
@@ -109,15 +101,11 @@ impl Refine {
         let base = self.space.point(&best.genes);
         let n = self.moving.len();
         let spread = self.moving.iter().map(|axis| self.settings.spread[*axis]);
-        let factor = DMatrix::from_diagonal(&DVector::from_iterator(n, spread));
+        let spread = DVector::from_iterator(n, spread);
+        let mean = DVector::from_iterator(n, self.moving.iter().map(|axis| base[*axis]));
         Some(State {
-            mean: DVector::from_iterator(n, self.moving.iter().map(|axis| base[*axis])),
+            distribution: Distribution::new(mean, &spread),
             base,
-            covariance: &factor * &factor,
-            factor,
-            sigma: 1.0,
-            sigma_path: DVector::zeros(n),
-            covariance_path: DVector::zeros(n),
             drawn: Vec::new(),
         })
     }
@@ -141,11 +129,8 @@ impl Piece for Refine {
         let mut drafts = Vec::with_capacity(self.settings.batch);
         for index in 0..self.settings.batch {
             let mut stream = self.streams.at(self.round, Phase::Refinement, index);
-            let z = DVector::from_iterator(
-                self.moving.len(),
-                std::iter::repeat_with(|| stream.normal()).take(self.moving.len()),
-            );
-            let x = &state.mean + state.sigma * (&state.factor * &z);
+            let z = normal(self.moving.len(), &mut stream);
+            let x = state.distribution.point(&z);
             let mut point = state.base.clone();
             for (axis, x) in self.moving.iter().zip(x.iter()) {
                 point[*axis] = *x;
@@ -164,14 +149,12 @@ impl Piece for Refine {
 
     fn absorb(&mut self, results: &[Evaluated]) {
         let Some(state) = &mut self.state else { return };
-        let mut order: Vec<usize> = (0..results.len()).collect();
-        order.sort_by(|a, b| results[*a].told.order(results[*b].told));
-        let ranked: Vec<DVector<f64>> = order.iter().map(|i| state.drawn[*i].clone()).collect();
+        let ranked = ranked(&state.drawn, results);
         // a round in which everything failed says nothing about where to go
         if results.iter().any(|result| result.told.survived()) {
-            state.update(&ranked, self.round);
+            state.distribution.update(&ranked, self.round, false);
         } else {
-            state.sigma *= 0.5;
+            state.distribution.sigma *= 0.5;
         }
         state.drawn.clear();
     }
@@ -184,57 +167,5 @@ impl Piece for Refine {
         let running = self.state.as_ref().map_or(0, |state| state.drawn.len());
         let ahead = u64::from(self.settings.rounds - self.round);
         running as u64 + ahead * self.settings.batch as u64
-    }
-}
-
-impl State {
-    /// One generation of covariance adaptation from the normal numbers, best first.
-    fn update(&mut self, ranked: &[DVector<f64>], round: u32) {
-        let n = self.mean.len() as f64;
-        let parents = ranked.len() / 2;
-        let raw =
-            (1..=parents).map(|rank| libm::log(parents as f64 + 0.5) - libm::log(rank as f64));
-        let raw: Vec<f64> = raw.collect();
-        let total: f64 = raw.iter().sum();
-        let weights: Vec<f64> = raw.iter().map(|weight| weight / total).collect();
-        let mass = 1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>();
-
-        let c_sigma = (mass + 2.0) / (n + mass + 5.0);
-        let overshoot = (libm::sqrt((mass - 1.0) / (n + 1.0)) - 1.0).max(0.0);
-        let d_sigma = 1.0 + 2.0 * overshoot + c_sigma;
-        let c_path = (4.0 + mass / n) / (n + 4.0 + 2.0 * mass / n);
-        let c_one = 2.0 / ((n + 1.3) * (n + 1.3) + mass);
-        let c_mu =
-            (1.0 - c_one).min(2.0 * (mass - 2.0 + 1.0 / mass) / ((n + 2.0) * (n + 2.0) + mass));
-        let expected = libm::sqrt(n) * (1.0 - 1.0 / (4.0 * n) + 1.0 / (21.0 * n * n));
-
-        let mut z_mean = DVector::zeros(self.mean.len());
-        for (z, weight) in ranked.iter().zip(&weights) {
-            z_mean += *weight * z;
-        }
-        let step = &self.factor * &z_mean;
-        self.mean += self.sigma * &step;
-        self.sigma_path = (1.0 - c_sigma) * &self.sigma_path
-            + libm::sqrt(c_sigma * (2.0 - c_sigma) * mass) * &z_mean;
-        let decay = 1.0 - libm::pow(1.0 - c_sigma, 2.0 * f64::from(round));
-        let length = self.sigma_path.norm();
-        let fresh = length / libm::sqrt(decay) < (1.4 + 2.0 / (n + 1.0)) * expected;
-        let gate = if fresh { 1.0 } else { 0.0 };
-        self.covariance_path = (1.0 - c_path) * &self.covariance_path
-            + gate * libm::sqrt(c_path * (2.0 - c_path) * mass) * &step;
-
-        let lost = (1.0 - gate) * c_path * (2.0 - c_path);
-        let mut covariance = (1.0 - c_one - c_mu + c_one * lost) * &self.covariance
-            + c_one * &self.covariance_path * self.covariance_path.transpose();
-        for (z, weight) in ranked.iter().zip(&weights) {
-            let y = &self.factor * z;
-            covariance += c_mu * *weight * &y * y.transpose();
-        }
-        self.sigma *= libm::exp((c_sigma / d_sigma * (length / expected - 1.0)).min(1.0));
-        // rounding may cost definiteness only after very long runs: then keep the last factor
-        if let Some(cholesky) = covariance.clone().cholesky() {
-            self.covariance = covariance;
-            self.factor = cholesky.unpack();
-        }
     }
 }

@@ -112,7 +112,10 @@ impl Record {
 fn the_bits_of_every_preset_stay() {
     let frozen = [
         ("quick", 0xaff2_9ab8_8a60_5ccc),
-        ("least-squares", 0x57db_faa1_539e_81d0),
+        ("least-squares", 0x962a_41f2_7f02_cc07),
+        ("hybrid", 0xd41c_40db_a878_a4e3),
+        ("cma-es", 0xd8eb_317f_9529_e8ba),
+        ("l-shade", 0x5195_2faa_3a58_243a),
         ("paper", 0xf6d4_4582_7373_c45c),
         ("paper-batch", 0xedd7_0ec3_b5b0_1ef7),
         ("window", 0xd885_4af3_a20d_69fd),
@@ -396,6 +399,8 @@ const BESIDE: &[(&str, &str, &str)] = &[
     ("real_step", "encoding", "real"),
     ("reuse_clones", "mutation_probability", "0"),
     ("descent_apart", "scan_step", "0.02"),
+    ("growth", "evaluations", "9000"),
+    ("best", "population", "80"),
     ("speculation", "acceptance", "first"),
 ];
 

@@ -1,0 +1,290 @@
+//! Covariance matrix adaptation over the whole box, begun anew with twice the population where it has
+//! converged.
+//!
+//! The distribution is [`super::covariance`] with active updates; restarts are those of Auger and Hansen, "A
+//! restart CMA evolution strategy with increasing population size" (CEC 2005). What leaves the box is mirrored
+//! at its wall. Only the order of results counts, so failures are merely last.
+use super::{
+    archive::{Archive, Evaluated},
+    ask_tell::Strategy,
+    conductor::Conductor,
+    covariance::{Distribution, normal, ranked},
+    offer::{Group, Preset, Promise},
+    piece::{Batch, Draft, Piece},
+    proposal::Purpose,
+    setting::{Setting, SettingsError, Values, check},
+    settings::{Recipe, Settings, build_as},
+};
+use crate::{
+    random::{Phase, Streams},
+    space::{Interval, Space},
+};
+use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
+
+/// The preset.
+pub const CMA_ES: Preset = Preset {
+    name: "cma-es",
+    summary: "covariance matrix adaptation over the whole box, with restarts",
+    strategy: CmaEsSettings::STRATEGY,
+    settings: |plan| Settings::of(&CmaEsSettings::for_dimension(plan.space.dimension())),
+    groups: &[Group::whole(SETTINGS)],
+    promise: Promise {
+        one_basin: 1e-6,
+        many_basins: 3.0,
+        distance: 1e-3,
+        opens_at_recommended: false,
+        valley: None,
+    },
+    build: build_as::<CmaEsSettings>,
+};
+
+/// What can be set by name.
+const SETTINGS: &[Setting] = &[
+    Setting::new(
+        "population",
+        Values::Whole(4, 100_000),
+        "points of a generation",
+    ),
+    Setting::new(
+        "spread",
+        Values::Real(1e-6, 10.0),
+        "first standard deviation, as a share of each unknown's trust interval",
+    ),
+    Setting::new(
+        "growth",
+        Values::Whole(1, 10),
+        "factor on the population of every restart",
+    ),
+    Setting::new(
+        "evaluations",
+        Values::Whole(4, 100_000_000),
+        "points in all",
+    ),
+];
+
+/// Settings of the search.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CmaEsSettings {
+    /// Points of a generation, at least 4.
+    pub population: usize,
+    /// First standard deviation (share of each trust interval).
+    pub spread: f64,
+    /// Factor on the population of every restart.
+    pub growth: usize,
+    /// Points in all.
+    pub evaluations: usize,
+}
+
+impl CmaEsSettings {
+    /// The tutorial's population, `4 + 3 ln n`, and a thousand points.
+    pub fn for_dimension(n: usize) -> Self {
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a small positive number"
+        )]
+        let more = (3.0 * libm::log(n.max(1) as f64)) as usize;
+        Self {
+            population: 4 + more,
+            spread: 0.25,
+            growth: 2,
+            evaluations: 1000,
+        }
+    }
+}
+
+impl Recipe for CmaEsSettings {
+    const STRATEGY: &'static str = "cma-es";
+
+    fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
+        check(self, SETTINGS)?;
+        let piece = CmaEs {
+            settings: self.clone(),
+            space: space.clone(),
+            streams: Streams::new(seed, 0),
+            planned: 0,
+            generation: 0,
+            restarts: 0,
+            course: None,
+            running: Vec::new(),
+        };
+        Ok(Box::new(Conductor::new(vec![Box::new(piece)], false)))
+    }
+}
+
+/// Restarts with growing populations, as a piece of a strategy.
+struct CmaEs {
+    settings: CmaEsSettings,
+    space: Space,
+    streams: Streams,
+    /// Points that were asked for.
+    planned: usize,
+    generation: u32,
+    restarts: u32,
+    course: Option<Course>,
+    /// The normal numbers behind the running batch.
+    running: Vec<DVector<f64>>,
+}
+
+/// From one start to its convergence.
+struct Course {
+    distribution: Distribution,
+    population: usize,
+    rounds: u32,
+    /// The best of late rounds, the last one at the back.
+    late: VecDeque<f64>,
+}
+
+/// A course has converged when it reaches no farther than this (coordinate).
+const REACH: f64 = 1e-12;
+/// And when the best of late rounds differ by less, relative to their size or absolutely.
+const FLAT: [f64; 2] = [1e-12, 1e-14];
+
+impl Course {
+    /// From a point, as wide as its spread.
+    fn new(start: Vec<f64>, spread: &DVector<f64>, population: usize) -> Self {
+        Self {
+            distribution: Distribution::new(DVector::from_vec(start), spread),
+            population,
+            rounds: 0,
+            late: VecDeque::new(),
+        }
+    }
+
+    /// Moves on with a whole generation; whether it has come to its end.
+    fn absorb(&mut self, drawn: &[DVector<f64>], results: &[Evaluated]) -> bool {
+        self.rounds += 1;
+        if !results.iter().any(|result| result.told.survived()) {
+            // says nothing about where to go
+            self.distribution.sigma *= 0.5;
+            return self.distribution.reach() < REACH;
+        }
+        let ranked = ranked(drawn, results);
+        self.distribution.update(&ranked, self.rounds, true);
+        let fitness = results.iter().filter(|result| result.told.survived());
+        let best = fitness.map(|result| result.told.fitness);
+        self.late.push_back(best.fold(f64::INFINITY, f64::min));
+        let window = 10 + 30 * self.distribution.mean.len() / self.population;
+        if self.late.len() > window {
+            self.late.pop_front();
+        }
+        let (low, high) = self.late.iter().fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(low, high): (f64, f64), y| (low.min(*y), high.max(*y)),
+        );
+        let flat = high - low <= FLAT[0] * high.abs().max(low.abs()) + FLAT[1];
+        let reach = self.distribution.reach();
+        (self.late.len() == window && flat) || reach < REACH || !reach.is_finite()
+    }
+}
+
+impl CmaEs {
+    /// The next course: the first from where the case begins, others from anywhere in the trust intervals.
+    fn begin(&self) -> Course {
+        let axes = self.space.axes().iter();
+        let spread = axes.map(|axis| self.settings.spread * axis.trust.length());
+        let spread = DVector::from_iterator(self.space.dimension(), spread);
+        let mut stream = self.streams.at(self.restarts, Phase::Initial, 0);
+        let start = self.space.axes().iter().map(|axis| {
+            let anywhere = axis.trust.from + stream.unit() * axis.trust.length();
+            if self.restarts == 0 { 0.0 } else { anywhere }
+        });
+        let grown = self.settings.growth.saturating_pow(self.restarts);
+        let population = self.settings.population.saturating_mul(grown);
+        let most = self.settings.evaluations.max(4);
+        Course::new(start.collect(), &spread, population.min(most))
+    }
+}
+
+impl Piece for CmaEs {
+    fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
+        let left = self.settings.evaluations.saturating_sub(self.planned);
+        if left == 0 {
+            return None;
+        }
+        if self.course.is_none() {
+            self.course = Some(self.begin());
+        }
+        let course = self.course.as_ref()?;
+        self.generation += 1;
+        let mut drafts = Vec::new();
+        for index in 0..course.population.min(left) {
+            let mut stream = self.streams.at(self.generation, Phase::Refinement, index);
+            let z = normal(self.space.dimension(), &mut stream);
+            let x = course.distribution.point(&z);
+            let axes = self.space.axes().iter().zip(x.iter());
+            let inside: Vec<f64> = axes
+                .map(|(axis, x)| mirrored(axis.interval(), *x))
+                .collect();
+            self.running.push(z);
+            drafts.push(Draft {
+                genes: self.space.values(&inside),
+                purpose: Purpose::Offspring,
+            });
+        }
+        self.planned += drafts.len();
+        Some(Batch {
+            generation: self.generation,
+            drafts,
+        })
+    }
+
+    fn absorb(&mut self, results: &[Evaluated]) {
+        let drawn = std::mem::take(&mut self.running);
+        let Some(course) = &mut self.course else {
+            return;
+        };
+        // the last generation of all may be a part of one
+        let whole = drawn.len() == course.population;
+        if whole && course.absorb(&drawn, results) {
+            self.course = None;
+            self.restarts += 1;
+        } else if let Some(course) = &mut self.course {
+            let axes = self.space.axes().iter();
+            for (axis, mean) in axes.zip(course.distribution.mean.iter_mut()) {
+                *mean = mirrored(axis.interval(), *mean);
+            }
+        }
+    }
+
+    fn generations(&self) -> u32 {
+        let left = self.settings.evaluations.saturating_sub(self.planned);
+        let population = self
+            .course
+            .as_ref()
+            .map_or_else(|| self.settings.population, |course| course.population);
+        self.generation + u32::try_from(left.div_ceil(population)).unwrap_or(u32::MAX)
+    }
+
+    fn remaining(&self) -> u64 {
+        let left = self.settings.evaluations.saturating_sub(self.planned);
+        (left + self.running.len()) as u64
+    }
+}
+
+/// A point beyond a wall comes as far back from it.
+fn mirrored(interval: Interval, x: f64) -> f64 {
+    let length = interval.length();
+    if (interval.from..=interval.to).contains(&x) || length <= 0.0 || !x.is_finite() {
+        return interval.clamp(x);
+    }
+    let around = (x - interval.from).rem_euclid(2.0 * length);
+    interval.clamp(interval.from + around.min(2.0 * length - around))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_leaves_the_box_comes_back_from_its_wall() {
+        let unit = Interval { from: 1.0, to: 3.0 };
+        for (x, inside) in [(2.5, 2.5), (3.5, 2.5), (0.0, 2.0), (7.25, 2.75)] {
+            assert!((mirrored(unit, x) - inside).abs() < 1e-12, "{x}");
+        }
+        assert!(mirrored(unit, f64::INFINITY) <= 3.0);
+    }
+}

@@ -1,0 +1,318 @@
+//! Differential evolution that learns its own factors from what succeeded, with a population that shrinks.
+//!
+//! Tanabe and Fukunaga, "Improving the search performance of SHADE using linear population size reduction"
+//! (CEC 2014): `v = x + F (x_pbest - x) + F (x_r1 - x_r2)` with `x_r2` from population and archive, binomial
+//! crossover, memories of `F` and `CR` by weighted Lehmer and arithmetic means, `N` falling evenly with the
+//! evaluations. Only the order of results and the sizes of gains count; failures are last and gain nothing.
+use super::{
+    archive::{Archive, Evaluated},
+    ask_tell::Strategy,
+    conductor::Conductor,
+    design::hypercube,
+    offer::{Group, Preset, Promise},
+    piece::{Batch, Draft, Piece},
+    proposal::Purpose,
+    setting::{Setting, SettingsError, Values, check},
+    settings::{Recipe, Settings, build_as},
+    told::Told,
+};
+use crate::{
+    random::{Phase, Stream, Streams},
+    space::{Axis, Interval, Space},
+};
+use serde::{Deserialize, Serialize};
+
+/// The preset.
+pub const L_SHADE: Preset = Preset {
+    name: "l-shade",
+    summary: "differential evolution with learned factors and a shrinking population",
+    strategy: LShadeSettings::STRATEGY,
+    settings: |plan| Settings::of(&LShadeSettings::for_dimension(plan.space.dimension())),
+    groups: &[Group::whole(SETTINGS)],
+    promise: Promise {
+        one_basin: 0.01,
+        many_basins: 3.0,
+        distance: 0.1,
+        opens_at_recommended: true,
+        valley: None,
+    },
+    build: build_as::<LShadeSettings>,
+};
+
+/// What can be set by name.
+const SETTINGS: &[Setting] = &[
+    Setting::new(
+        "population",
+        Values::Whole(4, 100_000),
+        "individuals of the first generation; four are left at the end",
+    ),
+    Setting::new(
+        "memory",
+        Values::Whole(1, 1000),
+        "generations whose successful factors are remembered",
+    ),
+    Setting::new(
+        "best",
+        Values::Real(0.01, 1.0),
+        "share of the population that individuals move towards",
+    ),
+    Setting::new(
+        "archive",
+        Values::Real(0.0, 10.0),
+        "replaced individuals that are kept, as a share of the population",
+    ),
+    Setting::new(
+        "evaluations",
+        Values::Whole(4, 100_000_000),
+        "points in all",
+    ),
+];
+
+/// Settings of the search.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LShadeSettings {
+    /// Individuals of the first generation, at least 4.
+    pub population: usize,
+    /// Generations whose successful factors are remembered.
+    pub memory: usize,
+    /// Share of the population that individuals move towards.
+    pub best: f64,
+    /// Replaced individuals that are kept, over the population.
+    pub archive: f64,
+    /// Points in all.
+    pub evaluations: usize,
+}
+
+impl LShadeSettings {
+    /// The published numbers, but for fewer individuals: a thousand points are few.
+    pub const fn for_dimension(n: usize) -> Self {
+        let population = if n < 5 { 20 } else { 4 * n };
+        Self {
+            population,
+            memory: 6,
+            best: 0.11,
+            archive: 2.6,
+            evaluations: 1000,
+        }
+    }
+}
+
+impl Recipe for LShadeSettings {
+    const STRATEGY: &'static str = "l-shade";
+
+    fn build(&self, space: &Space, seed: u64) -> Result<Box<dyn Strategy>, SettingsError> {
+        check(self, SETTINGS)?;
+        let piece = LShade {
+            memories: vec![[0.5; 2]; self.memory],
+            oldest: 0,
+            settings: self.clone(),
+            space: space.clone(),
+            streams: Streams::new(seed, 0),
+            population: Vec::new(),
+            replaced: Vec::new(),
+            planned: 0,
+            generation: 0,
+            trials: Vec::new(),
+        };
+        Ok(Box::new(Conductor::new(vec![Box::new(piece)], false)))
+    }
+}
+
+/// Fewest individuals: a mutant needs three others.
+const FEWEST: usize = 4;
+
+/// The population, as a piece of a strategy.
+struct LShade {
+    settings: LShadeSettings,
+    space: Space,
+    streams: Streams,
+    /// Coordinates with their results, the best first.
+    population: Vec<(Vec<f64>, Told)>,
+    /// Coordinates of individuals that lost their place.
+    replaced: Vec<Vec<f64>>,
+    /// Means of the factors that succeeded: `F` and `CR`.
+    memories: Vec<[f64; 2]>,
+    oldest: usize,
+    /// Points that were asked for.
+    planned: usize,
+    generation: u32,
+    /// Coordinates of the running batch, with the factors they were made with.
+    trials: Vec<(Vec<f64>, [f64; 2])>,
+}
+
+impl LShade {
+    fn first(&self, count: usize) -> Vec<(Vec<f64>, [f64; 2])> {
+        let trust: Vec<Interval> = self.space.axes().iter().map(|axis| axis.trust).collect();
+        let others = hypercube(&trust, count.saturating_sub(1), self.streams);
+        let start = std::iter::once(vec![0.0; self.space.dimension()]);
+        start.chain(others).map(|x| (x, [0.0; 2])).collect()
+    }
+
+    /// A trial for the individual at a place.
+    fn trial(&self, place: usize) -> (Vec<f64>, [f64; 2]) {
+        let stream = &mut self.streams.at(self.generation, Phase::Mutation, place);
+        let factors = self.factors(stream);
+        let [f, crossover] = factors;
+        let count = self.population.len();
+        let leading = share(self.settings.best, count).max(2).min(count);
+        let best = &self.population[stream.index(leading)].0;
+        let first = other(stream, count, &[place]);
+        let second = other(stream, count + self.replaced.len(), &[place, first]);
+        let second = self
+            .population
+            .get(second)
+            .map_or_else(|| &self.replaced[second - count], |(x, _)| x);
+        let (own, first) = (&self.population[place].0, &self.population[first].0);
+        let kept = stream.index(own.len());
+        let axes = self.space.axes().iter().enumerate();
+        let x = axes.map(|(k, axis)| {
+            let crossed = stream.chance(crossover) || k == kept;
+            if !crossed {
+                return own[k];
+            }
+            let mutant = own[k] + f * (best[k] - own[k]) + f * (first[k] - second[k]);
+            halfway(axis, own[k], mutant)
+        });
+        (x.collect(), factors)
+    }
+
+    /// `F` about a remembered one by Cauchy's distribution, `CR` by the normal one.
+    fn factors(&self, stream: &mut Stream) -> [f64; 2] {
+        let [f, crossover] = self.memories[stream.index(self.memories.len())];
+        let cauchy =
+            |stream: &mut Stream| f + 0.1 * libm::tan(std::f64::consts::PI * (stream.unit() - 0.5));
+        let mut drawn = cauchy(stream);
+        while drawn <= 0.0 {
+            drawn = cauchy(stream);
+        }
+        let crossover = (crossover + 0.1 * stream.normal()).clamp(0.0, 1.0);
+        [drawn.min(1.0), crossover]
+    }
+
+    /// Remembers what succeeded, weighted by its gains.
+    fn learn(&mut self, gains: &[(f64, [f64; 2])]) {
+        let total: f64 = gains.iter().map(|(gain, _)| gain).sum();
+        if total <= 0.0 || !total.is_finite() {
+            return;
+        }
+        let sum = |of: &dyn Fn([f64; 2]) -> f64| -> f64 {
+            gains
+                .iter()
+                .map(|(gain, factors)| gain / total * of(*factors))
+                .sum()
+        };
+        let f = sum(&|[f, _]| f * f) / sum(&|[f, _]| f);
+        self.memories[self.oldest] = [f, sum(&|[_, crossover]| crossover)];
+        self.oldest = (self.oldest + 1) % self.memories.len();
+    }
+
+    /// How many individuals there shall be now.
+    fn wanted(&self) -> usize {
+        let first = self.settings.population;
+        let spent = self.planned as f64 / self.settings.evaluations as f64;
+        let lost = share(spent.min(1.0), first - FEWEST);
+        first - lost
+    }
+}
+
+/// A share of a count, rounded.
+fn share(share: f64, count: usize) -> usize {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share of a count"
+    )]
+    let part = (share * count as f64).round() as usize;
+    part
+}
+
+/// One of so many that is none of these; at least one more than these must be there.
+fn other(stream: &mut Stream, count: usize, taken: &[usize]) -> usize {
+    loop {
+        let one = stream.index(count);
+        if !taken.contains(&one) {
+            return one;
+        }
+    }
+}
+
+/// A mutant beyond a wall stands halfway between its parent and the wall.
+fn halfway(axis: &Axis, own: f64, mutant: f64) -> f64 {
+    let interval = axis.interval();
+    if mutant < interval.from {
+        0.5 * (own + interval.from)
+    } else if mutant > interval.to {
+        0.5 * (own + interval.to)
+    } else {
+        mutant
+    }
+}
+
+impl Piece for LShade {
+    fn plan(&mut self, _archive: &Archive) -> Option<Batch> {
+        let left = self.settings.evaluations.saturating_sub(self.planned);
+        if left == 0 {
+            return None;
+        }
+        let purpose = if self.population.is_empty() {
+            self.trials = self.first(self.settings.population.min(left));
+            Purpose::Initial
+        } else {
+            self.generation += 1;
+            let count = self.population.len().min(left);
+            self.trials = (0..count).map(|place| self.trial(place)).collect();
+            Purpose::Offspring
+        };
+        self.planned += self.trials.len();
+        let drafts = self.trials.iter().map(|(x, _)| Draft {
+            genes: self.space.values(x),
+            purpose,
+        });
+        Some(Batch {
+            generation: self.generation,
+            drafts: drafts.collect(),
+        })
+    }
+
+    fn absorb(&mut self, results: &[Evaluated]) {
+        let trials = std::mem::take(&mut self.trials);
+        let told = results.iter().map(|result| result.told);
+        if self.population.is_empty() {
+            let born = trials.into_iter().zip(told);
+            self.population = born.map(|((x, _), told)| (x, told)).collect();
+        } else {
+            let mut gains = Vec::new();
+            for ((own, (x, factors)), told) in self.population.iter_mut().zip(trials).zip(told) {
+                if told.beats(own.1) {
+                    let gain = own.1.fitness - told.fitness;
+                    if gain > 0.0 && gain.is_finite() {
+                        gains.push((gain, factors));
+                    }
+                    self.replaced.push(std::mem::replace(own, (x, told)).0);
+                }
+            }
+            self.learn(&gains);
+        }
+        self.population.sort_by(|a, b| a.1.order(b.1));
+        self.population.truncate(self.wanted().max(FEWEST));
+        let most = share(self.settings.archive, self.population.len());
+        let mut stream = self.streams.at(self.generation, Phase::Selection, 0);
+        while self.replaced.len() > most {
+            let one = stream.index(self.replaced.len());
+            self.replaced.swap_remove(one);
+        }
+    }
+
+    fn generations(&self) -> u32 {
+        // the population falls evenly to its end
+        let left = self.settings.evaluations.saturating_sub(self.planned);
+        let mean = usize::midpoint(self.wanted(), FEWEST).max(1);
+        self.generation + u32::try_from(left.div_ceil(mean)).unwrap_or(u32::MAX)
+    }
+
+    fn remaining(&self) -> u64 {
+        let left = self.settings.evaluations.saturating_sub(self.planned);
+        (left + self.trials.len()) as u64
+    }
+}
