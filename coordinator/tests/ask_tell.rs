@@ -121,7 +121,7 @@ fn every_strategy_talks_to_its_end_in_any_order() {
 fn what_cannot_be_taken_is_answered_and_nothing_is_lost() {
     for (line, word) in [
         (r#"{"tell": [{"id": 0, "f": 2.0}]}"#, "told before"),
-        (r#"{"tell": [{"id": 99, "f": 2.0}]}"#, "not asked for"),
+        (r#"{"tell": [{"id": 9999, "f": 2.0}]}"#, "not asked for"),
         (
             r#"{"tell": [{"id": 1, "f": 2.0}, {"id": 1, "f": 2.0}]}"#,
             "twice",

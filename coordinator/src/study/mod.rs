@@ -2,12 +2,13 @@
 //!
 //! [`calibrate()`] asks a search strategy for individuals, has them scored and tells the strategy
 //! the results; [`compare()`] then scores and simulates chosen parameter sets under chosen
-//! conditions. Both see workers only through the trait [`Evaluator`], in whatever order results
+//! conditions; [`evaluate()`] scores what another program asks for. All see workers only through the trait [`Evaluator`], in whatever order results
 //! arrive: what they return is a function of the case, the settings and the seed.
 mod calibrate;
 mod compare;
 mod diagnose;
 mod error;
+mod evaluate;
 mod evaluator;
 mod log;
 mod progress;
@@ -20,6 +21,7 @@ pub use calibrate::{Calibrated, calibrate};
 pub use compare::{Compared, Curves, PICTURES, Wanted, compare};
 pub use diagnose::{Diagnosed, StageCost, StageView, diagnose_on, library};
 pub use error::{EvaluatorError, StudyError};
+pub use evaluate::{Request, Scored, evaluate};
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;

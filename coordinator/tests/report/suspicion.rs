@@ -422,6 +422,20 @@ fn accounts() -> Vec<(Stage, StageCost)> {
     ]
 }
 
+/// A gauge that reads a little too much.
+fn reads_high() -> NeverExact {
+    NeverExact {
+        id: "gauge_gain".to_owned(),
+        parameter: "gain_2".to_owned(),
+        value: 0.006,
+        unit: "1".to_owned(),
+        interval: [0.003, 0.009],
+        tolerance: 0.005,
+        within: true,
+        assumed: true,
+    }
+}
+
 /// A diagnosis that ends in a verdict, with everything that such a verdict has.
 pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     let case = sample::case();
@@ -472,16 +486,7 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         preflight: Some(preflight()),
         preflight_after: added.then(preflight),
         limits: limits(&library),
-        nuisances: vec![NeverExact {
-            id: "gauge_gain".to_owned(),
-            parameter: "gain_2".to_owned(),
-            value: 0.006,
-            unit: "1".to_owned(),
-            interval: [0.003, 0.009],
-            tolerance: 0.005,
-            within: true,
-            assumed: true,
-        }],
+        nuisances: vec![reads_high()],
         absorbed: vec![Absorbed {
             id: "post_compliance".to_owned(),
             share: 0.99,

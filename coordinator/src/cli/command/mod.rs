@@ -9,6 +9,7 @@ mod calibrate;
 mod case;
 mod completions;
 mod diagnose;
+mod evaluate;
 mod explain;
 mod export;
 mod keys;
@@ -65,6 +66,7 @@ commands! {
     Simulate: simulate,
     Calibrate: calibrate,
     AskTell: ask_tell,
+    Evaluate: evaluate,
     Verify: verify,
     Diagnose: diagnose,
     Head: head,

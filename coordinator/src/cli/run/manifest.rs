@@ -19,6 +19,8 @@ const MOST_NAMED: usize = 3;
 pub(crate) const CALIBRATE: &str = "calibrate";
 /// The kind of a diagnosis.
 pub(crate) const DIAGNOSE: &str = "diagnose";
+/// The kind of a run of individuals that another program asks for.
+pub(crate) const EVALUATE: &str = "evaluate";
 
 /// The kind that a manifest without one has.
 pub(crate) fn calibrate() -> String {
@@ -29,6 +31,8 @@ pub(crate) fn calibrate() -> String {
 pub(crate) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
     /// The command that runs of this kind belong to.
     const KIND: &'static str;
+    /// Whether a seed is part of it.
+    const SEEDED: bool = true;
 
     /// What of it a command line must repeat beside preset, settings and seed, each word after a
     /// space.
@@ -174,8 +178,10 @@ impl<S: Decides> Manifest<S> {
         for set in &self.set {
             command.extend([" --set ", set]);
         }
-        let seed = self.seed.to_string();
-        command.extend([" --seed ", &seed, " --run ", &quote_path(folder)]);
+        if S::SEEDED {
+            command.extend([" --seed ", &self.seed.to_string()]);
+        }
+        command.extend([" --run ", &quote_path(folder)]);
         command.push_str(&self.settings.arguments());
         if let Some(start) = &self.start {
             command.extend([" --genes ", &quote_path(&start.file)]);

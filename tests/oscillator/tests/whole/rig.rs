@@ -9,6 +9,7 @@ use oscillator::{
 use serde_json::Value;
 use std::{
     fs,
+    io::Write as _,
     path::{Path, PathBuf},
     process::{Command, Stdio},
     thread,
@@ -163,6 +164,25 @@ impl Rig {
         words::check("standard error", &said);
         words::check("standard output", &printed);
         printed
+    }
+
+    /// Runs a command on an input: the lines that it printed and its exit code.
+    pub(crate) fn fed(&self, words: &[&str], input: &str) -> (Vec<Value>, Option<i32>) {
+        let mut command = self.command(words);
+        let piped = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+        let mut child = piped.stderr(Stdio::null()).spawn().unwrap();
+        child
+            .stdin
+            .take()
+            .unwrap()
+            .write_all(input.as_bytes())
+            .unwrap();
+        let output = child.wait_with_output().unwrap();
+        let printed = String::from_utf8(output.stdout).unwrap();
+        let lines = printed
+            .lines()
+            .map(|line| serde_json::from_str(line).unwrap());
+        (lines.collect(), output.status.code())
     }
 
     /// The same with `--output json`: the object.

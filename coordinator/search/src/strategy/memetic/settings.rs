@@ -222,7 +222,7 @@ impl MemeticSettings {
 pub(in crate::strategy) const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        Values::Whole(2, u64::MAX),
+        Values::Whole(4, u64::MAX),
         "individuals per generation",
     ),
     Setting::new(

@@ -125,7 +125,9 @@ impl Talk {
         for (id, (result, residual)) in told {
             self.told += 1;
             let f = result.fitness;
-            let better = self.best.as_ref().is_none_or(|best| f < best.f);
+            // of equals the first that was asked for, whatever the order in which they are told
+            let better = |best: &Best| f < best.f || (f <= best.f && id < best.id);
+            let better = self.best.as_ref().is_none_or(better);
             if let Some(x) = self.open.remove(&id).filter(|_| result.complete && better) {
                 self.best = Some(Best { id, x, f });
             }

@@ -1,0 +1,175 @@
+//! `horsehead evaluate`: any program's individuals are scored on workers, line by line.
+mod words;
+
+use crate::{
+    case::require_record,
+    cli::{
+        argument::{
+            case::{CaseChoice, LoadedCase},
+            door::Door,
+            workers::{cores, worker_count},
+        },
+        output::{
+            problem::{EXIT_CODES, Usage},
+            terminal,
+        },
+        run::{
+            begun::Run,
+            bus,
+            command_line::command_line,
+            folder::RunFolder,
+            manifest::{self, Decides, EVALUATE, Manifest},
+            session::Session,
+        },
+    },
+    study::{Request, evaluate},
+};
+use clap::Args;
+use search::space::Space;
+use serde::{Deserialize, Serialize};
+use std::{
+    io::{self, BufRead as _},
+    path::PathBuf,
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering},
+    },
+    time::Instant,
+};
+use tokio::sync::mpsc;
+use words::{Line, Tag};
+
+/// Score individuals that another program asks for, on workers.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+One JSON object a line in, one out, in the order in which they are done:
+  {{\"id\": 7, \"genes\": {{\"kb1\": 7.8e8, ..}}}}          every unknown that the case searches
+  {{\"id\": 7, \"objective\": 1.25, \"complete\": true, \"verdict\": \"complete\"}}
+With \"residual\": true a complete one comes with \"residual\": [..], whose squared length is the objective.
+A simulation that fails has a graded objective above every complete one's; what could not be computed at
+all has null. A line that cannot be taken is answered by {{\"id\", \"line\", \"error\", \"help\"}}, the others go
+on, and the program ends with exit code 2. Write many lines before reading: they are done side by side.
+The end of the input ends it. What is asked again is answered from the run's journal.
+
+Example:
+  horsehead evaluate cases/cyjs10-5-37hb --workers 2 < asked.jsonl > scored.jsonl
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    choice: CaseChoice,
+    /// Run folder [default: runs/CASE-evaluate-seed0, with --measured also the folder's name and the start of
+    /// its records' hash].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    door: Door,
+    /// Worker processes to start on this machine; 0 for none [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
+    workers: Option<usize>,
+}
+
+/// Nothing but the case decides what individuals are worth.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct Individuals {}
+
+impl Decides for Individuals {
+    const KIND: &'static str = EVALUATE;
+    const SEEDED: bool = false;
+}
+
+/// Lines that wait to be taken.
+const WAITING: usize = 4096;
+
+/// Scores until the input ends.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let session = Session {
+        door: arguments.door.clone(),
+        local_workers: arguments.workers.unwrap_or_else(cores),
+        started: Instant::now(),
+    };
+    let run = begin(arguments)?;
+    let space = Space::new(&run.case.unknowns)?;
+    let (asking, mut requests) = mpsc::channel(WAITING);
+    let refused = Arc::new(AtomicUsize::new(0));
+    let counted = Arc::clone(&refused);
+    // it blocks on the input, and is left behind when the work is over
+    std::thread::spawn(move || read(&space, &asking, &counted));
+    session.work(&run, async |bus, stop| {
+        let answer = &mut |tag: Tag, scored: &_| say(&Line::of(&tag, scored));
+        evaluate(bus, &run.case, &mut requests, answer, stop).await
+    })?;
+    match refused.load(Ordering::SeqCst) {
+        0 => Ok(()),
+        count => Err(Usage {
+            message: format!("{count} lines were not taken"),
+            help: "each was answered with its error; all others are scored".to_owned(),
+        }
+        .into()),
+    }
+}
+
+fn begin(arguments: &Arguments) -> anyhow::Result<Run<Individuals>> {
+    let LoadedCase {
+        case,
+        measured,
+        synthetic,
+        notes,
+    } = arguments.choice.load()?;
+    require_record(&arguments.choice.case, &case, case.objective.condition)?;
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let replaced = arguments.choice.measured.as_deref();
+        RunFolder::default_path(&case, EVALUATE, &[], replaced, 0)?
+    };
+    let manifest = Manifest {
+        kind: EVALUATE.to_owned(),
+        format: manifest::FORMAT,
+        program: bus::PROGRAM.to_owned(),
+        command: command_line(),
+        preset: String::new(),
+        seed: 0,
+        set: Vec::new(),
+        settings: Individuals {},
+        start: None,
+        case_folder: std::path::absolute(&arguments.choice.case)?,
+        measured,
+        synthetic,
+        notes,
+        wall_s: 0.0,
+    };
+    Run::begin(&path, manifest, case)
+}
+
+/// Reads lines and asks for what they say until the input ends or nobody takes any more.
+fn read(space: &Space, asking: &mpsc::Sender<Request<Tag>>, refused: &AtomicUsize) {
+    for (number, line) in (1..).zip(io::stdin().lock().lines()) {
+        let Ok(line) = line else { return };
+        if line.trim().is_empty() {
+            continue;
+        }
+        match words::read(&line, space) {
+            Ok(request) => {
+                if asking.blocking_send(request).is_err() {
+                    return;
+                }
+            }
+            Err(why) => {
+                refused.fetch_add(1, Ordering::SeqCst);
+                let _gone = say(&Line::Refused {
+                    id: &why.id,
+                    line: number,
+                    error: &why.error,
+                    help: &why.help,
+                });
+            }
+        }
+    }
+}
+
+fn say(line: &Line<'_>) -> anyhow::Result<()> {
+    let mut text = serde_json::to_string(line)?;
+    text.push('\n');
+    terminal::write(&text)
+}

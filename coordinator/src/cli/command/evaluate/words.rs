@@ -1,0 +1,202 @@
+//! Lines of `horsehead evaluate`: what is asked for and what is said, as JSON. It knows a case's unknowns, not
+//! who scores.
+use crate::{
+    case::document::nearest,
+    cli::output::object::simulation::VerdictOutput,
+    study::{Request, Scored},
+};
+use protocol::job::Verdict;
+use search::space::Space;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// A line in.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Asked {
+    id: Value,
+    genes: BTreeMap<String, f64>,
+    #[serde(default)]
+    residual: bool,
+}
+
+/// A line out.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(super) enum Line<'a> {
+    /// What came of an individual.
+    Scored {
+        id: &'a Value,
+        /// Of a failed run its grade, above every complete run's; null where it could not be computed.
+        objective: Option<f64>,
+        complete: bool,
+        verdict: Ending,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        residual: Option<&'a [f64]>,
+    },
+    /// A line that cannot be taken.
+    Refused {
+        id: &'a Value,
+        line: usize,
+        error: &'a str,
+        help: &'a str,
+    },
+}
+
+/// How a simulation ended, as `horsehead simulate` says it, or why there was none.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+pub(super) enum Ending {
+    Simulated(VerdictOutput),
+    Lost(String),
+}
+
+/// Whose a request is.
+pub(super) struct Tag {
+    pub(super) id: Value,
+    residual: bool,
+}
+
+/// Why a line is not taken, and what to say instead.
+#[derive(Debug)]
+pub(super) struct Refused {
+    pub(super) id: Value,
+    pub(super) error: String,
+    pub(super) help: String,
+}
+
+/// Reads a line about the unknowns of a space.
+///
+/// # Errors
+/// What is no object of this form, an unknown that is missing, not there, not finite or out of bounds.
+pub(super) fn read(line: &str, space: &Space) -> Result<Request<Tag>, Refused> {
+    let asked: Asked = serde_json::from_str(line).map_err(|error| {
+        let value: Option<Value> = serde_json::from_str(line).ok();
+        Refused {
+            id: value.map_or(Value::Null, |mut value| value["id"].take()),
+            error: format!("it cannot be read: {error}"),
+            help: "a line is one object, as {\"id\": 1, \"genes\": {\"kb1\": 7e8, ..}}".to_owned(),
+        }
+    })?;
+    let refuse = |error: String, help: String| Refused {
+        id: asked.id.clone(),
+        error,
+        help,
+    };
+    let names = space.axes().iter().map(|axis| axis.unknown.name.as_str());
+    if let Some(name) = asked
+        .genes
+        .keys()
+        .find(|name| space.position(name).is_none())
+    {
+        let near = nearest(name, names.clone());
+        let help = near.map_or_else(
+            || format!("the case searches {}", names.collect::<Vec<_>>().join(", ")),
+            |near| format!("did you mean `{near}`?"),
+        );
+        return Err(refuse(
+            format!("the case searches no unknown `{name}`"),
+            help,
+        ));
+    }
+    let mut own = Vec::with_capacity(space.dimension());
+    for axis in space.axes() {
+        let unknown = &axis.unknown;
+        let name = &unknown.name;
+        let value = asked.genes.get(name).copied().ok_or_else(|| {
+            let help = "give every unknown that the case searches a value".to_owned();
+            refuse(format!("`{name}` has no value"), help)
+        })?;
+        if !(unknown.lower..=unknown.upper).contains(&value) {
+            let (lower, upper) = (unknown.lower, unknown.upper);
+            return Err(refuse(
+                format!("{name} = {value:e} lies outside its bounds"),
+                format!("choose it from {lower:e} to {upper:e} {}", unknown.unit),
+            ));
+        }
+        own.push(value);
+    }
+    Ok(Request {
+        genes: space.expand(&own),
+        with_residual: asked.residual,
+        tag: Tag {
+            residual: asked.residual,
+            id: asked.id,
+        },
+    })
+}
+
+impl<'a> Line<'a> {
+    /// What is said of a result.
+    pub(super) fn of(tag: &'a Tag, scored: &'a Scored) -> Self {
+        match scored {
+            Ok(evaluation) => {
+                let complete = evaluation.verdict == Verdict::Complete;
+                Self::Scored {
+                    id: &tag.id,
+                    objective: Some(evaluation.fitness).filter(|f| f.is_finite()),
+                    complete,
+                    verdict: Ending::Simulated(evaluation.verdict.into()),
+                    residual: (tag.residual && complete).then_some(&evaluation.residual),
+                }
+            }
+            Err(failure) => Self::Scored {
+                id: &tag.id,
+                objective: None,
+                complete: false,
+                verdict: Ending::Lost(failure.to_string()),
+                residual: None,
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::case::{Scale, Unknown};
+
+    fn space() -> Space {
+        let stiff = Unknown::new("kb1", "N/m", Scale::Logarithmic, 1e8, [1e4, 1e12]);
+        let place = Unknown::new("place", "m", Scale::Linear, 0.0, [-1.0, 1.0]);
+        Space::new(&[stiff, place]).unwrap()
+    }
+
+    #[test]
+    fn a_line_is_taken_whole_or_refused_by_name() {
+        let good = r#"{"id": "a7", "genes": {"kb1": 2e8, "place": -0.5}, "residual": true}"#;
+        let request = read(good, &space()).unwrap();
+        assert_eq!(request.genes, [2e8, -0.5]);
+        assert!(request.with_residual && request.tag.id == "a7");
+        for (line, id, said) in [
+            (
+                r#"{"id": 1, "genes": {"kb1": 2e8}}"#,
+                "1",
+                "`place` has no value",
+            ),
+            (
+                r#"{"id": 2, "genes": {"kb": 2e8, "place": 0}}"#,
+                "2",
+                "no unknown `kb`",
+            ),
+            (
+                r#"{"id": 3, "genes": {"kb1": 1, "place": 0}}"#,
+                "3",
+                "kb1 = 1e0 lies outside",
+            ),
+            (r#"{"id": 4, "gene": {}}"#, "4", "unknown field `gene`"),
+            (
+                r#"{"id": 5, "genes": {"kb1": NaN}}"#,
+                "null",
+                "cannot be read",
+            ),
+            ("nonsense", "null", "cannot be read"),
+        ] {
+            let refused = read(line, &space()).err().unwrap();
+            assert!(refused.error.contains(said), "{}", refused.error);
+            assert_eq!(refused.id.to_string(), id, "{line}");
+            assert!(!refused.help.is_empty());
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! Individuals that somebody else asks for, scored as they come: results in the order in which they are done.
+//!
+//! It knows requests and results, not who asks nor how. A job is numbered by its content, so a run that is
+//! opened again finds in its journal whatever is asked a second time, in any order.
+use super::{
+    error::StudyError,
+    evaluator::Evaluator,
+    stop::{Stop, or_stop},
+};
+use protocol::{
+    case::Case,
+    id::JobId,
+    job::{Answer, Evaluation, Failure, Individual, Job, Outcome, Reply, SimulateSpec},
+    wire,
+};
+use std::collections::BTreeMap;
+use tokio::sync::mpsc;
+
+/// An individual to score.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request<T> {
+    /// Whose it is.
+    pub tag: T,
+    /// One value for each unknown of the case, in its order [declared units].
+    pub genes: Vec<f64>,
+    /// Whether its residual is wanted.
+    pub with_residual: bool,
+}
+
+/// What came of an individual; a failure that others need not meet is an answer, too.
+pub type Scored = Result<Evaluation, Failure>;
+
+/// Scores what is asked for until nobody asks any more; `answer` is told of each, whoever asked for the same
+/// before.
+///
+/// # Errors
+/// If the case or the workers make every evaluation impossible, if nobody evaluates any more, if the
+/// user stops it, or if an answer cannot be given.
+pub async fn evaluate<E: Evaluator, T>(
+    evaluator: &mut E,
+    case: &Case,
+    requests: &mut mpsc::Receiver<Request<T>>,
+    answer: &mut dyn FnMut(T, &Scored) -> anyhow::Result<()>,
+    stop: &mut Stop,
+) -> anyhow::Result<()> {
+    let mut open: BTreeMap<JobId, Vec<T>> = BTreeMap::new();
+    let mut known: BTreeMap<JobId, Scored> = BTreeMap::new();
+    let mut asking = true;
+    while asking || !open.is_empty() {
+        let event = async {
+            tokio::select! {
+                biased;
+                request = requests.recv(), if asking => Event::Request(request),
+                completed = evaluator.next(), if !open.is_empty() => Event::Completed(completed),
+            }
+        };
+        match or_stop(event, stop).await? {
+            Event::Request(None) => asking = false,
+            Event::Request(Some(request)) => {
+                let job = job(case, &request);
+                let id = number(&job)?;
+                if let Some(scored) = known.get(&id) {
+                    answer(request.tag, scored)?;
+                } else if let Some(tags) = open.get_mut(&id) {
+                    tags.push(request.tag);
+                } else {
+                    evaluator.submit(id, job)?;
+                    open.insert(id, vec![request.tag]);
+                }
+            }
+            Event::Completed(completed) => {
+                let completed = completed?;
+                let Some(tags) = open.remove(&completed.id) else {
+                    continue;
+                };
+                let scored = scored(completed.id, completed.outcome)?;
+                for tag in tags {
+                    answer(tag, &scored)?;
+                }
+                known.insert(completed.id, scored);
+            }
+        }
+    }
+    Ok(())
+}
+
+enum Event<T, C> {
+    Request(Option<Request<T>>),
+    Completed(C),
+}
+
+fn job<T>(case: &Case, request: &Request<T>) -> Job {
+    let individual = Individual::new(case.objective.condition, request.genes.clone());
+    let with_residual = request.with_residual;
+    Job::Simulate(SimulateSpec::new(
+        individual,
+        Reply::Score { with_residual },
+    ))
+}
+
+/// The start of the hash of its content, no larger than any table holds exactly.
+fn number(job: &Job) -> anyhow::Result<JobId> {
+    let hash = blake3::hash(&wire::encode(job)?);
+    let [a, b, c, d, e, f, ..] = *hash.as_bytes();
+    Ok(JobId(u64::from_le_bytes([a, b, c, d, e, f, 0, 0])))
+}
+
+fn scored(id: JobId, outcome: Outcome) -> Result<Scored, StudyError> {
+    match outcome {
+        Outcome::Done(answer) => match Answer::into_scored(answer) {
+            Ok(evaluation) => Ok(Ok(evaluation)),
+            Err(_) => Err(StudyError::WrongKind { id }),
+        },
+        Outcome::Failed(failure) => match StudyError::hopeless(&failure) {
+            Some(error) => Err(error),
+            None => Ok(Err(failure)),
+        },
+    }
+}
