@@ -2,14 +2,13 @@
 //!
 //! Refits begin where the model without effects was fitted. If that is not the valley of the true
 //! stiffness, even the right effect leaves much there, and wrong ones stand beside it. So the likeliest
-//! try where their rivals arrived, the likeliest then where the case begins, then they look for valleys of
-//! their own, and at last the likeliest goes the whole way from the start; all others are refitted from the deepest, and all are judged again. If even
+//! try where their rivals arrived, then look for valleys of their own, and at last the likeliest goes the
+//! whole way from the start; all others are refitted from the deepest, and all are judged again. If even
 //! that is no valley, the low orders of the period say which effects to begin with.
 use crate::cause::low_orders;
 use crate::cause::refit::Refitted;
 use crate::cause::round::Round;
 use crate::ground::session::Session;
-use crate::ground::valley::{FAR, NEAR};
 use crate::ground::{basin, valley};
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
@@ -52,24 +51,10 @@ pub(crate) async fn search<L: Laboratory>(
         }
         let fit = &round.refits[place].fit;
         let starts = from_rivals(round, place, genes);
-        let other =
-            valley::follow(&mut session.experiments(Stage::Refit), fit, (starts, NEAR)).await?;
+        let other = valley::follow(&mut session.experiments(Stage::Refit), fit, starts).await?;
         found.extend(other.map(|fit| Found { place, fit }));
     }
     settle(session, current, round, found).await?;
-    // without the effect the fit may have moved its unknowns far: once more from where the case begins
-    if let Some(&place) = leaders(round, LOOSE * lost).first()
-        && session.lab.may(Stage::Refit)
-    {
-        let fit = &round.refits[place].fit;
-        let mut from = fit.point();
-        let standing = from.model.standing().count();
-        from.x[..genes + standing].fill(0.0);
-        let other =
-            valley::enter(&mut session.experiments(Stage::Refit), fit, (&from, FAR)).await?;
-        let found = other.map(|fit| Found { place, fit }).into_iter().collect();
-        settle(session, current, round, found).await?;
-    }
     deeper(session, current, round).await?;
     // from the start, with the likeliest effect where it is now
     if let Some(&place) = leaders(round, lost).first()
@@ -79,7 +64,7 @@ pub(crate) async fn search<L: Laboratory>(
         let (seed, rest) = (session.inputs.seed, &fit.x()[genes..]);
         let mut experiments = session.experiments(Stage::Refit);
         let starts = basin::enter(&mut experiments, &fit.model, rest, seed).await?;
-        let other = valley::follow(&mut experiments, fit, (starts, NEAR)).await?;
+        let other = valley::follow(&mut experiments, fit, starts).await?;
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
@@ -106,12 +91,7 @@ async fn deeper<L: Laboratory>(
                 break;
             }
             let fit = &round.refits[place].fit;
-            let other = valley::enter(
-                &mut session.experiments(Stage::Refit),
-                fit,
-                (&fit.point(), NEAR),
-            )
-            .await?;
+            let other = valley::enter(&mut session.experiments(Stage::Refit), fit).await?;
             found.extend(other.map(|fit| Found { place, fit }));
         }
         if found.is_empty() {
@@ -138,9 +118,7 @@ async fn from_low_orders<L: Laboratory>(
     let least = left.fold(current.chi_squared(), f64::min);
     let mut found = Vec::new();
     for fit in fits.into_iter().flatten() {
-        let fit = valley::enter(&mut experiments, &fit, (&fit.point(), NEAR))
-            .await?
-            .unwrap_or(fit);
+        let fit = valley::enter(&mut experiments, &fit).await?.unwrap_or(fit);
         let Some(effect) = fit.model.added.last() else {
             continue;
         };

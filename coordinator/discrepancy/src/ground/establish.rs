@@ -118,8 +118,7 @@ async fn first_fit<L: Laboratory>(
     };
     if first.misfit() > DOUBTFUL
         && experiments.lab.may(Stage::Basin)
-        && let Some(other) =
-            valley::enter(experiments, &first, (&first.point(), valley::NEAR)).await?
+        && let Some(other) = valley::enter(experiments, &first).await?
     {
         return Ok(Some(other));
     }

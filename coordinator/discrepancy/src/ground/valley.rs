@@ -18,27 +18,21 @@ const APART: f64 = 0.05;
 /// A fit lies in another valley if it leaves less than this share of what the first one left.
 pub(crate) const BETTER: f64 = 0.9;
 
-/// Steps after which starts near a fit are compared with it, and those far from it.
-pub(crate) const NEAR: u32 = 3;
-pub(crate) const FAR: u32 = 10;
-
 /// A clearly better fit of the same model in another valley, if there is one; none where no unknown has a
-/// narrow valley. The valley is scanned with everything else as it is at a point, and the best stations are
-/// compared with the fit after so many steps.
+/// narrow valley.
 ///
 /// # Errors
 /// Those of the laboratory.
 pub async fn enter<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    (from, steps): (&Point, u32),
 ) -> Result<Option<Fit>, L::Error> {
     let axes = fit.model.space.axes().iter().enumerate();
     let mut valleys = axes.filter_map(|(k, axis)| Some((k, axis.unknown.valley.as_ref()?)));
     let Some((scanned, valley)) = valleys.next() else {
         return Ok(None);
     };
-    let stations = stations(from, scanned, valley);
+    let stations = stations(&fit.point(), scanned, valley);
     let curves = experiments.curves(&stations).await?;
     let left = |curves| experiments.on.residual(&curves).norm_squared();
     let seen = stations.into_iter().zip(curves);
@@ -53,10 +47,10 @@ pub async fn enter<L: Laboratory>(
             starts.push(point);
         }
     }
-    follow(experiments, fit, (starts, steps)).await
+    follow(experiments, fit, starts).await
 }
 
-/// The best of several starts, where it becomes clearly better than a fit of the same model: so many steps of
+/// The best of several starts, where it becomes clearly better than a fit of the same model: a few steps of
 /// each, then on with the best.
 ///
 /// # Errors
@@ -64,9 +58,9 @@ pub async fn enter<L: Laboratory>(
 pub async fn follow<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: &Fit,
-    (starts, steps): (Vec<Point>, u32),
+    starts: Vec<Point>,
 ) -> Result<Option<Fit>, L::Error> {
-    let best = closest(experiments.fits(starts, Settings::short(steps)).await?);
+    let best = closest(experiments.fits(starts, Settings::short(3)).await?);
     let better = |best: &Fit| best.chi_squared() < BETTER * fit.chi_squared();
     let Some(best) = best.filter(better) else {
         return Ok(None);

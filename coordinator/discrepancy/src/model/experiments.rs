@@ -20,11 +20,6 @@ pub struct Experiments<'a, L> {
     pub stage: Stage,
 }
 
-/// Share of the mean curvature that holds what a record hardly sees where it is, as long as steps are damped:
-/// without its effect a model would else drive such unknowns to their bounds, and the effect would be fitted
-/// beside them there.
-const LEVEL: f64 = 1e-3;
-
 impl<L: Laboratory> Experiments<'_, L> {
     /// The same for another record.
     pub fn with<'b>(&'b mut self, on: &'b WhitenedRecord) -> Experiments<'b, L> {
@@ -148,7 +143,6 @@ impl<L: Laboratory> Experiments<'_, L> {
     ) -> Result<Vec<Option<Fit>>, L::Error> {
         let how = Settings {
             exact: self.lab.differentiates(),
-            level: LEVEL,
             ..how
         };
         let search = |start: Point| {

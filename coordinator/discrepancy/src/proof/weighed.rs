@@ -2,7 +2,7 @@
 //! mean squares of single channels, and what decides whether a name carries.
 //!
 //! With whitened residuals `r` before and after, `D = |r_b|^2 - |r_a|^2` is what is closed; under noise of
-//! variance 1 its standard deviation is `2 |r_b - r_a|`. Of `|r_b|^2 - n` all could be closed. Along the
+//! variance 1 its standard deviation is `2 |r_b - r_a|`, and as many times more as the answer leaves of it. Of `|r_b|^2 - n` all could be closed. Along the
 //! directions in which cycles differ from their mean (their input did) a record says less: with `E` the
 //! deviations of the mean that they show, `(I + E E^T)^(-1/2)` is applied to every residual.
 use crate::record::measured::{Curves, Record};
@@ -83,14 +83,17 @@ impl Scale {
         let [before, after] = [before, after].map(|curves| self.left(curves));
         let closed = before.norm_squared() - after.norm_squared();
         let change = (&before - &after).norm();
-        let half = QUANTILE * 2.0 * change;
+        // what the answer leaves beyond the noise is noise to a gap, too: errors of model and input there
+        let left = (after.norm_squared() / after.len().max(1) as f64).sqrt();
+        let noise = left.max(1.0);
+        let half = QUANTILE * 2.0 * change * noise;
         let gap = before.norm_squared() - before.len() as f64;
         let whole = gap.max(closed.abs()).max(1.0);
         Weighed {
             closed: closed / whole,
             interval: [(closed - half) / whole, ((closed + half) / whole).min(1.0)],
             // all that is missing would close by the square of the change, with the deviation above
-            shows: change > 2.0 * (QUANTILE + MISSED),
+            shows: change > 2.0 * (QUANTILE + MISSED) * noise,
         }
     }
 }

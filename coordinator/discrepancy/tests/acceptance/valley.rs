@@ -227,25 +227,13 @@ fn a_fit_outside_the_valley_finds_its_way_into_it() {
     let outside = now(experiments.fit(at([0.6, 0.2, 0.0]), least_squares::Settings::short(1)));
     let outside = outside.expect("it simulates");
     assert!(left(&outside) > 9.0, "{}", left(&outside));
-    let found = now(valley::enter(
-        &mut experiments,
-        &outside,
-        (&outside.point(), 3),
-    ))
-    .expect("a valley");
+    let found = now(valley::enter(&mut experiments, &outside)).expect("a valley");
     assert!(left(&found) < 1.3, "{}", left(&found));
     assert!((found.x()[0] - truth.stiffness).abs() < 0.01);
     let inside = at([truth.stiffness, truth.damping, 0.1]);
     let inside = now(experiments.fit(inside, least_squares::Settings::short(8)));
     let inside = inside.expect("it simulates");
-    assert!(
-        now(valley::enter(
-            &mut experiments,
-            &inside,
-            (&inside.point(), 3)
-        ))
-        .is_none()
-    );
+    assert!(now(valley::enter(&mut experiments, &inside)).is_none());
 }
 
 /// A load card a degree and a half late: without that clock there is no valley to calibrate to.
