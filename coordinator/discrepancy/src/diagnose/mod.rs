@@ -97,8 +97,7 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
         ));
         return Ok(diagnosis);
     }
-    let others = inputs.records.get(1..).unwrap_or_default();
-    let shown = shown(&split, others, (&base.on, inputs.thresholds.orders));
+    let shown = shown(&mut session, &split).await?;
     let after = rounds(&mut session, &shown, &mut diagnosis).await?;
     conclude(&mut session, after, &shown, &mut diagnosis).await?;
     Ok(diagnosis)

@@ -35,7 +35,7 @@ pub(crate) async fn establish<L: Laboratory>(
         return Ok(None);
     };
     let mut recalibration = experiments.during(Stage::Recalibrate);
-    let errors = input_errors(&mut recalibration, &first, &inputs.library).await?;
+    let errors = input_errors(&mut recalibration, (&first, &first.curves), &inputs.library).await?;
     let wrong: Vec<Curves> = errors.iter().map(|error| error.curves.clone()).collect();
     let groups = Group::of(&record, highest, &wrong);
     let mut noise = Noise::estimate(&record, &groups, &wrong);

@@ -15,10 +15,11 @@ pub(crate) struct InputError {
     pub(crate) deviation: f64,
 }
 
-/// Errors of the input, as far as they are stated, at a fitted point.
+/// Errors of the input, as far as they are stated, at a fitted point with its curves under the record's
+/// condition.
 pub(crate) async fn input_errors<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
-    fit: &Fit,
+    (fit, own): (&Fit, &Curves),
     library: &[EffectDescriptor],
 ) -> Result<Vec<InputError>, L::Error> {
     let on = experiments.on;
@@ -27,7 +28,7 @@ pub(crate) async fn input_errors<L: Laboratory>(
     for scatter in &on.record.stated.input_scatter {
         match scatter {
             InputScatter::Abscissa { tolerance } => errors.push(InputError {
-                curves: on.metric.slopes(&fit.curves),
+                curves: on.metric.slopes(own),
                 // a tolerance bounds a uniform distribution
                 deviation: tolerance / 3.0_f64.sqrt() / cycles,
             }),
@@ -42,7 +43,7 @@ pub(crate) async fn input_errors<L: Laboratory>(
                 let point = fit.with(effect, &at_typical(effect, &[size]));
                 let seen = experiments.curves(&[point]).await?;
                 errors.extend(seen.into_iter().flatten().map(|curves| InputError {
-                    curves: difference(&curves, &fit.curves, p.typical - p.absent),
+                    curves: difference(&curves, own, p.typical - p.absent),
                     deviation: deviation / cycles,
                 }));
             }

@@ -1,5 +1,7 @@
 //! The proof: curves of the model before and after, under every condition that has a record.
-use crate::laboratory::{Laboratory, channels};
+use crate::ground::input_error::{InputError, input_errors};
+use crate::ground::session::Session;
+use crate::laboratory::{Laboratory, Stage, channels};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::proof::closed::{Closed, closed};
@@ -69,43 +71,74 @@ pub(crate) struct Shown<'a> {
     pub(crate) part: Portion,
 }
 
-/// Everything that an answer is shown on: the calibrated condition's record in parts, then the others. `on` is
-/// what was fitted, in the metric of the tests; elsewhere orders up to `highest` count.
-pub(crate) fn shown<'a>(
+/// Everything that an answer is shown on: the calibrated condition's record in parts, in the metric of the
+/// tests, then the others, each under its own noise and what its input may be wrong by.
+///
+/// # Errors
+/// Those of the laboratory.
+pub(crate) async fn shown<'a, L: Laboratory>(
+    session: &mut Session<'a, L>,
     split: &'a Split,
-    others: &'a [Record],
-    (on, highest): (&WhitenedRecord, usize),
-) -> Vec<Shown<'a>> {
-    let own = |record: &'a Record, part: Portion| {
-        let there = !record.cycles.is_empty() && !record.channels.is_empty();
-        there.then(|| {
-            let alike = match part {
-                Portion::Fitted | Portion::Cycles => {
-                    [&split.fitted.cycles[..], &split.cycles.cycles].concat()
-                }
-                Portion::Channels | Portion::Condition => record.cycles.clone(),
-            };
-            let scale = match part {
-                Portion::Fitted | Portion::Cycles => {
-                    Scale::of(record, &alike, &on.metric, split.fitted.cycles.len())
-                }
-                Portion::Channels | Portion::Condition => Scale::own(record, highest, &on.numerics),
-            };
-            Shown {
-                record,
-                alike,
-                scale,
-                part,
-            }
-        })
-    };
+) -> Result<Vec<Shown<'a>>, L::Error> {
+    let (base, inputs) = (session.base, session.inputs);
     let parts = [
-        own(&split.fitted, Portion::Fitted),
-        own(&split.cycles, Portion::Cycles),
-        own(&split.channels, Portion::Channels),
+        (&split.fitted, Portion::Fitted),
+        (&split.cycles, Portion::Cycles),
+        (&split.channels, Portion::Channels),
     ];
-    let others = others.iter().map(|record| own(record, Portion::Condition));
-    parts.into_iter().chain(others).flatten().collect()
+    let others = inputs.records.iter().skip(1);
+    let others = others.map(|record| (record, Portion::Condition));
+    let there =
+        |(record, _): &(&Record, Portion)| !record.cycles.is_empty() && !record.channels.is_empty();
+    let mut shown = Vec::new();
+    for (record, part) in parts.into_iter().chain(others).filter(there) {
+        let (alike, scale) = match part {
+            Portion::Fitted | Portion::Cycles => {
+                let alike = [&split.fitted.cycles[..], &split.cycles.cycles].concat();
+                let fitted = split.fitted.cycles.len();
+                let scale = Scale::of(record, &alike, &base.on.metric, fitted);
+                (alike, scale)
+            }
+            Portion::Channels | Portion::Condition => {
+                let scale = elsewhere(session, record).await?;
+                (record.cycles.clone(), scale)
+            }
+        };
+        shown.push(Shown {
+            record,
+            alike,
+            scale,
+            part,
+        });
+    }
+    Ok(shown)
+}
+
+/// A record that took no part in the fit, under its own noise and errors of its input.
+async fn elsewhere<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    record: &Record,
+) -> Result<Scale, L::Error> {
+    let (base, inputs) = (session.base, session.inputs);
+    let highest = inputs.thresholds.orders;
+    let own = WhitenedRecord::under_own_noise(record.clone(), highest, base.on.numerics.clone());
+    let mut metric = own.metric.clone();
+    let mut experiments = session.experiments(Stage::Show);
+    let mut experiments = experiments.with(&own);
+    let simulated = experiments.curves(&[base.fit.point()]).await?;
+    if let Some(Some(curves)) = simulated.first() {
+        let at = (&base.fit, curves);
+        let errors = input_errors(&mut experiments, at, &inputs.library).await?;
+        let direction = |error: &InputError| metric.whiten(&error.curves) * error.deviation;
+        let directions: Vec<_> = errors.iter().map(direction).collect();
+        metric.marginalize(&directions);
+    }
+    Ok(Scale::of(
+        record,
+        &record.cycles,
+        &metric,
+        record.cycles.len(),
+    ))
 }
 
 /// Compares two models on records; nothing for a record on which one of them fails.

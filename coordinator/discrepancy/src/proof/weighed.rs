@@ -7,9 +7,7 @@
 //! deviations of the mean that they show, `(I + E E^T)^(-1/2)` is applied to every residual.
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
-use crate::record::whitened::WhitenedRecord;
 use nalgebra::{DMatrix, DVector};
-use protocol::job::Numerics;
 use serde::Serialize;
 
 /// The share of a gap that closes.
@@ -56,12 +54,6 @@ impl Scale {
             metric: metric.clone(),
             unit,
         }
-    }
-
-    /// A record under its own noise.
-    pub(crate) fn own(record: &Record, highest: usize, numerics: &Numerics) -> Self {
-        let own = WhitenedRecord::under_own_noise(record.clone(), highest, numerics.clone());
-        Self::of(record, &record.cycles, &own.metric, record.cycles.len())
     }
 
     /// What is left of a record by curves.
@@ -124,6 +116,8 @@ fn shortened(
 mod tests {
     use super::*;
     use crate::record::measured::{Stated, tests::recorded};
+    use crate::record::whitened::WhitenedRecord;
+    use protocol::job::Numerics;
     use search::random::{Phase, Streams};
 
     /// Of records whose gap is about as large as their noise, a change that has nothing to do with it is
@@ -158,7 +152,8 @@ mod tests {
                 held_out: false,
                 stated: Stated::default(),
             };
-            let scale = Scale::own(&record, 60, &Numerics::default());
+            let on = WhitenedRecord::under_own_noise(record.clone(), 60, Numerics::default());
+            let scale = Scale::of(&record, &record.cycles, &on.metric, record.cycles.len());
             let weighed = |after| scale.weighed(&vec![wave(0.0, 1.0)], &vec![after]);
             idle += usize::from(weighed(wave(0.1, 7.0)).interval[0] > 0.0);
             let right = weighed(wave(0.25, 3.0));
