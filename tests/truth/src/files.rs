@@ -243,8 +243,8 @@ mod tests {
                         0.01,0.3,1.000,3.000,50000\n";
         assert_eq!(two, expected);
         assert_eq!(Channels::TWO.to_string(), "13");
-        assert!(Channels::TWO.with_gauges(&[5]).is_err());
-        assert!(Channels::TWO.with_gauges(&[]).is_err());
+        Channels::TWO.with_gauges(&[5]).unwrap_err();
+        Channels::TWO.with_gauges(&[]).unwrap_err();
     }
 
     #[test]
