@@ -43,7 +43,7 @@ use words::{Line, Tag};
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 One JSON object a line in, one out, in the order in which they are done:
-  {{\"id\": 7, \"genes\": {{\"kb1\": 7.8e8, ..}}}}          every unknown that the case searches
+  {{\"id\": 7, \"genes\": {{\"stiffness\": 7.8e8, ..}}}}          every unknown that the case searches
   {{\"id\": 7, \"objective\": 1.25, \"complete\": true, \"verdict\": \"complete\"}}
 With \"residual\": true a complete one comes with \"residual\": [..], whose squared length is the objective.
 A simulation that fails has a graded objective above every complete one's; what could not be computed at

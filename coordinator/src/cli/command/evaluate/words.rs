@@ -76,7 +76,8 @@ pub(super) fn read(line: &str, space: &Space) -> Result<Request<Tag>, Refused> {
         Refused {
             id: value.map_or(Value::Null, |mut value| value["id"].take()),
             error: format!("it cannot be read: {error}"),
-            help: "a line is one object, as {\"id\": 1, \"genes\": {\"kb1\": 7e8, ..}}".to_owned(),
+            help: "a line is one object, as {\"id\": 1, \"genes\": {\"stiffness\": 7e8, ..}}"
+                .to_owned(),
         }
     })?;
     let refuse = |error: String, help: String| Refused {
@@ -158,36 +159,36 @@ mod tests {
     use protocol::case::{Scale, Unknown};
 
     fn space() -> Space {
-        let stiff = Unknown::new("kb1", "N/m", Scale::Logarithmic, 1e8, [1e4, 1e12]);
+        let stiff = Unknown::new("stiffness", "N/m", Scale::Logarithmic, 1e8, [1e4, 1e12]);
         let place = Unknown::new("place", "m", Scale::Linear, 0.0, [-1.0, 1.0]);
         Space::new(&[stiff, place]).unwrap()
     }
 
     #[test]
     fn a_line_is_taken_whole_or_refused_by_name() {
-        let good = r#"{"id": "a7", "genes": {"kb1": 2e8, "place": -0.5}, "residual": true}"#;
+        let good = r#"{"id": "a7", "genes": {"stiffness": 2e8, "place": -0.5}, "residual": true}"#;
         let request = read(good, &space()).unwrap();
         assert_eq!(request.genes, [2e8, -0.5]);
         assert!(request.with_residual && request.tag.id == "a7");
         for (line, id, said) in [
             (
-                r#"{"id": 1, "genes": {"kb1": 2e8}}"#,
+                r#"{"id": 1, "genes": {"stiffness": 2e8}}"#,
                 "1",
                 "`place` has no value",
             ),
             (
-                r#"{"id": 2, "genes": {"kb": 2e8, "place": 0}}"#,
+                r#"{"id": 2, "genes": {"stiff": 2e8, "place": 0}}"#,
                 "2",
-                "no unknown `kb`",
+                "no unknown `stiff`",
             ),
             (
-                r#"{"id": 3, "genes": {"kb1": 1, "place": 0}}"#,
+                r#"{"id": 3, "genes": {"stiffness": 1, "place": 0}}"#,
                 "3",
-                "kb1 = 1e0 lies outside",
+                "stiffness = 1e0 lies outside",
             ),
             (r#"{"id": 4, "gene": {}}"#, "4", "unknown field `gene`"),
             (
-                r#"{"id": 5, "genes": {"kb1": NaN}}"#,
+                r#"{"id": 5, "genes": {"stiffness": NaN}}"#,
                 "null",
                 "cannot be read",
             ),
