@@ -1,7 +1,7 @@
 //! Covariance matrix adaptation over the whole box, begun anew with twice the population where it has
 //! converged.
 //!
-//! The distribution is [`super::covariance`] with active updates; restarts are those of Auger and Hansen, "A
+//! The distribution is `covariance.rs` with active updates; restarts are those of Auger and Hansen, "A
 //! restart CMA evolution strategy with increasing population size" (CEC 2005). What leaves the box is mirrored
 //! at its wall. Only the order of results counts, so failures are merely last.
 use super::{

@@ -1,6 +1,6 @@
 //! Local refinement around the best point: an evolution strategy with covariance adaptation.
 //!
-//! Each round draws a batch and moves the distribution towards the better half ([`super::covariance`]). It uses
+//! Each round draws a batch and moves the distribution towards the better half (`covariance.rs`). It uses
 //! only the order of the results, so failures are merely last.
 use super::{
     archive::{Archive, Evaluated},
