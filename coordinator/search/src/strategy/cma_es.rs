@@ -44,8 +44,8 @@ pub const CMA_ES: Preset = Preset {
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        Values::Whole(4, 100_000),
-        "points of a generation",
+        Values::Whole(4, u64::MAX),
+        "individuals per generation",
     ),
     Setting::new(
         "spread",

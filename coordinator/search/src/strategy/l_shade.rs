@@ -43,8 +43,8 @@ pub const L_SHADE: Preset = Preset {
 const SETTINGS: &[Setting] = &[
     Setting::new(
         "population",
-        Values::Whole(4, 100_000),
-        "individuals of the first generation; four are left at the end",
+        Values::Whole(4, u64::MAX),
+        "individuals per generation",
     ),
     Setting::new(
         "memory",

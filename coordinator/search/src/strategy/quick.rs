@@ -89,7 +89,7 @@ pub const HYBRID: Preset = Preset {
 /// What can be set of the first points by name.
 const POINTS: &[Setting] = &[Setting::new(
     "points",
-    Values::Whole(1, 100_000),
+    Values::Whole(1, 1_000_000),
     "first points: the start and a Latin hypercube",
 )];
 

@@ -52,7 +52,7 @@ on, and the program ends with exit code 2. Write many lines before reading: they
 The end of the input ends it. What is asked again is answered from the run's journal.
 
 Example:
-  horsehead evaluate cases/cyjs10-5-37hb --workers 2 < asked.jsonl > scored.jsonl
+  horsehead evaluate cases/cyjs10-5-37hb --workers 2
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
