@@ -13,6 +13,9 @@ pub(crate) struct Table {
     pub(crate) names: Vec<String>,
 }
 
+/// From this likeness on a column is a misspelt one.
+const MEANT: f64 = 0.85;
+
 impl Table {
     /// Reads the wanted columns; others are ignored. A `#` before the header is allowed.
     ///
@@ -23,7 +26,8 @@ impl Table {
         Self::read_with(path, bytes, wanted, &[])
     }
 
-    /// Reads the wanted columns, and after them those of the optional ones that there are.
+    /// Reads the wanted columns, and after them those of the optional ones that there are, or that a name
+    /// which nobody knows can only mean.
     ///
     /// # Errors
     /// As [`Self::read`].
@@ -48,7 +52,18 @@ impl Table {
                     .to_owned()
             })
             .collect();
-        let present = |name: &&&str| header.iter().any(|column| column == **name);
+        // a name that is all but there is a slip, and what it names must not be left out for it
+        let unknown = |column: &&String| {
+            let known = |name: &&str| *name == column.as_str();
+            !wanted.iter().chain(optional).any(known)
+        };
+        let meant = |column: &String, name: &str| {
+            strsim::normalized_damerau_levenshtein(column, name) > MEANT
+        };
+        let present = |name: &&&str| {
+            let mut slips = header.iter().filter(unknown);
+            header.iter().any(|column| column == **name) || slips.any(|column| meant(column, name))
+        };
         let wanted: Vec<&str> = wanted
             .iter()
             .chain(optional.iter().filter(present))

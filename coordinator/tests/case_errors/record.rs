@@ -128,21 +128,6 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["test_5rpm.toml", "torque = \"good\"", "expected a number"],
     ),
     (
-        "one gauge not recorded",
-        |c| {
-            c.lines(RECORD, |_, line| {
-                let mut cells: Vec<&str> = line.split(',').collect();
-                cells.remove(4);
-                Some(cells.join(","))
-            });
-        },
-        &[
-            "test_5rpm.csv.gz",
-            "`stress_3_mpa` is missing",
-            "help: add the column;",
-        ],
-    ),
-    (
         "column missing",
         |c| {
             c.lines(RECORD, |at, line| {
