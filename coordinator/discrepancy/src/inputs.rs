@@ -25,7 +25,9 @@ pub struct Inputs {
     /// Finer ones, for the numerical check: the finest, then what it is made of, one thing at a
     /// time, for where the finest does not complete.
     pub finer: Vec<Numerics>,
-    /// Seed of the way into the valley.
+    /// Preset of the search that finds the way into the valley where nothing is known.
+    pub entrance: &'static str,
+    /// Seed of that search.
     pub seed: u64,
     /// How it is decided.
     pub thresholds: Thresholds,

@@ -61,9 +61,10 @@ pub(crate) async fn search<L: Laboratory>(
         && session.lab.may(Stage::Refit)
     {
         let fit = &round.refits[place].fit;
-        let (seed, rest) = (session.inputs.seed, &fit.x()[genes..]);
+        let search = (session.inputs.entrance, session.inputs.seed);
+        let rest = &fit.x()[genes..];
         let mut experiments = session.experiments(Stage::Refit);
-        let starts = basin::enter(&mut experiments, &fit.model, rest, seed).await?;
+        let starts = basin::enter(&mut experiments, &fit.model, rest, search).await?;
         let other = valley::follow(&mut experiments, fit, starts).await?;
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;

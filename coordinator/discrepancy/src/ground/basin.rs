@@ -7,18 +7,21 @@ use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::{Model, Point};
 use search::space::Axis;
-use search::strategy::{Plan, Told, build, preset};
+use search::strategy::{Plan, Residual, Told, build, preset};
 
-/// Starts for the fit: points of the search's archive, best first, that differ in the scanned unknown. The
+/// A search, by the name of its preset, and its seed.
+pub(crate) type Search = (&'static str, u64);
+
+/// Starts for the fit: points of a search's archive, best first, that differ in the scanned unknown. The
 /// unknowns are searched; `rest` are the nuisances and the parameters of the model's effects, which stay.
 ///
 /// # Errors
 /// Those of the laboratory.
-pub async fn enter<L: Laboratory>(
+pub(crate) async fn enter<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     model: &Model,
     rest: &[f64],
-    seed: u64,
+    (name, seed): Search,
 ) -> Result<Vec<Point>, L::Error> {
     let whole = |genes: Vec<f64>| Point {
         model: model.clone(),
@@ -28,7 +31,7 @@ pub async fn enter<L: Laboratory>(
         space: &model.space,
         workers: 1,
     };
-    let search = preset("quick").map(|preset| (preset.settings)(&plan));
+    let search = preset(name).map(|preset| (preset.settings)(&plan));
     let Some(Ok(mut strategy)) = search.map(|search| build(&search, plan.space, seed)) else {
         return Ok(vec![whole(vec![0.0; model.space.dimension()])]);
     };
@@ -41,11 +44,18 @@ pub async fn enter<L: Laboratory>(
         let points = proposals
             .iter()
             .map(|proposal| whole(model.space.point(&proposal.genes)));
-        let points: Vec<Point> = points.collect();
-        let curves = experiments.curves(&points).await?;
-        for ((proposal, point), curves) in proposals.iter().zip(points).zip(curves) {
-            let fitness = curves.map(|curves| experiments.on.residual(&curves).norm_squared());
+        let wanted = proposals
+            .iter()
+            .map(|proposal| proposal.purpose.wants_derivatives());
+        let points: Vec<(Point, bool)> = points.zip(wanted).collect();
+        let residuals = experiments.residuals(&points).await?;
+        for ((proposal, (point, _)), residual) in proposals.iter().zip(points).zip(residuals) {
+            let length = |residual: &Residual| residual.values.iter().map(|r| r * r).sum();
+            let fitness: Option<f64> = residual.as_ref().map(length);
             found.extend(fitness.map(|fitness| (fitness, point.x)));
+            if let Some(residual) = residual.filter(|_| proposal.purpose.wants_residual()) {
+                strategy.tell_residual(proposal.id, residual);
+            }
             let told = Told {
                 fitness: fitness.unwrap_or(f64::MAX),
                 complete: fitness.is_some(),

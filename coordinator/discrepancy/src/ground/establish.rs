@@ -110,7 +110,10 @@ async fn first_fit<L: Laboratory>(
             model,
             x: [&x[..], &nuisances].concat(),
         }],
-        None => basin::enter(experiments, &model, &nuisances, inputs.seed).await?,
+        None => {
+            let search = (inputs.entrance, inputs.seed);
+            basin::enter(experiments, &model, &nuisances, search).await?
+        }
     };
     let mut recalibration = experiments.during(Stage::Recalibrate);
     let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {

@@ -4,5 +4,6 @@
 pub mod evidence;
 pub mod isolability;
 pub mod score;
+pub(crate) mod stack;
 pub(crate) mod subset;
 pub mod tangent;

@@ -3,11 +3,12 @@ use crate::laboratory::{Laboratory, Stage, channels};
 use crate::model::change::Wanted;
 use crate::model::fit::Fit;
 use crate::model::unknowns::{Model, Point};
-use crate::record::measured::{Curves, Record, difference};
+use crate::record::measured::{Curves, Record, Recorded, difference};
 use crate::record::whitened::WhitenedRecord;
-use protocol::job::{Observation, SimulateSpec};
+use protocol::job::{Column, Derivative, Observation, SimulateSpec};
 use search::derivative::Term;
 use search::least_squares::{Ended, Evaluated, LeastSquares, Settings, Variable};
+use search::strategy::Residual;
 
 /// A laboratory, the record that its experiments are compared with, and the stage that they count for.
 #[derive(Debug)]
@@ -41,6 +42,47 @@ impl<L: Laboratory> Experiments<'_, L> {
         let wanted = points.iter().map(|point| Wanted::new(point.clone(), false));
         let seen = self.seen(&self.on.record, wanted.collect()).await?;
         Ok(seen.into_iter().map(|seen| Some(seen?.curves)).collect())
+    }
+
+    /// Residuals of points, with their derivatives by the case's unknowns where those are wanted and the
+    /// laboratory knows them; nothing for a point that failed.
+    ///
+    /// # Errors
+    /// Those of the laboratory.
+    pub(crate) async fn residuals(
+        &mut self,
+        points: &[(Point, bool)],
+    ) -> Result<Vec<Option<Residual>>, L::Error> {
+        let (on, exact) = (self.on, self.lab.differentiates());
+        let columns = |point: &Point, wanted: bool| {
+            let space = &point.model.space;
+            let axes = 0..if wanted && exact {
+                space.dimension()
+            } else {
+                0
+            };
+            let moved = axes.flat_map(|axis| space.rates(axis, point.x[axis]));
+            let columns = moved.map(|(_, name, _)| Column::of(name));
+            columns.collect::<Vec<Column>>()
+        };
+        let experiment = |(point, wanted): &(Point, bool)| SimulateSpec {
+            columns: columns(point, *wanted),
+            ..point.experiment(on.record.condition, &on.numerics)
+        };
+        let batch = points.iter().map(experiment).collect();
+        let observed = self.lab.observe(self.stage, batch).await?;
+        let residual = |((point, wanted), seen): (&(Point, bool), Option<Observation>)| {
+            let seen = seen?;
+            let mut curves = channels(&seen, &on.record)?;
+            point.read(&on.record, &mut curves);
+            let columns = columns(point, *wanted).into_iter().zip(seen.columns);
+            let by = columns.map(|(column, by)| (column.name, whitened(&by, on, point)));
+            Some(Residual {
+                values: on.residual(&curves).as_slice().to_vec(),
+                by: by.collect(),
+            })
+        };
+        Ok(points.iter().zip(observed).map(residual).collect())
     }
 
     /// Curves of points under the condition of a record, with the changes of them that are wanted; nothing
@@ -207,6 +249,32 @@ impl<L: Laboratory> Experiments<'_, L> {
     pub async fn fit(&mut self, start: Point, how: Settings) -> Result<Option<Fit>, L::Error> {
         let fits = self.fits(vec![start], how).await?;
         Ok(fits.into_iter().next().flatten())
+    }
+}
+
+/// A derivative of curves as one of the residual, which is measured less simulated.
+fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
+    let Derivative::Curves { per, curves } = by else {
+        return by.clone();
+    };
+    let own = |recorded: &Recorded| {
+        let curve = curves.get(recorded.curve)?;
+        Some(curve.iter().map(|x| f64::from(*x)).collect())
+    };
+    let own: Option<Curves> = on.record.channels.iter().map(own).collect();
+    let Some(mut own) = own else {
+        let reason = "it lacks a channel of the record".to_owned();
+        return Derivative::Missing { reason };
+    };
+    point.read(&on.record, &mut own);
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "derivatives travel in single precision"
+    )]
+    let single = on.metric.whiten(&own).iter().map(|x| -*x as f32).collect();
+    Derivative::Curves {
+        per: per.clone(),
+        curves: vec![single],
     }
 }
 

@@ -33,6 +33,20 @@ pub struct Model {
     pub nuisances: Vec<Tolerated>,
     /// Added effects, in the order in which they were added.
     pub added: Vec<EffectDescriptor>,
+    /// What holds an unknown of which the case says nothing but its bounds.
+    pub unstated: Unstated,
+    /// An unknown that stays where a point has it, by its place.
+    pub held: Option<usize>,
+}
+
+/// What holds an unknown of which the case says nothing but its bounds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Unstated {
+    /// That a recommended value is rarely off by more than a few decades.
+    #[default]
+    Recommended,
+    /// Next to nothing: at a bound, no more than a quarter of a unit of `-2 ln L` is its own.
+    Bounds,
 }
 
 impl Model {
@@ -43,6 +57,8 @@ impl Model {
             off: Vec::new(),
             nuisances: Vec::new(),
             added: Vec::new(),
+            unstated: Unstated::Recommended,
+            held: None,
         }
     }
 
@@ -87,9 +103,15 @@ impl Model {
                 upper: interval.to,
                 step: STEP,
                 longest: LONGEST,
-                prior: prior.or(Some(Prior {
-                    mean: 0.0,
-                    deviation: USUAL_DEVIATION,
+                prior: prior.or(Some(match self.unstated {
+                    Unstated::Recommended => Prior {
+                        mean: 0.0,
+                        deviation: USUAL_DEVIATION,
+                    },
+                    Unstated::Bounds => Prior {
+                        mean: f64::midpoint(interval.from, interval.to),
+                        deviation: interval.length(),
+                    },
                 })),
             }
         });
@@ -101,6 +123,10 @@ impl Model {
         let mut all: Vec<Variable> = own.chain(nuisances).chain(effects).collect();
         for (variable, x) in all.iter_mut().zip(x) {
             variable.start = *x;
+        }
+        if let Some(held) = self.held.and_then(|k| all.get_mut(k)) {
+            held.lower = held.start;
+            held.upper = held.start;
         }
         all
     }

@@ -141,6 +141,12 @@ impl Record {
         }
     }
 
+    /// What may be fitted of it: all cycles of the channels that are not held out.
+    #[must_use]
+    pub fn free(&self) -> Self {
+        self.of_channels(false)
+    }
+
     /// The same with the channels that are held out behind the others, as a diagnosis numbers them.
     #[must_use]
     pub fn held_out_last(self) -> Self {

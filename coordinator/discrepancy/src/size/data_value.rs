@@ -8,6 +8,7 @@ use crate::cause::suspect::Suspect;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::isolability::pairs;
+use crate::linear::stack::stacked;
 use crate::linear::tangent::Tangent;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -125,18 +126,6 @@ fn scaled(signature: &DMatrix<f64>, amounts: &[f64]) -> DMatrix<f64> {
         column *= *amount;
     }
     signature
-}
-
-/// One matrix on top of another of as many columns.
-fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
-    let rows = above.nrows() + below.nrows();
-    DMatrix::from_fn(rows, above.ncols(), |i, j| {
-        if i < above.nrows() {
-            above[(i, j)]
-        } else {
-            below[(i - above.nrows(), j)]
-        }
-    })
 }
 
 /// The linearised model under another condition.

@@ -375,6 +375,7 @@ fn diagnosed(records: Vec<Record>) -> Diagnosis {
         start: Some(vec![TRUTH[0] + 0.004, TRUTH[1] - 0.02]),
         usual: Numerics::OF_THE_CASE,
         finer: vec![Numerics::OF_THE_CASE],
+        entrance: "quick",
         seed: 1,
         thresholds: Thresholds {
             draws: 100,

@@ -17,6 +17,7 @@ mod case;
 mod composed;
 mod data_value;
 mod healthy;
+mod identify;
 mod machine;
 mod maps;
 mod nothing;

@@ -90,6 +90,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         ),
         usual: Numerics::OF_THE_CASE,
         finer: finer(),
+        entrance: "quick",
         seed: 1,
         thresholds: setup.thresholds.clone(),
     };

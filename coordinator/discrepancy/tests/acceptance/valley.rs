@@ -195,6 +195,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
         start: None,
         usual: Numerics::OF_THE_CASE,
         finer: vec![Numerics::OF_THE_CASE],
+        entrance: "quick",
         seed: 1,
         thresholds: Thresholds {
             draws: 20,

@@ -8,8 +8,8 @@ const FAN: [f64; 5] = [1e-3, 0.03, 0.3, 3.0, 30.0];
 /// Factor on the damping after a whole fan was refused.
 pub(super) const REFUSED: f64 = 1e3;
 
-/// The priors' part of the cost.
-pub(super) fn prior_cost(x: &[f64], variables: &[Variable]) -> f64 {
+/// The priors' part of the cost: `sum ((x_k - mean_k) / deviation_k)^2`.
+pub fn prior_cost(x: &[f64], variables: &[Variable]) -> f64 {
     let part = |(x, v): (&f64, &Variable)| {
         v.prior.map_or(0.0, |prior| {
             let u = (x - prior.mean) / prior.deviation;

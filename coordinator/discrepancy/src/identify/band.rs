@@ -1,0 +1,146 @@
+//! What the answer predicts, and how far the record leaves it open: bands of every channel under every
+//! condition.
+//!
+//! A band spans what the record does not refuse: the linear one, each unknown within its own interval, and
+//! the curves of all points of the profiles. It is one of the simulated curve; noise is not in it.
+use super::answer::{Band, Curve, Sight};
+use super::profile::{Next, RISE};
+use super::walk::Walked;
+use crate::laboratory::{Laboratory, channels};
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::record::measured::{Curves, Record, Recorded, Stated};
+use nalgebra::{DMatrix, DVector};
+use protocol::case::Channel;
+
+/// How far a point of a profile may have risen, over the wanted rise.
+const INSIDE: f64 = 1.15;
+
+/// All conditions at a fit: curves, their changes by every variable, and the curves of other points that
+/// the record does not refuse. A condition under which the fit fails is left out.
+pub(super) async fn sights<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    walked: &Walked,
+    conditions: &[Vec<Channel>],
+) -> Result<Vec<Sight>, L::Error> {
+    let fit = &walked.fit;
+    let inside = walked.sides.iter().flat_map(|side| &side.marks);
+    let inside: Vec<&[f64]> = inside
+        .filter(|mark| mark.cost - fit.search.cost() <= INSIDE * walked.rise)
+        .map(|mark| mark.x.as_slice())
+        .collect();
+    let mut sights = Vec::new();
+    for (condition, channels_of) in conditions.iter().enumerate() {
+        let record = blank(condition, channels_of);
+        let Some(seen) = experiments.linearized(fit, &record).await? else {
+            continue;
+        };
+        let numerics = &experiments.on.numerics;
+        let batch = inside.iter();
+        let batch = batch.map(|x| fit.at(x.to_vec()).experiment(condition, numerics));
+        let observed = experiments.lab.observe(experiments.stage, batch.collect());
+        let observed = observed.await?.into_iter();
+        let others = observed.filter_map(|seen| channels(&seen?, &record));
+        sights.push(Sight {
+            condition,
+            curves: ungained(fit, &record, seen.curves),
+            changes: seen.changes,
+            others: others.collect(),
+        });
+    }
+    Ok(sights)
+}
+
+/// All channels of a condition, nothing measured.
+fn blank(condition: usize, channels: &[Channel]) -> Record {
+    let channels = channels.iter().enumerate();
+    Record {
+        condition,
+        channels: channels
+            .map(|(k, channel)| Recorded::new(k, channel))
+            .collect(),
+        cycles: Vec::new(),
+        held_out: false,
+        stated: Stated::default(),
+    }
+}
+
+/// Curves as they are where instruments read them with their gains.
+fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
+    for (place, one) in fit.model.placed() {
+        if let Some(channel) = one.channel(record) {
+            let gain = 1.0 + fit.x()[place] * one.nuisance.deviation;
+            for y in &mut curves[channel] {
+                *y /= gain;
+            }
+        }
+    }
+    curves
+}
+
+/// Covariance of the variables with every unknown within its own interval, the misfit counted in.
+pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let fit = &walked.fit;
+    let mut information = super::information::with_priors(jacobian, fit.variables());
+    let misfit = walked.rise / RISE;
+    for (k, _) in fit.model.space.axes().iter().enumerate() {
+        let mut width = 0.0;
+        for side in walked.of(k) {
+            if let Next::Over(_, at) = walked.end(side) {
+                width += (at - fit.x()[k]).abs();
+            }
+        }
+        let deviation = 0.5 * width / RISE.sqrt();
+        if deviation > 0.0 {
+            information[(k, k)] += misfit / (deviation * deviation);
+        }
+    }
+    Some(super::information::inverse(information)? * misfit)
+}
+
+/// The bands of a condition.
+pub(super) fn band(walked: &Walked, sight: &Sight) -> Band {
+    let covariance = covariance(walked, &walked.fit.search.best().jacobian);
+    let gains: Vec<usize> = walked
+        .fit
+        .model
+        .placed()
+        .filter(|(_, one)| one.effect().is_none())
+        .map(|(place, _)| place)
+        .collect();
+    let channel = |c: usize| {
+        let likeliest = sight.curves[c].clone();
+        let half = |t: usize| {
+            let column = |k: usize| match &sight.changes[k] {
+                // what an instrument reads is not what is predicted
+                Some(change) if !gains.contains(&k) => change[c][t],
+                Some(_) | None => 0.0,
+            };
+            let columns = DVector::from_fn(sight.changes.len(), |k, _| column(k));
+            let variance = covariance
+                .as_ref()
+                .map_or(0.0, |own| columns.dot(&(own * &columns)));
+            (RISE * variance.max(0.0)).sqrt()
+        };
+        let mut low = likeliest.clone();
+        let mut high = likeliest.clone();
+        for t in 0..likeliest.len() {
+            let half = half(t);
+            low[t] -= half;
+            high[t] += half;
+            for other in &sight.others {
+                low[t] = low[t].min(other[c][t]);
+                high[t] = high[t].max(other[c][t]);
+            }
+        }
+        Curve {
+            likeliest,
+            low,
+            high,
+        }
+    };
+    Band {
+        condition: sight.condition,
+        channels: (0..sight.curves.len()).map(channel).collect(),
+    }
+}

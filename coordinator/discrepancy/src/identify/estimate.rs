@@ -1,0 +1,60 @@
+//! Unknowns with their intervals, by their profiles.
+use super::answer::{End, Seen, UnknownEstimate};
+use super::information::correlation;
+use super::profile::Next;
+use super::walk::Walked;
+
+/// Correlation from which two unknowns are told to trade off.
+const TRADES: f64 = 0.7;
+
+/// Every unknown of a fit, in the order of its axes.
+pub(super) fn estimates(walked: &Walked) -> Vec<UnknownEstimate> {
+    (0..walked.fit.model.space.dimension())
+        .map(|k| estimate(walked, k))
+        .collect()
+}
+
+fn estimate(walked: &Walked, k: usize) -> UnknownEstimate {
+    let axes = walked.fit.model.space.axes();
+    let axis = &axes[k];
+    let mut interval = [None; 2];
+    let mut ends = [End::Bound; 2];
+    for (place, side) in walked.of(k).enumerate().take(2) {
+        if let Next::Over(end, at) = walked.end(side) {
+            ends[place] = end;
+            interval[place] = (end == End::Rises).then(|| axis.value(at));
+        }
+    }
+    let correlated = walked.covariance.iter().flat_map(|covariance| {
+        let others = (0..axes.len()).filter(move |j| *j != k);
+        others.map(move |j| (axes[j].unknown.name.clone(), correlation(covariance, k, j)))
+    });
+    let mut correlated: Vec<(String, f64)> =
+        correlated.filter(|(_, c)| c.abs() >= TRADES).collect();
+    correlated.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    UnknownEstimate {
+        name: axis.unknown.name.clone(),
+        unit: axis.unknown.unit.clone(),
+        value: axis.value(walked.fit.x()[k]),
+        interval,
+        ends,
+        seen: Seen::of(ends[0] == End::Rises, ends[1] == End::Rises),
+        correlated,
+        profile: profile(walked, k),
+    }
+}
+
+/// Values with the rise of `-2 ln L`, over the squared misfit.
+fn profile(walked: &Walked, k: usize) -> Vec<[f64; 2]> {
+    let axis = &walked.fit.model.space.axes()[k];
+    let cost = walked.fit.search.cost();
+    let scale = super::profile::RISE / walked.rise;
+    let mut all: Vec<[f64; 2]> = walked
+        .of(k)
+        .flat_map(|side| &side.marks)
+        .map(|mark| [axis.value(mark.at), scale * (mark.cost - cost).max(0.0)])
+        .collect();
+    all.push([axis.value(walked.fit.x()[k]), 0.0]);
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    all
+}

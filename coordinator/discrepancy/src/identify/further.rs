@@ -1,0 +1,153 @@
+//! What further measurements would pin down: another channel, another condition, more cycles.
+//!
+//! Linear at the fit. A channel that was never recorded is given the noise of one that was and has its
+//! unit.
+use super::answer::{Further, Pin, Sight};
+use super::band::covariance;
+use super::walk::Walked;
+use crate::inputs::Inputs;
+use crate::linear::stack::stacked;
+use crate::record::measured::{Curves, Record, Recorded};
+use crate::record::whitened::WhitenedRecord;
+use nalgebra::DMatrix;
+use protocol::case::Channel;
+
+/// How many times as many cycles are weighed.
+const CYCLES: f64 = 4.0;
+/// Share of its standard deviation to which an unknown must fall to count as pinned down.
+const PINNED: f64 = 0.5;
+/// Most measurements that are told.
+const TOLD: usize = 8;
+
+/// Measurements that would pin down an unknown at least, those that pin most first.
+pub(super) fn further(
+    walked: &Walked,
+    sights: &[Sight],
+    (inputs, on): (&Inputs, &WhitenedRecord),
+    conditions: &[Vec<Channel>],
+) -> Vec<Further> {
+    let jacobian = &walked.fit.search.best().jacobian;
+    let mut all = Vec::new();
+    let more = jacobian * CYCLES.sqrt();
+    all.push(weigh(
+        walked,
+        &more,
+        format!("{CYCLES:.0} times as many cycles"),
+    ));
+    for sight in sights {
+        let channels = &conditions[sight.condition];
+        let calibrated = sight.condition == on.record.condition;
+        let candidates: Vec<(Record, String)> = if calibrated {
+            unrecorded(&on.record, channels)
+        } else {
+            let name = conditions_words(inputs, &on.record, sight.condition, channels);
+            name.into_iter().collect()
+        };
+        for (record, words) in candidates {
+            let highest = inputs.thresholds.orders;
+            let own = WhitenedRecord::under_own_noise(record, highest, on.numerics.clone());
+            let below = columns(&own, sight);
+            let both = stacked(jacobian, &below);
+            all.push(weigh(walked, &both, words));
+        }
+    }
+    all.retain(|one| !one.pins.is_empty());
+    let told = |one: &Further| {
+        let gains = one
+            .pins
+            .iter()
+            .map(|pin| libm::log(pin.sd_now / pin.sd_then));
+        gains.sum::<f64>()
+    };
+    all.sort_by(|a, b| told(b).total_cmp(&told(a)));
+    all.truncate(TOLD);
+    all
+}
+
+/// Channels of the fitted condition that the record lacks, each with the noise of its like.
+fn unrecorded(record: &Record, channels: &[Channel]) -> Vec<(Record, String)> {
+    let lacks = |curve: &usize| record.channels.iter().all(|own| own.curve != *curve);
+    let candidate = |curve: usize| {
+        let channel = &channels[curve];
+        let mut own = record.channels.iter();
+        let like = own.position(|own| own.channel.unit == channel.unit)?;
+        let cycle = |cycle: &Curves| vec![cycle[like].clone()];
+        let mut blank = record.clone();
+        blank.cycles = record.cycles.iter().map(cycle).collect();
+        blank.channels = vec![Recorded::new(curve, channel)];
+        blank.stated.cycle_variance = Vec::new();
+        let words = format!("{} beside what was recorded", channel.title);
+        Some((blank, words))
+    };
+    (0..channels.len())
+        .filter(lacks)
+        .filter_map(candidate)
+        .collect()
+}
+
+/// Another condition: as it was recorded, else with the channels and the noise of the fitted one.
+fn conditions_words(
+    inputs: &Inputs,
+    fitted: &Record,
+    condition: usize,
+    channels: &[Channel],
+) -> Option<(Record, String)> {
+    let mut recorded = inputs.records.iter().skip(1);
+    let recorded = recorded.find(|record| record.condition == condition);
+    if let Some(record) = recorded.filter(|record| !record.cycles.is_empty()) {
+        let words = format!("the record of condition {} fitted, too", condition + 1);
+        return Some((record.clone(), words));
+    }
+    let same = |own: &Recorded| {
+        let curve = channels.iter().position(|c| c.name == own.channel.name)?;
+        let points = channels[curve].abscissa.points.len();
+        (points == own.channel.abscissa.points.len())
+            .then(|| Recorded::new(curve, &channels[curve]))
+    };
+    let channels: Option<Vec<Recorded>> = fitted.channels.iter().map(same).collect();
+    let record = Record {
+        condition,
+        channels: channels?,
+        ..fitted.clone()
+    };
+    let words = format!("the same channels under condition {}", condition + 1);
+    Some((record, words))
+}
+
+/// Derivatives of a further record's residual; zeros by what is not known.
+fn columns(on: &WhitenedRecord, sight: &Sight) -> DMatrix<f64> {
+    let mut columns = DMatrix::zeros(on.metric.len(), sight.changes.len());
+    for (k, change) in sight.changes.iter().enumerate() {
+        let Some(change) = change else { continue };
+        let own: Curves = on
+            .record
+            .channels
+            .iter()
+            .map(|own| change[own.curve].clone())
+            .collect();
+        columns.set_column(k, &-on.metric.whiten(&own));
+    }
+    columns
+}
+
+/// Unknowns that a record of this Jacobian would pin down.
+fn weigh(walked: &Walked, jacobian: &DMatrix<f64>, measurement: String) -> Further {
+    let own = &walked.fit.search.best().jacobian;
+    let (Some(now), Some(then)) = (covariance(walked, own), covariance(walked, jacobian)) else {
+        return Further {
+            measurement,
+            pins: Vec::new(),
+        };
+    };
+    let axes = walked.fit.model.space.axes().iter().enumerate();
+    let pin = axes.map(|(k, axis)| Pin {
+        name: axis.unknown.name.clone(),
+        sd_now: now[(k, k)].sqrt(),
+        sd_then: then[(k, k)].sqrt(),
+    });
+    let mut pins: Vec<Pin> = pin
+        .filter(|pin| pin.sd_then <= PINNED * pin.sd_now)
+        .collect();
+    pins.sort_by(|a, b| (a.sd_then / a.sd_now).total_cmp(&(b.sd_then / b.sd_now)));
+    Further { measurement, pins }
+}

@@ -1,0 +1,138 @@
+//! Fisher's information of a fit: covariances, and the directions in which unknowns are seen.
+//!
+//! Whitened residuals have variance 1, so the information of a record is `J^T J`; what is known beforehand
+//! adds its own. All of it counts a misfit's square less (Cramér and Rao's bound, widened).
+use super::answer::{Direction, Part};
+use crate::model::fit::Fit;
+use nalgebra::{DMatrix, DVector};
+use protocol::case::Scale;
+use search::least_squares::Variable;
+
+/// Information of a Jacobian and of what is known beforehand.
+pub(super) fn with_priors(jacobian: &DMatrix<f64>, variables: &[Variable]) -> DMatrix<f64> {
+    let mut information = jacobian.tr_mul(jacobian);
+    for (k, v) in variables.iter().enumerate() {
+        if let Some(prior) = v.prior {
+            information[(k, k)] += 1.0 / (prior.deviation * prior.deviation);
+        }
+    }
+    information
+}
+
+/// Inverse of an information; nothing where a variable is left open.
+pub(super) fn inverse(information: DMatrix<f64>) -> Option<DMatrix<f64>> {
+    Some(information.cholesky()?.inverse())
+}
+
+/// Correlation of two variables.
+pub(super) fn correlation(covariance: &DMatrix<f64>, i: usize, j: usize) -> f64 {
+    covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt()
+}
+
+/// Information of the first `unknowns` variables alone, whatever the others are within what is known of
+/// them. Of the unknowns the record's own counts, and no prior.
+fn of_unknowns(jacobian: &DMatrix<f64>, variables: &[Variable], unknowns: usize) -> DMatrix<f64> {
+    let whole = with_priors(jacobian, variables);
+    let rest = whole.nrows() - unknowns;
+    let own = jacobian.columns(0, unknowns);
+    let mut information = own.tr_mul(&own);
+    let others = whole.view((unknowns, unknowns), (rest, rest)).into_owned();
+    if let Some(factor) = others.cholesky() {
+        let coupling = whole.view((unknowns, 0), (rest, unknowns)).into_owned();
+        information -= coupling.tr_mul(&factor.solve(&coupling));
+    }
+    information
+}
+
+/// Parts below this are not told.
+const LEAST_PART: f64 = 0.1;
+/// Parts from which an unknown is named in the words.
+const NAMED: f64 = 0.3;
+/// Standard deviation from which a direction is not seen: a factor of a thousand either way.
+const BLIND: f64 = 1.5;
+
+/// Directions in which a record sees the unknowns of a fit, the best first; `phi` is its misfit.
+pub(super) fn directions(fit: &Fit, phi: f64) -> Vec<Direction> {
+    let unknowns = fit.model.space.dimension();
+    let jacobian = &fit.search.best().jacobian;
+    let eigen = of_unknowns(jacobian, fit.variables(), unknowns).symmetric_eigen();
+    let mut order: Vec<usize> = (0..unknowns).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let largest = order.first().map_or(0.0, |&k| eigen.eigenvalues[k]);
+    let direction = |k: usize| {
+        // sixteen digits of the largest are rounding
+        let seen = eigen.eigenvalues[k] > 1e-14 * largest;
+        let deviation = if seen {
+            phi / eigen.eigenvalues[k].sqrt()
+        } else {
+            f64::INFINITY
+        };
+        described(fit, eigen.eigenvectors.column(k).into_owned(), deviation)
+    };
+    order.into_iter().map(direction).collect()
+}
+
+fn described(fit: &Fit, mut along: DVector<f64>, deviation: f64) -> Direction {
+    // the largest part is positive
+    let sign = along.iter().fold(0.0_f64, |largest, part| {
+        if part.abs() > largest.abs() {
+            *part
+        } else {
+            largest
+        }
+    });
+    along *= sign.signum();
+    let axes = fit.model.space.axes();
+    let mut order: Vec<usize> = (0..along.len()).collect();
+    order.sort_by(|&a, &b| along[b].abs().total_cmp(&along[a].abs()).then(a.cmp(&b)));
+    order.retain(|&k| along[k].abs() >= LEAST_PART);
+    let named: Vec<usize> = order
+        .iter()
+        .copied()
+        .filter(|&k| along[k].abs() >= NAMED)
+        .collect();
+    let name = |k: usize| axes[k].unknown.name.as_str();
+    let mut words = named
+        .first()
+        .map_or_else(String::new, |&k| name(k).to_owned());
+    for &k in named.iter().skip(1) {
+        let link = if along[k] > 0.0 {
+            " with "
+        } else {
+            " against "
+        };
+        words.extend([link, name(k)]);
+    }
+    let linear = named
+        .iter()
+        .all(|&k| axes[k].unknown.scale == Scale::Linear);
+    words.push_str(": ");
+    words.push_str(&seen_to(deviation, linear));
+    Direction {
+        sd_decades: deviation,
+        parts: order
+            .into_iter()
+            .map(|k| Part {
+                name: name(k).to_owned(),
+                part: along[k],
+            })
+            .collect(),
+        words,
+    }
+}
+
+/// How well a direction is seen.
+fn seen_to(deviation: f64, linear: bool) -> String {
+    /// Half width of a 95 % interval in standard deviations.
+    const NORMAL: f64 = 1.96;
+    let half = NORMAL * deviation;
+    if deviation >= BLIND {
+        "not seen by this record".to_owned()
+    } else if linear {
+        format!("seen to {:.2} % of half the interval", 100.0 * half)
+    } else if half < 0.2 {
+        format!("seen to {:.2} %", 100.0 * (libm::exp10(half) - 1.0))
+    } else {
+        format!("seen to a factor of {:.1}", libm::exp10(half))
+    }
+}

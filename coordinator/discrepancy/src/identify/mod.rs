@@ -1,0 +1,89 @@
+//! What a record sees of a model's unknowns, at all and apart, and what the answer inherits of what it does
+//! not see.
+//!
+//! The metric, the tolerances of the instruments and the numerical error are those of a diagnosis. It knows
+//! no effects that may be missing: where the fit leaves more than noise its intervals are widened, and a
+//! diagnosis is the next thing to do.
+pub mod answer;
+mod band;
+mod estimate;
+mod further;
+mod information;
+mod profile;
+mod walk;
+
+pub use answer::{Band, Curve, Direction, End, Further, Identified, Pin, Seen, UnknownEstimate};
+
+use crate::ground::establish::establish;
+use crate::inputs::Inputs;
+use crate::laboratory::{Laboratory, Stage};
+use crate::linear::evidence::misfit;
+use crate::model::experiments::Experiments;
+use crate::model::unknowns::Unstated;
+use crate::size::never_exact::never_exact;
+use protocol::case::Channel;
+use search::least_squares::Settings;
+
+/// How the free fit goes: to its floor, with unknowns of next to no curvature held where they are.
+const FREE: Settings = Settings {
+    iterations: 10,
+    gradient: 1e-2,
+    decrease: 1e-4,
+    change: 2.0,
+    step_range: 10.0,
+    level: 1e-3,
+    central: true,
+    exact: false,
+};
+
+/// Fits the calibrated condition's record and says what it sees. `conditions` are the channels of every
+/// condition of the case, in its order. Nothing where no fit completes, or there is nothing to fit.
+///
+/// # Errors
+/// Those of the laboratory: nobody simulates any more, or the user stopped.
+pub async fn identify<L: Laboratory>(
+    lab: &mut L,
+    inputs: &Inputs,
+    conditions: &[Vec<Channel>],
+) -> Result<Option<Identified>, L::Error> {
+    let usable = |record: &&crate::record::measured::Record| {
+        !record.cycles.is_empty() && !record.held_out && !record.free().channels.is_empty()
+    };
+    let Some(record) = inputs.records.first().filter(usable) else {
+        return Ok(None);
+    };
+    let Some(base) = establish(lab, inputs, record.free()).await? else {
+        return Ok(None);
+    };
+    let mut experiments = Experiments {
+        lab,
+        on: &base.on,
+        stage: Stage::Refit,
+    };
+    let mut start = base.fit.point();
+    start.model.unstated = Unstated::Bounds;
+    let Some(fit) = experiments.fit(start, FREE).await? else {
+        return Ok(None);
+    };
+    let walked = walk::walk(&mut experiments, fit).await?;
+    let fit = &walked.fit;
+    let mut shown = experiments.during(Stage::Show);
+    let sights = band::sights(&mut shown, &walked, conditions).await?;
+    let phi = misfit(fit.chi_squared(), fit.entries());
+    let is_noise = base.is_noise(fit.chi_squared(), fit.x().len(), inputs.thresholds.adequacy);
+    Ok(Some(Identified {
+        genes: fit.model.genes(fit.x()),
+        unknowns: estimate::estimates(&walked),
+        directions: information::directions(fit, phi),
+        nuisances: never_exact(fit, phi),
+        bands: sights
+            .iter()
+            .map(|sight| band::band(&walked, sight))
+            .collect(),
+        further: further::further(&walked, &sights, (inputs, &base.on), conditions),
+        left: fit.chi_squared() / base.noise(),
+        is_noise,
+        noise: base.known,
+        notes: base.notes.clone(),
+    }))
+}

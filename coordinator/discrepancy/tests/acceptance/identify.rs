@@ -1,0 +1,270 @@
+//! What a record sees, of models whose likelihood is known in closed form.
+use crate::trial::{now, say};
+use discrepancy::diagnose::Inputs;
+use discrepancy::identify::{End, Identified, Seen, UnknownEstimate, identify};
+use discrepancy::laboratory::{Laboratory, Stage};
+use discrepancy::record::whitened::WhitenedRecord;
+use discrepancy::record::{Curves, Record, Recorded, Stated};
+use discrepancy::thresholds::Thresholds;
+use nalgebra::{DMatrix, DVector};
+use protocol::case::{Abscissa, Channel, Scale, Unknown};
+use protocol::job::{Counters, Numerics, Observation, SimulateSpec, Verdict};
+use search::random::{Phase, Streams};
+use search::space::Space;
+use std::convert::Infallible;
+
+const SAMPLES: usize = 180;
+const NOISE: f64 = 0.5;
+const CYCLES: usize = 10;
+
+/// Waves of a turn, weighed by unknowns.
+struct Waves;
+
+/// Curves of unknowns: the first two in the first channel, nearly alike; the third in both; the fourth in
+/// none; the fifth matters while it is small, the sixth while it is large; nothing runs where the fourth
+/// passes ten times its start.
+fn curves(x: &[f64]) -> Option<Curves> {
+    if x[3] > 10.0 {
+        return None;
+    }
+    let at = |k: usize| {
+        let t = std::f64::consts::TAU * k as f64 / SAMPLES as f64;
+        let alike = (3.0 * t).sin() + 0.2 * (4.0 * t).cos();
+        let soft = 1.0 / (1.0 + x[4]);
+        let heavy = x[5] / (1.0 + x[5]);
+        let first = x[0] * (3.0 * t).sin() + x[1] * alike + x[2] * (2.0 * t).cos();
+        (
+            first + 30.0 * soft * (6.0 * t).sin() + 30.0 * heavy * (7.0 * t).cos(),
+            2.0 * x[2] * t.sin() + x[1] * (5.0 * t).cos(),
+        )
+    };
+    let (first, second) = (0..SAMPLES).map(at).unzip();
+    Some(vec![first, second])
+}
+
+impl Laboratory for Waves {
+    type Error = Infallible;
+
+    async fn observe(
+        &mut self,
+        _: Stage,
+        batch: Vec<SimulateSpec>,
+    ) -> Result<Vec<Option<Observation>>, Infallible> {
+        let seen = |spec: SimulateSpec| {
+            Some(Observation {
+                verdict: Verdict::Complete,
+                counters: Counters::default(),
+                curves: curves(&spec.individual.genes)?,
+                columns: Vec::new(),
+            })
+        };
+        Ok(batch.into_iter().map(seen).collect())
+    }
+}
+
+fn channel(name: &str, condition: usize) -> Channel {
+    let point = |k: usize| 360.0 * k as f64 / SAMPLES as f64;
+    Channel {
+        name: name.to_owned(),
+        title: name.to_owned(),
+        unit: "N".to_owned(),
+        condition,
+        abscissa: Abscissa {
+            name: "crank angle".to_owned(),
+            unit: "deg".to_owned(),
+            points: (0..SAMPLES).map(point).collect(),
+            period: Some(360.0),
+        },
+        noise: None,
+        step: None,
+        record: None,
+    }
+}
+
+fn unknowns() -> Vec<Unknown> {
+    let linear = |name: &str| Unknown::new(name, "N", Scale::Linear, 0.0, [-20.0, 20.0]);
+    let factor = |name: &str, start: f64| {
+        let bounds = [1e-4 * start, 1e4 * start];
+        Unknown::new(name, "N/m", Scale::Logarithmic, start, bounds)
+    };
+    vec![
+        linear("first"),
+        linear("alike"),
+        linear("both"),
+        factor("blind", 1.0),
+        factor("stiff", 1e2),
+        factor("light", 1e-2),
+    ]
+}
+
+/// A record of the first channel under the first condition.
+fn record(seed: u64, truth: &[f64]) -> Record {
+    let mut stream = Streams::new(seed, 33).at(0, Phase::Initial, 0);
+    let clean = &curves(truth).expect("it runs")[0];
+    let mut cycle = || vec![clean.iter().map(|y| y + NOISE * stream.normal()).collect()];
+    Record {
+        condition: 0,
+        channels: vec![Recorded {
+            scored: true,
+            ..Recorded::new(0, &channel("first", 0))
+        }],
+        cycles: (0..CYCLES).map(|_| cycle()).collect(),
+        held_out: false,
+        stated: Stated::default(),
+    }
+}
+
+fn conditions() -> Vec<Vec<Channel>> {
+    [0, 1]
+        .map(|condition| vec![channel("first", condition), channel("second", condition)])
+        .to_vec()
+}
+
+const TRUTH: [f64; 6] = [3.0, -2.0, 1.0, 1.0, 3e4, 3e-6];
+
+fn seen(seed: u64, unknowns: Vec<Unknown>) -> Identified {
+    let space = Space::new(&unknowns).expect("ordered");
+    let inputs = Inputs {
+        differences: false,
+        start: Some(vec![0.0; space.dimension()]),
+        space,
+        unknowns,
+        records: vec![record(seed, &TRUTH)],
+        library: Vec::new(),
+        usual: Numerics::OF_THE_CASE,
+        finer: Vec::new(),
+        entrance: "least-squares",
+        seed: 1,
+        thresholds: Thresholds::default(),
+    };
+    now(identify(&mut Waves, &inputs, &conditions())).expect("it fits")
+}
+
+fn named<'a>(all: &'a Identified, name: &str) -> &'a UnknownEstimate {
+    all.unknowns
+        .iter()
+        .find(|own| own.name == name)
+        .expect("an unknown")
+}
+
+/// What is linear has the interval of its closed form; what does nothing is not seen, and ends where the
+/// model fails; what matters on one side has one end.
+#[test]
+fn intervals_are_those_of_the_closed_form() {
+    let all = seen(5, unknowns());
+    let on = WhitenedRecord::under_own_noise(record(5, &TRUTH), 120, Numerics::OF_THE_CASE);
+    let column = |k: usize| {
+        let mut x = TRUTH;
+        let base = on
+            .metric
+            .whiten(&vec![curves(&x).expect("it runs").remove(0)]);
+        x[k] += 1.0;
+        on.metric
+            .whiten(&vec![curves(&x).expect("it runs").remove(0)])
+            - base
+    };
+    let columns: Vec<DVector<f64>> = (0..3).map(column).collect();
+    let jacobian = DMatrix::from_columns(&columns);
+    let covariance = jacobian.tr_mul(&jacobian).try_inverse().expect("regular");
+    assert!(all.is_noise, "{}", all.left);
+    for (k, name) in ["first", "alike", "both"].into_iter().enumerate() {
+        let own = named(&all, name);
+        assert_eq!(own.seen, Seen::Both, "{own:?}");
+        let [low, high] = own.interval.map(|end| end.expect("an end"));
+        let phi = all.left.max(1.0);
+        let half = 1.96 * phi * covariance[(k, k)].sqrt();
+        let width = 0.5 * (high - low);
+        assert!((width / half - 1.0).abs() < 0.03, "{name}: {width} {half}");
+        assert!((own.value - f64::midpoint(low, high)).abs() < 0.03 * half);
+        assert!((own.value - TRUTH[k]).abs() < 4.0 * half, "{own:?}");
+    }
+    let trade = &named(&all, "first").correlated;
+    let expected = covariance[(0, 1)] / (covariance[(0, 0)] * covariance[(1, 1)]).sqrt();
+    assert_eq!(trade[0].0, "alike");
+    assert!((trade[0].1 - expected).abs() < 0.01, "{trade:?} {expected}");
+    let blind = named(&all, "blind");
+    assert_eq!((blind.seen, blind.interval), (Seen::NotSeen, [None; 2]));
+    assert_eq!(blind.ends, [End::Bound, End::Fails]);
+    let stiff = named(&all, "stiff");
+    assert_eq!(stiff.seen, Seen::LowerBound, "{stiff:?}");
+    // where 30 N / (1 + x) is some standard errors of a sine's amplitude, 0.5 N / sqrt(900)
+    let least = stiff.interval[0].expect("an end");
+    assert!((300.0..TRUTH[4]).contains(&least), "{stiff:?}");
+    let light = named(&all, "light");
+    assert_eq!(light.seen, Seen::UpperBound, "{light:?}");
+    let last = all.directions.last().expect("six");
+    assert!(last.words.contains("not seen"), "{last:?}");
+}
+
+/// Bands hold the truth of what was never measured as often as they say, and are narrow where the record sees
+/// all that matters.
+#[test]
+fn bands_hold_what_was_not_measured() {
+    let truth = curves(&TRUTH).expect("it runs");
+    let sets = 10;
+    let mut inside = 0;
+    for seed in 0..sets {
+        let all = seen(60 + seed, unknowns());
+        assert_eq!(all.bands.len(), 2);
+        for band in &all.bands {
+            for (channel, truth) in band.channels.iter().zip(&truth) {
+                let ends = channel.low.iter().zip(&channel.high).zip(truth);
+                inside += ends
+                    .filter(|((low, high), y)| (**low..=**high).contains(y))
+                    .count();
+            }
+            // an amplitude is known to 1.96 * 0.5 / sqrt(10 * 180 / 2) = 0.03
+            let width = band.channels[0].half_width();
+            assert!(width < 0.2, "{width}");
+        }
+        let second = all
+            .further
+            .iter()
+            .find(|one| one.measurement.starts_with("second"));
+        let pins = &second.expect("it tells").pins;
+        assert!(pins.iter().any(|pin| pin.name == "alike"), "{pins:?}");
+    }
+    let share = inside as f64 / (sets as usize * 4 * SAMPLES) as f64;
+    say(&format!(
+        "identify: bands hold {:.1} % of the truth",
+        100.0 * share
+    ));
+    assert!((0.9..=1.0).contains(&share), "{share}");
+}
+
+/// A prior that the case states makes an interval of what the record does not see.
+#[test]
+fn what_is_known_beforehand_counts() {
+    let mut unknowns = unknowns();
+    unknowns[3].prior = Some(protocol::case::Prior {
+        value: 2.0,
+        deviation: 0.2,
+    });
+    let all = seen(7, unknowns);
+    let blind = named(&all, "blind");
+    assert_eq!(blind.seen, Seen::Both, "{blind:?}");
+    let [low, high] = blind.interval.map(|end| end.expect("an end"));
+    let factor = 10_f64.powf(1.96 * 0.2);
+    assert!((blind.value - 2.0).abs() < 0.05, "{blind:?}");
+    assert!((low * factor / 2.0 - 1.0).abs() < 0.1 && (high / factor / 2.0 - 1.0).abs() < 0.1);
+}
+
+/// 95 % intervals hold the truth 90 to 99 % of the time.
+#[test]
+fn intervals_hold_the_truth_as_often_as_they_say() {
+    let sets = 40;
+    let mut held = 0;
+    for seed in 0..sets {
+        let all = seen(100 + seed, unknowns());
+        for (k, name) in ["first", "alike", "both"].into_iter().enumerate() {
+            let [low, high] = named(&all, name).interval.map(|end| end.expect("an end"));
+            held += usize::from((low..=high).contains(&TRUTH[k]));
+        }
+    }
+    let share = held as f64 / (3 * sets) as f64;
+    say(&format!(
+        "identify: {held} of {} intervals hold the truth",
+        3 * sets
+    ));
+    assert!((0.9..=0.99).contains(&share), "{share}");
+}
