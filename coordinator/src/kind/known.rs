@@ -3,7 +3,7 @@
 use crate::case::{CaseError, Loaded, Summary, general, source::Source, summary};
 use crate::digest::Digest;
 use crate::report::{Drawing, General};
-use discrepancy::thresholds::Thresholds;
+use discrepancy::{identify::Band, thresholds::Thresholds};
 use protocol::{
     case::{Case, Channel},
     job::{ChannelScore, Curves, Numerics, Per},
@@ -117,6 +117,40 @@ pub(crate) trait Kind: Sync {
         });
         let curves = Value::Object(curves.collect());
         Map::from_iter([("curves".to_owned(), curves)])
+    }
+
+    /// What `identify --output json` says of the bands of a condition: the first channel's unit and abscissa
+    /// for all, and a channel's own where they differ.
+    fn predicted(&self, case: &Case, band: &Band) -> Map<String, Value> {
+        let mut said = Map::new();
+        let mut channels = case
+            .channels_of(band.condition)
+            .zip(&band.channels)
+            .peekable();
+        let Some(first) = channels.peek().map(|((_, channel), _)| (*channel).clone()) else {
+            return said;
+        };
+        let points = |channel: &Channel, values: &[f64]| {
+            let points = channel.abscissa.points.iter().take(values.len());
+            json!(points.copied().collect::<Vec<f64>>())
+        };
+        for ((_, channel), curve) in channels {
+            let mut own = json!({"low": curve.low, "high": curve.high});
+            if said.is_empty() {
+                let name = channel.abscissa.name.clone();
+                said.insert(name, points(channel, &curve.low));
+                said.insert("unit".to_owned(), json!(channel.unit));
+            }
+            if channel.unit != first.unit {
+                own["unit"] = json!(channel.unit);
+            }
+            if channel.abscissa != first.abscissa {
+                let name = channel.abscissa.name.as_str();
+                own["abscissa"] = json!({"name": name, "points": points(channel, &curve.low)});
+            }
+            said.insert(channel.name.clone(), own);
+        }
+        said
     }
 
     /// Key of the unknowns in objects.

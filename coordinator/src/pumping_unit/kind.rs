@@ -4,7 +4,7 @@ use super::{
     digest::simulation_digest,
     numerics::numerics,
     output::{
-        curves::{CurvesOutput, derivative},
+        curves::{CurvesOutput, derivative, predicted},
         score,
     },
     report::Dhh,
@@ -14,7 +14,7 @@ use crate::{
     kind::Kind,
     report::Drawing,
 };
-use discrepancy::thresholds::Thresholds;
+use discrepancy::{identify::Band, thresholds::Thresholds};
 use protocol::{
     case::{Case, Channel},
     job::{ChannelScore, Curves, Numerics, Per},
@@ -80,6 +80,10 @@ impl Kind for PumpingUnits {
         curves: &[Vec<f32>],
     ) -> Map<String, Value> {
         derivative(case, condition, per, curves)
+    }
+
+    fn predicted(&self, case: &Case, band: &Band) -> Map<String, Value> {
+        predicted(case, band)
     }
 
     fn unknowns(&self) -> &'static str {

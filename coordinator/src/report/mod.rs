@@ -1,6 +1,6 @@
 //! What people see of a finished run: tables, figures, an HTML report and the data behind it.
 //!
-//! Takes plain data ([`Calibration`], [`SingleRun`], [`diagnosis::Subject`]) and returns text, or
+//! Takes plain data ([`Calibration`], [`SingleRun`], [`diagnosis::Subject`], [`identification::Subject`]) and returns text, or
 //! writes a folder of files. The same data give the same bytes: nothing here reads a clock, a journal
 //! or the network.
 //!
@@ -16,6 +16,7 @@ pub(crate) mod document;
 pub(crate) mod drawing;
 pub(crate) mod folder;
 mod general;
+pub mod identification;
 mod kind;
 pub(crate) mod number;
 mod section;

@@ -1,55 +1,13 @@
-//! A diagnosis on the workers: a laboratory whose experiments are jobs.
-//!
-//! Experiments are numbered in the order in which the diagnosis asks for them, and that order depends
-//! on results alone: a run that is opened again finds every one of them in its journal.
+//! A diagnosis on the workers.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
-    stop::{Stop, or_stop},
-    watch::{View, Watch},
+    laboratory::{Jobs, StageCost, StageView},
+    stop::Stop,
+    watch::Watch,
 };
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::ground::budget::cost;
-use discrepancy::laboratory::{Laboratory, Stage};
-use protocol::{
-    announce::EffectDescriptor,
-    id::JobId,
-    job::{Answer, Job, Observation, SimulateSpec, Verdict},
-};
-use std::collections::BTreeMap;
-use std::time::{Duration, Instant};
-
-/// What one stage has cost so far.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StageCost {
-    /// Experiments that came back.
-    pub experiments: u64,
-    /// Of those, how many did not run to their end.
-    pub failed: u64,
-    /// Batches in which they were asked for: what is in one is independent, one follows another.
-    pub batches: u64,
-    /// Time from the first experiment's start to the last one's end, waiting included.
-    pub wall: Duration,
-}
-
-/// How far a stage has come.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StageView {
-    /// The stage.
-    pub stage: Stage,
-    /// Experiments of it that came back.
-    pub done: u64,
-    /// How many more of their batch are awaited.
-    pub open: usize,
-    /// What all stages have cost so far, in plain simulations.
-    pub spent: f64,
-    /// What this stage may still cost.
-    pub left: f64,
-}
-
-impl View for StageView {
-    type Reason = Stage;
-}
+use discrepancy::laboratory::Stage;
 
 /// A finished diagnosis, and what it cost.
 #[derive(Clone, Debug)]
@@ -58,22 +16,6 @@ pub struct Diagnosed {
     pub diagnosis: Diagnosis,
     /// Stages that did experiments.
     pub accounts: Vec<(Stage, StageCost)>,
-}
-
-/// The id of the question for the effects that the workers know.
-const LIBRARY: u64 = 0;
-
-/// Asks a worker for the effects that it can simulate.
-///
-/// # Errors
-/// If nobody answers, or the user stops.
-pub async fn library<E: Evaluator>(
-    evaluator: &mut E,
-    stop: &mut Stop,
-) -> Result<Vec<EffectDescriptor>, StudyError> {
-    evaluator.submit(JobId(LIBRARY), Job::Describe)?;
-    let completed = or_stop(evaluator.next(), stop).await??;
-    completed.take(Answer::into_described, || "the list of effects".to_owned())
 }
 
 /// Diagnoses on an evaluator.
@@ -86,106 +28,10 @@ pub async fn diagnose_on<E: Evaluator>(
     watch: &mut dyn Watch<StageView>,
     stop: &mut Stop,
 ) -> Result<Diagnosed, StudyError> {
-    let mut jobs = Jobs {
-        evaluator,
-        watch,
-        stop,
-        next_id: LIBRARY + 1,
-        differentiates: !inputs.differences,
-        costs: BTreeMap::new(),
-        spent: 0.0,
-        left: inputs.thresholds.budget.map(f64::from),
-    };
+    let mut jobs = Jobs::new(evaluator, inputs, &Stage::ALL, watch, stop);
     let diagnosis = diagnose(&mut jobs, inputs).await?;
     Ok(Diagnosed {
         diagnosis,
-        accounts: jobs.costs.into_iter().collect(),
+        accounts: jobs.accounts(),
     })
-}
-
-/// Experiments as jobs.
-struct Jobs<'a, E> {
-    evaluator: &'a mut E,
-    watch: &'a mut dyn Watch<StageView>,
-    stop: &'a mut Stop,
-    next_id: u64,
-    differentiates: bool,
-    costs: BTreeMap<Stage, StageCost>,
-    /// What came back so far, in plain simulations.
-    spent: f64,
-    /// What each stage has left of its budget.
-    left: [f64; Stage::ALL.len()],
-}
-
-impl<E: Evaluator> Laboratory for Jobs<'_, E> {
-    type Error = StudyError;
-
-    fn differentiates(&self) -> bool {
-        self.differentiates
-    }
-
-    async fn observe(
-        &mut self,
-        stage: Stage,
-        batch: Vec<SimulateSpec>,
-    ) -> Result<Vec<Option<Observation>>, StudyError> {
-        let started = Instant::now();
-        let first = self.next_id;
-        let mut results: Vec<Option<Observation>> = vec![None; batch.len()];
-        let mut open = batch.len();
-        let prices: Vec<f64> = batch.iter().map(cost).collect();
-        for spec in batch {
-            self.watch.asked(self.next_id, &stage);
-            self.evaluator
-                .submit(JobId(self.next_id), Job::Simulate(spec))?;
-            self.next_id += 1;
-        }
-        while open > 0 {
-            let completed = or_stop(self.evaluator.next(), self.stop).await??;
-            let place = completed
-                .id
-                .0
-                .checked_sub(first)
-                .and_then(|k| usize::try_from(k).ok());
-            let Some(slot) = place.and_then(|k| results.get_mut(k)) else {
-                continue;
-            };
-            let price = place
-                .and_then(|k| prices.get(k))
-                .copied()
-                .unwrap_or_default();
-            self.spent += price;
-            self.left[stage as usize] -= price;
-            let cost = self.costs.entry(stage).or_default();
-            cost.experiments += 1;
-            let id = completed.id;
-            match completed.outcome.done() {
-                Ok(answer) => {
-                    let seen = answer.into_channels();
-                    let seen = seen.map_err(|_| StudyError::WrongKind { id })?;
-                    cost.failed += u64::from(seen.verdict != Verdict::Complete);
-                    *slot = Some(seen);
-                }
-                // a failure that every experiment would meet ends the diagnosis
-                Err(failure) => match StudyError::hopeless(&failure) {
-                    Some(error) => return Err(error),
-                    None => cost.failed += 1,
-                },
-            }
-            open -= 1;
-            let evaluator = &*self.evaluator;
-            let view = StageView {
-                stage,
-                done: cost.experiments,
-                open,
-                spent: self.spent,
-                left: self.left[stage as usize].max(0.0),
-            };
-            self.watch.progress(&view, &|| evaluator.crew());
-        }
-        let cost = self.costs.entry(stage).or_default();
-        cost.batches += u64::from(!results.is_empty());
-        cost.wall += started.elapsed();
-        Ok(results)
-    }
 }

@@ -26,8 +26,8 @@ use search::least_squares::Settings;
 
 /// How the free fit goes: to its floor, with unknowns of next to no curvature held where they are.
 const FREE: Settings = Settings {
-    iterations: 10,
-    gradient: 1e-2,
+    iterations: 20,
+    gradient: 3e-3,
     decrease: 1e-4,
     change: 2.0,
     step_range: 10.0,

@@ -64,11 +64,6 @@ impl Side {
         }
     }
 
-    /// The same looks with another prediction.
-    pub(super) fn predicted(self, predicted: f64) -> Self {
-        Self { predicted, ..self }
-    }
-
     /// Takes what a look gave; nothing where nothing completes.
     pub(super) fn absorb(&mut self, at: f64, found: Option<(f64, Vec<f64>)>) {
         self.looks += 1;

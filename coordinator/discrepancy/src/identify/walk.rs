@@ -1,7 +1,7 @@
 //! Profile likelihoods of all unknowns, side by side: every look holds one unknown and refits all else.
 //!
-//! Where the quadratic picture holds, one simulation at the end that it has says so, and nothing is
-//! refitted. It decides what to simulate; [`super::profile`] decides where.
+//! Where the quadratic picture holds, simulations at the end that it has say so, and a refit finds nothing to
+//! do. It decides what to simulate; [`super::profile`] decides where.
 use super::information::{inverse, with_priors};
 use super::profile::{Next, RISE, Side};
 use crate::laboratory::Laboratory;
@@ -9,12 +9,13 @@ use crate::linear::evidence::misfit;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
+use crate::record::measured::Curves;
 use nalgebra::DMatrix;
 use search::least_squares::{Settings, prior_cost};
 
 /// How all else is refitted: it starts on the ridge.
 const REFIT: Settings = Settings {
-    iterations: 3,
+    iterations: 4,
     gradient: 1e-2,
     decrease: 1e-3,
     change: 2.0,
@@ -61,7 +62,6 @@ pub(super) async fn walk<L: Laboratory>(
     fit: Fit,
 ) -> Result<Walked, L::Error> {
     let mut walked = begin(fit);
-    quadratic(experiments, &mut walked).await?;
     for _ in 0..=AGAIN {
         follow(experiments, &mut walked).await?;
         let cost = walked.fit.search.cost();
@@ -81,11 +81,8 @@ pub(super) async fn walk<L: Laboratory>(
         if fit.search.cost() >= cost {
             break;
         }
-        let sides = std::mem::take(&mut walked.sides);
+        // what was seen from another valley says too much is left
         walked = begin(fit);
-        for (new, old) in walked.sides.iter_mut().zip(sides) {
-            *new = old.predicted(new.predicted);
-        }
     }
     Ok(walked)
 }
@@ -110,42 +107,14 @@ fn begin(fit: Fit) -> Walked {
     }
 }
 
-/// Looks where the quadratic has the ends, with all else where it has it.
-async fn quadratic<L: Laboratory>(
-    experiments: &mut Experiments<'_, L>,
-    walked: &mut Walked,
-) -> Result<(), L::Error> {
-    /// Farther away nothing is quadratic (coordinate).
-    const FAR: f64 = 1.0;
-    let mut places = Vec::new();
-    let mut points = Vec::new();
-    for (place, side) in walked.sides.iter().enumerate() {
-        let at = walked.fit.x()[side.unknown] + side.sign * side.predicted;
-        if side.predicted <= FAR && side.sign * (side.bound - at) > 0.0 {
-            places.push(place);
-            points.push(start(walked, side, at));
-        }
-    }
-    let curves = experiments.curves(&points).await?;
-    let least = walked.fit.search.cost();
-    for ((place, point), curves) in places.into_iter().zip(points).zip(curves) {
-        let Some(curves) = curves else { continue };
-        let residual = experiments.on.residual(&curves);
-        let cost = residual.norm_squared() + prior_cost(&point.x, walked.fit.variables());
-        // a higher one only says that all else should have been refitted
-        if cost - least <= (1.0 + 0.15) * walked.rise {
-            let side = &mut walked.sides[place];
-            side.absorb(point.x[side.unknown], Some((cost, point.x)));
-        }
-    }
-    Ok(())
-}
-
-/// Looks and refits until every side has its end.
+/// Looks until every side has its end: where a start already leaves little it is not refitted, for a refit
+/// leaves less still.
 async fn follow<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     walked: &mut Walked,
 ) -> Result<(), L::Error> {
+    /// So much of the wanted rise is little.
+    const LITTLE: f64 = 0.85;
     loop {
         let looks = walked.sides.iter().enumerate();
         let looks: Vec<(usize, f64)> = looks
@@ -157,38 +126,84 @@ async fn follow<L: Laboratory>(
         if looks.is_empty() {
             return Ok(());
         }
-        let point = |(place, at): &(usize, f64)| {
+        let starts = looks.iter().map(|(place, at)| {
             let side = &walked.sides[*place];
-            let mut point = start(walked, side, *at);
-            point.model.held = Some(side.unknown);
-            point
-        };
-        let fits = experiments
-            .fits(looks.iter().map(point).collect(), REFIT)
-            .await?;
-        for ((place, at), fit) in looks.into_iter().zip(fits) {
+            starts(walked, side, *at)
+        });
+        let best = best_of(experiments, &walked.fit, starts.collect()).await?;
+        let least = walked.fit.search.cost();
+        let mut open = Vec::new();
+        for ((place, at), best) in looks.into_iter().zip(best) {
+            let side = &mut walked.sides[place];
+            match best {
+                None => side.absorb(at, None),
+                Some((cost, point)) if cost - least <= LITTLE * walked.rise => {
+                    side.absorb(at, Some((cost, point.x)));
+                }
+                Some((_, mut point)) => {
+                    point.model.held = Some(side.unknown);
+                    open.push((place, at, point));
+                }
+            }
+        }
+        let points = open.iter().map(|(.., point)| point.clone());
+        let fits = experiments.fits(points.collect(), REFIT).await?;
+        for ((place, at, _), fit) in open.into_iter().zip(fits) {
             let found = fit.map(|fit| (fit.search.cost(), fit.x().to_vec()));
             walked.sides[place].absorb(at, found);
         }
     }
 }
 
-/// Where a look starts: from the nearest point of the profile, along the quadratic's ridge.
-fn start(walked: &Walked, side: &Side, at: f64) -> Point {
+/// Of each set of points the one that leaves least, with what it leaves; nothing where none completes.
+async fn best_of<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    sets: Vec<Vec<Point>>,
+) -> Result<Vec<Option<(f64, Point)>>, L::Error> {
+    let curves = experiments.curves(&sets.concat()).await?;
+    let mut curves = curves.into_iter();
+    let best = |set: Vec<Point>| {
+        let seen: Vec<Option<Curves>> = curves.by_ref().take(set.len()).collect();
+        let left = |curves: &Curves, point: &Point| {
+            let residual = experiments.on.residual(curves);
+            residual.norm_squared() + prior_cost(&point.x, fit.variables())
+        };
+        let costs = set.into_iter().zip(seen);
+        let costs = costs.filter_map(|(point, curves)| Some((left(&curves?, &point), point)));
+        costs.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    Ok(sets.into_iter().map(best).collect())
+}
+
+/// Where a look may start: from the nearest point of the profile as it is, along the quadratic's ridge, and
+/// along the line through the last two.
+fn starts(walked: &Walked, side: &Side, at: f64) -> Vec<Point> {
     let k = side.unknown;
-    let x = walked.fit.x();
-    let near = side.marks.iter().map(|mark| (mark.at, mark.x.as_slice()));
-    let near = near.chain(std::iter::once((x[k], x)));
-    let (from, x) = near
-        .min_by(|a, b| (a.0 - at).abs().total_cmp(&(b.0 - at).abs()))
-        .unwrap_or((x[k], x));
-    let mut x = x.to_vec();
+    let own = (walked.fit.x()[k], walked.fit.x());
+    let marks = side.marks.iter().map(|mark| (mark.at, mark.x.as_slice()));
+    let mut marks: Vec<(f64, &[f64])> = marks.chain(std::iter::once(own)).collect();
+    marks.sort_by(|a, b| (a.0 - at).abs().total_cmp(&(b.0 - at).abs()));
+    let (from, nearest) = marks[0];
+    let along = |slopes: &[f64]| {
+        let moved = nearest.iter().zip(slopes).zip(walked.fit.variables());
+        let moved = moved.map(|((x, slope), v)| (x + slope * (at - from)).clamp(v.lower, v.upper));
+        let mut x: Vec<f64> = moved.collect();
+        x[k] = at;
+        walked.fit.at(x)
+    };
+    let mut all = vec![along(&vec![0.0; nearest.len()])];
     if let Some(covariance) = &walked.covariance {
         let ridge = covariance.column(k) / covariance[(k, k)];
-        for ((x, slope), v) in x.iter_mut().zip(ridge.iter()).zip(walked.fit.variables()) {
-            *x = (*x + slope * (at - from)).clamp(v.lower, v.upper);
-        }
+        all.push(along(ridge.as_slice()));
     }
-    x[k] = at;
-    walked.fit.at(x)
+    if let Some((second, x)) = marks
+        .get(1)
+        .filter(|(second, _)| (second - from).abs() > 1e-9)
+    {
+        let pairs = nearest.iter().zip(*x);
+        let slopes: Vec<f64> = pairs.map(|(a, b)| (a - b) / (from - second)).collect();
+        all.push(along(&slopes));
+    }
+    all
 }

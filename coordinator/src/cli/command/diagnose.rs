@@ -1,29 +1,19 @@
 //! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
 //! that is, and how far the gap closes.
-use crate::{
-    case::{Loaded, Overrides, load_with_notes, require_record},
-    cli::{
-        argument::{
-            door::Door,
-            output::OutputChoice,
-            workers::{cores, worker_count},
-        },
-        output::{
-            diagnosis::Answer,
-            problem::{EXIT_CODES, Usage},
-            progress::StageDisplay,
-            terminal,
-        },
-        run::{
-            begun::Run,
-            bus,
-            calibration::Calibration,
-            command_line::command_line,
-            diagnosis::{Decides, Diagnosis, diagnose},
-            folder::{GENES, RunFolder},
-            manifest::{self, CALIBRATE, DIAGNOSE, Manifest, Start},
-            session::Session,
-        },
+use crate::cli::{
+    argument::{
+        door::Door,
+        output::OutputChoice,
+        workers::{cores, worker_count},
+    },
+    output::{diagnosis::Answer, problem::EXIT_CODES, progress::StageDisplay, terminal},
+    run::{
+        begun::Run,
+        diagnosis::{Decides, Diagnosis, diagnose},
+        folder::RunFolder,
+        manifest::DIAGNOSE,
+        session::Session,
+        target::Target,
     },
 };
 use clap::Args;
@@ -88,36 +78,6 @@ pub(super) struct Arguments {
     output: OutputChoice,
 }
 
-/// What is diagnosed, and where it came from.
-struct Target {
-    /// Folder of the case.
-    folder: PathBuf,
-    /// Folder of the records, where they replace the case's.
-    measured: Option<PathBuf>,
-    loaded: Loaded,
-    /// Where the recalibration starts, if that is known.
-    start: Option<Start>,
-}
-
-impl Target {
-    /// Without what this very diagnosis has added to the case; the start is one of what is left.
-    fn without_found_by(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
-        let stated = self.loaded.case.unknowns.clone();
-        self.loaded = earlier.as_begun(self.loaded)?;
-        let left = &self.loaded.case.unknowns;
-        let kept = |values: Vec<f64>| {
-            let pairs = stated.iter().zip(values);
-            let kept = pairs.filter(|(gene, _)| left.contains(gene));
-            kept.map(|(_, value)| value).collect()
-        };
-        self.start = self.start.map(|start| Start {
-            genes: kept(start.genes),
-            ..start
-        });
-        Ok(self)
-    }
-}
-
 /// Diagnoses from the record to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let session = Session {
@@ -125,7 +85,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         local_workers: arguments.workers.unwrap_or_else(cores),
         started: Instant::now(),
     };
-    let mut target = target(arguments)?;
+    let mut target = Target::read(
+        &arguments.target,
+        arguments.measured.as_deref(),
+        arguments.genes.as_deref(),
+    )?;
     let path = if let Some(path) = &arguments.run {
         path.clone()
     } else {
@@ -140,7 +104,15 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     for note in &target.loaded.notes {
         terminal::tell(&format!("note: {note}"));
     }
-    let manifest = manifest(arguments, &target)?;
+    let settings = Decides {
+        thresholds: Thresholds {
+            rounds: usize::from(arguments.rounds),
+            without: arguments.without.clone(),
+            ..Thresholds::default()
+        },
+        differences: arguments.differences,
+    };
+    let manifest = target.manifest(arguments.seed, settings)?;
     let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
     let found = session.work(&run, async |bus, stop| {
         let mut display = StageDisplay::new();
@@ -165,90 +137,4 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         answer.add(&file)?;
     }
     answer.print(arguments.output.output, &object)
-}
-
-/// What decides the diagnosis, and how it was asked for.
-fn manifest(arguments: &Arguments, target: &Target) -> anyhow::Result<Manifest<Decides>> {
-    Ok(Manifest {
-        kind: DIAGNOSE.to_owned(),
-        format: manifest::FORMAT,
-        program: bus::PROGRAM.to_owned(),
-        command: command_line(),
-        preset: String::new(),
-        set: Vec::new(),
-        seed: arguments.seed,
-        settings: Decides {
-            thresholds: Thresholds {
-                rounds: usize::from(arguments.rounds),
-                without: arguments.without.clone(),
-                ..Thresholds::default()
-            },
-            differences: arguments.differences,
-        },
-        start: target.start.clone(),
-        case_folder: std::path::absolute(&target.folder)?,
-        measured: target
-            .measured
-            .as_ref()
-            .unwrap_or(&target.folder)
-            .display()
-            .to_string(),
-        synthetic: target.loaded.synthetic,
-        notes: target
-            .loaded
-            .notes
-            .iter()
-            .map(ToString::to_string)
-            .collect(),
-        wall_s: 0.0,
-    })
-}
-
-/// The case, and where the recalibration starts.
-fn target(arguments: &Arguments) -> anyhow::Result<Target> {
-    let folder = RunFolder::new(&arguments.target);
-    let (case, records, genes) = if folder.is_begun() {
-        let calibration = finished(&folder)?;
-        let manifest = calibration.manifest;
-        let records = manifest.replaced_records().map(ToOwned::to_owned);
-        (manifest.case_folder, records, Some(folder.file(GENES)))
-    } else {
-        (arguments.target.clone(), None, None)
-    };
-    let measured = arguments.measured.clone().or(records);
-    let overrides = Overrides {
-        measured: measured.clone(),
-    };
-    let loaded = load_with_notes(&case, &overrides)?;
-    require_record(&case, &loaded.case, loaded.case.objective.condition)?;
-    let genes = arguments.genes.clone().or(genes);
-    let start = Start::read(genes.as_deref(), &loaded.case)?;
-    Ok(Target {
-        folder: case,
-        measured,
-        loaded,
-        start,
-    })
-}
-
-/// A calibration that came to its end.
-fn finished(folder: &RunFolder) -> anyhow::Result<Calibration> {
-    let path = folder.path();
-    let kind = folder.head()?.kind;
-    if kind != CALIBRATE {
-        return Err(Usage {
-            message: format!("{} holds a run of `horsehead {kind}`", path.display()),
-            help: "name a case folder, or the folder of a calibration".to_owned(),
-        }
-        .into());
-    }
-    let calibration = Calibration::open(path)?;
-    if folder.file(GENES).exists() {
-        return Ok(calibration);
-    }
-    Err(Usage {
-        message: format!("{} is not finished", path.display()),
-        help: format!("finish it first:\n  {}", calibration.resume_command()),
-    }
-    .into())
 }

@@ -12,6 +12,7 @@ mod diagnose;
 mod evaluate;
 mod explain;
 mod export;
+mod identify;
 mod keys;
 #[cfg(test)]
 mod printed;
@@ -40,6 +41,7 @@ First steps:
   horsehead simulate cases/cyjs10-5-37hb
   horsehead calibrate cases/cyjs10-5-37hb
   horsehead diagnose cases/cyjs10-5-37hb
+  horsehead identify cases/cyjs10-5-37hb
 
 Exit codes: 0 done, 1 failed, 2 usage or bad input, 130 interrupted.";
 
@@ -69,6 +71,7 @@ commands! {
     Evaluate: evaluate,
     Verify: verify,
     Diagnose: diagnose,
+    Identify: identify,
     Head: head,
     Report: report,
     Explain: explain,

@@ -87,7 +87,11 @@ impl StageDisplay {
 impl Watch<StageView> for StageDisplay {
     fn progress(&mut self, view: &StageView, crew: &dyn Fn() -> Crew) {
         let StageView {
-            stage, done, open, ..
+            stages,
+            stage,
+            done,
+            open,
+            ..
         } = *view;
         let now = Instant::now();
         let pace = self.pace.of(now, view.spent);
@@ -98,14 +102,11 @@ impl Watch<StageView> for StageDisplay {
         }
         self.last = now;
         self.stage = Some(stage);
-        let number = 1 + Stage::ALL
-            .iter()
-            .take_while(|other| **other != stage)
-            .count();
+        let number = 1 + stages.iter().take_while(|other| **other != stage).count();
         let workers = at_work(&crew());
         let line = format!(
             "stage {number} of {}: {}  {done} simulations, {open} open  {}{workers}",
-            Stage::ALL.len(),
+            stages.len(),
             stage.name(),
             pace.map_or_else(String::new, |pace| {
                 let left = Duration::from_secs_f64(view.left / pace);

@@ -51,7 +51,7 @@ pub(crate) struct Found {
     pub(crate) library: Vec<EffectDescriptor>,
 }
 
-impl Diagnosis {
+impl<S: manifest::Decides> Run<S> {
     /// The case with its records: a run keeps its case, but not the cycles of the records.
     ///
     /// # Errors
@@ -69,8 +69,9 @@ impl Diagnosis {
                     self.folder.path().display()
                 ),
                 help: format!(
-                    "put {} back as it was, or diagnose it again with another --run",
-                    manifest.case_folder.display()
+                    "put {} back as it was, or {} it again with another --run",
+                    manifest.case_folder.display(),
+                    manifest.kind
                 ),
             }
             .into());
@@ -110,7 +111,11 @@ pub(crate) async fn diagnose<E: Evaluator>(
             .into());
         }
     }
-    let inputs = inputs(loaded, manifest, library)?;
+    let own = &manifest.settings;
+    let inputs = Inputs {
+        differences: own.differences,
+        ..inputs(loaded, manifest, &own.thresholds, (library, "quick"))?
+    };
     let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
     let off = off.into_iter().map(|off| off.suspect);
     Ok(Found {
@@ -119,11 +124,16 @@ pub(crate) async fn diagnose<E: Evaluator>(
     })
 }
 
-/// What the pipeline takes: the calibrated condition's record first.
-fn inputs(
+/// What is fitted: the calibrated condition's record first. The library is without the effects of the case,
+/// and a search of the named preset finds the way into the valley.
+///
+/// # Errors
+/// If the case has no space to search, or says nothing of its kind.
+pub(super) fn inputs<S>(
     loaded: &Loaded,
-    manifest: &Manifest<Decides>,
-    library: Vec<EffectDescriptor>,
+    manifest: &Manifest<S>,
+    thresholds: &Thresholds,
+    (library, entrance): (Vec<EffectDescriptor>, &'static str),
 ) -> anyhow::Result<Inputs> {
     let case = &loaded.case;
     let space = Space::new(&case.unknowns)?;
@@ -136,7 +146,6 @@ fn inputs(
         .into_iter()
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
-    let thresholds = &manifest.settings.thresholds;
     let (usual, finer) = kind::of(case).numerics(case, thresholds)?;
     Ok(Inputs {
         unknowns: case.unknowns.clone(),
@@ -146,8 +155,9 @@ fn inputs(
         library,
         usual,
         finer,
+        entrance,
         seed: manifest.seed,
         thresholds: thresholds.clone(),
-        differences: manifest.settings.differences,
+        differences: false,
     })
 }

@@ -4,14 +4,16 @@ use super::{
     calibration::{self, Calibration, calibrate},
     diagnosis::{self, Diagnosis, diagnose},
     folder::{RESULT, RunFolder},
-    manifest::{CALIBRATE, DIAGNOSE},
+    identification::{self, Identification, identify},
+    manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use crate::{
     case::Loaded,
     cli::{
         argument::output::Output,
         output::{
-            calibration::show, diagnosis::Answer, object::diagnosis::times::Times, problem::Usage,
+            calibration::show, diagnosis::Answer, identification::show as identified,
+            object::diagnosis::times::Times, problem::Usage,
         },
     },
     study::{Evaluator, ProgressView, StageView, Stop, Watch},
@@ -24,6 +26,8 @@ pub(crate) enum AnyRun {
     Calibration(Calibration),
     /// Of `horsehead diagnose`.
     Diagnosis(Diagnosis),
+    /// Of `horsehead identify`.
+    Identification(Identification),
 }
 
 /// A run with what it found, repeated from its journal.
@@ -32,6 +36,8 @@ pub(crate) enum Repeated<'a> {
     Calibration(&'a Calibration, calibration::Found),
     /// A diagnosis, with the case and the records that it read anew.
     Diagnosis(&'a Diagnosis, Box<Loaded>, Box<diagnosis::Found>),
+    /// An identification.
+    Identification(&'a Identification, Box<identification::Found>),
 }
 
 impl AnyRun {
@@ -44,9 +50,11 @@ impl AnyRun {
         match head.kind.as_str() {
             CALIBRATE => Ok(Self::Calibration(Run::open(path)?)),
             DIAGNOSE => Ok(Self::Diagnosis(Run::open(path)?)),
+            IDENTIFY => Ok(Self::Identification(Run::open(path)?)),
             other => Err(Usage {
                 message: format!("{} holds a run of `horsehead {other}`", path.display()),
-                help: "name the folder of a calibration or of a diagnosis".to_owned(),
+                help: "name the folder of a calibration, a diagnosis or an identification"
+                    .to_owned(),
             }
             .into()),
         }
@@ -60,6 +68,7 @@ impl AnyRun {
         match self {
             Self::Calibration(run) => run.expect_replayable(),
             Self::Diagnosis(run) => run.expect_replayable(),
+            Self::Identification(run) => run.expect_replayable(),
         }
     }
 
@@ -81,6 +90,11 @@ impl AnyRun {
                 let loaded = Box::new(run.loaded()?);
                 let found = diagnose(evaluator, &run.manifest, &loaded, watch, stop).await?;
                 Repeated::Diagnosis(run, loaded, Box::new(found))
+            }
+            Self::Identification(run) => {
+                let loaded = run.loaded()?;
+                let found = identify(evaluator, &run.manifest, &loaded, watch, stop).await?;
+                Repeated::Identification(run, Box::new(found))
             }
         })
     }
@@ -106,6 +120,9 @@ impl Repeated<'_> {
                 };
                 let object = answer.write()?;
                 answer.print(output, &object)
+            }
+            Self::Identification(run, found) => {
+                identified(run, &found, run.manifest.wall_s, output)
             }
         }
     }

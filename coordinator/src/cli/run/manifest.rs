@@ -19,6 +19,8 @@ const MOST_NAMED: usize = 3;
 pub(crate) const CALIBRATE: &str = "calibrate";
 /// The kind of a diagnosis.
 pub(crate) const DIAGNOSE: &str = "diagnose";
+/// The kind of an identification: what a record sees.
+pub(crate) const IDENTIFY: &str = "identify";
 /// The kind of a run of individuals that another program asks for.
 pub(crate) const EVALUATE: &str = "evaluate";
 

@@ -1,4 +1,5 @@
 //! The revolution in the object of `horsehead simulate`.
+use discrepancy::identify::Band;
 use protocol::{
     case::Case,
     job::{Per, Verdict},
@@ -33,6 +34,23 @@ pub(in crate::pumping_unit) fn derivative(
             Some(Sensor::Gauge(_)) | None => continue,
         };
         said.insert(key.to_owned(), json!(values));
+    }
+    said
+}
+
+/// Bands of the channels: those of the gauges by number, in MPa, and the others' in units of their own.
+pub(in crate::pumping_unit) fn predicted(case: &Case, band: &Band) -> Map<String, Value> {
+    let mut said = Map::new();
+    for ((_, channel), curve) in case.channels_of(band.condition).zip(&band.channels) {
+        let key = match Sensor::named(&channel.name) {
+            Some(Sensor::Gauge(gauge)) => gauge.to_string(),
+            Some(Sensor::Position) => "suspension_m".to_owned(),
+            Some(Sensor::Torque) => "crank_torque_n_m".to_owned(),
+            None => continue,
+        };
+        said.insert(key, json!({"low": curve.low, "high": curve.high}));
+        said.insert("crank_deg".to_owned(), json!(channel.abscissa.points));
+        said.insert("unit".to_owned(), json!("MPa"));
     }
     said
 }

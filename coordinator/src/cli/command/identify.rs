@@ -1,0 +1,100 @@
+//! `horsehead identify`: which unknowns a record sees, at all and apart, and what it leaves open.
+use crate::cli::{
+    argument::{
+        door::Door,
+        output::OutputChoice,
+        workers::{cores, worker_count},
+    },
+    output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},
+    run::{
+        begun::Run,
+        folder::RunFolder,
+        identification::{Decides, identify},
+        manifest::IDENTIFY,
+        session::Session,
+        target::Target,
+    },
+};
+use clap::Args;
+use discrepancy::thresholds::Thresholds;
+use std::{path::PathBuf, time::Instant};
+
+/// Say which unknowns a record can see, how well, which trade off, and what that does to predictions.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead identify cases/cyjs10-5-37hb
+  horsehead identify runs/cyjs10-5-37hb-quick-seed1
+  horsehead identify cases/cyjs10-5-37hb --measured tests/of/march --output json
+
+A case is fitted first; a finished run of `calibrate`, or a gene file, gives the start. Every unknown gets
+its value with a 95 % interval, a bound on one side, or \"not seen by this record\": where the likelihood
+profile, all else refitted, rises by 3.84 within the bounds. Where the fit leaves more than noise the
+intervals are widened by that, and `diagnose` is the next thing to do.
+Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Case folder, or the folder of a finished calibration.
+    #[arg(value_name = "CASE|RUN")]
+    target: PathBuf,
+    /// Folder whose inputs and records replace those of the case: a new test of the
+    /// same machine.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    measured: Option<PathBuf>,
+    /// Gene file to start the fit from, such as a run's `calibrated.toml`.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
+    genes: Option<PathBuf>,
+    /// Take every derivative as a difference of whole simulations, as if the model gave none: slower.
+    #[arg(long, env = "HORSEHEAD_DIFFERENCES")]
+    differences: bool,
+    /// Fixes every random choice: the same seed gives the same bits.
+    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
+    seed: u64,
+    /// Run folder [default: runs/CASE-identify-seedN, with --measured also the folder's name and the
+    /// start of its records' hash].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    door: Door,
+    /// Worker processes to start on this machine; 0 for none [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Identifies from the record to the report.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let session = Session {
+        door: arguments.door.clone(),
+        local_workers: arguments.workers.unwrap_or_else(cores),
+        started: Instant::now(),
+    };
+    let target = Target::read(
+        &arguments.target,
+        arguments.measured.as_deref(),
+        arguments.genes.as_deref(),
+    )?;
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let measured = target.measured.as_deref();
+        RunFolder::default_path(&target.loaded.case, IDENTIFY, &[], measured, arguments.seed)?
+    };
+    for note in &target.loaded.notes {
+        terminal::tell(&format!("note: {note}"));
+    }
+    let settings = Decides {
+        orders: Thresholds::default().orders,
+        differences: arguments.differences,
+    };
+    let manifest = target.manifest(arguments.seed, settings)?;
+    let run = Run::begin(&path, manifest, target.loaded.case.clone())?;
+    let found = session.work(&run, async |bus, stop| {
+        let mut display = StageDisplay::new();
+        let found = identify(bus, &run.manifest, &target.loaded, &mut display, stop).await;
+        display.clear();
+        found
+    })?;
+    show(&run, &found, session.wall_s(&run), arguments.output.output)
+}

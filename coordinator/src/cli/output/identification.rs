@@ -1,0 +1,55 @@
+//! The files and the output of a finished identification.
+use super::{object::identification::object, terminal};
+use crate::{
+    case::write_genes,
+    cli::{
+        argument::output::Output,
+        run::{
+            bus,
+            folder::{GENES, RESULT},
+            identification::{Found, Identification},
+        },
+    },
+    report::{Origin, identification as report, text},
+};
+
+/// Writes the files of a finished run and prints its result.
+///
+/// # Errors
+/// If a file cannot be written.
+pub(crate) fn show(
+    run: &Identification,
+    found: &Found,
+    wall_s: f64,
+    output: Output,
+) -> anyhow::Result<()> {
+    let manifest = &run.manifest;
+    let subject = report::Subject {
+        case: &run.case,
+        identified: &found.identified,
+        origin: Origin {
+            program: manifest.program.clone(),
+            command: manifest.command.clone(),
+            run: run.folder.path().display().to_string(),
+            case_hash: bus::case_hash(&run.case)?,
+            measured_name: manifest.measured.clone(),
+            synthetic: manifest.synthetic,
+            preset: None,
+            seed: Some(manifest.seed),
+            digest: String::new(),
+        },
+        notes: &manifest.notes,
+        wall_s,
+    };
+    let about = format!("Parameters of {}", run.folder.path().display());
+    let genes = write_genes(&run.case, &found.identified.genes, &about);
+    run.folder.write(GENES, &genes)?;
+    let files = report::write(run.folder.path(), &subject)?;
+    for page in files.iter().take(1) {
+        terminal::tell(&format!("open {}", page.display()));
+    }
+    let object = object(&subject, &found.accounts);
+    run.folder.write_json(RESULT, &object)?;
+    let tables = || text(&report::report(&subject), terminal::styled());
+    terminal::print(output, tables, &object)
+}

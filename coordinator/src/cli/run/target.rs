@@ -1,0 +1,129 @@
+//! What a command fits: a case folder, or a finished calibration, whose case, records and parameters are taken.
+use super::{
+    bus,
+    calibration::Calibration,
+    command_line::command_line,
+    diagnosis::Diagnosis,
+    folder::{GENES, RunFolder},
+    manifest::{CALIBRATE, Decides, FORMAT, Manifest, Start},
+};
+use crate::{
+    case::{Loaded, Overrides, load_with_notes, require_record},
+    cli::output::problem::Usage,
+};
+use std::path::{Path, PathBuf};
+
+/// A case with its records, and where it came from.
+pub(crate) struct Target {
+    /// Folder of the case.
+    pub(crate) folder: PathBuf,
+    /// Folder of the records, where they replace the case's.
+    pub(crate) measured: Option<PathBuf>,
+    /// The case as it was read.
+    pub(crate) loaded: Loaded,
+    /// Where the recalibration starts, if that is known.
+    pub(crate) start: Option<Start>,
+}
+
+impl Target {
+    /// A case folder, or a finished calibration with its case, records and parameters; records and genes that
+    /// are named take the place of those.
+    ///
+    /// # Errors
+    /// If the case or a file cannot be read, it has no record of the calibrated condition, or the run is of
+    /// another kind or not finished.
+    pub(crate) fn read(
+        target: &Path,
+        measured: Option<&Path>,
+        genes: Option<&Path>,
+    ) -> anyhow::Result<Self> {
+        let folder = RunFolder::new(target);
+        let (case, records, own) = if folder.is_begun() {
+            let calibration = finished(&folder)?;
+            let manifest = calibration.manifest;
+            let records = manifest.replaced_records().map(ToOwned::to_owned);
+            (manifest.case_folder, records, Some(folder.file(GENES)))
+        } else {
+            (target.to_owned(), None, None)
+        };
+        let measured = measured.map(ToOwned::to_owned).or(records);
+        let overrides = Overrides {
+            measured: measured.clone(),
+        };
+        let loaded = load_with_notes(&case, &overrides)?;
+        require_record(&case, &loaded.case, loaded.case.objective.condition)?;
+        let genes = genes.map(ToOwned::to_owned).or(own);
+        let start = Start::read(genes.as_deref(), &loaded.case)?;
+        Ok(Self {
+            folder: case,
+            measured,
+            loaded,
+            start,
+        })
+    }
+
+    /// How a run on it begins, with what else decides its result.
+    pub(crate) fn manifest<S: Decides>(
+        &self,
+        seed: u64,
+        settings: S,
+    ) -> anyhow::Result<Manifest<S>> {
+        let measured = self.measured.as_ref().unwrap_or(&self.folder);
+        let notes = self.loaded.notes.iter().map(ToString::to_string);
+        Ok(Manifest {
+            kind: S::KIND.to_owned(),
+            format: FORMAT,
+            program: bus::PROGRAM.to_owned(),
+            command: command_line(),
+            preset: String::new(),
+            set: Vec::new(),
+            seed,
+            settings,
+            start: self.start.clone(),
+            case_folder: std::path::absolute(&self.folder)?,
+            measured: measured.display().to_string(),
+            synthetic: self.loaded.synthetic,
+            notes: notes.collect(),
+            wall_s: 0.0,
+        })
+    }
+
+    /// Without what this very diagnosis has added to the case; the start is one of what is left.
+    pub(crate) fn without_found_by(mut self, earlier: &Diagnosis) -> anyhow::Result<Self> {
+        let stated = self.loaded.case.unknowns.clone();
+        self.loaded = earlier.as_begun(self.loaded)?;
+        let left = &self.loaded.case.unknowns;
+        let kept = |values: Vec<f64>| {
+            let pairs = stated.iter().zip(values);
+            let kept = pairs.filter(|(gene, _)| left.contains(gene));
+            kept.map(|(_, value)| value).collect()
+        };
+        self.start = self.start.map(|start| Start {
+            genes: kept(start.genes),
+            ..start
+        });
+        Ok(self)
+    }
+}
+
+/// A calibration that came to its end.
+fn finished(folder: &RunFolder) -> anyhow::Result<Calibration> {
+    let path = folder.path();
+    let kind = folder.head()?.kind;
+    if kind != CALIBRATE {
+        return Err(Usage {
+            message: format!("{} holds a run of `horsehead {kind}`", path.display()),
+            help: "name a case folder, or the folder of a calibration".to_owned(),
+        }
+        .into());
+    }
+    let calibration = Calibration::open(path)?;
+    if folder.file(GENES).exists() {
+        return Ok(calibration);
+    }
+    Err(Usage {
+        message: format!("{} is not finished", path.display()),
+        help: format!("finish it first:\n  {}", calibration.resume_command()),
+    }
+    .into())
+}

@@ -1,0 +1,83 @@
+//! What a record sees, in sentences.
+use super::subject::Subject;
+use crate::report::number::{fixed, quantity};
+use crate::report::words::listed;
+use discrepancy::identify::{End, Seen, UnknownEstimate};
+
+/// The one sentence: how many unknowns are seen, and which are not.
+pub(super) fn lead(subject: &Subject<'_>) -> String {
+    let all = &subject.identified.unknowns;
+    let named = |wanted: Seen| -> Vec<String> {
+        let own = all.iter().filter(|own| own.seen == wanted);
+        own.map(|own| own.name.clone()).collect()
+    };
+    let both = named(Seen::Both);
+    let sides = [named(Seen::LowerBound), named(Seen::UpperBound)].concat();
+    let blind = named(Seen::NotSeen);
+    let mut words = format!(
+        "This record sees {} of {} unknowns from both sides",
+        both.len(),
+        all.len()
+    );
+    let mut more = Vec::new();
+    if !both.is_empty() {
+        words.push_str(&format!(": {}", listed(&both, "and")));
+    }
+    if !sides.is_empty() {
+        more.push(format!("of {} it gives one bound", listed(&sides, "and")));
+    }
+    if !blind.is_empty() {
+        more.push(format!("it does not see {}", listed(&blind, "and")));
+    }
+    if !more.is_empty() {
+        words.push_str(&format!("; {}", more.join(", ")));
+    }
+    words.push('.');
+    words
+}
+
+/// What the numbers rest on, and what comes first where the fit leaves more than noise.
+pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
+    let identified = subject.identified;
+    let left = format!(
+        "The fit leaves {} times the noise",
+        fixed(identified.left, 2)
+    );
+    let mut all = vec![if identified.is_noise {
+        format!("{left}: noise alone may leave that.")
+    } else {
+        format!(
+            "{left}, which is more than noise: the model lacks something. Intervals are widened by that; \
+             `horsehead diagnose CASE` comes first, and an effect that is missing may move every value here."
+        )
+    }];
+    if !identified.noise.is_seen() {
+        all.push(
+            "The noise is assumed: there was one cycle, so intervals are as good as the data sheet.".to_owned(),
+        );
+    }
+    all
+}
+
+/// What the record says of an unknown, in a cell.
+pub(crate) fn seen(own: &UnknownEstimate) -> String {
+    let of = |x: f64| quantity(x, &own.unit);
+    match own.interval {
+        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
+        [Some(low), None] => format!("at least {}", of(low)),
+        [None, Some(high)] => format!("at most {}", of(high)),
+        [None, None] => "not seen by this record".to_owned(),
+    }
+}
+
+/// How the sides end that are open.
+pub(super) fn open_ends(own: &UnknownEstimate) -> String {
+    let sides = ["below", "above"].into_iter().zip(own.ends);
+    let said = sides.filter_map(|(side, end)| match end {
+        End::Rises => None,
+        End::Bound => Some(format!("open {side} to the bound")),
+        End::Fails => Some(format!("simulations fail {side}")),
+        End::GivenUp => Some(format!("given up {side}")),
+    });
+    said.collect::<Vec<_>>().join(", ")
+}
