@@ -5,6 +5,7 @@
 use super::{
     document::{Document, Step, nearest},
     error::CaseError,
+    prior::interval,
 };
 use protocol::case::{EffectSetting, Scale, Unknown};
 use serde::Deserialize;
@@ -78,8 +79,11 @@ impl CaseEffect {
         self.parameters.iter().filter_map(|(name, p)| {
             let label = format!("{}.{name}", self.id);
             let unknown = Unknown::new(label, &p.unit, Scale::Linear, p.value, p.search?);
+            // what it was found with is known of it
+            let found = p.ci95.filter(|[low, high]| low < high);
             Some(Unknown {
                 title: format!("{name} of {}", self.id.replace('_', " ")),
+                prior: found.map(|ci95| interval(&unknown, ci95)),
                 ..unknown
             })
         })

@@ -18,6 +18,7 @@ pub(crate) mod loaded;
 mod measured;
 pub(crate) mod names;
 pub(crate) mod note;
+pub(crate) mod prior;
 pub(crate) mod source;
 pub(crate) mod spread;
 pub(crate) mod summary;

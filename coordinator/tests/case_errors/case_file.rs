@@ -224,6 +224,28 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "`genes.kb1.recommended`", "exclude"],
     ),
     (
+        "prior of no width",
+        |c| {
+            c.replace(
+                TOML,
+                "upper = 3.14e12",
+                "upper = 3.14e12, prior = { value = 3e8, factor = 1.0 }",
+            )
+        },
+        &["case.toml", "`genes.kb1.prior`", "a factor above 1"],
+    ),
+    (
+        "prior below zero",
+        |c| {
+            c.replace(
+                TOML,
+                "upper = 3.14e12",
+                "upper = 3.14e12, prior = [-1.0, 3e8]",
+            )
+        },
+        &["case.toml", "`genes.kb1.prior`", "positive and ascending"],
+    ),
+    (
         "bounds exchanged",
         |c| {
             c.replace(

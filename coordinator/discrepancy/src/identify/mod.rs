@@ -12,7 +12,9 @@ mod information;
 mod profile;
 mod walk;
 
-pub use answer::{Band, Curve, Direction, End, Further, Identified, Pin, Seen, UnknownEstimate};
+pub use answer::{
+    Band, Curve, Direction, End, Further, Identified, Part, Pin, Seen, UnknownEstimate,
+};
 
 use crate::ground::establish::establish;
 use crate::inputs::Inputs;

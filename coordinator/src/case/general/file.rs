@@ -1,6 +1,6 @@
 //! `case.toml` in the general form as it is written: keys and types.
-use super::super::{effect::CaseEffect, loaded::Records};
-use protocol::case::{Offset, Prior, Scale, Tie, Valley};
+use super::super::{effect::CaseEffect, loaded::Records, prior::PriorEntry};
+use protocol::case::{Offset, Scale, Tie, Valley};
 use serde::Deserialize;
 use std::path::PathBuf;
 use toml::Table;
@@ -46,7 +46,7 @@ pub(super) struct UnknownEntry {
     #[serde(default)]
     pub(super) fixed: bool,
     pub(super) tie: Option<Tie>,
-    pub(super) prior: Option<Prior>,
+    pub(super) prior: Option<PriorEntry>,
     pub(super) valley: Option<Valley>,
 }
 

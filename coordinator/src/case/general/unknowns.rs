@@ -28,10 +28,14 @@ pub(super) fn read(
             "names with `.` are those of effects' parameters: write `_`",
         ));
     }
-    let unknowns: Vec<Unknown> = entries
-        .iter()
-        .map(|entry| unknown(entry, start(entry, entries, entries.len())))
-        .collect();
+    let unknowns = entries.iter().enumerate().map(|(index, entry)| {
+        let mut own = unknown(entry, start(entry, entries, entries.len()));
+        if let Some(prior) = entry.prior {
+            own.prior = Some(prior.of(&own, document, &way(index, "prior"))?);
+        }
+        Ok(own)
+    });
+    let unknowns = unknowns.collect::<Result<Vec<Unknown>, CaseError>>()?;
     check_unknowns(&unknowns).map_err(|bad| {
         let way = way(bad.position, bad.field);
         document.field(&way, bad.found, bad.allowed, bad.remedy)
@@ -53,7 +57,7 @@ fn unknown(entry: &UnknownEntry, start: f64) -> Unknown {
         upper: entry.upper.unwrap_or(start),
         trust: entry.trust,
         valley: entry.valley.clone(),
-        prior: entry.prior,
+        prior: None,
         absent: entry.absent,
         fixed: entry.fixed,
         tie: entry.tie.clone(),

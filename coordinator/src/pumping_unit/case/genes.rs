@@ -80,7 +80,11 @@ pub(super) fn declared(
             ));
         }
         let bounds = [entry.lower, entry.upper];
-        genes.push(unknown(name, entry.unit, recommended, bounds));
+        let mut gene = unknown(name, entry.unit, recommended, bounds);
+        if let Some(prior) = entry.prior {
+            gene.prior = Some(prior.of(&gene, document, &way("prior"))?);
+        }
+        genes.push(gene);
     }
     Ok(genes)
 }

@@ -1,7 +1,7 @@
 //! `case.toml` as it is written: the keys there are, and their types. What the values may be is
 //! checked beside the data they name.
 use super::recommended::Recommended;
-use crate::case::{effect::CaseEffect, loaded::Records};
+use crate::case::{effect::CaseEffect, loaded::Records, prior::PriorEntry};
 use protocol::{
     case::Offset,
     pumping_unit::{
@@ -147,6 +147,8 @@ pub(super) struct GeneEntry {
     pub(super) lower: f64,
     pub(super) upper: f64,
     pub(super) unit: Unit,
+    /// What is known beside the bounds.
+    pub(super) prior: Option<PriorEntry>,
 }
 
 /// One working condition.

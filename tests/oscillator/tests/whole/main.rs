@@ -6,6 +6,7 @@
 )]
 mod asked;
 mod rig;
+mod seen;
 mod words;
 
 use rig::{Rig, number};

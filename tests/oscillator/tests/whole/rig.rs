@@ -58,6 +58,11 @@ impl Rig {
         Self::hiding(&values, &Effects::default())
     }
 
+    /// With records that hide nothing.
+    pub(crate) fn healthy() -> Self {
+        Self::hiding(&HIDDEN, &Effects::default())
+    }
+
     fn hiding(values: &Values, effects: &Effects) -> Self {
         let rig = Self(TempDir::new().unwrap());
         fs::create_dir_all(rig.file("case/measured")).unwrap();
@@ -164,6 +169,14 @@ impl Rig {
         words::check("standard error", &said);
         words::check("standard output", &printed);
         printed
+    }
+
+    /// Runs a command that must be refused; what it said.
+    pub(crate) fn refused(&self, words: &[&str]) -> String {
+        let output = self.command(words).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        said
     }
 
     /// Runs a command on an input: the lines that it printed and its exit code.

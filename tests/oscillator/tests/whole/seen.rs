@@ -1,0 +1,139 @@
+//! What a record sees of the unknowns: all that there are where nothing is missing, with intervals that hold
+//! the hidden values; and that a diagnosis comes first where something is.
+use crate::rig::{HIDDEN, Rig, number};
+use crate::words;
+use serde_json::{Value, json};
+
+fn identified(rig: &Rig, run: &str) -> Value {
+    let object = rig.json(&["identify", "CASE", "--run", run]);
+    words::check_folder(run.as_ref());
+    object
+}
+
+/// Without the time it took.
+fn said(mut object: Value) -> Value {
+    object["wall_s"] = Value::Null;
+    object
+}
+
+#[test]
+fn a_record_that_lacks_nothing_shows_every_unknown() {
+    let rig = Rig::healthy();
+    let run = rig.path("seen");
+    let object = identified(&rig, &run);
+    assert_eq!(object["diagnose_first"], false, "{object}");
+    let truth = [
+        ("mass", HIDDEN.mass_kg, "kg"),
+        ("left", HIDDEN.left_n_per_mm, "N/mm"),
+        ("damping", HIDDEN.damping_n_s_per_m, "N.s/m"),
+        ("lead", HIDDEN.lead_deg, "deg"),
+    ];
+    let unknowns = object["unknowns"].as_object().unwrap();
+    // what is fixed, tied or off is not fitted
+    assert_eq!(unknowns.len(), truth.len(), "{unknowns:?}");
+    for (name, hidden, unit) in truth {
+        let own = &unknowns[name];
+        assert_eq!((&own["seen"], &own["unit"]), (&json!("both"), &json!(unit)));
+        let [low, high] = [0, 1].map(|end| number(&own["ci95"][end]));
+        let half = 0.5 * (high - low);
+        assert!(low < number(&own["value"]) && number(&own["value"]) < high);
+        // two half widths: four of four at 95 % would fail one time in five
+        assert!(
+            (f64::midpoint(low, high) - hidden).abs() < 2.0 * half,
+            "{name}: {own}"
+        );
+        assert!(half < 0.1 * hidden, "{name}: {own}");
+    }
+    let directions = object["directions"].as_array().unwrap();
+    assert_eq!(directions.len(), truth.len());
+    let first = &directions[0];
+    assert!(
+        number(&first["sd_decades"]) > 0.0 && first["words"].is_string(),
+        "{first}"
+    );
+    assert!(number(&first["parts"][0]["part"]) > 0.0 && first["parts"][0]["name"].is_string());
+    for condition in ["steady_5hz", "steady_7hz", "release"] {
+        let own = &object["prediction"][condition];
+        let axis = if condition == "release" {
+            "time"
+        } else {
+            "phase"
+        };
+        let length = own[axis].as_array().unwrap().len();
+        assert_eq!(own["unit"], "mm", "{own}");
+        for (channel, unit) in [("displacement", Value::Null), ("force", json!("N"))] {
+            let band = &own[channel];
+            assert_eq!(band["unit"], unit);
+            let [low, high] = ["low", "high"].map(|end| band[end].as_array().unwrap());
+            assert_eq!((low.len(), high.len()), (length, length));
+            let mut ends = low.iter().zip(high);
+            assert!(
+                ends.all(|(low, high)| number(low) <= number(high)),
+                "{channel}"
+            );
+        }
+    }
+    // again, and told again, from the journal
+    assert_eq!(said(identified(&rig, &run)), said(object.clone()));
+    assert_eq!(said(rig.json(&["report", &run])), said(object));
+    let text = rig.run(&["report", &run]);
+    assert!(text.contains("sees 4 of 4 unknowns"), "{text}");
+}
+
+#[test]
+fn what_lacks_something_is_sent_to_the_diagnosis_first() {
+    let rig = Rig::new();
+    let run = rig.path("seen");
+    let object = identified(&rig, &run);
+    assert_eq!(object["diagnose_first"], true, "{object}");
+    assert!(number(&object["times_noise"]) > 1.5, "{object}");
+    let text = rig.run(&["report", &run]);
+    assert!(text.contains("horsehead diagnose"), "{text}");
+}
+
+/// What the case states beforehand counts; what it states wrongly is refused by field.
+#[test]
+fn what_is_known_beforehand_is_read_in_every_form() {
+    let rig = Rig::healthy();
+    let file = rig.file("case/case.toml");
+    let text = std::fs::read_to_string(&file).unwrap();
+    let with = |after: &str, prior: &str| {
+        assert_eq!(text.matches(after).count(), 1);
+        let text = text.replace(after, &format!("{after}\nprior = {prior}"));
+        std::fs::write(&file, text).unwrap();
+    };
+    let mass = "title = \"mass of the carriage\"";
+    let lead = "title = \"lead of the shaker's force\"";
+    let forms = [
+        (mass, "{ value = 2.13, factor = 1.001 }"),
+        (mass, "{ value = 2.13, deviation = 0.0002 }"),
+        (mass, "[2.128, 2.132]"),
+        (lead, "[1.69, 1.71]"),
+    ];
+    for (number_of, (after, prior)) in forms.into_iter().enumerate() {
+        with(after, prior);
+        let name = if after == mass { "mass" } else { "lead" };
+        let object = rig.json(&[
+            "identify",
+            "CASE",
+            "--run",
+            &rig.path(&number_of.to_string()),
+        ]);
+        let [low, high] = [0, 1].map(|end| number(&object["unknowns"][name]["ci95"][end]));
+        assert!(high - low < 0.03 && high > low, "{prior}: {low} {high}");
+    }
+    for (after, prior, words) in [
+        (mass, "[3.0, 2.0]", "ascending"),
+        (mass, "{ value = 2.0, factor = 0.5 }", "a factor above 1"),
+        (
+            mass,
+            "{ value = 2.0, factr = 2.0 }",
+            "an interval [low, high]",
+        ),
+        (lead, "{ value = 2.0, factor = 2.0 }", "logarithmic scale"),
+    ] {
+        with(after, prior);
+        let error = rig.refused(&["case", "check", "CASE"]);
+        assert!(error.contains(words) && error.contains("prior"), "{error}");
+    }
+}
