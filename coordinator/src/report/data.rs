@@ -2,6 +2,7 @@
 //!
 //! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
 use crate::account::JobCost;
+use discrepancy::identify::UnknownEstimate;
 use protocol::case::{Case, Channel};
 use protocol::event::Spent;
 use protocol::job::{Curves, Evaluation};
@@ -162,6 +163,8 @@ pub struct Calibration {
     pub finish: String,
     /// Results per condition; the calibrated one first by custom.
     pub conditions: Vec<ConditionResult>,
+    /// What the record says of the unknowns that were searched, to first order; empty where nobody looked.
+    pub seen: Vec<UnknownEstimate>,
     /// Further notes and warnings, one sentence each.
     pub notes: Vec<String>,
 }

@@ -2,12 +2,12 @@
 use super::{
     error::StudyError,
     evaluator::Evaluator,
-    laboratory::{Jobs, StageCost, StageView},
+    laboratory::{FIRST, Jobs, StageCost, StageView},
     stop::Stop,
     watch::Watch,
 };
 use discrepancy::diagnose::Inputs;
-use discrepancy::identify::{Identified, identify};
+use discrepancy::identify::{Identified, UnknownEstimate, glance, identify};
 use discrepancy::laboratory::Stage;
 use protocol::case::{Case, Channel};
 
@@ -45,10 +45,27 @@ pub async fn identify_on<E: Evaluator>(
         channels.map(|(_, channel)| channel.clone()).collect()
     };
     let conditions: Vec<Vec<Channel>> = (0..case.conditions.len()).map(of).collect();
-    let mut jobs = Jobs::new(evaluator, inputs, &STAGES, watch, stop);
+    let mut jobs = Jobs::new((evaluator, FIRST), inputs, &STAGES, watch, stop);
     let identified = identify(&mut jobs, inputs, &conditions).await?;
     Ok(IdentifiedOn {
         identified,
         accounts: jobs.accounts(),
     })
+}
+
+/// The id of the first job of a glance: behind all of a calibration and of its comparisons.
+const GLANCE: u64 = 1 << 50;
+
+/// A first look at what a record sees, where the inputs start; nothing where that cannot be said.
+///
+/// # Errors
+/// If nobody evaluates any more, or the user stops.
+pub async fn glance_on<E: Evaluator>(
+    evaluator: &mut E,
+    inputs: &Inputs,
+    watch: &mut dyn Watch<StageView>,
+    stop: &mut Stop,
+) -> Result<Option<Vec<UnknownEstimate>>, StudyError> {
+    let mut jobs = Jobs::new((evaluator, GLANCE), inputs, &[Stage::Show], watch, stop);
+    glance(&mut jobs, inputs).await
 }

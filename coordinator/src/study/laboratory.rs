@@ -55,6 +55,8 @@ impl View for StageView {
 
 /// The id of the question for the effects that the workers know.
 const LIBRARY: u64 = 0;
+/// The id of what is asked after it.
+pub(super) const FIRST: u64 = LIBRARY + 1;
 
 /// Asks a worker for the effects that it can simulate.
 ///
@@ -85,9 +87,9 @@ pub(super) struct Jobs<'a, E> {
 }
 
 impl<'a, E: Evaluator> Jobs<'a, E> {
-    /// For what is planned from such inputs in such stages.
+    /// For what is planned from such inputs in such stages; jobs are numbered from `first` on.
     pub(super) fn new(
-        evaluator: &'a mut E,
+        (evaluator, first): (&'a mut E, u64),
         inputs: &Inputs,
         stages: &'static [Stage],
         watch: &'a mut dyn Watch<StageView>,
@@ -97,7 +99,7 @@ impl<'a, E: Evaluator> Jobs<'a, E> {
             evaluator,
             watch,
             stop,
-            next_id: LIBRARY + 1,
+            next_id: first,
             differentiates: !inputs.differences,
             stages,
             costs: BTreeMap::new(),

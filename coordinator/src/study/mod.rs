@@ -25,7 +25,7 @@ pub use diagnose::{Diagnosed, diagnose_on};
 pub use error::{EvaluatorError, StudyError};
 pub use evaluate::{Request, Scored, evaluate};
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
-pub use identify::{IdentifiedOn, identify_on};
+pub use identify::{IdentifiedOn, glance_on, identify_on};
 pub use laboratory::{StageCost, StageView, library};
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;

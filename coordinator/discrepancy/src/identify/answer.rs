@@ -2,7 +2,7 @@
 use crate::record::measured::Curves;
 use crate::record::noise::Known;
 use crate::size::never_exact::NeverExact;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What a record sees of a model.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Identified {
 }
 
 /// An unknown with what the record says of it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct UnknownEstimate {
     /// Its name.
     pub name: String,
@@ -51,7 +51,7 @@ pub struct UnknownEstimate {
 }
 
 /// Which ends of an unknown's interval a record gives.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Seen {
     /// Both.
@@ -77,7 +77,7 @@ impl Seen {
 }
 
 /// How a side of a profile ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum End {
     /// It rises by 3.84 there.

@@ -8,13 +8,17 @@ pub mod answer;
 mod band;
 mod estimate;
 mod further;
+mod glance;
 mod information;
 mod profile;
+mod refit;
 mod walk;
 
 pub use answer::{
     Band, Curve, Direction, End, Further, Identified, Part, Pin, Seen, UnknownEstimate,
 };
+
+pub use glance::glance;
 
 use crate::ground::establish::establish;
 use crate::inputs::Inputs;
@@ -48,10 +52,8 @@ pub async fn identify<L: Laboratory>(
     inputs: &Inputs,
     conditions: &[Vec<Channel>],
 ) -> Result<Option<Identified>, L::Error> {
-    let usable = |record: &&crate::record::measured::Record| {
-        !record.cycles.is_empty() && !record.held_out && !record.free().channels.is_empty()
-    };
-    let Some(record) = inputs.records.first().filter(usable) else {
+    let record = inputs.records.first().filter(|record| record.is_fitted());
+    let Some(record) = record else {
         return Ok(None);
     };
     let Some(base) = establish(lab, inputs, record.free()).await? else {

@@ -78,6 +78,15 @@ impl Side {
         }
     }
 
+    /// Takes a point that is known from elsewhere, if it lies on this side of an estimate.
+    pub(super) fn know(&mut self, from: f64, cost: f64, x: &[f64]) {
+        let at = x[self.unknown];
+        if self.sign * (at - from) > 0.0 {
+            let x = x.to_vec();
+            self.marks.push(Mark { at, cost, x });
+        }
+    }
+
     /// What comes next, from an estimate that leaves `best`; `rise` is what ends a side.
     pub(super) fn next(&self, from: f64, best: f64, rise: f64) -> Next {
         let there = |distance: f64| from + self.sign * distance;
@@ -93,10 +102,11 @@ impl Side {
             .filter(|(distance, _)| *distance > 0.0)
             .collect();
         seen.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let outside = seen.iter().position(|(_, own)| *own >= rise);
-        let inside = outside.unwrap_or(seen.len()).checked_sub(1);
+        // a profile with several valleys ends behind the last one
+        let inside = seen.iter().rposition(|(_, own)| *own < rise);
+        let outside = seen.get(inside.map_or(0, |k| k + 1)).copied();
         let inside = inside.map_or((0.0, 0.0), |k| seen[k]);
-        if let Some(outside) = outside.map(|k| seen[k]) {
+        if let Some(outside) = outside {
             let root = |own: f64| own.max(0.0).sqrt();
             let share = (root(rise) - root(inside.1)) / (root(outside.1) - root(inside.1));
             let width = outside.0 - inside.0;
@@ -136,12 +146,11 @@ impl Side {
                 Next::Look(there(f64::midpoint(inside.0, wall)))
             };
         }
-        let distance = if inside.0 > 0.0 {
-            let growth = 1.05 * (rise / inside.1.max(1e-3 * rise)).sqrt();
-            inside.0 * growth.clamp(1.3, 3.0)
-        } else {
-            self.predicted
-        };
+        let growth = 1.05 * (rise / inside.1.max(1e-3 * rise)).sqrt();
+        let mut distance = inside.0 * growth.clamp(1.3, 3.0);
+        if inside.0 < 0.5 * self.predicted {
+            distance = distance.max(self.predicted);
+        }
         Next::Look(there(distance.min(inside.0 + LONGEST).min(span)))
     }
 }

@@ -2,28 +2,18 @@
 //!
 //! Where the quadratic picture holds, simulations at the end that it has say so, and a refit finds nothing to
 //! do. It decides what to simulate; [`super::profile`] decides where.
+use super::FREE;
 use super::information::{inverse, with_priors};
 use super::profile::{Next, RISE, Side};
+use super::refit::{Asked, refit};
 use crate::laboratory::Laboratory;
 use crate::linear::evidence::misfit;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
-use crate::record::measured::Curves;
 use nalgebra::DMatrix;
-use search::least_squares::{Settings, prior_cost};
+use search::least_squares::Settings;
 
-/// How all else is refitted: it starts on the ridge.
-const REFIT: Settings = Settings {
-    iterations: 4,
-    gradient: 1e-2,
-    decrease: 1e-3,
-    change: 2.0,
-    step_range: 10.0,
-    level: 1e-3,
-    central: false,
-    exact: false,
-};
 /// A point that leaves less than the fit by this share of the wanted rise is a better fit.
 const BETTER: f64 = 0.05;
 /// How often a better fit is taken.
@@ -61,7 +51,9 @@ pub(super) async fn walk<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     fit: Fit,
 ) -> Result<Walked, L::Error> {
-    let mut walked = begin(fit);
+    let mut others = restarted(experiments, fit.clone()).await?;
+    let fit = others.pop().unwrap_or(fit);
+    let mut walked = begin(fit, &others);
     for _ in 0..=AGAIN {
         follow(experiments, &mut walked).await?;
         let cost = walked.fit.search.cost();
@@ -71,23 +63,20 @@ pub(super) async fn walk<L: Laboratory>(
             break;
         };
         let start = walked.fit.at(better.x.clone());
-        let settings = Settings {
-            iterations: 10,
-            ..REFIT
-        };
-        let Some(fit) = experiments.fit(start, settings).await? else {
+        let Some(fit) = experiments.fit(start, FREE).await? else {
             break;
         };
         if fit.search.cost() >= cost {
             break;
         }
         // what was seen from another valley says too much is left
-        walked = begin(fit);
+        walked = begin(fit, &others);
     }
     Ok(walked)
 }
 
-fn begin(fit: Fit) -> Walked {
+/// A fit with all its profiles still to follow, but for what other fits say of them.
+fn begin(fit: Fit, others: &[Fit]) -> Walked {
     let phi = misfit(fit.chi_squared(), fit.entries());
     let rise = RISE * phi * phi;
     let covariance = inverse(with_priors(&fit.search.best().jacobian, fit.variables()));
@@ -99,22 +88,63 @@ fn begin(fit: Fit) -> Walked {
         [(-1.0, interval.from), (1.0, interval.to)]
             .map(|(sign, bound)| Side::new(k, sign, bound, predicted))
     });
-    Walked {
+    let mut walked = Walked {
         sides: sides.collect(),
         covariance,
         rise,
         fit,
+    };
+    let (x, least) = (walked.fit.x().to_vec(), walked.fit.search.cost());
+    for other in others {
+        let cost = other.search.cost();
+        if cost - least < rise {
+            for side in &mut walked.sides {
+                side.know(x[side.unknown], cost, other.x());
+            }
+        }
     }
+    walked
 }
 
-/// Looks until every side has its end: where a start already leaves little it is not refitted, for a refit
-/// leaves less still.
+/// Fits from where unknowns that are hardly seen have their recommended values, each alone and all of them: a
+/// record that does not part two valleys sees what lies between them no better. The best one is the last.
+async fn restarted<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: Fit,
+) -> Result<Vec<Fit>, L::Error> {
+    /// Half width of an interval from which an unknown is hardly seen (coordinate).
+    const HARDLY: f64 = 0.05;
+    let sides = begin(fit.clone(), &[]).sides;
+    let weak = sides.iter().filter(|side| side.sign > 0.0);
+    let weak = weak.filter(|side| side.predicted > HARDLY);
+    let weak: Vec<usize> = weak.map(|side| side.unknown).collect();
+    let reset = |which: &[usize]| {
+        let mut point = fit.point();
+        for &k in which {
+            point.x[k] = fit.model.space.axes()[k].interval().clamp(0.0);
+        }
+        point
+    };
+    let mut starts: Vec<Point> = weak.iter().map(|&k| reset(&[k])).collect();
+    if weak.len() > 1 {
+        starts.push(reset(&weak));
+    }
+    let settings = Settings {
+        iterations: 8,
+        ..FREE
+    };
+    let fits = experiments.fits(starts, settings).await?;
+    let mut all: Vec<Fit> = fits.into_iter().flatten().collect();
+    all.push(fit);
+    all.sort_by(|a, b| b.search.cost().total_cmp(&a.search.cost()));
+    Ok(all)
+}
+
+/// Looks until every side has its end.
 async fn follow<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     walked: &mut Walked,
 ) -> Result<(), L::Error> {
-    /// So much of the wanted rise is little.
-    const LITTLE: f64 = 0.85;
     loop {
         let looks = walked.sides.iter().enumerate();
         let looks: Vec<(usize, f64)> = looks
@@ -130,50 +160,15 @@ async fn follow<L: Laboratory>(
             let side = &walked.sides[*place];
             starts(walked, side, *at)
         });
-        let best = best_of(experiments, &walked.fit, starts.collect()).await?;
-        let least = walked.fit.search.cost();
-        let mut open = Vec::new();
-        for ((place, at), best) in looks.into_iter().zip(best) {
-            let side = &mut walked.sides[place];
-            match best {
-                None => side.absorb(at, None),
-                Some((cost, point)) if cost - least <= LITTLE * walked.rise => {
-                    side.absorb(at, Some((cost, point.x)));
-                }
-                Some((_, mut point)) => {
-                    point.model.held = Some(side.unknown);
-                    open.push((place, at, point));
-                }
-            }
-        }
-        let points = open.iter().map(|(.., point)| point.clone());
-        let fits = experiments.fits(points.collect(), REFIT).await?;
-        for ((place, at, _), fit) in open.into_iter().zip(fits) {
-            let found = fit.map(|fit| (fit.search.cost(), fit.x().to_vec()));
+        let asked = Asked {
+            fit: &walked.fit,
+            rise: walked.rise,
+        };
+        let found = refit(experiments, &asked, starts.collect()).await?;
+        for ((place, at), found) in looks.into_iter().zip(found) {
             walked.sides[place].absorb(at, found);
         }
     }
-}
-
-/// Of each set of points the one that leaves least, with what it leaves; nothing where none completes.
-async fn best_of<L: Laboratory>(
-    experiments: &mut Experiments<'_, L>,
-    fit: &Fit,
-    sets: Vec<Vec<Point>>,
-) -> Result<Vec<Option<(f64, Point)>>, L::Error> {
-    let curves = experiments.curves(&sets.concat()).await?;
-    let mut curves = curves.into_iter();
-    let best = |set: Vec<Point>| {
-        let seen: Vec<Option<Curves>> = curves.by_ref().take(set.len()).collect();
-        let left = |curves: &Curves, point: &Point| {
-            let residual = experiments.on.residual(curves);
-            residual.norm_squared() + prior_cost(&point.x, fit.variables())
-        };
-        let costs = set.into_iter().zip(seen);
-        let costs = costs.filter_map(|(point, curves)| Some((left(&curves?, &point), point)));
-        costs.min_by(|a, b| a.0.total_cmp(&b.0))
-    };
-    Ok(sets.into_iter().map(best).collect())
 }
 
 /// Where a look may start: from the nearest point of the profile as it is, along the quadratic's ridge, and
@@ -190,7 +185,9 @@ fn starts(walked: &Walked, side: &Side, at: f64) -> Vec<Point> {
         let moved = moved.map(|((x, slope), v)| (x + slope * (at - from)).clamp(v.lower, v.upper));
         let mut x: Vec<f64> = moved.collect();
         x[k] = at;
-        walked.fit.at(x)
+        let mut point = walked.fit.at(x);
+        point.model.held = Some(k);
+        point
     };
     let mut all = vec![along(&vec![0.0; nearest.len()])];
     if let Some(covariance) = &walked.covariance {

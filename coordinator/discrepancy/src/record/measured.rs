@@ -141,6 +141,12 @@ impl Record {
         }
     }
 
+    /// Whether anything of it may be fitted.
+    pub fn is_fitted(&self) -> bool {
+        let free = self.channels.iter().any(|own| !own.held_out);
+        free && !self.held_out && !self.cycles.is_empty()
+    }
+
     /// What may be fitted of it: all cycles of the channels that are not held out.
     #[must_use]
     pub fn free(&self) -> Self {

@@ -16,4 +16,4 @@ mod tests;
 
 pub use problem::{Ended, Evaluated, Linearized, Prior, Settings, Variable};
 pub use search::LeastSquares;
-pub use step::prior_cost;
+pub use step::{prior_cost, undamped};

@@ -61,6 +61,12 @@ pub(super) fn settled(at: &Linearized, variables: &[Variable]) -> DVector<f64> {
     )
 }
 
+/// The step to the minimum of the linearised problem inside the box, hardly damped, and none of it longer than
+/// a variable's longest; nothing where the curvature has no factor, or nothing may move.
+pub fn undamped(at: &Linearized, variables: &[Variable]) -> Option<DVector<f64>> {
+    step(at, variables, [1e-4, 1e-3], true)
+}
+
 /// A damped step that stays in the box: what would leave it goes to its bound, and the others go where
 /// that is best for them. Each is damped by its own curvature, and by a share `level` of the mean one.
 /// `limited` steps are none of them longer than a variable's longest. Nothing where the curvature has no

@@ -10,15 +10,15 @@ use crate::cli::{
     output::{
         calibration::show,
         problem::{EXIT_CODES, Usage},
-        progress::Display,
+        progress::{Display, Silent},
         terminal,
     },
     run::{
         begun::Run,
         bus,
-        calibration::{Calibration, calibrate},
+        calibration::{Calibration, calibrate, seen},
         command_line::command_line,
-        folder::RunFolder,
+        folder::{RunFolder, SEEN},
         manifest::{self, CALIBRATE, Manifest, Start},
         session::Session,
     },
@@ -195,7 +195,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         display.resumed(bus.recorded());
         let found = calibrate(bus, &run, &mut display, stop).await;
         display.clear();
-        found
+        let found = found?;
+        let best = &found.calibrated.best.genes;
+        let seen = seen(bus, &run, best, &mut Silent, stop).await?;
+        run.folder.write_json(SEEN, &seen.unwrap_or_default())?;
+        Ok(found)
     })?;
     show(&run, &found, session.wall_s(&run), arguments.output.output)
 }

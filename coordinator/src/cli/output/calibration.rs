@@ -14,7 +14,7 @@ use crate::{
         run::{
             bus,
             calibration::{Calibration as Run, Found},
-            folder::{GENES, RESULT},
+            folder::{GENES, RESULT, SEEN},
             tables,
         },
     },
@@ -73,7 +73,8 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
     files.extend(tables::calibration(run)?);
     files.extend([GENES, RESULT].map(|name| folder.file(name)));
     let files = files.iter().map(|path| path.display().to_string());
-    let object = result_object(run, found, wall_s, files.collect());
+    let mut object = result_object(run, found, wall_s, files.collect());
+    object.unknowns.say(&calibration.seen);
     folder.write_json(RESULT, &object)?;
     terminal::tell(&format!(
         "open {}\nparameters in {}",
@@ -177,6 +178,8 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
             Finish::Threshold => "the fitness threshold was reached".to_owned(),
         },
         conditions: found.compared.iter().filter_map(condition_result).collect(),
+        // a run of before this was looked at has none
+        seen: run.folder.read_json(SEEN).unwrap_or_default(),
         notes,
     })
 }

@@ -1,8 +1,10 @@
 //! The work of a calibration: the search, then recommended and best individual side by side.
-use super::begun::Run;
+use super::{begun::Run, diagnosis::inputs};
 use crate::study::{
-    self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, Stop, StudyError, Wanted, Watch,
+    self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, StageView, Stop, StudyError,
+    Wanted, Watch,
 };
+use discrepancy::{diagnose::Inputs, identify::UnknownEstimate, thresholds::Thresholds};
 use protocol::case::Case;
 use search::strategy::{self, Settings};
 
@@ -39,6 +41,31 @@ pub(crate) async fn calibrate<E: Evaluator>(
         calibrated,
         compared,
     })
+}
+
+/// What the record says of the best individual's unknowns, each with an interval, to first order; nothing where
+/// the case is not as it was, or it cannot be said.
+///
+/// # Errors
+/// If nobody evaluates any more, or the user stops.
+pub(crate) async fn seen<E: Evaluator>(
+    evaluator: &mut E,
+    run: &Calibration,
+    best: &[f64],
+    watch: &mut impl Watch<StageView>,
+    stop: &mut Stop,
+) -> anyhow::Result<Option<Vec<UnknownEstimate>>> {
+    // the cycles of the records are in the case folder alone
+    let Ok(loaded) = run.loaded() else {
+        return Ok(None);
+    };
+    let nothing = (Vec::new(), "");
+    let inputs = inputs(&loaded, &run.manifest, &Thresholds::default(), nothing)?;
+    let inputs = Inputs {
+        start: Some(inputs.space.point(best)),
+        ..inputs
+    };
+    Ok(study::glance_on(evaluator, &inputs, watch, stop).await?)
 }
 
 /// Recommended and best individual under every condition with a record, the calibrated one first

@@ -27,6 +27,8 @@ pub(crate) const MANIFEST: &str = "run.json";
 pub(crate) const CASE: &str = "case.json";
 /// The output of a run that came to its end.
 pub(crate) const RESULT: &str = "result.json";
+/// What the record sees of a calibration's unknowns.
+pub(crate) const SEEN: &str = "seen.json";
 /// The parameters that a run found, as a gene file.
 pub(crate) const GENES: &str = "calibrated.toml";
 

@@ -1,9 +1,9 @@
 //! The tables of an identification.
 use super::subject::Subject;
-use super::words::{open_ends, seen};
+use super::words::open_ends;
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, fixed, quantity};
-use crate::report::words::condition_name;
+use crate::report::words::{condition_name, seen};
 use discrepancy::identify::{Direction, Further};
 
 /// Every unknown with what the record says of it.

@@ -1,6 +1,6 @@
 //! What a record sees, in sentences.
 use super::subject::Subject;
-use crate::report::number::{fixed, quantity};
+use crate::report::number::fixed;
 use crate::report::words::listed;
 use discrepancy::identify::{End, Seen, UnknownEstimate};
 
@@ -57,17 +57,6 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
         );
     }
     all
-}
-
-/// What the record says of an unknown, in a cell.
-pub(crate) fn seen(own: &UnknownEstimate) -> String {
-    let of = |x: f64| quantity(x, &own.unit);
-    match own.interval {
-        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
-        [Some(low), None] => format!("at least {}", of(low)),
-        [None, Some(high)] => format!("at most {}", of(high)),
-        [None, None] => "not seen by this record".to_owned(),
-    }
 }
 
 /// How the sides end that are open.

@@ -164,14 +164,16 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
         if words::at_bound(gene, after).is_some() {
             optimised.push_str(" *");
         }
+        let said = calibration.seen.iter().find(|own| own.name == gene.name);
+        let cells = [
+            unit(&gene.unit),
+            figure(before),
+            optimised,
+            ratio(after, before),
+        ];
         rows.push(Row::of(
             gene,
-            [
-                unit(&gene.unit),
-                figure(before),
-                optimised,
-                ratio(after, before),
-            ],
+            cells.into_iter().chain(said.map(words::seen)),
         ));
     }
     rows
@@ -193,9 +195,14 @@ pub fn table_3(calibration: &Calibration) -> Table {
         .collect();
     let marked =
         (!bounds.is_empty()).then(|| format!("* at a bound of the search: {}.", bounds.join(", ")));
-    let mut table = Table::new(title, HEAD, gene_rows(calibration))
-        .noted(marked)
-        .noted(DEFINITIONS);
+    let mut table = Table::new(title, HEAD, gene_rows(calibration)).noted(marked);
+    if !calibration.seen.is_empty() {
+        table.head.push("what the record says, 95 %".to_owned());
+        let note = "What the record says: to first order at the optimum, under its own noise, widened by what \
+                    is left; `horsehead identify RUN` says it with profiles.";
+        table = table.noted([note]);
+    }
+    table = table.noted(DEFINITIONS);
     if let Some(result) = calibration.calibrated() {
         table.rows.extend(agreement(case, result));
         table = table.noted(remarks(case, result));

@@ -1,5 +1,6 @@
 //! The bounds that unknowns touch, in words.
 use crate::report::number::quantity;
+use discrepancy::identify::UnknownEstimate;
 use protocol::case::{Scale, Unknown};
 
 /// A bound of an unknown in words, as "its upper bound 1.00e12 N/m".
@@ -44,5 +45,16 @@ mod tests {
         assert_eq!(at_bound(&size, 0.0), None);
         assert_eq!(at_bound(&size, 1400.0), None);
         assert_eq!(bound(&size, "upper"), "its upper bound 1500\u{a0}N");
+    }
+}
+
+/// What the record says of an unknown, in a cell.
+pub(in crate::report) fn seen(own: &UnknownEstimate) -> String {
+    let of = |x: f64| quantity(x, &own.unit);
+    match own.interval {
+        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
+        [Some(low), None] => format!("at least {}", of(low)),
+        [None, Some(high)] => format!("at most {}", of(high)),
+        [None, None] => "not seen by this record".to_owned(),
     }
 }

@@ -12,7 +12,7 @@ pub(super) use calibration::{
     absolute_worse, channels, complete_objective, headline, square_after, warnings,
 };
 pub use ending::{failure, verdict};
-pub(super) use gene::{at_bound, bound};
+pub(super) use gene::{at_bound, bound, seen};
 pub(crate) use name::condition_name;
 pub(super) use name::{
     capitalised, channel_title, counted, headed, is_fitted, listed, lower, objective_heading,

@@ -1,5 +1,6 @@
 //! Unknowns and agreement with the record, alike in all objects.
 use crate::{kind, study::Curves};
+use discrepancy::identify::{Seen, UnknownEstimate};
 use protocol::{
     case::Case,
     job::{ChannelScore, Evaluation, Verdict},
@@ -16,6 +17,17 @@ pub(crate) struct GeneOutput {
     recommended: f64,
     lower: f64,
     upper: f64,
+    /// What the record says of it to first order, where it was looked at.
+    #[serde(flatten)]
+    seen: Option<SeenOutput>,
+}
+
+/// What a record says of an unknown.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+struct SeenOutput {
+    /// Null for an open end; null as a whole where both are open.
+    ci95: Option<[Option<f64>; 2]>,
+    seen: Seen,
 }
 
 /// Scores of both parameter sets under one condition.
@@ -37,7 +49,22 @@ pub(crate) struct Both<T> {
 }
 
 /// The unknowns by name, under the key by which their kind of model calls them.
-pub(crate) type Unknowns = BTreeMap<&'static str, BTreeMap<String, GeneOutput>>;
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(transparent)]
+pub(crate) struct Unknowns(BTreeMap<&'static str, BTreeMap<String, GeneOutput>>);
+
+impl Unknowns {
+    /// With what a record says of them beside each.
+    pub(crate) fn say(&mut self, seen: &[UnknownEstimate]) {
+        for (name, own) in self.0.values_mut().flatten() {
+            let said = seen.iter().find(|one| one.name == *name);
+            own.seen = said.map(|one| SeenOutput {
+                ci95: (one.seen != Seen::NotSeen).then_some(one.interval),
+                seen: one.seen,
+            });
+        }
+    }
+}
 
 /// Values of all unknowns.
 pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
@@ -50,11 +77,12 @@ pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
                 recommended: gene.start,
                 lower: gene.lower,
                 upper: gene.upper,
+                seen: None,
             };
             (gene.name.clone(), output)
         })
         .collect();
-    BTreeMap::from([(kind::of(case).unknowns(), named)])
+    Unknowns(BTreeMap::from([(kind::of(case).unknowns(), named)]))
 }
 
 /// Agreement of one channel, in its unit.

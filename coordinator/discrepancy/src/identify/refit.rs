@@ -1,0 +1,165 @@
+//! Refits beside a fit, with one unknown held: steps by the Jacobian of the fit, which cost a simulation or two
+//! each, and a new Jacobian only where those no longer help.
+use super::FREE;
+use crate::laboratory::Laboratory;
+use crate::model::experiments::Experiments;
+use crate::model::fit::Fit;
+use crate::model::unknowns::Point;
+use nalgebra::{DMatrix, DVector};
+use search::least_squares::{Linearized, Settings, prior_cost, undamped};
+
+/// So much of the wanted rise is little: a point that leaves it is not refitted, for a refit leaves less.
+const LITTLE: f64 = 0.85;
+/// A step that gains less than this share of the wanted rise is the last by its Jacobian.
+const GAIN: f64 = 0.02;
+/// Steps that are tried side by side, as shares of the whole one.
+const TRIED: [f64; 2] = [1.0, 0.3];
+/// Most steps, and most new Jacobians.
+const STEPS: usize = 12;
+const JACOBIANS: usize = 3;
+
+/// Beside what is refitted, and what rise is wanted.
+pub(super) struct Asked<'a> {
+    pub(super) fit: &'a Fit,
+    pub(super) rise: f64,
+}
+
+/// A refit on its way.
+struct Descent {
+    point: Point,
+    residual: DVector<f64>,
+    cost: f64,
+    jacobian: DMatrix<f64>,
+    /// Jacobians of its own so far.
+    own: usize,
+    /// Whether the Jacobian is of this point.
+    fresh: bool,
+    over: bool,
+}
+
+impl Descent {
+    /// Points that may leave less.
+    fn trials(&self) -> Vec<Point> {
+        let at = Linearized {
+            x: self.point.x.clone(),
+            residual: self.residual.clone(),
+            jacobian: self.jacobian.clone(),
+        };
+        let variables = self.point.model.variables(&at.x);
+        let Some(step) = undamped(&at, &variables) else {
+            return Vec::new();
+        };
+        let trial = |share: f64| {
+            let mut point = self.point.clone();
+            for ((x, step), v) in point.x.iter_mut().zip(step.iter()).zip(&variables) {
+                *x = (*x + share * step).clamp(v.lower, v.upper);
+            }
+            point
+        };
+        TRIED.into_iter().map(trial).collect()
+    }
+}
+
+/// Refits from the best of several starts each; what is left and where, nothing where no start completes.
+pub(super) async fn refit<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    asked: &Asked<'_>,
+    starts: Vec<Vec<Point>>,
+) -> Result<Vec<Option<(f64, Vec<f64>)>>, L::Error> {
+    let least = asked.fit.search.cost();
+    let jacobian = &asked.fit.search.best().jacobian;
+    let begun = best_of(experiments, starts).await?;
+    let mut all: Vec<Option<Descent>> = begun
+        .into_iter()
+        .map(|begun| {
+            let (cost, residual, point) = begun?;
+            Some(Descent {
+                over: cost - least <= LITTLE * asked.rise,
+                point,
+                residual,
+                cost,
+                jacobian: jacobian.clone(),
+                own: 0,
+                fresh: false,
+            })
+        })
+        .collect();
+    for _ in 0..STEPS {
+        let mut active: Vec<&mut Descent> =
+            all.iter_mut().flatten().filter(|one| !one.over).collect();
+        if active.is_empty() {
+            break;
+        }
+        let trials = active.iter().map(|one| one.trials()).collect();
+        let best = best_of(experiments, trials).await?;
+        for (one, best) in active.iter_mut().zip(best) {
+            let gained = best.as_ref().map_or(0.0, |(cost, ..)| one.cost - cost);
+            if let Some((cost, residual, point)) = best.filter(|_| gained > 0.0) {
+                one.cost = cost;
+                one.residual = residual;
+                one.point = point;
+            }
+            one.over = one.cost - least <= LITTLE * asked.rise
+                || (gained < GAIN * asked.rise && (one.fresh || one.own >= JACOBIANS));
+            // what did not help was of another point
+            one.fresh = !one.over && gained < GAIN * asked.rise;
+        }
+        active.retain(|one| one.fresh);
+        renew(experiments, active).await?;
+    }
+    let found = all.into_iter();
+    Ok(found
+        .map(|one| one.map(|one| (one.cost, one.point.x)))
+        .collect())
+}
+
+/// Gives refits the Jacobians of where they are; one that has none is over.
+async fn renew<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    stale: Vec<&mut Descent>,
+) -> Result<(), L::Error> {
+    if stale.is_empty() {
+        return Ok(());
+    }
+    let here = Settings {
+        iterations: 1,
+        ..FREE
+    };
+    let points = stale.iter().map(|one| one.point.clone()).collect();
+    let fits = experiments.fits(points, here).await?;
+    for (one, fit) in stale.into_iter().zip(fits) {
+        one.own += 1;
+        match fit {
+            Some(fit) => one.jacobian.clone_from(&fit.search.best().jacobian),
+            None => one.over = true,
+        }
+    }
+    Ok(())
+}
+
+/// Of each set of points the one that leaves least: that, its residual, the point; nothing where none
+/// completes.
+async fn best_of<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    sets: Vec<Vec<Point>>,
+) -> Result<Vec<Option<(f64, DVector<f64>, Point)>>, L::Error> {
+    let curves = experiments.curves(&sets.concat()).await?;
+    let mut curves = curves.into_iter();
+    let mut all = Vec::new();
+    for set in sets {
+        let mut best: Option<(f64, DVector<f64>, Point)> = None;
+        for point in set {
+            let Some(curves) = curves.next().flatten() else {
+                continue;
+            };
+            let residual = experiments.on.residual(&curves);
+            let variables = point.model.variables(&point.x);
+            let cost = residual.norm_squared() + prior_cost(&point.x, &variables);
+            if best.as_ref().is_none_or(|(least, ..)| cost < *least) {
+                best = Some((cost, residual, point));
+            }
+        }
+        all.push(best);
+    }
+    Ok(all)
+}
