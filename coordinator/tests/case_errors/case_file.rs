@@ -230,7 +230,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "upper = 3.14e12",
                 "upper = 3.14e12, prior = { value = 3e8, factor = 1.0 }",
-            )
+            );
         },
         &["case.toml", "`genes.kb1.prior`", "a factor above 1"],
     ),
@@ -241,7 +241,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 TOML,
                 "upper = 3.14e12",
                 "upper = 3.14e12, prior = [-1.0, 3e8]",
-            )
+            );
         },
         &["case.toml", "`genes.kb1.prior`", "positive and ascending"],
     ),

@@ -105,15 +105,14 @@ async fn first_fit<L: Laboratory>(
         ..Model::plain(inputs.space.clone())
     };
     let nuisances = vec![0.0; model.standing().count()];
-    let starts = match &inputs.start {
-        Some(x) => vec![Point {
+    let starts = if let Some(x) = &inputs.start {
+        vec![Point {
             model,
             x: [&x[..], &nuisances].concat(),
-        }],
-        None => {
-            let search = (inputs.entrance, inputs.seed);
-            basin::enter(experiments, &model, &nuisances, search).await?
-        }
+        }]
+    } else {
+        let search = (inputs.entrance, inputs.seed);
+        basin::enter(experiments, &model, &nuisances, search).await?
     };
     let mut recalibration = experiments.during(Stage::Recalibrate);
     let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {

@@ -67,14 +67,10 @@ impl Side {
     /// Takes what a look gave; nothing where nothing completes.
     pub(super) fn absorb(&mut self, at: f64, found: Option<(f64, Vec<f64>)>) {
         self.looks += 1;
-        match found {
-            Some((cost, x)) => self.marks.push(Mark { at, cost, x }),
-            None => {
-                let nearer = self.wall.is_none_or(|wall| self.sign * (at - wall) < 0.0);
-                if nearer {
-                    self.wall = Some(at);
-                }
-            }
+        if let Some((cost, x)) = found {
+            self.marks.push(Mark { at, cost, x });
+        } else if self.wall.is_none_or(|wall| self.sign * (at - wall) < 0.0) {
+            self.wall = Some(at);
         }
     }
 

@@ -1,9 +1,13 @@
 //! A run that was begun: its folder, how it was begun, and its case.
 use super::{
+    bus,
     folder::{CASE, MANIFEST, RunFolder},
     manifest::{Decides, Manifest},
 };
-use crate::cli::output::problem::Usage;
+use crate::{
+    case::{Loaded, Overrides, load_with_notes},
+    cli::output::problem::Usage,
+};
 use protocol::case::Case;
 use std::path::Path;
 
@@ -141,5 +145,37 @@ impl<S: Decides> Run<S> {
     /// The command that goes on with the run in the folder where it lies now.
     pub(crate) fn resume_command(&self) -> String {
         self.manifest.resume_command(self.folder.path())
+    }
+
+    /// The case with its records: a run keeps its case, but not the cycles of the records.
+    ///
+    /// # Errors
+    /// If the case has changed since the run was begun.
+    pub(crate) fn loaded(&self) -> anyhow::Result<Loaded> {
+        let manifest = &self.manifest;
+        let overrides = Overrides {
+            measured: manifest.replaced_records().map(ToOwned::to_owned),
+        };
+        let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
+        if loaded.case != self.case {
+            return Err(Usage {
+                message: format!(
+                    "the case has changed since {} was made, and its records are read anew",
+                    self.folder.path().display()
+                ),
+                help: format!(
+                    "put {} back as it was, or {} it again with another --run",
+                    manifest.case_folder.display(),
+                    manifest.kind
+                ),
+            }
+            .into());
+        }
+        Ok(loaded)
+    }
+
+    /// A case without what this very diagnosis has added to it.
+    pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
+        Ok(loaded.without_found_in(&bus::case_hash(&self.case)?))
     }
 }

@@ -1,12 +1,11 @@
 //! The work of a diagnosis: what decides it, the case with its cycles, the experiments.
 use super::{
     begun::Run,
-    bus,
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
 };
 use crate::{
-    case::{Loaded, Overrides, load_with_notes},
+    case::Loaded,
     cli::output::problem::Usage,
     kind,
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
@@ -49,40 +48,6 @@ pub(crate) struct Found {
     pub(crate) diagnosed: Diagnosed,
     /// Effects that the workers know and the case has not, and unknowns of the case that are off.
     pub(crate) library: Vec<EffectDescriptor>,
-}
-
-impl<S: manifest::Decides> Run<S> {
-    /// The case with its records: a run keeps its case, but not the cycles of the records.
-    ///
-    /// # Errors
-    /// If the case has changed since the run was begun.
-    pub(crate) fn loaded(&self) -> anyhow::Result<Loaded> {
-        let manifest = &self.manifest;
-        let overrides = Overrides {
-            measured: manifest.replaced_records().map(ToOwned::to_owned),
-        };
-        let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
-        if loaded.case != self.case {
-            return Err(Usage {
-                message: format!(
-                    "the case has changed since {} was made, and its records are read anew",
-                    self.folder.path().display()
-                ),
-                help: format!(
-                    "put {} back as it was, or {} it again with another --run",
-                    manifest.case_folder.display(),
-                    manifest.kind
-                ),
-            }
-            .into());
-        }
-        Ok(loaded)
-    }
-
-    /// A case without what this very diagnosis has added to it.
-    pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
-        Ok(loaded.without_found_in(&bus::case_hash(&self.case)?))
-    }
 }
 
 /// Learns the library and diagnoses, on whatever evaluates: workers, or the recording of a journal,

@@ -21,7 +21,7 @@ pub(super) fn lead(subject: &Subject<'_>) -> String {
     );
     let mut more = Vec::new();
     if !both.is_empty() {
-        words.push_str(&format!(": {}", listed(&both, "and")));
+        words.extend([": ", &listed(&both, "and")]);
     }
     if !sides.is_empty() {
         more.push(format!("of {} it gives one bound", listed(&sides, "and")));
@@ -30,7 +30,7 @@ pub(super) fn lead(subject: &Subject<'_>) -> String {
         more.push(format!("it does not see {}", listed(&blind, "and")));
     }
     if !more.is_empty() {
-        words.push_str(&format!("; {}", more.join(", ")));
+        words.extend(["; ", &more.join(", ")]);
     }
     words.push('.');
     words

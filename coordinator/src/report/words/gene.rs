@@ -29,6 +29,17 @@ pub(in crate::report) fn at_bound(gene: &Unknown, value: f64) -> Option<&'static
     }
 }
 
+/// What the record says of an unknown, in a cell.
+pub(in crate::report) fn seen(own: &UnknownEstimate) -> String {
+    let of = |x: f64| quantity(x, &own.unit);
+    match own.interval {
+        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
+        [Some(low), None] => format!("at least {}", of(low)),
+        [None, Some(high)] => format!("at most {}", of(high)),
+        [None, None] => "not seen by this record".to_owned(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{at_bound, bound};
@@ -45,16 +56,5 @@ mod tests {
         assert_eq!(at_bound(&size, 0.0), None);
         assert_eq!(at_bound(&size, 1400.0), None);
         assert_eq!(bound(&size, "upper"), "its upper bound 1500\u{a0}N");
-    }
-}
-
-/// What the record says of an unknown, in a cell.
-pub(in crate::report) fn seen(own: &UnknownEstimate) -> String {
-    let of = |x: f64| quantity(x, &own.unit);
-    match own.interval {
-        [Some(low), Some(high)] => format!("{} to {}", of(low), of(high)),
-        [Some(low), None] => format!("at least {}", of(low)),
-        [None, Some(high)] => format!("at most {}", of(high)),
-        [None, None] => "not seen by this record".to_owned(),
     }
 }

@@ -121,7 +121,8 @@ fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbe
         let exponent = exponent.expect("a step");
         assert_eq!(stress.len(), 720);
         // the numbers of the instruments were written and read: a last digit may tip a rounding
-        let apart = rounded(&stress, exponent).iter().zip(diagnosed);
+        let stress = rounded(&stress, exponent);
+        let apart = stress.iter().zip(diagnosed);
         let apart = apart.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(apart <= 2.0_f64.powi(exponent), "gauge {gauge}: {apart}");
     }

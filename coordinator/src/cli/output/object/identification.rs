@@ -114,14 +114,11 @@ mod tests {
         identify::{Band, Curve, End, Identified, Part, Pin},
         record::noise::Known,
     };
+    use protocol::case::Case;
     use std::path::Path;
 
-    /// Gauges by number over the crank's angle, open ends as null, what both sides leave open as one null; and
-    /// the page says the same in words.
-    #[test]
-    fn fields_are_a_contract() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-        let case = load(&folder, &Overrides::default()).unwrap();
+    /// Four unknowns, one seen in each way.
+    fn identified(case: &Case) -> Identified {
         let own = |name: &str, interval: [Option<f64>; 2]| UnknownEstimate {
             name: name.to_owned(),
             unit: "N/m".to_owned(),
@@ -145,7 +142,7 @@ mod tests {
         };
         let channels = case.channels_of(0);
         let channels = channels.map(|(_, channel)| curve(channel.abscissa.points.len()));
-        let identified = Identified {
+        Identified {
             genes: case.start(),
             unknowns: vec![
                 own("kb1", [Some(1e8), Some(3e8)]),
@@ -178,7 +175,16 @@ mod tests {
             is_noise: false,
             noise: Known::Stated,
             notes: Vec::new(),
-        };
+        }
+    }
+
+    /// Gauges by number over the crank's angle, open ends as null, what both sides leave open as one null; and
+    /// the page says the same in words.
+    #[test]
+    fn fields_are_a_contract() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+        let case = load(&folder, &Overrides::default()).unwrap();
+        let identified = identified(&case);
         let subject = Subject {
             case: &case,
             identified: &identified,
