@@ -18,6 +18,7 @@ pub(crate) mod folder;
 mod general;
 mod kind;
 pub(crate) mod number;
+pub(crate) mod orthogonal;
 mod section;
 pub mod table;
 pub mod words;

@@ -2,7 +2,8 @@
 //!
 //! [`calibrate()`] asks a search strategy for individuals, has them scored and tells the strategy
 //! the results; [`compare()`] then scores and simulates chosen parameter sets under chosen
-//! conditions; [`evaluate()`] scores what another program asks for. All see workers only through the trait [`Evaluator`], in whatever order results
+//! conditions; [`evaluate()`] scores what another program asks for, [`score_all()`] a list; [`Sweep`] runs many
+//! searches side by side. All see workers only through the trait [`Evaluator`], in whatever order results
 //! arrive: what they return is a function of the case, the settings and the seed.
 mod calibrate;
 mod compare;
@@ -10,10 +11,12 @@ mod diagnose;
 mod error;
 mod evaluate;
 mod evaluator;
+mod listed;
 mod log;
 mod progress;
 mod recorded;
 mod stop;
+mod sweep;
 mod watch;
 
 pub use crate::core::Completed;
@@ -23,11 +26,13 @@ pub use diagnose::{Diagnosed, StageCost, StageView, diagnose_on, library};
 pub use error::{EvaluatorError, StudyError};
 pub use evaluate::{Request, Scored, evaluate};
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
+pub use listed::score_all;
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 pub use recorded::Recorded;
 pub use stop::Stop;
 pub(crate) use stop::or_stop;
+pub use sweep::{Search, Searched, Sweep};
 pub use watch::{View, Watch};
 
 #[cfg(test)]

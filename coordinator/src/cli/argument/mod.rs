@@ -2,6 +2,7 @@
 pub(super) mod case;
 pub(super) mod derivatives;
 pub(super) mod door;
+pub(super) mod factor;
 pub(crate) mod individual;
 pub(crate) mod output;
 pub(super) mod settings;

@@ -17,6 +17,7 @@ mod keys;
 mod printed;
 mod report;
 mod simulate;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod verify;
@@ -67,6 +68,7 @@ commands! {
     Calibrate: calibrate,
     AskTell: ask_tell,
     Evaluate: evaluate,
+    Sweep: sweep,
     Verify: verify,
     Diagnose: diagnose,
     Head: head,

@@ -9,5 +9,7 @@ pub(super) mod interrupt;
 pub(super) mod kind;
 pub(super) mod manifest;
 pub(crate) mod once;
+pub(super) mod orthogonal;
+pub(super) mod searches;
 pub(super) mod session;
 pub(super) mod tables;

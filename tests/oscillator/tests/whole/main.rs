@@ -6,6 +6,7 @@
 )]
 mod asked;
 mod rig;
+mod swept;
 mod words;
 
 use rig::{Rig, number};

@@ -166,6 +166,15 @@ impl Rig {
         printed
     }
 
+    /// Runs a command that must be refused as bad input; what it said.
+    pub(crate) fn refused(&self, words: &[&str]) -> String {
+        let output = self.command(words).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        words::check("standard error", &said);
+        said
+    }
+
     /// Runs a command on an input: the lines that it printed and its exit code.
     pub(crate) fn fed(&self, words: &[&str], input: &str) -> (Vec<Value>, Option<i32>) {
         let mut command = self.command(words);

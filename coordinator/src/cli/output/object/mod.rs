@@ -2,5 +2,6 @@
 //! other programs; more may be added, none renamed. Numbers that are not finite become `null`.
 pub(crate) mod calibration;
 pub(in crate::cli) mod diagnosis;
+pub(crate) mod orthogonal;
 pub(crate) mod score;
 pub(crate) mod simulation;
