@@ -12,4 +12,5 @@ pub(crate) mod once;
 pub(super) mod orthogonal;
 pub(super) mod searches;
 pub(super) mod session;
+pub(super) mod swept;
 pub(super) mod tables;

@@ -10,6 +10,8 @@ use crate::orthogonal::Tested;
 use protocol::case::Case;
 use std::path::{Path, PathBuf};
 
+pub(crate) use section::runs;
+
 /// What a report of a test is about.
 pub(crate) struct Subject<'a> {
     /// The case that was searched.

@@ -6,6 +6,7 @@ use crate::report::document::{Block, Row, Section, Table};
 use crate::report::number::{NONE, count, figure, fixed};
 use crate::report::section::origin;
 use crate::report::words::{listed, objective_heading};
+use protocol::case::Case;
 
 /// Above this probability chance is as good a reason as the factor.
 const LIKELY: f64 = 0.05;
@@ -15,7 +16,7 @@ pub(super) fn all(subject: &Subject<'_>) -> Vec<Section> {
     vec![
         summary(subject.tested),
         effects(subject.tested),
-        runs(subject),
+        all_runs(subject),
         origin::section(vec![Block::Facts(origin::facts(
             &subject.origin,
             subject.case,
@@ -149,11 +150,12 @@ fn variance(tested: &Tested, analysis: &Analysis) -> Option<Table> {
     ]))
 }
 
-fn runs(subject: &Subject<'_>) -> Section {
-    let tested = subject.tested;
+/// Searches with their levels, row by row.
+pub(crate) fn runs(case: &Case, factors: &[Factor], tried: &[Tried]) -> Table {
+    let heading = format!("best {}", objective_heading(case));
     let row = |run: &Tried| {
         Row::new(
-            at(&tested.factors, &run.levels),
+            at(factors, &run.levels),
             [
                 run.seed.to_string(),
                 figure(run.objective.unwrap_or(f64::NAN)),
@@ -161,17 +163,27 @@ fn runs(subject: &Subject<'_>) -> Section {
             ],
         )
     };
-    let mut rows: Vec<Row> = tested.runs.iter().map(row).collect();
-    if let Some(confirmed) = &tested.confirmation {
-        rows.push(Row::group("confirmation"));
-        rows.extend(confirmed.runs.iter().map(row));
-    }
-    let heading = format!("best {}", objective_heading(subject.case));
-    let table = Table::new(
+    let rows = tried.iter().map(row).collect();
+    Table::new(
         "Every run",
         ["levels", "seed", &heading, "evaluations"],
         rows,
-    );
+    )
+}
+
+fn all_runs(subject: &Subject<'_>) -> Section {
+    let Tested {
+        factors,
+        runs: tried,
+        ..
+    } = subject.tested;
+    let mut table = runs(subject.case, factors, tried);
+    if let Some(confirmed) = &subject.tested.confirmation {
+        table.rows.push(Row::group("confirmation"));
+        table
+            .rows
+            .extend(runs(subject.case, factors, &confirmed.runs).rows);
+    }
     Section {
         id: "runs",
         title: "Runs",

@@ -4,4 +4,5 @@ pub(crate) mod calibration;
 pub(in crate::cli) mod diagnosis;
 pub(crate) mod orthogonal;
 pub(crate) mod score;
+pub(crate) mod scored;
 pub(crate) mod simulation;

@@ -1,4 +1,4 @@
-//! The object of `horsehead sweep orthogonal`.
+//! The objects of `horsehead sweep orthogonal` and of a sweep of a grid.
 use crate::orthogonal::{Anova, Confirmation, Factor, Source, Tested, Tried};
 use serde::Serialize;
 use serde_json::{Map, Value};
@@ -27,7 +27,7 @@ struct FactorOutput {
 
 /// One search.
 #[derive(Debug, Serialize)]
-pub(crate) struct TriedOutput {
+struct TriedOutput {
     /// Value of each factor by its name.
     levels: Map<String, Value>,
     seed: u64,
@@ -87,19 +87,57 @@ impl From<&Tested> for OrthogonalOutput {
         });
         Self {
             array: tested.array.name(),
-            factors: factors
-                .iter()
-                .map(|factor| FactorOutput {
-                    name: factor.name.clone(),
-                    levels: factor.levels.iter().map(|level| value(level)).collect(),
-                })
-                .collect(),
+            factors: listed(factors),
             runs: tried(factors, &tested.runs),
             ranges,
             anova: analysis.and_then(|own| Some(terms(factors, own.anova.as_ref()?))),
             confirmation,
         }
     }
+}
+
+/// Of `horsehead sweep FILE.toml`, and kept as `result.json` in the run folder.
+#[derive(Debug, Serialize)]
+pub(crate) struct GridOutput {
+    factors: Vec<FactorOutput>,
+    /// Combination by combination, the last factor fastest, each with every seed.
+    runs: Vec<TriedOutput>,
+}
+
+impl GridOutput {
+    /// Of the searches of a grid.
+    pub(crate) fn new(factors: &[Factor], runs: &[Tried]) -> Self {
+        Self {
+            factors: listed(factors),
+            runs: tried(factors, runs),
+        }
+    }
+}
+
+/// Searches as a table: a column per factor, `seed`, `objective` (empty where nothing was complete), `evaluations`.
+///
+/// # Errors
+/// If a row cannot be written.
+pub(crate) fn runs_table(factors: &[Factor], runs: &[Tried]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let names = factors.iter().map(|factor| factor.name.as_str());
+    writer.write_record(names.chain(["seed", "objective", "evaluations"]))?;
+    for run in runs {
+        let levels = factors.iter().zip(&run.levels);
+        let levels = levels.map(|(factor, level)| factor.levels[*level].clone());
+        let objective = run.objective.map_or_else(String::new, |it| it.to_string());
+        let numbers = [run.seed.to_string(), objective, run.evaluations.to_string()];
+        writer.write_record(levels.chain(numbers))?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+fn listed(factors: &[Factor]) -> Vec<FactorOutput> {
+    let one = |factor: &Factor| FactorOutput {
+        name: factor.name.clone(),
+        levels: factor.levels.iter().map(|level| value(level)).collect(),
+    };
+    factors.iter().map(one).collect()
 }
 
 fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
@@ -119,7 +157,7 @@ fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
 }
 
 /// Searches with their levels by name.
-pub(crate) fn tried(factors: &[Factor], runs: &[Tried]) -> Vec<TriedOutput> {
+fn tried(factors: &[Factor], runs: &[Tried]) -> Vec<TriedOutput> {
     let one = |run: &Tried| TriedOutput {
         levels: levels(factors, &run.levels),
         seed: run.seed,
