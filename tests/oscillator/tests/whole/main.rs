@@ -5,6 +5,7 @@
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
 mod asked;
+mod orthogonal;
 mod rig;
 mod swept;
 mod words;

@@ -44,7 +44,7 @@ use std::{
 const TABLE: &str = "sweep.csv";
 
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
+pub(super) struct FileArguments {
     /// A grid of settings (.toml) or a table of individuals (.csv).
     #[arg(value_name = "FILE", required = true)]
     file: Option<PathBuf>,
@@ -67,7 +67,7 @@ pub(super) struct Arguments {
 }
 
 /// Sweeps a file.
-pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
     let session = Session {
         door: arguments.door.clone(),
         local_workers: arguments.workers.unwrap_or_else(cores),
@@ -81,7 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 /// The run, with the individuals of a table; of a grid there are none.
-fn begin(arguments: &Arguments) -> anyhow::Result<(Run<Swept>, Individuals)> {
+fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)> {
     let file = arguments.file.clone().unwrap_or_default();
     let ends = file.extension().and_then(|end| end.to_str());
     let grid = match ends {

@@ -36,7 +36,7 @@ pub(super) struct Arguments {
     #[command(subcommand)]
     kind: Option<Kind>,
     #[command(flatten)]
-    file: file::Arguments,
+    file: file::FileArguments,
 }
 
 #[derive(Debug, Subcommand)]

@@ -21,6 +21,9 @@ use search::{
 };
 use std::collections::BTreeMap;
 
+#[cfg(test)]
+mod tests;
+
 /// Jobs that wait or run before another search is begun: enough for the slots of a large crew.
 const BUSY: usize = 256;
 
