@@ -59,7 +59,7 @@ pub(crate) async fn test<E: Evaluator>(
         let found = sweep.run(evaluator, &list, watch, stop).await?;
         let [levels] = best;
         Some(Confirmation {
-            runs: fresh.tried(&[levels.clone()], &found),
+            runs: fresh.tried(std::slice::from_ref(&levels), &found),
             predicted: analysis.predicted,
             levels,
         })

@@ -1,4 +1,5 @@
 //! Searches of a sweep: one choice of settings, varied by factors and seeds, each within one budget.
+use super::command_line::quote;
 use crate::{
     cli::{
         argument::{
@@ -150,10 +151,10 @@ impl Searches {
 
     /// What of a command line says the same, each word after a space.
     pub(crate) fn arguments(&self) -> String {
-        let factors = self.factors.iter();
-        let mut text: String = factors
-            .map(|own| format!(" --factor {}", factor::words(own)))
-            .collect();
+        let mut text = String::new();
+        for factor in &self.factors {
+            text.extend([" --factor ", &quote(&factor::words(factor))]);
+        }
         if let Some(evaluations) = self.evaluations {
             text.extend([" --evaluations ", &evaluations.to_string()]);
         }

@@ -1,5 +1,5 @@
 //! Sections of the report of an orthogonal test.
-use super::Subject;
+use super::subject::Subject;
 use crate::orthogonal::{Analysis, Factor, Source, Tested, Tried};
 use crate::report::chart::main_effects;
 use crate::report::document::{Block, Row, Section, Table};
@@ -69,7 +69,7 @@ fn chance(tested: &Tested, analysis: &Analysis) -> String {
         Source::Factor(number) if term.p.is_some_and(|p| p < LIKELY) => {
             Some(tested.factors[number].name.clone())
         }
-        _ => None,
+        Source::Factor(_) | Source::Block | Source::Error => None,
     });
     let telling: Vec<String> = telling.collect();
     if telling.is_empty() {

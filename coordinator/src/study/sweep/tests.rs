@@ -55,8 +55,9 @@ async fn searches_do_not_disturb_each_other() {
         let mut oracle = Oracle::new(&case, 5, physics);
         let mut alone = build(&search.settings, &space, search.seed).unwrap();
         let (_sender, mut stop) = tokio::sync::watch::channel(false);
-        let alone = calibrate(&mut oracle, &case, alone.as_mut(), &mut Unseen, &mut stop);
-        let alone = alone.await.unwrap();
+        let (alone, watch) = (alone.as_mut(), &mut Unseen);
+        let alone = calibrate(&mut oracle, &case, alone, watch, &mut stop).await;
+        let alone = alone.unwrap();
         assert_eq!(found.best.as_ref(), Some(&alone.best));
         assert_eq!(found.evaluations, alone.log.len() as u64);
     }

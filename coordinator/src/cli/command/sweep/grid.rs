@@ -28,7 +28,9 @@ pub(super) struct Grid {
     /// Settings that all searches share.
     #[serde(default)]
     set: BTreeMap<String, toml::Value>,
-    grid: BTreeMap<String, Vec<toml::Value>>,
+    /// The values of every setting that is varied.
+    #[serde(rename = "grid")]
+    varied: BTreeMap<String, Vec<toml::Value>>,
     seeds: Option<Vec<u64>>,
     evaluations: Option<u64>,
 }
@@ -69,13 +71,13 @@ impl Grid {
             toml::Value::Integer(_) | toml::Value::Float(_) | toml::Value::Boolean(_) => {
                 Ok(value.to_string())
             }
-            _ => {
+            toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_) => {
                 let help = "write one value, as `calibrate --set` takes it";
                 Err(document.field(way, value, "a number, a word, true or false", help))
             }
         };
         let mut factors = Vec::new();
-        for (key, values) in &self.grid {
+        for (key, values) in &self.varied {
             let way = [Step::Key("grid"), Step::Key(key)];
             if values.is_empty() {
                 let help = "as population = [40, 80]";
