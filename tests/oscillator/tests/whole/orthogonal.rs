@@ -88,7 +88,7 @@ fn a_killed_orthogonal_test_ends_with_the_same_bytes() {
     words::check_folder(whole.as_ref());
 
     let words: Vec<String> = small(&killed).into_iter().map(str::to_owned).collect();
-    rig.kill_at(&words, &rig.file("killed"), 20_000, Duration::from_secs(60));
+    rig.kill_at(&words, &rig.file("killed"), 20_000, Duration::from_mins(1));
     assert!(
         !rig.file("killed/result.json").exists(),
         "it was killed too late"

@@ -48,12 +48,13 @@ use std::{path::PathBuf, time::Instant};
 Examples:
   horsehead sweep orthogonal cases/cyjs10-5-37hb
   horsehead sweep orthogonal cases/cyjs10-5-37hb --array L16 --evaluations 2000
-  horsehead sweep orthogonal cases/cyjs10-5-37hb --factor population=40,80,120 --factor generations=30,60,90 \\
-      --factor crossover_probability=0.7,0.8,0.9 --factor mutation_probability=0.02,0.05,0.1
+  horsehead sweep orthogonal cases/cyjs10-5-37hb --factor population=40,80,120 \\
+      --factor generations=30,60,90 --factor crossover_probability=0.7,0.8,0.9
 
-Without --factor: population, crossover_probability, mutation_probability and the climbing trials of both kinds.
-L9 holds up to 4 factors of 3 levels, L16 5 of 4, L25 6 of 5. The response is log10 of the best objective at the
-budget. Seeds are blocks; the best levels are confirmed with as many other seeds.
+Without --factor: population, crossover_probability, mutation_probability and the climbing trials
+of both kinds. L9 holds up to 4 factors of 3 levels, L16 5 of 4, L25 6 of 5. The response is log10
+of the best objective at the budget. Seeds are blocks; the best levels are confirmed with as many
+other seeds.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
