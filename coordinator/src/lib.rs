@@ -14,6 +14,7 @@ mod draft;
 pub mod journal;
 mod kind;
 mod line;
+pub mod orthogonal;
 pub mod pumping_unit;
 pub mod quantile;
 pub mod report;

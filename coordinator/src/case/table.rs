@@ -37,21 +37,9 @@ impl Table {
         wanted: &[&str],
         optional: &[&str],
     ) -> Result<Self, CaseError> {
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(bytes);
+        let mut reader = reader(bytes);
         let mut record = csv::ByteRecord::new();
-        advance(path, &mut reader, &mut record)?;
-        let header: Vec<String> = record
-            .iter()
-            .map(|cell| {
-                String::from_utf8_lossy(cell)
-                    .trim_start_matches(['#', '\u{feff}', ' '])
-                    .to_owned()
-            })
-            .collect();
+        let header = header(path, &mut reader, &mut record)?;
         // a name that is all but there is a slip, and what it names must not be left out for it
         let unknown = |column: &&String| {
             let known = |name: &&str| *name == column.as_str();
@@ -110,6 +98,27 @@ impl Table {
         Ok(table)
     }
 
+    /// Reads the wanted columns of a table that has no others.
+    ///
+    /// # Errors
+    /// As [`Self::read`], and a column that is not wanted.
+    pub(crate) fn read_alone(
+        path: &Path,
+        bytes: &[u8],
+        wanted: &[&str],
+    ) -> Result<Self, CaseError> {
+        let table = Self::read(path, bytes, wanted)?;
+        let header = header(path, &mut reader(bytes), &mut csv::ByteRecord::new())?;
+        match header.iter().find(|name| !wanted.contains(&name.as_str())) {
+            None => Ok(table),
+            Some(strange) => Err(damaged(
+                path,
+                format!("row 1, column `{strange}` is not known"),
+                &format!("remove it; the columns are {}", wanted.join(", ")),
+            )),
+        }
+    }
+
     /// An error about one cell.
     pub(crate) fn cell(
         &self,
@@ -128,6 +137,29 @@ impl Table {
             help: help.into(),
         }
     }
+}
+
+fn reader(bytes: &[u8]) -> csv::Reader<&[u8]> {
+    csv::ReaderBuilder::new()
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(bytes)
+}
+
+/// Reads the first row: names of the columns.
+fn header(
+    path: &Path,
+    reader: &mut csv::Reader<&[u8]>,
+    record: &mut csv::ByteRecord,
+) -> Result<Vec<String>, CaseError> {
+    advance(path, reader, record)?;
+    let name = |cell: &[u8]| {
+        String::from_utf8_lossy(cell)
+            .trim_start_matches(['#', '\u{feff}', ' '])
+            .to_owned()
+    };
+    Ok(record.iter().map(name).collect())
 }
 
 /// Reads the next row; false at the end.

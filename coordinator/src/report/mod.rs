@@ -19,6 +19,7 @@ mod general;
 pub mod identification;
 mod kind;
 pub(crate) mod number;
+pub(crate) mod orthogonal;
 mod section;
 pub mod table;
 pub mod words;

@@ -16,7 +16,7 @@ use search::strategy::{Best, Finish, Proposal, Residual, Strategy};
 use std::collections::BTreeMap;
 
 /// Individuals that must have failed before a search is given up because nothing else has happened.
-const LEAST_TRIED: usize = 8;
+pub(super) const LEAST_TRIED: usize = 8;
 
 /// A finished search.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,15 +63,7 @@ pub async fn calibrate<E: Evaluator>(
         let Some(proposal) = open.remove(&completed.id.0) else {
             continue;
         };
-        if let Some(evaluation) = completed.outcome.answer().and_then(Answer::evaluation)
-            && !evaluation.residual.is_empty()
-        {
-            let by = derived(case, &proposal).into_iter();
-            let by = by.map(|column| column.name).zip(evaluation.columns.clone());
-            let residual = Residual {
-                values: evaluation.residual.clone(),
-                by: by.collect(),
-            };
+        if let Some(residual) = residual(case, &proposal, &completed.outcome) {
             strategy.tell_residual(proposal.id, residual);
         }
         let entry = entry(proposal, completed.outcome)?;
@@ -82,7 +74,8 @@ pub async fn calibrate<E: Evaluator>(
     }
 }
 
-fn score(case: &Case, proposal: &Proposal) -> Job {
+/// The job of a proposal.
+pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     let individual = Individual::new(case.objective.condition, proposal.genes.clone());
     let reply = Reply::Score {
         with_residual: proposal.purpose.wants_residual(),
@@ -101,9 +94,20 @@ fn derived(case: &Case, proposal: &Proposal) -> Vec<Column> {
     columns.filter(|_| wanted).collect()
 }
 
+/// The residual of a proposal whose job wanted one and brought it, with its derivatives by name.
+pub(super) fn residual(case: &Case, proposal: &Proposal, outcome: &Outcome) -> Option<Residual> {
+    let evaluation = outcome.answer().and_then(Answer::evaluation)?;
+    let by = derived(case, proposal).into_iter();
+    let by = by.map(|column| column.name).zip(evaluation.columns.clone());
+    (!evaluation.residual.is_empty()).then(|| Residual {
+        values: evaluation.residual.clone(),
+        by: by.collect(),
+    })
+}
+
 /// What came back of a proposal. A failure that every other individual would meet too ends the
 /// study; one that concerns this individual alone makes it the worst of all.
-fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
+pub(super) fn entry(proposal: Proposal, outcome: Outcome) -> Result<Entry, StudyError> {
     match outcome {
         Outcome::Done(answer) => match answer.into_scored() {
             Ok(evaluation) => Ok(Entry::scored(proposal, &evaluation)),
@@ -134,7 +138,7 @@ fn check_beginning(log: &EvaluationLog, open: &BTreeMap<u64, Proposal>) -> Resul
     Err(all_failed(log))
 }
 
-fn all_failed(log: &EvaluationLog) -> StudyError {
+pub(super) fn all_failed(log: &EvaluationLog) -> StudyError {
     let (how, physics) = log.failures();
     StudyError::AllFailed {
         count: log.len(),

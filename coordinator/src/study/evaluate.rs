@@ -89,7 +89,7 @@ enum Event<T, C> {
     Completed(C),
 }
 
-fn job<T>(case: &Case, request: &Request<T>) -> Job {
+pub(super) fn job<T>(case: &Case, request: &Request<T>) -> Job {
     let individual = Individual::new(case.objective.condition, request.genes.clone());
     let with_residual = request.with_residual;
     Job::Simulate(SimulateSpec::new(
@@ -99,13 +99,13 @@ fn job<T>(case: &Case, request: &Request<T>) -> Job {
 }
 
 /// The start of the hash of its content, no larger than any table holds exactly.
-fn number(job: &Job) -> anyhow::Result<JobId> {
+pub(super) fn number(job: &Job) -> anyhow::Result<JobId> {
     let hash = blake3::hash(&wire::encode(job)?);
     let [a, b, c, d, e, f, ..] = *hash.as_bytes();
     Ok(JobId(u64::from_le_bytes([a, b, c, d, e, f, 0, 0])))
 }
 
-fn scored(id: JobId, outcome: Outcome) -> Result<Scored, StudyError> {
+pub(super) fn scored(id: JobId, outcome: Outcome) -> Result<Scored, StudyError> {
     match outcome {
         Outcome::Done(answer) => match Answer::into_scored(answer) {
             Ok(evaluation) => Ok(Ok(evaluation)),

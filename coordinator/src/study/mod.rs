@@ -2,7 +2,8 @@
 //!
 //! [`calibrate()`] asks a search strategy for individuals, has them scored and tells the strategy
 //! the results; [`compare()`] then scores and simulates chosen parameter sets under chosen
-//! conditions; [`evaluate()`] scores what another program asks for. All see workers only through the trait [`Evaluator`], in whatever order results
+//! conditions; [`evaluate()`] scores what another program asks for, [`score_all()`] a list; [`Sweep`] runs many
+//! searches side by side. All see workers only through the trait [`Evaluator`], in whatever order results
 //! arrive: what they return is a function of the case, the settings and the seed.
 mod calibrate;
 mod compare;
@@ -12,10 +13,12 @@ mod evaluate;
 mod evaluator;
 mod identify;
 mod laboratory;
+mod listed;
 mod log;
 mod progress;
 mod recorded;
 mod stop;
+mod sweep;
 mod watch;
 
 pub use crate::core::Completed;
@@ -27,11 +30,13 @@ pub use evaluate::{Request, Scored, evaluate};
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
 pub use identify::{IdentifiedOn, glance_on, identify_on};
 pub use laboratory::{StageCost, StageView, library};
+pub use listed::score_all;
 pub use log::{Ending, Entry, EvaluationLog};
 pub use progress::ProgressView;
 pub use recorded::Recorded;
 pub use stop::Stop;
 pub(crate) use stop::or_stop;
+pub use sweep::{Search, Searched, Sweep};
 pub use watch::{View, Watch};
 
 #[cfg(test)]

@@ -34,16 +34,17 @@ impl View for ProgressView {
 impl ProgressView {
     /// Takes one completed evaluation.
     pub fn apply(&mut self, entry: &Entry, replayed: bool) {
+        let complete = entry.ending == Ending::Complete;
+        self.add(complete.then_some(entry.fitness), replayed);
+    }
+
+    /// The same of its objective, if it was complete.
+    pub(super) fn add(&mut self, objective: Option<f64>, replayed: bool) {
         self.completed += 1;
         self.replayed += u64::from(replayed);
-        if entry.ending == Ending::Complete {
-            let better = self.best.is_none_or(|best| entry.fitness < best);
-            if better {
-                self.best = Some(entry.fitness);
-            }
-        } else {
-            self.failed += 1;
-        }
+        self.failed += u64::from(objective.is_none());
+        let better = objective.filter(|objective| self.best.is_none_or(|best| *objective < best));
+        self.best = better.or(self.best);
     }
 
     /// Takes what the search plans.

@@ -50,6 +50,11 @@ impl Oracle {
             computed: 0,
         }
     }
+
+    /// How many jobs it has computed.
+    pub(crate) fn computed(&self) -> usize {
+        self.computed
+    }
 }
 
 impl Evaluator for Oracle {

@@ -3,10 +3,10 @@
 //! Linear throughout, and under the noise of the record alone: no tolerance of an instrument, no numerical
 //! error and no refit is in it. What is left widens every interval, as everywhere. It is what a table of a
 //! calibration says beside its numbers; [`super::identify`] says it with profiles.
-use super::FREE;
 use super::answer::{End, Seen, UnknownEstimate};
 use super::information::{inverse, with_priors};
 use super::profile::RISE;
+use super::settings::FREE;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
 use crate::linear::evidence::misfit;

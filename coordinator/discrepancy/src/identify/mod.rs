@@ -12,6 +12,7 @@ mod glance;
 mod information;
 mod profile;
 mod refit;
+mod settings;
 mod walk;
 
 pub use answer::{
@@ -28,19 +29,7 @@ use crate::model::experiments::Experiments;
 use crate::model::unknowns::Unstated;
 use crate::size::never_exact::never_exact;
 use protocol::case::Channel;
-use search::least_squares::Settings;
-
-/// How the free fit goes: to its floor, with unknowns of next to no curvature held where they are.
-const FREE: Settings = Settings {
-    iterations: 20,
-    gradient: 3e-3,
-    decrease: 1e-4,
-    change: 2.0,
-    step_range: 10.0,
-    level: 1e-3,
-    central: true,
-    exact: false,
-};
+use settings::FREE;
 
 /// Fits the calibrated condition's record and says what it sees. `conditions` are the channels of every
 /// condition of the case, in its order. Nothing where no fit completes, or there is nothing to fit.

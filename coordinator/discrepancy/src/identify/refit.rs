@@ -1,6 +1,6 @@
 //! Refits beside a fit, with one unknown held: steps by the Jacobian of the fit, which cost a simulation or two
 //! each, and a new Jacobian only where those no longer help.
-use super::FREE;
+use super::settings::FREE;
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -15,8 +15,8 @@ const GAIN: f64 = 0.02;
 /// Steps that are tried side by side, as shares of the whole one.
 const TRIED: [f64; 2] = [1.0, 0.3];
 /// Most steps, and most new Jacobians.
-const STEPS: usize = 12;
-const JACOBIANS: usize = 3;
+const STEPS: usize = 8;
+const JACOBIANS: usize = 2;
 
 /// Beside what is refitted, and what rise is wanted.
 pub(super) struct Asked<'a> {

@@ -2,10 +2,10 @@
 //!
 //! Where the quadratic picture holds, simulations at the end that it has say so, and a refit finds nothing to
 //! do. It decides what to simulate; [`super::profile`] decides where.
-use super::FREE;
 use super::information::{inverse, with_priors};
 use super::profile::{Next, RISE, Side};
 use super::refit::{Asked, refit};
+use super::settings::FREE;
 use crate::laboratory::Laboratory;
 use crate::linear::evidence::misfit;
 use crate::model::experiments::Experiments;
@@ -130,7 +130,7 @@ async fn restarted<L: Laboratory>(
         starts.push(reset(&weak));
     }
     let settings = Settings {
-        iterations: 8,
+        iterations: 5,
         ..FREE
     };
     let fits = experiments.fits(starts, settings).await?;

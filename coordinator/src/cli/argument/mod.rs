@@ -2,7 +2,9 @@
 pub(super) mod case;
 pub(super) mod derivatives;
 pub(super) mod door;
+pub(super) mod factor;
 pub(crate) mod individual;
+pub(super) mod individuals;
 pub(crate) mod output;
 pub(super) mod settings;
 pub(super) mod workers;

@@ -59,7 +59,8 @@ impl SettingsChoice {
         Ok(Chosen { settings, set })
     }
 
-    fn names(&self, key: &str) -> bool {
+    /// Whether a setting was set by name.
+    pub(crate) fn names(&self, key: &str) -> bool {
         self.set.iter().any(|(typed, _)| typed == key)
     }
 
@@ -82,7 +83,7 @@ impl SettingsChoice {
 }
 
 /// What to do about a setting that a preset does not take.
-fn refuse(preset: &Preset, error: SettingsError) -> Usage {
+pub(crate) fn refuse(preset: &Preset, error: SettingsError) -> Usage {
     let message = format!("preset {}: {error}", preset.name);
     let help = if let SettingsError::Unknown { key, known } = error {
         let alike = |one: &&String| strsim::normalized_damerau_levenshtein(&key, one);

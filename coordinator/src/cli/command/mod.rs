@@ -18,6 +18,7 @@ mod keys;
 mod printed;
 mod report;
 mod simulate;
+mod sweep;
 #[cfg(test)]
 mod tests;
 mod verify;
@@ -69,6 +70,7 @@ commands! {
     Calibrate: calibrate,
     AskTell: ask_tell,
     Evaluate: evaluate,
+    Sweep: sweep,
     Verify: verify,
     Diagnose: diagnose,
     Identify: identify,

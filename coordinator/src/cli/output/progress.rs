@@ -19,6 +19,8 @@ const LOOK: Duration = Duration::from_millis(200);
 pub(crate) struct Display {
     /// Behind the best objective, with a space before it; empty where it has no unit.
     unit: String,
+    /// What is counted beside simulations.
+    counted: &'static str,
     bar: Option<ProgressBar>,
     last: Instant,
     generation: Option<u32>,
@@ -29,6 +31,11 @@ pub(crate) struct Display {
 impl Display {
     /// Of a calibration whose objective is a square of this unit.
     pub(crate) fn new(unit: Option<&str>) -> Self {
+        Self::counting("generation or stage", unit)
+    }
+
+    /// The same of what counts something else than the generations of one search.
+    pub(crate) fn counting(counted: &'static str, unit: Option<&str>) -> Self {
         let bar = io::stderr().is_terminal().then(|| {
             let template = "{bar:32} {pos}/{len}  {msg}";
             let style = ProgressStyle::with_template(template)
@@ -38,6 +45,7 @@ impl Display {
         });
         Self {
             unit: unit.map_or_else(String::new, |unit| format!(" {unit}^2")),
+            counted,
             bar,
             last: Instant::now(),
             generation: None,
@@ -177,7 +185,7 @@ impl Watch<ProgressView> for Display {
         }
         self.last = now;
         self.generation = Some(view.generation);
-        let words = describe(view, &self.unit, &crew());
+        let words = describe(view, (self.counted, &self.unit), &crew());
         match &self.bar {
             Some(bar) => {
                 bar.set_length(view.expected);
@@ -189,10 +197,10 @@ impl Watch<ProgressView> for Display {
     }
 }
 
-/// One line: generation, best, failures, workers, rate, time left.
-fn describe(view: &ProgressView, unit: &str, crew: &Crew) -> String {
+/// One line: what is counted, best, failures, workers, rate, time left.
+fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Crew) -> String {
     let mut parts = vec![format!(
-        "generation or stage {} of {}",
+        "{counted} {} of {}",
         view.generation, view.generations
     )];
     if let Some(best) = view.best {
@@ -275,9 +283,10 @@ mod tests {
             replayed: 40,
             best: Some(0.31239),
         };
+        let words = ("generation or stage", " N^2");
         let mut crew = Crew::default();
         assert_eq!(
-            describe(&ProgressView::default(), " N^2", &crew),
+            describe(&ProgressView::default(), words, &crew),
             "generation or stage 0 of 0  waiting for workers"
         );
         crew.workers.push(WorkerStatus {
@@ -285,12 +294,12 @@ mod tests {
             ..WorkerStatus::default()
         });
         assert_eq!(
-            describe(&ProgressView::default(), " N^2", &crew),
+            describe(&ProgressView::default(), words, &crew),
             "generation or stage 0 of 0  waiting for 1 worker to get ready"
         );
         crew.computing = Duration::from_secs(20);
         assert_eq!(
-            describe(&view, " N^2", &crew),
+            describe(&view, words, &crew),
             "generation or stage 3 of 60  best 0.3124 N^2  12 failed  1 worker  10.0/s  9 min 44 s left"
         );
         crew.spent = Spent {
@@ -300,7 +309,7 @@ mod tests {
             starved_us: 50_000,
             ..Spent::default()
         };
-        let line = describe(&view, "", &crew);
+        let line = describe(&view, (words.0, ""), &crew);
         assert!(
             line.contains("1 worker  slots 90 % useful, 10 % barrier  10.0/s"),
             "{line}"

@@ -36,6 +36,11 @@ pub(crate) trait Decides: Serialize + DeserializeOwned + PartialEq + Clone {
     /// Whether a seed is part of it.
     const SEEDED: bool = true;
 
+    /// The command with what it is about, as a shell takes it; `case` is the folder of the case.
+    fn command(&self, case: &str) -> String {
+        [Self::KIND, " ", case].concat()
+    }
+
     /// What of it a command line must repeat beside preset, settings and seed, each word after a
     /// space.
     fn arguments(&self) -> String {
@@ -173,7 +178,8 @@ impl<S: Decides> Manifest<S> {
 
     /// The command that goes on with the run in the folder where it lies now.
     pub(crate) fn resume_command(&self, folder: &Path) -> String {
-        let mut command = format!("horsehead {} {}", self.kind, quote_path(&self.case_folder));
+        let about = self.settings.command(&quote_path(&self.case_folder));
+        let mut command = format!("horsehead {about}");
         if !self.preset.is_empty() {
             command.extend([" --preset ", &quote(&self.preset)]);
         }

@@ -5,8 +5,10 @@
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
 mod asked;
+mod orthogonal;
 mod rig;
 mod seen;
+mod swept;
 mod words;
 
 use rig::{Rig, number};

@@ -171,11 +171,12 @@ impl Rig {
         printed
     }
 
-    /// Runs a command that must be refused; what it said.
+    /// Runs a command that must be refused as bad input; what it said.
     pub(crate) fn refused(&self, words: &[&str]) -> String {
         let output = self.command(words).output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{words:?}: {said}");
+        words::check("standard error", &said);
         said
     }
 

@@ -2,7 +2,7 @@
 //! who scores.
 use crate::{
     case::document::nearest,
-    cli::output::object::simulation::VerdictOutput,
+    cli::output::object::scored::ScoredOutput,
     study::{Request, Scored},
 };
 use protocol::job::Verdict;
@@ -28,10 +28,8 @@ pub(super) enum Line<'a> {
     /// What came of an individual.
     Scored {
         id: &'a Value,
-        /// Of a failed run its grade, above every complete run's; null where it could not be computed.
-        objective: Option<f64>,
-        complete: bool,
-        verdict: Ending,
+        #[serde(flatten)]
+        scored: ScoredOutput,
         #[serde(skip_serializing_if = "Option::is_none")]
         residual: Option<&'a [f64]>,
     },
@@ -42,14 +40,6 @@ pub(super) enum Line<'a> {
         error: &'a str,
         help: &'a str,
     },
-}
-
-/// How a simulation ended, as `horsehead simulate` says it, or why there was none.
-#[derive(Debug, Serialize)]
-#[serde(untagged)]
-pub(super) enum Ending {
-    Simulated(VerdictOutput),
-    Lost(String),
 }
 
 /// Whose a request is.
@@ -131,24 +121,14 @@ pub(super) fn read(line: &str, space: &Space) -> Result<Request<Tag>, Refused> {
 impl<'a> Line<'a> {
     /// What is said of a result.
     pub(super) fn of(tag: &'a Tag, scored: &'a Scored) -> Self {
-        match scored {
-            Ok(evaluation) => {
-                let complete = evaluation.verdict == Verdict::Complete;
-                Self::Scored {
-                    id: &tag.id,
-                    objective: Some(evaluation.fitness).filter(|f| f.is_finite()),
-                    complete,
-                    verdict: Ending::Simulated(evaluation.verdict.into()),
-                    residual: (tag.residual && complete).then_some(&evaluation.residual),
-                }
-            }
-            Err(failure) => Self::Scored {
-                id: &tag.id,
-                objective: None,
-                complete: false,
-                verdict: Ending::Lost(failure.to_string()),
-                residual: None,
-            },
+        let residual = scored.as_ref().ok().filter(|own| {
+            let complete = own.verdict == Verdict::Complete;
+            tag.residual && complete
+        });
+        Self::Scored {
+            id: &tag.id,
+            scored: scored.into(),
+            residual: residual.map(|own| &own.residual[..]),
         }
     }
 }

@@ -3,5 +3,7 @@
 pub(crate) mod calibration;
 pub(in crate::cli) mod diagnosis;
 pub(in crate::cli) mod identification;
+pub(crate) mod orthogonal;
 pub(crate) mod score;
+pub(crate) mod scored;
 pub(crate) mod simulation;

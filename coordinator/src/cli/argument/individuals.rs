@@ -1,0 +1,46 @@
+//! A table of individuals: a CSV file with a column for each unknown that a case searches.
+use crate::case::{CaseError, file, table::Table};
+use search::space::{Axis, Space};
+use std::path::Path;
+
+/// Individuals that somebody wrote down.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Individuals {
+    /// Unknowns that the case searches, in its order.
+    pub(crate) names: Vec<String>,
+    /// Their values, row by row \[declared units\].
+    pub(crate) rows: Vec<Vec<f64>>,
+}
+
+impl Individuals {
+    /// Reads a table; every row is looked at before anything is done with one.
+    ///
+    /// # Errors
+    /// An unknown that is missing or none of the case, a row of another length, a cell that is no finite number or
+    /// lies outside the bounds, no rows.
+    pub(crate) fn read(path: &Path, space: &Space) -> Result<Self, CaseError> {
+        let bytes = file::read(path, "the table of individuals that was asked for")?;
+        let names = space.axes().iter().map(|axis| axis.unknown.name.as_str());
+        let names: Vec<&str> = names.collect();
+        let table = Table::read_alone(path, &bytes, &names)?;
+        let row = |row: usize| {
+            let cells = table.columns.iter().zip(space.axes()).enumerate();
+            let cell = |(column, (values, axis)): (usize, (&Vec<f64>, &Axis))| {
+                let (value, unknown) = (values[row], &axis.unknown);
+                let (lower, upper) = (unknown.lower, unknown.upper);
+                if (lower..=upper).contains(&value) {
+                    return Ok(value);
+                }
+                let allowed = format!("{lower:e} to {upper:e} {}", unknown.unit);
+                let help = "choose it inside the bounds, or widen them in case.toml";
+                Err(table.cell(path, (row, column), format!("{value:e}"), allowed, help))
+            };
+            cells.map(cell).collect()
+        };
+        let rows: Result<Vec<Vec<f64>>, CaseError> = (0..table.lines.len()).map(row).collect();
+        Ok(Self {
+            rows: rows?,
+            names: names.into_iter().map(str::to_owned).collect(),
+        })
+    }
+}

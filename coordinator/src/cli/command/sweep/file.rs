@@ -1,0 +1,209 @@
+//! `horsehead sweep FILE`: every search of a grid, or every individual of a table.
+use super::grid::{Grid, rows};
+use crate::{
+    case::{document::Document, require_record},
+    cli::{
+        argument::{
+            case::{LoadedCase, load_case},
+            door::Door,
+            individuals::Individuals,
+            output::OutputChoice,
+            workers::{cores, worker_count},
+        },
+        output::{
+            object::{
+                orthogonal::{GridOutput, runs_table},
+                scored::{self, IndividualsOutput},
+            },
+            problem::Usage,
+            progress::Display,
+            terminal,
+        },
+        run::{
+            begun::Run,
+            bus,
+            command_line::command_line,
+            folder::{RESULT, RunFolder},
+            manifest::{self, Decides as _, Manifest},
+            searches::Searches,
+            session::Session,
+            swept::{Holds, Swept},
+        },
+    },
+    report::{orthogonal::runs, table},
+    study::{Sweep, Watch as _, score_all},
+};
+use clap::Args;
+use search::space::Space;
+use std::{
+    path::{Path, PathBuf},
+    time::Instant,
+};
+
+/// The table that a sweep leaves in its run folder.
+const TABLE: &str = "sweep.csv";
+
+#[derive(Debug, Args)]
+pub(super) struct FileArguments {
+    /// A grid of settings (.toml) or a table of individuals (.csv).
+    #[arg(value_name = "FILE", required = true)]
+    file: Option<PathBuf>,
+    /// Case folder; a grid may name its own.
+    #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE")]
+    case: Option<PathBuf>,
+    /// Folder whose inputs and records replace those of the case.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]
+    measured: Option<PathBuf>,
+    /// Run folder [default: runs/CASE-sweep-FILE-seed0].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    door: Door,
+    /// Worker processes to start on this machine; 0 for none [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Sweeps a file.
+pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
+    let session = Session {
+        door: arguments.door.clone(),
+        local_workers: arguments.workers.unwrap_or_else(cores),
+        started: Instant::now(),
+    };
+    let (run, all) = begin(arguments)?;
+    match (&run.manifest.settings.holds, all) {
+        (Holds::Grid(searches), _) => search(&session, &run, searches, arguments.output),
+        (Holds::Individuals(_), all) => score(&session, &run, &all, arguments.output),
+    }
+}
+
+/// The run, with the individuals of a table; of a grid there are none.
+fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)> {
+    let file = arguments.file.clone().unwrap_or_default();
+    let ends = file.extension().and_then(|end| end.to_str());
+    let grid = match ends {
+        Some("toml") => {
+            let document = Document::read(&file, "the grid that was asked for")?;
+            Some((document.parse::<Grid>()?, document))
+        }
+        Some("csv") => None,
+        Some(_) | None => {
+            return Err(Usage {
+                message: format!("{} is neither a grid nor a table", file.display()),
+                help: "a grid ends in .toml, a table of individuals in .csv".to_owned(),
+            }
+            .into());
+        }
+    };
+    let beside = |case: &PathBuf| file.parent().unwrap_or(Path::new("")).join(case);
+    let own = grid
+        .as_ref()
+        .and_then(|(grid, _)| grid.case.as_ref().map(beside));
+    let Some(case_folder) = arguments.case.clone().or(own) else {
+        return Err(Usage {
+            message: format!("{}: of which case?", file.display()),
+            help: "name its folder with --case CASE, in a grid with `case = \"FOLDER\"`".to_owned(),
+        }
+        .into());
+    };
+    let measured = arguments.measured.as_deref();
+    let LoadedCase {
+        case,
+        measured: records,
+        synthetic,
+        notes,
+    } = load_case(&case_folder, measured)?;
+    require_record(&case_folder, &case, case.objective.condition)?;
+    let space = Space::new(&case.unknowns)?;
+    let (holds, all) = if let Some((grid, document)) = grid {
+        let searches = grid.searches(&document, &space)?;
+        (Holds::Grid(searches), Individuals::default())
+    } else {
+        let all = Individuals::read(&file, &space)?;
+        let hash = bus::content_hash(&all.rows)?.to_string();
+        (Holds::Individuals(hash), all)
+    };
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        RunFolder::default_path(&case, "sweep", &[stem.into_owned()], measured, 0)?
+    };
+    let manifest = Manifest {
+        kind: Swept::KIND.to_owned(),
+        format: manifest::FORMAT,
+        program: bus::PROGRAM.to_owned(),
+        command: command_line(),
+        preset: String::new(),
+        seed: 0,
+        set: Vec::new(),
+        settings: Swept {
+            file: std::path::absolute(&file)?,
+            holds,
+        },
+        start: None,
+        case_folder: std::path::absolute(&case_folder)?,
+        measured: records,
+        synthetic,
+        notes,
+        wall_s: 0.0,
+    };
+    Ok((Run::begin(&path, manifest, case)?, all))
+}
+
+/// Runs every search of a grid.
+fn search(
+    session: &Session,
+    run: &Run<Swept>,
+    searches: &Searches,
+    output: OutputChoice,
+) -> anyhow::Result<()> {
+    let space = Space::new(&run.case.unknowns)?;
+    let rows = rows(searches);
+    let list = searches.list(&space, &rows)?;
+    let found = session.work(run, async |bus, stop| {
+        let mut display = Display::counting("searches done", run.case.objective_unit());
+        display.resumed(bus.recorded());
+        let mut sweep = Sweep::new(&run.case, &space);
+        let found = sweep.run(bus, &list, &mut display, stop).await;
+        display.clear();
+        found
+    })?;
+    let tried = searches.tried(&rows, &found);
+    let object = GridOutput::new(&searches.factors, &tried);
+    run.folder
+        .write(TABLE, &runs_table(&searches.factors, &tried)?)?;
+    run.folder.write_json(RESULT, &object)?;
+    let shown = runs(&run.case, &searches.factors, &tried);
+    terminal::print(
+        output.output,
+        || table::text(&shown, terminal::styled()),
+        &object,
+    )
+}
+
+/// Scores every individual of a table.
+fn score(
+    session: &Session,
+    run: &Run<Swept>,
+    all: &Individuals,
+    output: OutputChoice,
+) -> anyhow::Result<()> {
+    let space = Space::new(&run.case.unknowns)?;
+    let individuals: Vec<Vec<f64>> = all.rows.iter().map(|row| space.expand(row)).collect();
+    let found = session.work(run, async |bus, stop| {
+        let mut display = Display::counting("tables done", run.case.objective_unit());
+        display.resumed(bus.recorded());
+        let found = score_all(bus, &run.case, &individuals, &mut display, stop).await;
+        display.clear();
+        found
+    })?;
+    let object = IndividualsOutput::new(&run.case, &all.names, &all.rows, &found);
+    let text = scored::table(&run.case, &all.names, &all.rows, &found)?;
+    run.folder.write(TABLE, &text)?;
+    run.folder.write_json(RESULT, &object)?;
+    terminal::print(output.output, || text, &object)
+}

@@ -1,0 +1,129 @@
+//! The file of a grid: which case, which preset, which settings take which values.
+use crate::{
+    case::document::{Document, Step},
+    cli::{
+        argument::settings::SettingsChoice,
+        output::problem::Usage,
+        run::{searches::Searches, swept::combinations},
+    },
+    orthogonal::Factor,
+};
+use search::{
+    space::Space,
+    strategy::{CATALOGUE, preset},
+};
+use serde::Deserialize;
+use std::{collections::BTreeMap, path::PathBuf};
+
+/// Most searches of one sweep.
+const MOST: usize = 100_000;
+
+/// As it is written.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Grid {
+    /// Case folder, as seen from the file's own.
+    pub(super) case: Option<PathBuf>,
+    preset: Option<String>,
+    /// Settings that all searches share.
+    #[serde(default)]
+    set: BTreeMap<String, toml::Value>,
+    /// The values of every setting that is varied.
+    #[serde(rename = "grid")]
+    varied: BTreeMap<String, Vec<toml::Value>>,
+    seeds: Option<Vec<u64>>,
+    evaluations: Option<u64>,
+}
+
+impl Grid {
+    /// The searches that it means, all of which can be built.
+    ///
+    /// # Errors
+    /// An unknown preset or setting, a value that it may not have, an empty list, too many searches.
+    pub(super) fn searches(self, document: &Document, space: &Space) -> anyhow::Result<Searches> {
+        let name = self.preset.as_deref().unwrap_or("paper");
+        let Some(preset) = preset(name) else {
+            let names: Vec<&str> = CATALOGUE.iter().map(|preset| preset.name).collect();
+            let way = [Step::Key("preset")];
+            let help = "`horsehead calibrate --help` says what each does";
+            return Err(document.field(&way, name, names.join(", "), help).into());
+        };
+        let seeds = self.seeds.unwrap_or_else(|| vec![1]);
+        let twice = seeds
+            .iter()
+            .enumerate()
+            .any(|(at, seed)| seeds[..at].contains(seed));
+        if seeds.is_empty() || twice {
+            let value = format!("{seeds:?}");
+            let help = "as seeds = [1, 2, 3]";
+            let way = [Step::Key("seeds")];
+            return Err(document
+                .field(&way, value, "different seeds, one at least", help)
+                .into());
+        }
+        if self.evaluations == Some(0) {
+            let help = "a search needs one at least";
+            let way = [Step::Key("evaluations")];
+            return Err(document.field(&way, 0, "1 or more", help).into());
+        }
+        let word = |way: &[Step<'_>], value: &toml::Value| match value {
+            toml::Value::String(word) => Ok(word.clone()),
+            toml::Value::Integer(_) | toml::Value::Float(_) | toml::Value::Boolean(_) => {
+                Ok(value.to_string())
+            }
+            toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_) => {
+                let help = "write one value, as `calibrate --set` takes it";
+                Err(document.field(way, value, "a number, a word, true or false", help))
+            }
+        };
+        let mut factors = Vec::new();
+        for (key, values) in &self.varied {
+            let way = [Step::Key("grid"), Step::Key(key)];
+            if values.is_empty() {
+                let help = "as population = [40, 80]";
+                return Err(document
+                    .field(&way, "[]", "one value at least", help)
+                    .into());
+            }
+            let levels = values.iter().enumerate().map(|(index, value)| {
+                let [table, key] = way;
+                word(&[table, key, Step::Index(index)], value)
+            });
+            factors.push(Factor::new(key, levels.collect::<Result<Vec<_>, _>>()?));
+        }
+        let set = self.set.iter().map(|(key, value)| {
+            let way = [Step::Key("set"), Step::Key(key)];
+            Ok((key.clone(), word(&way, value)?))
+        });
+        let choice = SettingsChoice {
+            set: set.collect::<anyhow::Result<_>>()?,
+        };
+        let named = |error: Usage| Usage {
+            message: format!("{}: {}", document.path.display(), error.message),
+            help: error.help,
+        };
+        let counts = factors
+            .iter()
+            .map(|factor| factor.levels.len())
+            .chain([seeds.len()]);
+        let count = counts.fold(1_usize, usize::saturating_mul);
+        if count > MOST {
+            return Err(named(Usage {
+                message: format!("{count} searches are too many"),
+                help: format!("at most {MOST}: take fewer values or seeds"),
+            })
+            .into());
+        }
+        let budget = (self.evaluations, seeds);
+        let made = Searches::new(space, preset, &choice, factors, budget);
+        let (searches, _) = made.map_err(named)?;
+        searches.list(space, &rows(&searches))?;
+        Ok(searches)
+    }
+}
+
+/// Every combination of a grid.
+pub(super) fn rows(searches: &Searches) -> Vec<Vec<usize>> {
+    let levels = searches.factors.iter().map(|factor| factor.levels.len());
+    combinations(&levels.collect::<Vec<_>>())
+}

@@ -1,0 +1,256 @@
+//! `horsehead sweep orthogonal`: which levels of a search's settings are best, by a few of all combinations.
+use crate::{
+    case::require_record,
+    cli::{
+        argument::{
+            case::{CaseChoice, LoadedCase},
+            door::Door,
+            factor,
+            output::OutputChoice,
+            settings::SettingsChoice,
+            workers::{cores, worker_count},
+        },
+        output::{
+            object::orthogonal::OrthogonalOutput,
+            problem::{EXIT_CODES, Usage},
+            progress::Display,
+            terminal,
+        },
+        run::{
+            begun::Run,
+            bus,
+            command_line::command_line,
+            folder::{RESULT, RunFolder},
+            manifest::{self, Decides as _, Manifest},
+            orthogonal::{Orthogonal, test},
+            searches::Searches,
+            session::Session,
+        },
+    },
+    orthogonal::{Array, Factor, Tested},
+    report::{Origin, orthogonal as report, text},
+    study::Watch as _,
+};
+use anyhow::Context as _;
+use clap::{
+    Args,
+    builder::{PossibleValuesParser, TypedValueParser as _},
+};
+use search::{
+    space::Space,
+    strategy::{CATALOGUE, preset},
+};
+use std::{path::PathBuf, time::Instant};
+
+/// Test settings of a search by an orthogonal array; the same command resumes.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead sweep orthogonal cases/cyjs10-5-37hb
+  horsehead sweep orthogonal cases/cyjs10-5-37hb --array L16 --evaluations 2000
+  horsehead sweep orthogonal cases/cyjs10-5-37hb --factor population=40,80,120 \\
+      --factor generations=30,60,90 --factor crossover_probability=0.7,0.8,0.9
+
+Without --factor: population, crossover_probability, mutation_probability and the climbing trials
+of both kinds. L9 holds up to 4 factors of 3 levels, L16 5 of 4, L25 6 of 5. The response is log10
+of the best objective at the budget. Seeds are blocks; the best levels are confirmed with as many
+other seeds.
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    choice: CaseChoice,
+    /// The orthogonal array.
+    #[arg(long, default_value = "L9", env = "HORSEHEAD_ARRAY", value_parser = arrays())]
+    array: Array,
+    /// A setting with its levels; KEY+KEY=A,B,C sets several to the same. May be given several times, or with
+    /// semicolons.
+    #[arg(
+        long,
+        value_name = "KEY=A,B,C",
+        value_delimiter = ';',
+        env = "HORSEHEAD_FACTOR",
+        value_parser = factor::parse
+    )]
+    factor: Vec<Factor>,
+    /// The preset that factors are settings of.
+    #[arg(
+        long,
+        default_value = "paper",
+        env = "HORSEHEAD_PRESET",
+        value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
+    )]
+    preset: String,
+    #[command(flatten)]
+    settings: SettingsChoice,
+    /// Evaluations of each search [default: 1000; none where a factor says how long a search goes on].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_EVALUATIONS", value_parser = clap::value_parser!(u64).range(4..=1_000_000))]
+    evaluations: Option<u64>,
+    /// How many seeds, each of which is a block.
+    #[arg(long, value_name = "N", default_value_t = 5, env = "HORSEHEAD_SEEDS", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    seeds: u64,
+    /// The first of them.
+    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
+    seed: u64,
+    /// Run folder [default: runs/CASE-sweep-ARRAY-set-HASH-seedN, the hash that of factors and budget].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    door: Door,
+    /// Worker processes to start on this machine; 0 for none [default: one per core].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
+    workers: Option<usize>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+fn arrays() -> impl clap::builder::TypedValueParser<Value = Array> {
+    PossibleValuesParser::new(Array::ALL.map(Array::name)).map(|name| {
+        let named = Array::ALL.into_iter().find(|array| array.name() == name);
+        named.unwrap_or(Array::L9)
+    })
+}
+
+/// The paper's factors with climbing trials in place of generations, which would be the budget.
+fn usual(array: Array) -> Vec<Factor> {
+    // L9 takes the first three of each, with what the paper found best among them
+    const LEVELS: [(&str, [&str; 5]); 4] = [
+        ("population", ["40", "80", "120", "20", "160"]),
+        ("crossover_probability", ["0.9", "0.8", "0.7", "0.6", "1"]),
+        (
+            "mutation_probability",
+            ["0.05", "0.02", "0.1", "0.01", "0.2"],
+        ),
+        (
+            "crossover_trials+mutation_trials",
+            ["10", "5", "20", "0", "40"],
+        ),
+    ];
+    let of = |(name, levels): (&str, [&'static str; 5])| {
+        let mut levels: Vec<&str> = levels.into_iter().take(array.levels()).collect();
+        let value = |level: &&str| level.parse().unwrap_or(0.0);
+        levels.sort_by(|a, b| f64::total_cmp(&value(a), &value(b)));
+        Factor::new(name, levels)
+    };
+    LEVELS.into_iter().map(of).collect()
+}
+
+/// The factors of an array.
+fn factors(arguments: &Arguments) -> Result<Vec<Factor>, Usage> {
+    let array = arguments.array;
+    let chosen = match arguments.factor.as_slice() {
+        [] => usual(array),
+        some => some.to_vec(),
+    };
+    let holds = format!(
+        "{} holds up to {} factors of {} levels; --array chooses another",
+        array.name(),
+        array.columns(),
+        array.levels()
+    );
+    if chosen.len() > array.columns() {
+        return Err(Usage {
+            message: format!("{} factors are too many", chosen.len()),
+            help: holds,
+        });
+    }
+    let other = chosen.iter().find(|own| own.levels.len() != array.levels());
+    match other {
+        Some(factor) => Err(Usage {
+            message: format!("factor {} has {} levels", factor.name, factor.levels.len()),
+            help: holds,
+        }),
+        None => Ok(chosen),
+    }
+}
+
+fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
+    let factors = factors(arguments)?;
+    let LoadedCase {
+        case,
+        measured,
+        synthetic,
+        notes,
+    } = arguments.choice.load()?;
+    require_record(&arguments.choice.case, &case, case.objective.condition)?;
+    let space = Space::new(&case.unknowns)?;
+    let preset = preset(&arguments.preset).context("the catalogue has lost a preset")?;
+    let seeds = (0..arguments.seeds).map(|block| arguments.seed.wrapping_add(block));
+    let budget = (arguments.evaluations, seeds.collect());
+    let (searches, set) = Searches::new(&space, preset, &arguments.settings, factors, budget)?;
+    // every row can be built before anything runs
+    searches.list(&space, &arguments.array.rows(searches.factors.len()))?;
+    let settings = Orthogonal {
+        array: arguments.array,
+        searches,
+    };
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let what = format!("sweep-{}", settings.array.name().to_lowercase());
+        let decides = [settings.arguments() + " " + preset.name + " " + &set.join(" ")];
+        let replaced = arguments.choice.measured.as_deref();
+        RunFolder::default_path(&case, &what, &decides, replaced, arguments.seed)?
+    };
+    let manifest = Manifest {
+        kind: Orthogonal::KIND.to_owned(),
+        format: manifest::FORMAT,
+        program: bus::PROGRAM.to_owned(),
+        command: command_line(),
+        preset: preset.name.to_owned(),
+        seed: arguments.seed,
+        set,
+        settings,
+        start: None,
+        case_folder: std::path::absolute(&arguments.choice.case)?,
+        measured,
+        synthetic,
+        notes,
+        wall_s: 0.0,
+    };
+    Run::begin(&path, manifest, case)
+}
+
+/// Tests from the first search to the confirmation.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let session = Session {
+        door: arguments.door.clone(),
+        local_workers: arguments.workers.unwrap_or_else(cores),
+        started: Instant::now(),
+    };
+    let run = begin(arguments)?;
+    let tested = session.work(&run, async |bus, stop| {
+        let mut display = Display::counting("searches done", run.case.objective_unit());
+        display.resumed(bus.recorded());
+        let tested = test(bus, &run, &mut display, stop).await;
+        display.clear();
+        tested
+    })?;
+    show(&run, &tested, arguments.output)
+}
+
+/// Writes the files of a finished test and prints its result.
+fn show(run: &Run<Orthogonal>, tested: &Tested, output: OutputChoice) -> anyhow::Result<()> {
+    let object = OrthogonalOutput::from(tested);
+    let subject = report::Subject {
+        case: &run.case,
+        tested,
+        origin: Origin {
+            program: run.manifest.program.clone(),
+            command: run.manifest.command.clone(),
+            run: run.folder.path().display().to_string(),
+            case_hash: bus::case_hash(&run.case)?,
+            measured_name: run.manifest.measured.clone(),
+            preset: Some(run.manifest.preset.clone()),
+            seed: Some(run.manifest.seed),
+            digest: String::new(),
+            synthetic: run.manifest.synthetic,
+        },
+    };
+    let files = report::write(run.folder.path(), &subject)?;
+    run.folder.write_json(RESULT, &object)?;
+    let page = files.first().map(|page| page.display().to_string());
+    terminal::tell(&format!("open {}", page.unwrap_or_default()));
+    let tables = || text(&report::report(&subject), terminal::styled());
+    terminal::print(output.output, tables, &object)
+}

@@ -1,0 +1,135 @@
+//! The contract of `horsehead identify CASE --output json`: fields by name.
+use super::*;
+use crate::{
+    case::{Overrides, load},
+    report::{Origin, identification::report},
+};
+use discrepancy::{
+    identify::{Band, Curve, End, Identified, Part, Pin},
+    record::noise::Known,
+};
+use protocol::case::Case;
+use std::path::Path;
+
+/// Four unknowns, one seen in each way.
+fn identified(case: &Case) -> Identified {
+    let own = |name: &str, interval: [Option<f64>; 2]| UnknownEstimate {
+        name: name.to_owned(),
+        unit: "N/m".to_owned(),
+        value: 2e8,
+        interval,
+        ends: interval.map(|end| {
+            if end.is_some() {
+                End::Rises
+            } else {
+                End::Bound
+            }
+        }),
+        seen: Seen::of(interval[0].is_some(), interval[1].is_some()),
+        correlated: vec![("kc".to_owned(), -0.9)],
+        profile: vec![[1e8, 4.0], [2e8, 0.0]],
+    };
+    let curve = |points: usize| Curve {
+        likeliest: vec![1.0; points],
+        low: vec![0.5; points],
+        high: vec![1.5; points],
+    };
+    let channels = case.channels_of(0);
+    let channels = channels.map(|(_, channel)| curve(channel.abscissa.points.len()));
+    Identified {
+        genes: case.start(),
+        unknowns: vec![
+            own("kb1", [Some(1e8), Some(3e8)]),
+            own("kb23", [Some(1e8), None]),
+            own("kb4", [None, Some(3e8)]),
+            own("kb56", [None, None]),
+        ],
+        directions: vec![Direction {
+            sd_decades: f64::INFINITY,
+            parts: vec![Part {
+                name: "kb56".to_owned(),
+                part: 1.0,
+            }],
+            words: "kb56: not seen by this record".to_owned(),
+        }],
+        nuisances: Vec::new(),
+        bands: vec![Band {
+            condition: 0,
+            channels: channels.collect(),
+        }],
+        further: vec![Further {
+            measurement: "4 times as many cycles".to_owned(),
+            pins: vec![Pin {
+                name: "kb1".to_owned(),
+                sd_now: 0.2,
+                sd_then: 0.1,
+            }],
+        }],
+        left: 2.0,
+        is_noise: false,
+        noise: Known::Stated,
+        notes: Vec::new(),
+    }
+}
+
+/// Gauges by number over the crank's angle, open ends as null, what both sides leave open as one null; and
+/// the page says the same in words.
+#[test]
+fn fields_are_a_contract() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+    let case = load(&folder, &Overrides::default()).unwrap();
+    let identified = identified(&case);
+    let subject = Subject {
+        case: &case,
+        identified: &identified,
+        origin: Origin {
+            program: String::new(),
+            command: String::new(),
+            run: "runs/x".to_owned(),
+            case_hash: String::new(),
+            measured_name: String::new(),
+            preset: None,
+            seed: Some(1),
+            digest: String::new(),
+            synthetic: true,
+        },
+        notes: &[],
+        wall_s: 1.0,
+    };
+    let said = serde_json::to_value(object(&subject, &[])).unwrap();
+    let unknowns = &said["unknowns"];
+    assert_eq!(unknowns["kb1"]["ci95"], serde_json::json!([1e8, 3e8]));
+    assert_eq!(unknowns["kb23"]["ci95"], serde_json::json!([1e8, null]));
+    assert_eq!(unknowns["kb4"]["ci95"], serde_json::json!([null, 3e8]));
+    assert_eq!(unknowns["kb56"]["ci95"], Value::Null);
+    let seen = ["kb1", "kb23", "kb4", "kb56"].map(|name| unknowns[name]["seen"].clone());
+    assert_eq!(seen, ["both", "lower_bound", "upper_bound", "not_seen"]);
+    let correlated = serde_json::json!([{"name": "kc", "correlation": -0.9}]);
+    assert_eq!(unknowns["kb1"]["correlated_with"], correlated);
+    assert_eq!(unknowns["kb1"]["unit"], "N/m");
+    assert_eq!(said["directions"][0]["sd_decades"], Value::Null);
+    let prediction = &said["prediction"]["5rpm"];
+    assert_eq!(prediction["unit"], "MPa");
+    for key in ["1", "2", "3", "4"] {
+        let ends = ["low", "high"].map(|end| prediction[key][end][0].clone());
+        assert_eq!(ends, [0.5, 1.5], "{prediction}");
+    }
+    let degrees = prediction["crank_deg"].as_array().unwrap();
+    assert_eq!(
+        degrees.len(),
+        prediction["1"]["low"].as_array().unwrap().len()
+    );
+    assert_eq!(said["diagnose_first"], true);
+    assert_eq!(said["assumed_noise"], true);
+    let page = crate::report::text(&report(&subject), false);
+    for words in [
+        "sees 1 of 4 unknowns",
+        "at least",
+        "at most",
+        "not seen by this record",
+        "2.00 times the noise",
+        "4 times as many cycles",
+    ] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+}

@@ -1,0 +1,182 @@
+//! The objects of `horsehead sweep orthogonal` and of a sweep of a grid.
+use crate::orthogonal::{Anova, Confirmation, Factor, Source, Tested, Tried};
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+/// Of `horsehead sweep orthogonal`, and kept as `result.json` in the run folder. Responses are log10 of the best
+/// objective, in the objective's unit.
+#[derive(Debug, Serialize)]
+pub(crate) struct OrthogonalOutput {
+    /// `L9`, `L16` or `L25`.
+    array: &'static str,
+    factors: Vec<FactorOutput>,
+    /// Row by row, each with every seed.
+    runs: Vec<TriedOutput>,
+    /// One per factor; null where a run found nothing complete.
+    ranges: Option<Vec<RangeOutput>>,
+    /// Null where the design is saturated, too.
+    anova: Option<Vec<TermOutput>>,
+    confirmation: Option<ConfirmationOutput>,
+}
+
+#[derive(Debug, Serialize)]
+struct FactorOutput {
+    name: String,
+    levels: Vec<Value>,
+}
+
+/// One search.
+#[derive(Debug, Serialize)]
+struct TriedOutput {
+    /// Value of each factor by its name.
+    levels: Map<String, Value>,
+    seed: u64,
+    /// Null where nothing was complete.
+    objective: Option<f64>,
+    evaluations: u64,
+}
+
+#[derive(Debug, Serialize)]
+struct RangeOutput {
+    factor: String,
+    /// Mean response at each level.
+    means: Vec<f64>,
+    range: f64,
+    best: Value,
+}
+
+#[derive(Debug, Serialize)]
+struct TermOutput {
+    /// A factor's name, `seed` or `error`.
+    source: String,
+    sum_of_squares: f64,
+    freedom: usize,
+    mean_square: f64,
+    f: Option<f64>,
+    p: Option<f64>,
+}
+
+#[derive(Debug, Serialize)]
+struct ConfirmationOutput {
+    levels: Map<String, Value>,
+    predicted: f64,
+    /// Mean response of the runs.
+    obtained: Option<f64>,
+    runs: Vec<TriedOutput>,
+}
+
+impl From<&Tested> for OrthogonalOutput {
+    fn from(tested: &Tested) -> Self {
+        let factors = &tested.factors;
+        let analysis = tested.analysis.as_ref();
+        let ranges = analysis.map(|analysis| {
+            let ranges = factors.iter().zip(&analysis.ranges);
+            let one = ranges.map(|(factor, range)| RangeOutput {
+                factor: factor.name.clone(),
+                means: range.means.clone(),
+                range: range.range,
+                best: value(&factor.levels[range.best]),
+            });
+            one.collect()
+        });
+        let confirmation = tested.confirmation.as_ref().map(|own| ConfirmationOutput {
+            levels: levels(factors, &own.levels),
+            predicted: own.predicted,
+            obtained: Confirmation::obtained(own),
+            runs: tried(factors, &own.runs),
+        });
+        Self {
+            array: tested.array.name(),
+            factors: listed(factors),
+            runs: tried(factors, &tested.runs),
+            ranges,
+            anova: analysis.and_then(|own| Some(terms(factors, own.anova.as_ref()?))),
+            confirmation,
+        }
+    }
+}
+
+/// Of `horsehead sweep FILE.toml`, and kept as `result.json` in the run folder.
+#[derive(Debug, Serialize)]
+pub(crate) struct GridOutput {
+    factors: Vec<FactorOutput>,
+    /// Combination by combination, the last factor fastest, each with every seed.
+    runs: Vec<TriedOutput>,
+}
+
+impl GridOutput {
+    /// Of the searches of a grid.
+    pub(crate) fn new(factors: &[Factor], runs: &[Tried]) -> Self {
+        Self {
+            factors: listed(factors),
+            runs: tried(factors, runs),
+        }
+    }
+}
+
+/// Searches as a table: a column per factor, `seed`, `objective` (empty where nothing was complete), `evaluations`.
+///
+/// # Errors
+/// If a row cannot be written.
+pub(crate) fn runs_table(factors: &[Factor], runs: &[Tried]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let names = factors.iter().map(|factor| factor.name.as_str());
+    writer.write_record(names.chain(["seed", "objective", "evaluations"]))?;
+    for run in runs {
+        let levels = factors.iter().zip(&run.levels);
+        let levels = levels.map(|(factor, level)| factor.levels[*level].clone());
+        let objective = run.objective.map_or_else(String::new, |it| it.to_string());
+        let numbers = [run.seed.to_string(), objective, run.evaluations.to_string()];
+        writer.write_record(levels.chain(numbers))?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+fn listed(factors: &[Factor]) -> Vec<FactorOutput> {
+    let one = |factor: &Factor| FactorOutput {
+        name: factor.name.clone(),
+        levels: factor.levels.iter().map(|level| value(level)).collect(),
+    };
+    factors.iter().map(one).collect()
+}
+
+fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
+    let one = |term: &crate::orthogonal::Term| TermOutput {
+        source: match term.source {
+            Source::Factor(number) => factors[number].name.clone(),
+            Source::Block => "seed".to_owned(),
+            Source::Error => "error".to_owned(),
+        },
+        sum_of_squares: term.squares,
+        freedom: term.freedom,
+        mean_square: term.mean_square(),
+        f: term.f,
+        p: term.p,
+    };
+    anova.terms.iter().map(one).collect()
+}
+
+/// Searches with their levels by name.
+fn tried(factors: &[Factor], runs: &[Tried]) -> Vec<TriedOutput> {
+    let one = |run: &Tried| TriedOutput {
+        levels: levels(factors, &run.levels),
+        seed: run.seed,
+        objective: run.objective,
+        evaluations: run.evaluations,
+    };
+    runs.iter().map(one).collect()
+}
+
+fn levels(factors: &[Factor], row: &[usize]) -> Map<String, Value> {
+    let one =
+        |(factor, level): (&Factor, &usize)| (factor.name.clone(), value(&factor.levels[*level]));
+    factors.iter().zip(row).map(one).collect()
+}
+
+/// A number or a switch where the words are one, else the words.
+fn value(words: &str) -> Value {
+    let plain = serde_json::from_str(words).ok();
+    plain
+        .filter(|value: &Value| value.is_number() || value.is_boolean())
+        .unwrap_or_else(|| words.into())
+}

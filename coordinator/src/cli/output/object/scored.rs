@@ -1,0 +1,135 @@
+//! What came of one individual, in `horsehead evaluate` and `horsehead sweep`.
+use super::{
+    score::{ScoreOutput, channels},
+    simulation::VerdictOutput,
+};
+use crate::study::Scored;
+use protocol::{
+    case::Case,
+    job::{Evaluation, Verdict},
+};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// What came of an individual.
+#[derive(Debug, Serialize)]
+pub(crate) struct ScoredOutput {
+    /// Of a failed run its grade, above every complete run's; null where it could not be computed.
+    objective: Option<f64>,
+    complete: bool,
+    verdict: Ending,
+}
+
+/// How a simulation ended, as `horsehead simulate` says it, or why there was none.
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum Ending {
+    Simulated(VerdictOutput),
+    Lost(String),
+}
+
+impl From<&Scored> for ScoredOutput {
+    fn from(scored: &Scored) -> Self {
+        match scored {
+            Ok(evaluation) => Self {
+                objective: Some(evaluation.fitness).filter(|objective| objective.is_finite()),
+                complete: evaluation.verdict == Verdict::Complete,
+                verdict: Ending::Simulated(evaluation.verdict.into()),
+            },
+            Err(failure) => Self {
+                objective: None,
+                complete: false,
+                verdict: Ending::Lost(failure.to_string()),
+            },
+        }
+    }
+}
+
+/// Of `horsehead sweep FILE.csv`, and kept as `result.json` in the run folder.
+#[derive(Debug, Serialize)]
+pub(crate) struct IndividualsOutput {
+    /// In the order of the table.
+    individuals: Vec<IndividualOutput>,
+}
+
+/// One row.
+#[derive(Debug, Serialize)]
+struct IndividualOutput {
+    /// The row by names of unknowns.
+    genes: BTreeMap<String, f64>,
+    #[serde(flatten)]
+    scored: ScoredOutput,
+    /// Agreement by channel; empty unless complete.
+    channels: BTreeMap<String, ScoreOutput>,
+}
+
+impl IndividualsOutput {
+    /// Of the rows of a table about unknowns of these names.
+    pub(crate) fn new(case: &Case, names: &[String], rows: &[Vec<f64>], found: &[Scored]) -> Self {
+        let one = |(row, scored): (&Vec<f64>, &Scored)| IndividualOutput {
+            genes: names.iter().cloned().zip(row.iter().copied()).collect(),
+            scored: scored.into(),
+            channels: channels(case, scored.as_ref().ok()),
+        };
+        Self {
+            individuals: rows.iter().zip(found).map(one).collect(),
+        }
+    }
+}
+
+/// The same as a table with a column for every number: the row, `objective`, `verdict`, then `CHANNEL.SCORE`, empty
+/// where there is none.
+///
+/// # Errors
+/// If a number cannot be written.
+pub(crate) fn table(
+    case: &Case,
+    names: &[String],
+    rows: &[Vec<f64>],
+    found: &[Scored],
+) -> anyhow::Result<String> {
+    let scores = |evaluation: &Evaluation| -> BTreeMap<String, f64> {
+        let by_channel = channels(case, Some(evaluation)).into_iter();
+        let flat = by_channel.flat_map(|(channel, score)| {
+            let score = serde_json::to_value(score).unwrap_or_default();
+            let numbers = score.as_object().cloned().unwrap_or_default().into_iter();
+            numbers.filter_map(move |(name, value): (String, Value)| {
+                Some((format!("{channel}.{name}"), value.as_f64()?))
+            })
+        });
+        flat.collect()
+    };
+    let scored: Vec<BTreeMap<String, f64>> = found
+        .iter()
+        .map(|one| one.as_ref().map(scores).unwrap_or_default())
+        .collect();
+    let columns: BTreeSet<&String> = scored.iter().flat_map(BTreeMap::keys).collect();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let fixed = ["objective", "verdict"];
+    let names = names.iter().map(String::as_str);
+    let header = names
+        .chain(fixed)
+        .chain(columns.iter().map(|name| name.as_str()));
+    writer.write_record(header)?;
+    for ((row, one), scores) in rows.iter().zip(found).zip(&scored) {
+        let (objective, verdict) = match one {
+            Ok(Evaluation {
+                verdict, fitness, ..
+            }) => (fitness.to_string(), ended(verdict)),
+            Err(failure) => (String::new(), failure.to_string()),
+        };
+        let cell = |name: &&String| scores.get(*name).map_or_else(String::new, f64::to_string);
+        let cells = row.iter().map(f64::to_string);
+        let cells = cells.chain([objective, verdict]);
+        writer.write_record(cells.chain(columns.iter().map(cell)))?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}
+
+fn ended(verdict: &Verdict) -> String {
+    match verdict {
+        Verdict::Complete => "complete".to_owned(),
+        Verdict::Failed { kind, .. } => kind.spoken(),
+    }
+}

@@ -1,0 +1,76 @@
+//! The work of an orthogonal test: the rows of the array with every seed, then the best levels with other seeds.
+use super::{begun::Run, manifest::Decides, searches::Searches};
+use crate::{
+    orthogonal::{Analysis, Array, Confirmation, Tested},
+    study::{Evaluator, ProgressView, Stop, Sweep, Watch},
+};
+use serde::{Deserialize, Serialize};
+
+/// What decides a test.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Orthogonal {
+    /// Which array.
+    pub(crate) array: Array,
+    /// What its rows are.
+    pub(crate) searches: Searches,
+}
+
+impl Decides for Orthogonal {
+    const KIND: &'static str = "sweep orthogonal";
+
+    fn arguments(&self) -> String {
+        format!(
+            " --array {}{}",
+            self.array.name(),
+            self.searches.arguments()
+        )
+    }
+}
+
+/// Tests on whatever evaluates.
+///
+/// # Errors
+/// As [`Sweep::run`].
+pub(crate) async fn test<E: Evaluator>(
+    evaluator: &mut E,
+    run: &Run<Orthogonal>,
+    watch: &mut dyn Watch<ProgressView>,
+    stop: &mut Stop,
+) -> anyhow::Result<Tested> {
+    let Orthogonal { array, searches } = &run.manifest.settings;
+    let space = run.manifest.space(&run.case)?;
+    let mut sweep = Sweep::new(&run.case, &space);
+    let factors = searches.factors.len();
+    let rows = array.rows(factors);
+    let list = searches.list(&space, &rows)?;
+    let found = sweep.run(evaluator, &list, watch, stop).await?;
+    let runs = searches.tried(&rows, &found);
+    let analysis = Analysis::of(*array, factors, &searches.seeds, &runs);
+    let confirmation = if let Some(analysis) = &analysis {
+        // seeds that chose nothing: those of the test would flatter the levels that they chose
+        let count = searches.seeds.len() as u64;
+        let seeds = searches.seeds.iter().map(|seed| seed.wrapping_add(count));
+        let fresh = Searches {
+            seeds: seeds.collect(),
+            ..searches.clone()
+        };
+        let best = [analysis.best()];
+        let list = fresh.list(&space, &best)?;
+        let found = sweep.run(evaluator, &list, watch, stop).await?;
+        let [levels] = best;
+        Some(Confirmation {
+            runs: fresh.tried(std::slice::from_ref(&levels), &found),
+            predicted: analysis.predicted,
+            levels,
+        })
+    } else {
+        None
+    };
+    Ok(Tested {
+        array: *array,
+        factors: searches.factors.clone(),
+        runs,
+        analysis,
+        confirmation,
+    })
+}

@@ -1,0 +1,163 @@
+//! Searches of a sweep: one choice of settings, varied by factors and seeds, each within one budget.
+use super::command_line::quote;
+use crate::{
+    cli::{
+        argument::{
+            factor::{self, check},
+            settings::SettingsChoice,
+        },
+        output::problem::Usage,
+    },
+    orthogonal::{Factor, Tried},
+    study::{Search, Searched},
+};
+use anyhow::Context as _;
+use search::{
+    space::Space,
+    strategy::{Plan, Preset, Settings, build, preset},
+};
+use serde::{Deserialize, Serialize};
+
+/// Settings that say how long a search goes on, each of some presets.
+const LENGTHS: [&str; 3] = ["generations", "evaluations", "points"];
+
+/// The most that such a setting may be.
+const LONGEST: u64 = 1_000_000;
+
+/// Evaluations of every search where neither they are given nor a factor says how long it goes on.
+const EVALUATIONS: u64 = 1000;
+
+/// What decides the searches of a sweep.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Searches {
+    /// Name of the preset that factors are settings of.
+    pub(crate) preset: String,
+    /// All settings, before factors.
+    pub(crate) settings: Settings,
+    /// What is varied.
+    pub(crate) factors: Vec<Factor>,
+    /// Evaluations of each; none where a factor says how long it goes on.
+    pub(crate) evaluations: Option<u64>,
+    /// Seeds of each.
+    pub(crate) seeds: Vec<u64>,
+}
+
+impl Searches {
+    /// Checked searches, with the settings that were set by name as `key=value`.
+    ///
+    /// # Errors
+    /// If the preset has no such setting, a value may not be that, or something is named twice.
+    pub(crate) fn new(
+        space: &Space,
+        preset: &Preset,
+        choice: &SettingsChoice,
+        factors: Vec<Factor>,
+        (evaluations, seeds): (Option<u64>, Vec<u64>),
+    ) -> Result<(Self, Vec<String>), Usage> {
+        // what follows the number of workers is that of one: any crew finds the same
+        let plan = Plan { space, workers: 1 };
+        let chosen = choice.choose(preset, &plan)?;
+        check(&factors, preset, &chosen.settings)?;
+        let varied = |key: &str| {
+            factors
+                .iter()
+                .any(|own| factor::keys(own).any(|own| own == key))
+        };
+        let has = |key: &str| preset.named().iter().any(|one| one.key == key);
+        let free = |key: &str| has(key) && !varied(key) && !choice.names(key);
+        let usual = Some(EVALUATIONS).filter(|_| !LENGTHS.into_iter().any(varied));
+        let evaluations = evaluations.or(usual);
+        let mut settings = chosen.settings;
+        let mut set = |key: &str, value: u64| {
+            let done = preset.set(&mut settings, key, &value.to_string());
+            done.map(drop).map_err(|error| Usage {
+                message: format!("preset {}: {error}", preset.name),
+                help: format!("choose another number of evaluations, or set {key}"),
+            })
+        };
+        if let Some(budget) = evaluations {
+            for length in LENGTHS.into_iter().filter(|length| free(length)) {
+                // a generation takes an evaluation at least: the budget alone ends the search
+                set(length, budget.min(LONGEST))?;
+            }
+        }
+        if free("speculation") {
+            // the same search, without evaluations that are discarded: others keep the slots busy
+            set("speculation", 1)?;
+        }
+        let searches = Self {
+            preset: preset.name.to_owned(),
+            settings,
+            factors,
+            evaluations,
+            seeds,
+        };
+        Ok((searches, chosen.set))
+    }
+
+    /// Every row with every seed.
+    ///
+    /// # Errors
+    /// If the settings of a row make no search.
+    pub(crate) fn list(&self, space: &Space, rows: &[Vec<usize>]) -> anyhow::Result<Vec<Search>> {
+        let preset = preset(&self.preset).context("the catalogue has lost a preset")?;
+        let mut all = Vec::with_capacity(rows.len() * self.seeds.len());
+        for row in rows {
+            let mut settings = self.settings.clone();
+            for (factor, level) in self.factors.iter().zip(row) {
+                factor::set(factor, *level, preset, &mut settings)?;
+            }
+            for seed in &self.seeds {
+                build(&settings, space, *seed).map_err(|error| Usage {
+                    message: format!("{}: {error}", self.words(row)),
+                    help: "choose other levels, or other settings with --set".to_owned(),
+                })?;
+                all.push(Search {
+                    settings: settings.clone(),
+                    seed: *seed,
+                    evaluations: self.evaluations,
+                });
+            }
+        }
+        Ok(all)
+    }
+
+    /// A row in words, as `population=40 mutation_probability=0.1`.
+    pub(crate) fn words(&self, row: &[usize]) -> String {
+        let one = |(factor, level): (&Factor, &usize)| {
+            format!("{}={}", factor.name, factor.levels[*level])
+        };
+        let words: Vec<String> = self.factors.iter().zip(row).map(one).collect();
+        words.join(" ")
+    }
+
+    /// What was found, in the order of [`Searches::list`].
+    pub(crate) fn tried(&self, rows: &[Vec<usize>], found: &[Searched]) -> Vec<Tried> {
+        let asked = rows
+            .iter()
+            .flat_map(|row| self.seeds.iter().map(move |seed| (row, seed)));
+        let one = |((row, seed), found): ((&Vec<usize>, &u64), &Searched)| Tried {
+            levels: row.clone(),
+            seed: *seed,
+            objective: found
+                .best
+                .as_ref()
+                .filter(|best| best.complete)
+                .map(|best| best.fitness),
+            evaluations: found.evaluations,
+        };
+        asked.zip(found).map(one).collect()
+    }
+
+    /// What of a command line says the same, each word after a space.
+    pub(crate) fn arguments(&self) -> String {
+        let mut text = String::new();
+        for factor in &self.factors {
+            text.extend([" --factor ", &quote(&factor::words(factor))]);
+        }
+        if let Some(evaluations) = self.evaluations {
+            text.extend([" --evaluations ", &evaluations.to_string()]);
+        }
+        text + " --seeds " + &self.seeds.len().to_string()
+    }
+}

@@ -1,0 +1,62 @@
+//! What decides a sweep of a file: a grid of settings, or a table of individuals.
+use super::{command_line::quote_path, manifest::Decides, searches::Searches};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// A file that is swept.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Swept {
+    /// Where it lies.
+    pub(crate) file: PathBuf,
+    /// What it holds.
+    pub(crate) holds: Holds,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Holds {
+    /// Searches: every level of every factor with every other.
+    Grid(Searches),
+    /// Individuals, by the hash of their values.
+    Individuals(String),
+}
+
+impl Decides for Swept {
+    const KIND: &'static str = "sweep";
+    const SEEDED: bool = false;
+
+    fn command(&self, case: &str) -> String {
+        format!("{} {} --case {case}", Self::KIND, quote_path(&self.file))
+    }
+
+    fn difference(&self, earlier: &Self) -> String {
+        if self.holds == earlier.holds {
+            format!("it is of {}", earlier.file.display())
+        } else {
+            "its file holds something else".to_owned()
+        }
+    }
+}
+
+/// Every combination of levels, the last factor fastest.
+pub(crate) fn combinations(levels: &[usize]) -> Vec<Vec<usize>> {
+    let one = |rows: Vec<Vec<usize>>, count: &usize| {
+        let longer = rows.iter().flat_map(|row| {
+            (0..*count).map(move |level| row.iter().copied().chain([level]).collect())
+        });
+        longer.collect()
+    };
+    levels.iter().fold(vec![Vec::new()], one)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_combination_comes_once_in_order() {
+        let all = [[0, 0], [0, 1], [0, 2], [1, 0], [1, 1], [1, 2]];
+        assert_eq!(combinations(&[2, 3]), all);
+    }
+}

@@ -1,0 +1,103 @@
+//! Range analysis: the mean response at every level of a factor, and how far these means lie apart.
+
+/// One run of a design.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observation {
+    /// The level of every factor, from 0.
+    pub levels: Vec<usize>,
+    /// The block, from 0: what runs of one block share beside the factors.
+    pub block: usize,
+    /// What came out, in any unit; the smaller the better.
+    pub response: f64,
+}
+
+/// What the levels of one factor do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Range {
+    /// Mean response at each level \[unit of the response\].
+    pub means: Vec<f64>,
+    /// Largest less smallest mean \[unit of the response\].
+    pub range: f64,
+    /// The level of the smallest mean; the first of equals.
+    pub best: usize,
+}
+
+/// Ranges of the first `factors` factors, each of so many levels. In a balanced design a mean over all runs of a
+/// level is free of the other factors.
+pub fn ranges(observations: &[Observation], levels: usize, factors: usize) -> Vec<Range> {
+    let of = |factor: usize| {
+        let group = |one: &Observation| one.levels[factor];
+        let means = means(observations, levels, group);
+        let largest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let smallest = means.iter().copied().fold(f64::INFINITY, f64::min);
+        Range {
+            range: largest - smallest,
+            best: means.iter().position(|mean| *mean <= smallest).unwrap_or(0),
+            means,
+        }
+    };
+    (0..factors).map(of).collect()
+}
+
+/// The response to expect at the best level of every factor, if factors add up \[unit of the response\].
+pub fn predicted(observations: &[Observation], ranges: &[Range]) -> f64 {
+    let grand = mean(observations.iter().map(|one| one.response));
+    let gains = ranges.iter().map(|own| own.means[own.best] - grand);
+    grand + gains.sum::<f64>()
+}
+
+/// Mean response of each of so many groups; not a number where a group is empty.
+pub(super) fn means(
+    observations: &[Observation],
+    groups: usize,
+    group: impl Fn(&Observation) -> usize,
+) -> Vec<f64> {
+    let of = |number| {
+        let own = observations.iter().filter(|one| group(one) == number);
+        mean(own.map(|one| one.response))
+    };
+    (0..groups).map(of).collect()
+}
+
+pub(super) fn mean(responses: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = responses.fold((0.0, 0_u32), |(sum, count), one| (sum + one, count + 1));
+    sum / f64::from(count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::orthogonal::Array;
+
+    /// Additive effects are found as they were put in, and predict the best combination exactly.
+    #[test]
+    fn additive_effects_come_back() {
+        const EFFECTS: [[f64; 3]; 4] = [
+            [0.3, -0.2, -0.1],
+            [0.0, 0.05, -0.05],
+            [-1.0, 0.25, 0.75],
+            [0.0, 0.0, 0.0],
+        ];
+        let observe = |levels: Vec<usize>| {
+            let gains = levels.iter().zip(EFFECTS).map(|(level, own)| own[*level]);
+            Observation {
+                response: 2.0 + gains.sum::<f64>(),
+                block: 0,
+                levels,
+            }
+        };
+        let rows = Array::L9.rows(4).into_iter().map(observe);
+        let observations: Vec<_> = rows.collect();
+        let ranges = ranges(&observations, 3, 4);
+        let best: Vec<usize> = ranges.iter().map(|own| own.best).collect();
+        assert_eq!(best[..3], [1, 2, 0]);
+        for (own, effect) in ranges.iter().zip(EFFECTS) {
+            for (mean, effect) in own.means.iter().zip(effect) {
+                assert!((mean - 2.0 - effect).abs() < 1e-12);
+            }
+        }
+        assert!((ranges[2].range - 1.75).abs() < 1e-12);
+        let expected = 2.0 - 0.2 - 0.05 - 1.0;
+        assert!((predicted(&observations, &ranges) - expected).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,14 @@
+//! What a report of a test is about.
+use crate::orthogonal::Tested;
+use crate::report::data::Origin;
+use protocol::case::Case;
+
+/// What a report of a test is about.
+pub(crate) struct Subject<'a> {
+    /// The case that was searched.
+    pub(crate) case: &'a Case,
+    /// The test.
+    pub(crate) tested: &'a Tested,
+    /// How it was made.
+    pub(crate) origin: Origin,
+}

@@ -1,0 +1,69 @@
+//! A list of individuals, all scored: results in the order of the list.
+use super::{
+    evaluate::{Request, Scored, job, number, scored},
+    evaluator::Evaluator,
+    progress::ProgressView,
+    stop::{Stop, or_stop},
+    watch::Watch,
+};
+use protocol::{
+    case::Case,
+    id::JobId,
+    job::{Evaluation, Verdict},
+};
+use std::collections::BTreeMap;
+
+/// Scores individuals, one value for each unknown of the case \[declared units\]; equal ones are computed once.
+///
+/// # Errors
+/// If the case or the workers make every evaluation impossible, if nobody evaluates any more, or if the user
+/// stops it.
+pub async fn score_all<E: Evaluator>(
+    evaluator: &mut E,
+    case: &Case,
+    individuals: &[Vec<f64>],
+    watch: &mut dyn Watch<ProgressView>,
+    stop: &mut Stop,
+) -> anyhow::Result<Vec<Scored>> {
+    let mut open: BTreeMap<JobId, Vec<usize>> = BTreeMap::new();
+    for (index, genes) in individuals.iter().enumerate() {
+        let request = Request {
+            tag: (),
+            genes: genes.clone(),
+            with_residual: false,
+        };
+        let job = job(case, &request);
+        let id = number(&job)?;
+        if let Some(same) = open.get_mut(&id) {
+            same.push(index);
+        } else {
+            evaluator.submit(id, job)?;
+            open.insert(id, vec![index]);
+        }
+    }
+    let mut view = ProgressView {
+        generations: 1,
+        expected: open.len() as u64,
+        ..ProgressView::default()
+    };
+    let mut found: BTreeMap<usize, Scored> = BTreeMap::new();
+    while !open.is_empty() {
+        watch.progress(&view, &|| evaluator.crew());
+        let completed = or_stop(evaluator.next(), stop).await??;
+        let Some(indices) = open.remove(&completed.id) else {
+            continue;
+        };
+        let scored = scored(completed.id, completed.outcome)?;
+        view.add(complete(&scored), completed.replayed);
+        found.extend(indices.into_iter().map(|index| (index, scored.clone())));
+    }
+    watch.progress(&view, &|| evaluator.crew());
+    Ok(found.into_values().collect())
+}
+
+/// The objective of a complete simulation.
+fn complete(scored: &Scored) -> Option<f64> {
+    let complete = |it: &&Evaluation| it.verdict == Verdict::Complete;
+    let evaluation = scored.as_ref().ok().filter(complete)?;
+    Some(evaluation.fitness)
+}

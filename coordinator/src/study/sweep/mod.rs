@@ -1,0 +1,230 @@
+//! Many searches over one space side by side, on the same workers: while one waits for its last results, others keep
+//! the slots busy.
+//!
+//! It knows searches and their budgets, not why there are many. A job is numbered by its content: an individual
+//! that several searches ask for is computed once, and a run that is opened again finds all in its journal. What a
+//! search finds is its own affair, in whatever order results arrive.
+use super::{
+    calibrate::{LEAST_TRIED, all_failed, entry, residual, score},
+    error::StudyError,
+    evaluate::number,
+    evaluator::Evaluator,
+    log::{Ending, Entry, EvaluationLog},
+    progress::ProgressView,
+    stop::{Stop, or_stop},
+    watch::Watch,
+};
+use protocol::{case::Case, id::JobId, job::Outcome};
+use search::{
+    space::Space,
+    strategy::{Best, Proposal, Settings, Strategy, build},
+};
+use std::collections::BTreeMap;
+
+#[cfg(test)]
+mod tests;
+
+/// Jobs that wait or run before another search is begun: enough for the slots of a large crew.
+const BUSY: usize = 256;
+
+/// A search of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Search {
+    /// Its settings.
+    pub settings: Settings,
+    /// Its seed.
+    pub seed: u64,
+    /// Evaluations after which it is ended; none: it ends when it has done what it planned.
+    pub evaluations: Option<u64>,
+}
+
+/// What came of a search.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Searched {
+    /// The best of its evaluations.
+    pub best: Option<Best>,
+    /// How many it took, those that others had asked for among them.
+    pub evaluations: u64,
+}
+
+/// A search under way.
+struct Running {
+    strategy: Box<dyn Strategy>,
+    /// Proposals from this number on are not evaluated.
+    limit: u64,
+}
+
+/// Searches over one space, with what is known of all of them.
+pub struct Sweep<'a> {
+    case: &'a Case,
+    space: &'a Space,
+    running: BTreeMap<usize, Running>,
+    /// What has ended; every search since the beginning has a number of its own.
+    found: BTreeMap<usize, Searched>,
+    /// Who waits for a job.
+    open: BTreeMap<JobId, Vec<(usize, Proposal)>>,
+    known: BTreeMap<JobId, Outcome>,
+    view: ProgressView,
+    /// What has failed, as long as nothing else has happened.
+    failed: Option<EvaluationLog>,
+}
+
+impl<'a> Sweep<'a> {
+    /// None yet.
+    pub fn new(case: &'a Case, space: &'a Space) -> Self {
+        Self {
+            case,
+            space,
+            running: BTreeMap::new(),
+            found: BTreeMap::new(),
+            open: BTreeMap::new(),
+            known: BTreeMap::new(),
+            view: ProgressView::default(),
+            failed: Some(EvaluationLog::default()),
+        }
+    }
+
+    /// Runs searches to their ends; results in the order of the list. May be called again, on the same evaluator:
+    /// what is known is not computed anew.
+    ///
+    /// # Errors
+    /// If settings make no search, if the case or the workers make every evaluation impossible, if everything that
+    /// a whole search has tried fails, if nobody evaluates any more, or if the user stops it.
+    pub async fn run<E: Evaluator>(
+        &mut self,
+        evaluator: &mut E,
+        searches: &[Search],
+        watch: &mut dyn Watch<ProgressView>,
+        stop: &mut Stop,
+    ) -> anyhow::Result<Vec<Searched>> {
+        let first = self.found.len();
+        let all = first + searches.len();
+        self.view.generations = u32::try_from(all).unwrap_or(u32::MAX);
+        let mut waiting = (first..).zip(searches);
+        loop {
+            while self.open.len() < BUSY
+                && let Some((index, search)) = waiting.next()
+            {
+                let strategy = build(&search.settings, self.space, search.seed);
+                let running = Running {
+                    strategy: strategy.map_err(StudyError::from)?,
+                    limit: search.evaluations.unwrap_or(u64::MAX),
+                };
+                self.running.insert(index, running);
+                self.advance(evaluator, index)?;
+            }
+            self.plan(waiting.clone().filter_map(|(_, search)| search.evaluations));
+            watch.progress(&self.view, &|| evaluator.crew());
+            if self.found.len() == all {
+                return Ok(self.found.values().skip(first).cloned().collect());
+            }
+            let completed = or_stop(evaluator.next(), stop).await??;
+            let Some(asked) = self.open.remove(&completed.id) else {
+                continue;
+            };
+            self.count(&asked, &completed.outcome, completed.replayed)?;
+            let indices: Vec<usize> = asked.iter().map(|(index, _)| *index).collect();
+            for (index, proposal) in asked {
+                self.tell(index, proposal, completed.outcome.clone())?;
+            }
+            self.known.insert(completed.id, completed.outcome);
+            for index in indices {
+                self.advance(evaluator, index)?;
+            }
+        }
+    }
+
+    /// Asks a search until it waits for results or ends.
+    fn advance<E: Evaluator>(&mut self, evaluator: &mut E, index: usize) -> anyhow::Result<()> {
+        while let Some(running) = self.running.get_mut(&index) {
+            let strategy = running.strategy.as_mut();
+            let evaluations = strategy.archive().entries().len() as u64;
+            if evaluations >= running.limit || strategy.finished().is_some() {
+                let best = strategy.best();
+                self.running.remove(&index);
+                self.found.insert(index, Searched { best, evaluations });
+                return self.check_failed();
+            }
+            let limit = running.limit;
+            let asked = strategy.ask().into_iter();
+            let (mut new, mut told) = (false, false);
+            for proposal in asked.filter(|proposal| proposal.id < limit) {
+                new = true;
+                let job = score(self.case, &proposal);
+                let id = number(&job)?;
+                if let Some(outcome) = self.known.get(&id).cloned() {
+                    told = true;
+                    self.tell(index, proposal, outcome)?;
+                } else if let Some(asked) = self.open.get_mut(&id) {
+                    asked.push((index, proposal));
+                } else {
+                    evaluator.submit(id, job)?;
+                    self.open.insert(id, vec![(index, proposal)]);
+                }
+            }
+            if !(new && told) {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    fn tell(
+        &mut self,
+        index: usize,
+        proposal: Proposal,
+        outcome: Outcome,
+    ) -> Result<(), StudyError> {
+        // others may have ended without it
+        let Some(running) = self.running.get_mut(&index) else {
+            return Ok(());
+        };
+        if let Some(residual) = residual(self.case, &proposal, &outcome) {
+            running.strategy.tell_residual(proposal.id, residual);
+        }
+        let entry = entry(proposal, outcome)?;
+        running.strategy.tell(entry.id, entry.told());
+        Ok(())
+    }
+
+    /// Takes a result into what is shown, once, whoever asked for it.
+    fn count(
+        &mut self,
+        asked: &[(usize, Proposal)],
+        outcome: &Outcome,
+        replayed: bool,
+    ) -> Result<(), StudyError> {
+        let Some((_, proposal)) = asked.first() else {
+            return Ok(());
+        };
+        let entry = entry(proposal.clone(), outcome.clone())?;
+        self.view.apply(&entry, replayed);
+        if entry.ending == Ending::Complete {
+            self.failed = None;
+        } else if let Some(failed) = &mut self.failed {
+            let id = failed.len() as u64;
+            failed.insert(Entry { id, ..entry });
+        }
+        Ok(())
+    }
+
+    /// Gives up where a whole search has ended and nothing has ever been complete.
+    fn check_failed(&self) -> anyhow::Result<()> {
+        match &self.failed {
+            Some(failed) if failed.len() >= LEAST_TRIED => Err(all_failed(failed).into()),
+            Some(_) | None => Ok(()),
+        }
+    }
+
+    /// How far all searches have come, those that have not begun at their budgets `waiting`.
+    fn plan(&mut self, waiting: impl Iterator<Item = u64>) {
+        let running = self.running.values().map(|running| {
+            let progress = running.strategy.progress();
+            let all = progress.expected_evaluations.min(running.limit);
+            all.saturating_sub(progress.evaluations)
+        });
+        let ahead: u64 = running.chain(waiting).sum();
+        self.view.generation = u32::try_from(self.found.len()).unwrap_or(u32::MAX);
+        self.view.expected = self.view.completed + ahead;
+    }
+}
