@@ -51,6 +51,7 @@ const RULES: &[Rule] = &[
             "coordinator/src/cli/command/export_tests.rs",
             "coordinator/src/cli/command/tests.rs",
             "coordinator/src/cli/output/object/diagnosis/tests.rs",
+            "coordinator/src/cli/output/object/identification/tests.rs",
             "coordinator/src/study/tests.rs",
         ],
     },
