@@ -37,7 +37,7 @@ pub(crate) const NOISE_MM: f64 = 0.02;
 const NOISE_N: f64 = 0.2;
 
 /// A scratch folder with the case.
-pub(crate) struct Rig(TempDir);
+pub(crate) struct Rig(TempDir, u64);
 
 impl Rig {
     /// With records that hide dry friction.
@@ -46,7 +46,7 @@ impl Rig {
             friction_n: FRICTION_N,
             ..Effects::default()
         };
-        Self::hiding(&HIDDEN, &effects)
+        Self::hiding(&HIDDEN, &effects, 0)
     }
 
     /// With records that hide force in the reading of the displacement.
@@ -55,16 +55,32 @@ impl Rig {
             crosstalk_mm_per_n: CROSSTALK,
             ..HIDDEN
         };
-        Self::hiding(&values, &Effects::default())
+        Self::hiding(&values, &Effects::default(), 0)
     }
 
     /// With records that hide nothing.
     pub(crate) fn healthy() -> Self {
-        Self::hiding(&HIDDEN, &Effects::default())
+        Self::hiding(&HIDDEN, &Effects::default(), 0)
     }
 
-    fn hiding(values: &Values, effects: &Effects) -> Self {
-        let rig = Self(TempDir::new().unwrap());
+    /// With records of these values that hide so much dry friction \[N\], and noise of their own; the friction is
+    /// an unknown of the case.
+    pub(crate) fn with_friction(values: &Values, friction_n: f64, noise: u64) -> Self {
+        let effects = Effects {
+            friction_n,
+            ..Effects::default()
+        };
+        let rig = Self::hiding(values, &effects, noise);
+        let file = rig.file("case/case.toml");
+        let case = fs::read_to_string(&file).unwrap();
+        let own = "\n[[effects]]\nid = \"dry_friction\"\n\
+                   parameters = { force = { value = 1.0, unit = \"N\", search = [0.0, 10.0] } }\n";
+        fs::write(&file, case + own).unwrap();
+        rig
+    }
+
+    fn hiding(values: &Values, effects: &Effects, noise: u64) -> Self {
+        let rig = Self(TempDir::new().unwrap(), noise);
         fs::create_dir_all(rig.file("case/measured")).unwrap();
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("case/case.toml");
         fs::copy(shipped, rig.file("case/case.toml")).unwrap();
@@ -129,7 +145,8 @@ impl Rig {
             channels: &channels,
             repeats: 8,
         };
-        let table = measurement.table(name.bytes().map(u64::from).sum());
+        let condition: u64 = name.bytes().map(u64::from).sum();
+        let table = measurement.table(condition + 10_000 * self.1);
         fs::write(self.file(&format!("case/measured/{name}.csv")), table).unwrap();
     }
 
