@@ -20,8 +20,9 @@
 //! upper = 40.0
 //! trust = [-0.5, 0.5]               # optional: where models usually survive; decades about the start, on a
 //!                                   # linear scale halves of the interval
-//! prior = { value = 6.0, deviation = 0.2 }   # optional: the likeliest value, and its standard deviation in
-//!                                   # the same measure
+//! prior = [4.0, 9.0]                # optional: 95 % lies within it; of a logarithmic scale as well
+//!                                   # { value = 6.0, factor = 1.5 }: within value / factor and value x factor;
+//!                                   # or { value = .., deviation = .. }, one standard deviation as in `trust`
 //! absent = 0.0                      # optional: the value at which it does nothing; `start = absent` leaves it
 //!                                   # out, for a diagnosis to suspect
 //! fixed = true                      # optional: known, and not searched; needs no bounds
