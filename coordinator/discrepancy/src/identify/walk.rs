@@ -54,8 +54,8 @@ pub(super) async fn walk<L: Laboratory>(
     let mut others = restarted(experiments, fit.clone()).await?;
     let fit = others.pop().unwrap_or(fit);
     let mut walked = begin(fit, &others);
-    for _ in 0..=AGAIN {
-        follow(experiments, &mut walked).await?;
+    follow(experiments, &mut walked).await?;
+    for _ in 0..AGAIN {
         let cost = walked.fit.search.cost();
         let marks = walked.sides.iter().flat_map(|side| &side.marks);
         let least = marks.min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -71,6 +71,7 @@ pub(super) async fn walk<L: Laboratory>(
         }
         // what was seen from another valley says too much is left
         walked = begin(fit, &others);
+        follow(experiments, &mut walked).await?;
     }
     Ok(walked)
 }
