@@ -2,9 +2,9 @@
 //! condition.
 //!
 //! A band spans what the record does not refuse: the linear one, each unknown within its own interval, and
-//! the curves of all points of the profiles. It is one of the simulated curve; noise is not in it.
+//! the curves of the outermost point of each profile's side. It is one of the simulated curve; noise is not in it.
 use super::answer::{Band, Curve, Sight};
-use super::profile::{Next, RISE};
+use super::profile::{Mark, NEAR, Next, RISE};
 use super::walk::Walked;
 use crate::laboratory::{Laboratory, channels};
 use crate::model::experiments::Experiments;
@@ -14,9 +14,9 @@ use nalgebra::{DMatrix, DVector};
 use protocol::case::Channel;
 
 /// How far a point of a profile may have risen, over the wanted rise.
-const INSIDE: f64 = 1.15;
+const INSIDE: f64 = 1.0 + NEAR;
 
-/// All conditions at a fit: curves, their changes by every variable, and the curves of other points that
+/// All conditions at a fit: curves, their changes by every variable, and the curves of the outermost points that
 /// the record does not refuse. A condition under which the fit fails is left out.
 pub(super) async fn sights<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
@@ -24,11 +24,14 @@ pub(super) async fn sights<L: Laboratory>(
     conditions: &[Vec<Channel>],
 ) -> Result<Vec<Sight>, L::Error> {
     let fit = &walked.fit;
-    let inside = walked.sides.iter().flat_map(|side| &side.marks);
-    let inside: Vec<&[f64]> = inside
-        .filter(|mark| mark.cost - fit.search.cost() <= INSIDE * walked.rise)
-        .map(|mark| mark.x.as_slice())
-        .collect();
+    let least = fit.search.cost();
+    let inside = walked.sides.iter().filter_map(|side| {
+        let marks = side.marks.iter();
+        let kept = marks.filter(|mark| mark.cost - least <= INSIDE * walked.rise);
+        let away = |mark: &&Mark| side.sign * mark.at;
+        kept.max_by(|a, b| away(a).total_cmp(&away(b)))
+    });
+    let inside: Vec<&[f64]> = inside.map(|mark| mark.x.as_slice()).collect();
     let mut sights = Vec::new();
     for (condition, channels_of) in conditions.iter().enumerate() {
         let record = blank(condition, channels_of);

@@ -1,5 +1,6 @@
 //! Refits beside a fit, with one unknown held: steps by the Jacobian of the fit, which cost a simulation or two
 //! each, and a new Jacobian only where those no longer help.
+use super::profile::NEAR;
 use super::settings::FREE;
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
@@ -9,7 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use search::least_squares::{Linearized, Settings, prior_cost, undamped};
 
 /// So much of the wanted rise is little: a point that leaves it is not refitted, for a refit leaves less.
-const LITTLE: f64 = 0.85;
+const LITTLE: f64 = 1.0 - NEAR;
 /// A step that gains less than this share of the wanted rise is the last by its Jacobian.
 const GAIN: f64 = 0.02;
 /// Steps that are tried side by side, as shares of the whole one.

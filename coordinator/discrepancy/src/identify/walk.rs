@@ -131,7 +131,7 @@ async fn restarted<L: Laboratory>(
         starts.push(reset(&weak));
     }
     let settings = Settings {
-        iterations: 5,
+        iterations: 4,
         ..FREE
     };
     let fits = experiments.fits(starts, settings).await?;

@@ -82,7 +82,7 @@ pub(super) fn prediction(subject: &Subject<'_>) -> Option<Table> {
     )
     .noted([
         "Of the simulated curve: noise and zeros of instruments are not in it. A band spans the linear one, each \
-         unknown within its interval, and all points of the profiles.",
+         unknown within its interval, and the outermost points of the profiles.",
     ])
     .unless_empty()
 }
