@@ -2,10 +2,9 @@
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
-        door::Door,
         output::OutputChoice,
         settings::{self, SettingsChoice},
-        workers::{cores, worker_count},
+        workers::WorkersChoice,
     },
     output::{
         calibration::show,
@@ -15,11 +14,9 @@ use crate::cli::{
     },
     run::{
         begun::Run,
-        bus,
         calibration::{Calibration, calibrate, seen},
-        command_line::command_line,
         folder::{RunFolder, SEEN},
-        manifest::{self, CALIBRATE, Manifest, Start},
+        manifest::{self, Manifest, Start},
         session::Session,
     },
 };
@@ -31,7 +28,7 @@ use search::{
     space::Space,
     strategy::{CATALOGUE, Plan, Preset, preset},
 };
-use std::{path::PathBuf, time::Instant};
+use std::path::PathBuf;
 
 /// Identify the unknowns of a case from its records; the same command resumes.
 #[derive(Debug, Args)]
@@ -75,10 +72,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     window: Option<u32>,
     #[command(flatten)]
-    door: Door,
-    /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
-    workers: Option<usize>,
+    workers: WorkersChoice,
     #[command(flatten)]
     output: OutputChoice,
 }
@@ -106,10 +100,10 @@ Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
 const LISTENING: usize = 40;
 
 /// How many workers the run is planned for.
-fn planned_workers(door: &Door, local: usize) -> usize {
-    match door.listen {
-        Some(_) => local.max(LISTENING),
-        None => local,
+fn planned_workers(workers: &WorkersChoice) -> usize {
+    match workers.door.listen {
+        Some(_) => workers.local().max(LISTENING),
+        None => workers.local(),
     }
 }
 
@@ -125,7 +119,7 @@ fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Usage> {
 }
 
 /// The run that was asked for, as it begins or goes on.
-fn begin(arguments: &Arguments, local_workers: usize) -> anyhow::Result<Calibration> {
+fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     let LoadedCase {
         case,
         measured,
@@ -138,7 +132,7 @@ fn begin(arguments: &Arguments, local_workers: usize) -> anyhow::Result<Calibrat
     require_record(&arguments.choice.case, &case, case.objective.condition)?;
     let plan = Plan {
         space: &space,
-        workers: planned_workers(&arguments.door, local_workers),
+        workers: planned_workers(&arguments.workers),
     };
     let mut choice = arguments.settings.clone();
     let window = arguments.window.map(|length| length.to_string());
@@ -157,32 +151,21 @@ fn begin(arguments: &Arguments, local_workers: usize) -> anyhow::Result<Calibrat
         .map(|run| run.manifest.settings);
     choice.keep(&mut chosen, preset, earlier.as_ref());
     let manifest = Manifest {
-        kind: CALIBRATE.to_owned(),
-        format: manifest::FORMAT,
-        program: bus::PROGRAM.to_owned(),
-        command: command_line(),
         preset: preset.name.to_owned(),
-        seed: arguments.seed,
         set: chosen.set,
-        settings: chosen.settings,
         start,
-        case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
         synthetic,
         notes,
-        wall_s: 0.0,
+        ..Manifest::new(&arguments.choice.case, arguments.seed, chosen.settings)?
     };
     Run::begin(&path, manifest, case)
 }
 
 /// Calibrates from the first proposal to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session {
-        door: arguments.door.clone(),
-        local_workers: arguments.workers.unwrap_or_else(cores),
-        started: Instant::now(),
-    };
-    let run = begin(arguments, session.local_workers)?;
+    let session = Session::begin(&arguments.workers);
+    let run = begin(arguments)?;
     if run.lost_journal() {
         terminal::tell(&format!(
             "warning: the journal of {} is gone or empty, and with it the results: the run begins \

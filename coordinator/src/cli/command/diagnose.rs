@@ -1,11 +1,7 @@
 //! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
 //! that is, and how far the gap closes.
 use crate::cli::{
-    argument::{
-        door::Door,
-        output::OutputChoice,
-        workers::{cores, worker_count},
-    },
+    argument::{output::OutputChoice, workers::WorkersChoice},
     output::{diagnosis::Answer, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
         begun::Run,
@@ -18,7 +14,7 @@ use crate::cli::{
 };
 use clap::Args;
 use discrepancy::thresholds::Thresholds;
-use std::{path::PathBuf, time::Instant};
+use std::path::PathBuf;
 
 /// Find what the simulation is missing: where, which effect, how large, and the proof.
 #[derive(Debug, Args)]
@@ -70,21 +66,14 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    door: Door,
-    /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
-    workers: Option<usize>,
+    workers: WorkersChoice,
     #[command(flatten)]
     output: OutputChoice,
 }
 
 /// Diagnoses from the record to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session {
-        door: arguments.door.clone(),
-        local_workers: arguments.workers.unwrap_or_else(cores),
-        started: Instant::now(),
-    };
+    let session = Session::begin(&arguments.workers);
     let mut target = Target::read(
         &arguments.target,
         arguments.measured.as_deref(),

@@ -1,10 +1,6 @@
 //! `horsehead identify`: which unknowns a record sees, at all and apart, and what it leaves open.
 use crate::cli::{
-    argument::{
-        door::Door,
-        output::OutputChoice,
-        workers::{cores, worker_count},
-    },
+    argument::{output::OutputChoice, workers::WorkersChoice},
     output::{identification::show, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
         begun::Run,
@@ -17,7 +13,7 @@ use crate::cli::{
 };
 use clap::Args;
 use discrepancy::thresholds::Thresholds;
-use std::{path::PathBuf, time::Instant};
+use std::path::PathBuf;
 
 /// Say which unknowns a record can see, how well, which trade off, and what that does to predictions.
 #[derive(Debug, Args)]
@@ -55,21 +51,14 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    door: Door,
-    /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
-    workers: Option<usize>,
+    workers: WorkersChoice,
     #[command(flatten)]
     output: OutputChoice,
 }
 
 /// Identifies from the record to the report.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session {
-        door: arguments.door.clone(),
-        local_workers: arguments.workers.unwrap_or_else(cores),
-        started: Instant::now(),
-    };
+    let session = Session::begin(&arguments.workers);
     let target = Target::read(
         &arguments.target,
         arguments.measured.as_deref(),

@@ -12,14 +12,13 @@ use crate::{
     cli::{
         argument::output::Output,
         run::{
-            bus,
             calibration::{Calibration as Run, Found},
             folder::{GENES, RESULT, SEEN},
             tables,
         },
     },
     journal,
-    report::{self, Calibration, ConditionResult, HistoryPoint, Individual, Origin, WorkerUse},
+    report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse},
     study::{self, Calibrated, Compared, Curves},
 };
 use protocol::{
@@ -150,17 +149,7 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
     });
     Ok(Calibration {
         case: case.clone(),
-        origin: Origin {
-            program: run.manifest.program.clone(),
-            command: run.manifest.command.clone(),
-            run: run.folder.path().display().to_string(),
-            case_hash: bus::case_hash(case)?,
-            measured_name: run.manifest.measured.clone(),
-            preset: Some(run.manifest.preset.clone()),
-            seed: Some(run.manifest.seed),
-            digest: log.digest(),
-            synthetic: run.manifest.synthetic,
-        },
+        origin: run.origin(log.digest())?,
         recommended: Individual {
             id: None,
             genes: case.start(),

@@ -8,13 +8,12 @@ use crate::{
     cli::{
         argument::output::Output,
         run::{
-            bus,
             command_line::quote_path,
             diagnosis::{Diagnosis, Found},
             folder::{GENES, RESULT},
         },
     },
-    report::{Origin, diagnosis as report, text},
+    report::{diagnosis as report, text},
 };
 use std::path::Path;
 
@@ -38,17 +37,7 @@ impl Answer<'_> {
             records: &self.loaded.cycles,
             library: &self.found.library,
             diagnosed: &self.found.diagnosed,
-            origin: Origin {
-                program: manifest.program.clone(),
-                command: manifest.command.clone(),
-                run: self.run.folder.path().display().to_string(),
-                case_hash: bus::case_hash(&self.loaded.case)?,
-                measured_name: manifest.measured.clone(),
-                synthetic: manifest.synthetic,
-                preset: None,
-                seed: Some(manifest.seed),
-                digest: String::new(),
-            },
+            origin: self.run.origin(String::new())?,
             notes: &manifest.notes,
             wall_s: self.wall_s,
         })

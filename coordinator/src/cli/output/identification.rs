@@ -5,12 +5,11 @@ use crate::{
     cli::{
         argument::output::Output,
         run::{
-            bus,
             folder::{GENES, RESULT},
             identification::{Found, Identification},
         },
     },
-    report::{Origin, identification as report, text},
+    report::{identification as report, text},
 };
 
 /// Writes the files of a finished run and prints its result.
@@ -27,17 +26,7 @@ pub(crate) fn show(
     let subject = report::Subject {
         case: &run.case,
         identified: &found.identified,
-        origin: Origin {
-            program: manifest.program.clone(),
-            command: manifest.command.clone(),
-            run: run.folder.path().display().to_string(),
-            case_hash: bus::case_hash(&run.case)?,
-            measured_name: manifest.measured.clone(),
-            synthetic: manifest.synthetic,
-            preset: None,
-            seed: Some(manifest.seed),
-            digest: String::new(),
-        },
+        origin: run.origin(String::new())?,
         notes: &manifest.notes,
         wall_s,
     };

@@ -7,6 +7,7 @@ use super::{
 use crate::{
     case::{Loaded, Overrides, load_with_notes},
     cli::output::problem::Usage,
+    report::Origin,
 };
 use protocol::case::Case;
 use std::path::Path;
@@ -100,6 +101,22 @@ impl<S: Decides> Run<S> {
         } else {
             (earlier.case != self.case).then(|| "its case or its records differ".to_owned())
         }
+    }
+
+    /// Where its results come from, as reports say it; `digest` may be empty.
+    pub(crate) fn origin(&self, digest: String) -> anyhow::Result<Origin> {
+        let manifest = &self.manifest;
+        Ok(Origin {
+            program: manifest.program.clone(),
+            command: manifest.command.clone(),
+            run: self.folder.path().display().to_string(),
+            case_hash: bus::case_hash(&self.case)?,
+            measured_name: manifest.measured.clone(),
+            preset: (!manifest.preset.is_empty()).then(|| manifest.preset.clone()),
+            seed: Some(manifest.seed),
+            digest,
+            synthetic: manifest.synthetic,
+        })
     }
 
     /// Whether its results are gone although there were some.

@@ -1,5 +1,8 @@
 //! How a run was begun: what decides its result, and the command that goes on with it.
-use super::command_line::{quote, quote_path};
+use super::{
+    bus,
+    command_line::{command_line, quote, quote_path},
+};
 use crate::case::read_genes;
 use protocol::case::Case;
 use search::{
@@ -166,6 +169,26 @@ impl<S> Manifest<S> {
 }
 
 impl<S: Decides> Manifest<S> {
+    /// Of a run that begins now, of a case with its own records, without a preset and from the recommended values.
+    pub(crate) fn new(case_folder: &Path, seed: u64, settings: S) -> anyhow::Result<Self> {
+        Ok(Self {
+            kind: S::KIND.to_owned(),
+            format: FORMAT,
+            program: bus::PROGRAM.to_owned(),
+            command: command_line(),
+            preset: String::new(),
+            set: Vec::new(),
+            seed,
+            settings,
+            start: None,
+            case_folder: std::path::absolute(case_folder)?,
+            measured: case_folder.display().to_string(),
+            synthetic: false,
+            notes: Vec::new(),
+            wall_s: 0.0,
+        })
+    }
+
     /// What decides the result, as canonical JSON: the journal refuses to mix two of them.
     pub(crate) fn settings_json(&self) -> anyhow::Result<String> {
         let identity = Identity {

@@ -6,7 +6,10 @@ use super::{
     manifest::Decides,
 };
 use crate::{
-    cli::{argument::door::Door, output::terminal},
+    cli::{
+        argument::{door::Door, workers::WorkersChoice},
+        output::terminal,
+    },
     study::{Stop, StudyError},
 };
 use std::time::Instant;
@@ -14,14 +17,23 @@ use std::time::Instant;
 /// Who works on a run, and since when.
 pub(crate) struct Session {
     /// How other machines may join.
-    pub(crate) door: Door,
+    door: Door,
     /// Worker processes to start here.
-    pub(crate) local_workers: usize,
+    local_workers: usize,
     /// When the command began.
-    pub(crate) started: Instant,
+    started: Instant,
 }
 
 impl Session {
+    /// Of a command that begins now.
+    pub(crate) fn begin(workers: &WorkersChoice) -> Self {
+        Self {
+            door: workers.door.clone(),
+            local_workers: workers.local(),
+            started: Instant::now(),
+        }
+    }
+
     /// Wall time of a run with this session (s).
     pub(crate) fn wall_s<S>(&self, run: &Run<S>) -> f64 {
         run.manifest.wall_s + self.started.elapsed().as_secs_f64()

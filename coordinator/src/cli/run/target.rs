@@ -1,11 +1,9 @@
 //! What a command fits: a case folder, or a finished calibration, whose case, records and parameters are taken.
 use super::{
-    bus,
     calibration::Calibration,
-    command_line::command_line,
     diagnosis::Diagnosis,
     folder::{GENES, RunFolder},
-    manifest::{CALIBRATE, Decides, FORMAT, Manifest, Start},
+    manifest::{CALIBRATE, Decides, Manifest, Start},
 };
 use crate::{
     case::{Loaded, Overrides, load_with_notes, require_record},
@@ -71,20 +69,11 @@ impl Target {
         let measured = self.measured.as_ref().unwrap_or(&self.folder);
         let notes = self.loaded.notes.iter().map(ToString::to_string);
         Ok(Manifest {
-            kind: S::KIND.to_owned(),
-            format: FORMAT,
-            program: bus::PROGRAM.to_owned(),
-            command: command_line(),
-            preset: String::new(),
-            set: Vec::new(),
-            seed,
-            settings,
             start: self.start.clone(),
-            case_folder: std::path::absolute(&self.folder)?,
             measured: measured.display().to_string(),
             synthetic: self.loaded.synthetic,
             notes: notes.collect(),
-            wall_s: 0.0,
+            ..Manifest::new(&self.folder, seed, settings)?
         })
     }
 

@@ -6,8 +6,7 @@ use crate::{
     cli::{
         argument::{
             case::{CaseChoice, LoadedCase},
-            door::Door,
-            workers::{cores, worker_count},
+            workers::WorkersChoice,
         },
         output::{
             problem::{EXIT_CODES, Usage},
@@ -15,10 +14,8 @@ use crate::{
         },
         run::{
             begun::Run,
-            bus,
-            command_line::command_line,
             folder::RunFolder,
-            manifest::{self, Decides, EVALUATE, Manifest},
+            manifest::{Decides, EVALUATE, Manifest},
             session::Session,
         },
     },
@@ -34,7 +31,6 @@ use std::{
         Arc,
         atomic::{AtomicUsize, Ordering},
     },
-    time::Instant,
 };
 use tokio::sync::mpsc;
 use words::{Line, Tag};
@@ -63,10 +59,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    door: Door,
-    /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
-    workers: Option<usize>,
+    workers: WorkersChoice,
 }
 
 /// Nothing but the case decides what individuals are worth.
@@ -83,11 +76,7 @@ const WAITING: usize = 4096;
 
 /// Scores until the input ends.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session {
-        door: arguments.door.clone(),
-        local_workers: arguments.workers.unwrap_or_else(cores),
-        started: Instant::now(),
-    };
+    let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
     let space = Space::new(&run.case.unknowns)?;
     let (asking, mut requests) = mpsc::channel(WAITING);
@@ -124,20 +113,10 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Individuals>> {
         RunFolder::default_path(&case, EVALUATE, &[], replaced, 0)?
     };
     let manifest = Manifest {
-        kind: EVALUATE.to_owned(),
-        format: manifest::FORMAT,
-        program: bus::PROGRAM.to_owned(),
-        command: command_line(),
-        preset: String::new(),
-        seed: 0,
-        set: Vec::new(),
-        settings: Individuals {},
-        start: None,
-        case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
         synthetic,
         notes,
-        wall_s: 0.0,
+        ..Manifest::new(&arguments.choice.case, 0, Individuals {})?
     };
     Run::begin(&path, manifest, case)
 }

@@ -5,10 +5,9 @@ use crate::{
     cli::{
         argument::{
             case::{LoadedCase, load_case},
-            door::Door,
             individuals::Individuals,
             output::OutputChoice,
-            workers::{cores, worker_count},
+            workers::WorkersChoice,
         },
         output::{
             object::{
@@ -22,9 +21,8 @@ use crate::{
         run::{
             begun::Run,
             bus,
-            command_line::command_line,
             folder::{RESULT, RunFolder},
-            manifest::{self, Decides as _, Manifest},
+            manifest::Manifest,
             searches::Searches,
             session::Session,
             swept::{Holds, Swept},
@@ -35,10 +33,7 @@ use crate::{
 };
 use clap::Args;
 use search::space::Space;
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::path::{Path, PathBuf};
 
 /// The table that a sweep leaves in its run folder.
 const TABLE: &str = "sweep.csv";
@@ -58,21 +53,14 @@ pub(super) struct FileArguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    door: Door,
-    /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
-    workers: Option<usize>,
+    workers: WorkersChoice,
     #[command(flatten)]
     output: OutputChoice,
 }
 
 /// Sweeps a file.
 pub(super) fn run(arguments: &FileArguments) -> anyhow::Result<()> {
-    let session = Session {
-        door: arguments.door.clone(),
-        local_workers: arguments.workers.unwrap_or_else(cores),
-        started: Instant::now(),
-    };
+    let session = Session::begin(&arguments.workers);
     let (run, all) = begin(arguments)?;
     match (&run.manifest.settings.holds, all) {
         (Holds::Grid(searches), _) => search(&session, &run, searches, arguments.output),
@@ -132,24 +120,15 @@ fn begin(arguments: &FileArguments) -> anyhow::Result<(Run<Swept>, Individuals)>
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         RunFolder::default_path(&case, "sweep", &[stem.into_owned()], measured, 0)?
     };
+    let settings = Swept {
+        file: std::path::absolute(&file)?,
+        holds,
+    };
     let manifest = Manifest {
-        kind: Swept::KIND.to_owned(),
-        format: manifest::FORMAT,
-        program: bus::PROGRAM.to_owned(),
-        command: command_line(),
-        preset: String::new(),
-        seed: 0,
-        set: Vec::new(),
-        settings: Swept {
-            file: std::path::absolute(&file)?,
-            holds,
-        },
-        start: None,
-        case_folder: std::path::absolute(&case_folder)?,
         measured: records,
         synthetic,
         notes,
-        wall_s: 0.0,
+        ..Manifest::new(&case_folder, 0, settings)?
     };
     Ok((Run::begin(&path, manifest, case)?, all))
 }

@@ -4,11 +4,10 @@ use crate::{
     cli::{
         argument::{
             case::{CaseChoice, LoadedCase},
-            door::Door,
             factor,
             output::OutputChoice,
             settings::SettingsChoice,
-            workers::{cores, worker_count},
+            workers::WorkersChoice,
         },
         output::{
             object::orthogonal::OrthogonalOutput,
@@ -18,17 +17,15 @@ use crate::{
         },
         run::{
             begun::Run,
-            bus,
-            command_line::command_line,
             folder::{RESULT, RunFolder},
-            manifest::{self, Decides as _, Manifest},
+            manifest::{Decides as _, Manifest},
             orthogonal::{Orthogonal, test},
             searches::Searches,
             session::Session,
         },
     },
     orthogonal::{Array, Factor, Tested},
-    report::{Origin, orthogonal as report, text},
+    report::{orthogonal as report, text},
     study::Watch as _,
 };
 use anyhow::Context as _;
@@ -40,7 +37,7 @@ use search::{
     space::Space,
     strategy::{CATALOGUE, preset},
 };
-use std::{path::PathBuf, time::Instant};
+use std::path::PathBuf;
 
 /// Test settings of a search by an orthogonal array; the same command resumes.
 #[derive(Debug, Args)]
@@ -96,10 +93,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
     run: Option<PathBuf>,
     #[command(flatten)]
-    door: Door,
-    /// Worker processes to start on this machine; 0 for none [default: one per core].
-    #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
-    workers: Option<usize>,
+    workers: WorkersChoice,
     #[command(flatten)]
     output: OutputChoice,
 }
@@ -193,31 +187,19 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Orthogonal>> {
         RunFolder::default_path(&case, &what, &decides, replaced, arguments.seed)?
     };
     let manifest = Manifest {
-        kind: Orthogonal::KIND.to_owned(),
-        format: manifest::FORMAT,
-        program: bus::PROGRAM.to_owned(),
-        command: command_line(),
         preset: preset.name.to_owned(),
-        seed: arguments.seed,
         set,
-        settings,
-        start: None,
-        case_folder: std::path::absolute(&arguments.choice.case)?,
         measured,
         synthetic,
         notes,
-        wall_s: 0.0,
+        ..Manifest::new(&arguments.choice.case, arguments.seed, settings)?
     };
     Run::begin(&path, manifest, case)
 }
 
 /// Tests from the first search to the confirmation.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    let session = Session {
-        door: arguments.door.clone(),
-        local_workers: arguments.workers.unwrap_or_else(cores),
-        started: Instant::now(),
-    };
+    let session = Session::begin(&arguments.workers);
     let run = begin(arguments)?;
     let tested = session.work(&run, async |bus, stop| {
         let mut display = Display::counting("searches done", run.case.objective_unit());
@@ -235,17 +217,7 @@ fn show(run: &Run<Orthogonal>, tested: &Tested, output: OutputChoice) -> anyhow:
     let subject = report::Subject {
         case: &run.case,
         tested,
-        origin: Origin {
-            program: run.manifest.program.clone(),
-            command: run.manifest.command.clone(),
-            run: run.folder.path().display().to_string(),
-            case_hash: bus::case_hash(&run.case)?,
-            measured_name: run.manifest.measured.clone(),
-            preset: Some(run.manifest.preset.clone()),
-            seed: Some(run.manifest.seed),
-            digest: String::new(),
-            synthetic: run.manifest.synthetic,
-        },
+        origin: run.origin(String::new())?,
     };
     let files = report::write(run.folder.path(), &subject)?;
     run.folder.write_json(RESULT, &object)?;
