@@ -11,6 +11,7 @@ pub mod cli;
 pub mod core;
 mod digest;
 mod draft;
+mod external;
 pub mod journal;
 mod kind;
 mod line;

@@ -6,6 +6,7 @@ pub mod announce;
 pub mod case;
 pub mod curve;
 pub mod event;
+pub mod external;
 pub mod id;
 pub mod job;
 pub mod key;

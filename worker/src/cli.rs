@@ -1,4 +1,5 @@
 //! The command line of `horsehead-worker`.
+use crate::external::start::Start;
 use clap::{Parser, Subcommand};
 use link::locator::Locator;
 use std::path::PathBuf;
@@ -57,7 +58,7 @@ pub struct Cli {
 }
 
 /// Roles that only the program itself uses.
-#[derive(Clone, Copy, Debug, Subcommand)]
+#[derive(Clone, Debug, Subcommand)]
 pub enum Role {
     /// Compute what standard input says
     #[command(hide = true)]
@@ -66,4 +67,7 @@ pub enum Role {
         #[arg(long, default_value_t = 0)]
         memory: u64,
     },
+    /// Become a program of this machine's list, within its limits
+    #[command(hide = true)]
+    Start(Start),
 }

@@ -9,9 +9,11 @@
 //! takes nothing with it. A worker keeps no files and decides nothing. [`program`] is all of that
 //! behind a command line.
 pub mod cli;
+pub mod external;
 pub mod handler;
 pub mod outbox;
 pub mod pool;
+mod process_tree;
 pub mod program;
 pub mod pumping_unit;
 pub mod session;
@@ -21,4 +23,4 @@ mod stream;
 mod test_hook;
 
 /// The models that `horsehead-worker` simulates.
-pub const SIMULATORS: simulator::Simulators = &[&pumping_unit::PumpingUnits];
+pub const SIMULATORS: simulator::Simulators = &[&pumping_unit::PumpingUnits, &external::Externals];

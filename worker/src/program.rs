@@ -1,6 +1,7 @@
 //! The program of a worker: one worker of the bus, or one of its slots, as its command line says.
 use crate::{
     cli::{Cli, Role as CliRole},
+    external,
     session::{self, Ending, SessionOptions},
     simulator::{Simulators, described},
     slot,
@@ -55,6 +56,17 @@ pub fn run(simulators: Simulators) -> ExitCode {
         Some(CliRole::Slot { memory }) => slot::serve(simulators, memory)
             .map(|()| ExitCode::SUCCESS)
             .context("the slot ended"),
+        Some(CliRole::Start(start)) => {
+            // comes back only if it could not be started
+            let why =
+                external::start::start(&start).map_or_else(|e| e.to_string(), |()| String::new());
+            let program = start
+                .command
+                .first()
+                .map_or_else(Default::default, |it| it.to_string_lossy());
+            tracing::error!("{program} cannot be started: {why}");
+            return ExitCode::from(127);
+        }
         None => serve(&cli, simulators),
     };
     ended.unwrap_or_else(|error| {

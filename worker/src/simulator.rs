@@ -24,6 +24,20 @@ pub trait Simulator: fmt::Debug + Sync {
     /// Effects that it can add to what a case describes.
     fn effects(&self) -> Vec<EffectDescriptor>;
 
+    /// What it announces: itself, or each of what it can be here.
+    fn described(&self) -> Vec<ModelDescriptor> {
+        vec![ModelDescriptor {
+            kind: self.kind().to_owned(),
+            digest: self.digest(),
+            effects: self.effects(),
+        }]
+    }
+
+    /// Whether it simulates cases of a kind, as they name it on the wire.
+    fn simulates(&self, kind: &str) -> bool {
+        kind == self.kind()
+    }
+
     /// Builds the model of a case.
     ///
     /// # Errors
@@ -74,12 +88,8 @@ pub trait Model: fmt::Debug + Send + Sync {
 
 /// What a worker says of the models that it simulates.
 pub fn described(simulators: Simulators) -> Vec<ModelDescriptor> {
-    let all = simulators.iter().map(|simulator| ModelDescriptor {
-        kind: simulator.kind().to_owned(),
-        digest: simulator.digest(),
-        effects: simulator.effects(),
-    });
-    all.collect()
+    let all = simulators.iter();
+    all.flat_map(|simulator| simulator.described()).collect()
 }
 
 /// The simulator of a case.
@@ -92,7 +102,7 @@ pub fn simulator_of(
 ) -> Result<&'static dyn Simulator, Failure> {
     let kind = &case.model.kind;
     let mut all = simulators.iter();
-    let found = all.find(|simulator| simulator.kind() == kind).copied();
+    let found = all.find(|simulator| simulator.simulates(kind)).copied();
     found.ok_or_else(|| {
         let kinds: Vec<&str> = simulators.iter().map(|it| it.kind()).collect();
         let problem = format!("is \"{kind}\"; this worker simulates {}", kinds.join(", "));

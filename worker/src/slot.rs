@@ -14,7 +14,7 @@ use protocol::{
     wire::{self, Kind},
 };
 use rustix::{
-    process::{Resource, Rlimit, Signal, set_parent_process_death_signal, setrlimit},
+    process::{Resource, Rlimit, Signal, getrlimit, set_parent_process_death_signal, setrlimit},
     time::{ClockId, clock_gettime},
 };
 use std::{
@@ -35,12 +35,11 @@ pub(crate) const INPUT: &str = "slot-input";
 pub fn serve(simulators: Simulators, memory_mib: u64) -> io::Result<()> {
     set_parent_process_death_signal(Some(Signal::KILL))?;
     if memory_mib > 0 {
-        let limit = Some(memory_mib.saturating_mul(1 << 20));
-        let limit = Rlimit {
-            current: limit,
-            maximum: limit,
-        };
-        setrlimit(Resource::As, limit)?;
+        // what this process starts may be given more: the limit is for what it computes itself
+        let Rlimit { maximum, .. } = getrlimit(Resource::As);
+        let wanted = memory_mib.saturating_mul(1 << 20);
+        let current = Some(maximum.map_or(wanted, |most| most.min(wanted)));
+        setrlimit(Resource::As, Rlimit { current, maximum })?;
     }
     let (to, messages) = mpsc::channel();
     thread::Builder::new()

@@ -45,6 +45,16 @@ pub(crate) trait Kind: Sync {
         )
     }
 
+    /// Values of the unknowns in a form that other programs for this kind of model read: name and text of a file.
+    fn gene_file(&self, _: &Case, _genes: &[f64]) -> Option<(&'static str, String)> {
+        None
+    }
+
+    /// Why workers of this machine cannot take part in a run on a case as things are, and what to do about it.
+    fn unready(&self, _: &Case) -> Option<(String, String)> {
+        None
+    }
+
     /// How a diagnosis has its experiments computed, and how more finely, for the numerical check: the
     /// finest, then what it is made of, one thing at a time. Nothing where nothing can be finer.
     ///

@@ -7,13 +7,15 @@ pub(crate) use failure::failure;
 use known::AnyKind;
 pub(crate) use known::Kind;
 
-use crate::pumping_unit::kind::PumpingUnits;
+use crate::{external::kind::Externals, pumping_unit::kind::PumpingUnits};
 use protocol::case::Case;
 
-const ALL: &[&dyn Kind] = &[&PumpingUnits];
+const ALL: &[&dyn Kind] = &[&PumpingUnits, &Externals];
 
 /// The kind of a name.
 pub(crate) fn named(name: &str) -> &'static dyn Kind {
+    // what follows a colon tells apart what is the same here
+    let name = name.split(':').next().unwrap_or_default();
     let mut all = ALL.iter().copied();
     all.find(|kind| kind.name() == name).unwrap_or(&AnyKind)
 }

@@ -64,7 +64,7 @@ impl Parts {
             } else {
                 BTreeSet::new()
             },
-            policy: Policy::default(),
+            policy: Policy::of(&options.case.model),
         });
         Ok(Self {
             run: begun.run,

@@ -157,6 +157,21 @@ impl List<'_> {
             let remedy = "state the value at which the unknown does nothing, or leave it out";
             return Err(self.bad(position, "absent", (absent, "finite"), remedy));
         }
+        let step = unknown
+            .step
+            .filter(|_| !unknown.fixed && unknown.tie.is_none());
+        if let Some(step) = step.filter(|step| !(*step > 0.0 && *step <= 1.0)) {
+            let found = format!("{step} decades, or halves of the interval");
+            let allowed = "above 0, and no more than 1";
+            let remedy = "state a small share of the value, or leave it out";
+            return Err(self.bad(position, "difference", (found, allowed), remedy));
+        }
+        if unknown.suspect.is_some() && unknown.absent.is_none() {
+            let found = "without `absent`";
+            let allowed = "said of an unknown with a value at which it does nothing";
+            let remedy = "state `absent`, or leave it out";
+            return Err(self.bad(position, "suspect", (found, allowed), remedy));
+        }
         let Some(valley) = &unknown.valley else {
             return Ok(());
         };

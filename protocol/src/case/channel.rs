@@ -20,8 +20,23 @@ pub struct Channel {
     /// The worker rounds the curve to whole multiples of two to this power, far below the noise, so
     /// that it travels and is kept in a fifth of the bytes (`crate::curve`); none leaves it exact.
     pub step: Option<i32>,
+    /// Factor of each value's difference before anything is done with it: a value of weight 2 counts four
+    /// times, and its noise is half of [`Self::noise`]. Positive; empty where all count alike.
+    #[serde(with = "crate::curve")]
+    pub weights: Vec<f64>,
+    /// Whether its values have a zero, so that the constant of a difference counts; else only how it moves.
+    pub absolute: bool,
     /// What was measured, as scores compare it; none where nothing is compared.
     pub record: Option<ChannelRecord>,
+}
+
+impl Channel {
+    /// Multiplies a curve's differences by the weights of their values.
+    pub fn weigh(&self, differences: &mut [f64]) {
+        for (difference, weight) in differences.iter_mut().zip(&self.weights) {
+            *difference *= weight;
+        }
+    }
 }
 
 /// The axis along which a curve is given.

@@ -2,13 +2,31 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
 /// A model's own part of a case. Everybody else carries it as it is.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ModelSettings {
     /// Name of the kind of model; workers announce which kinds they simulate.
     pub kind: String,
     /// What the model alone understands; hexadecimal digits in files of text.
     #[serde(serialize_with = "write", deserialize_with = "read")]
     pub settings: Vec<u8>,
+    /// Whether equal jobs give equal bits everywhere. Where they do not, the first result counts, nobody is
+    /// asked for the same thing twice, and workers are not compared by their bits.
+    pub repeats: bool,
+    /// How long one simulation may take (s), where the model itself ends it; none where that follows from how long
+    /// others took.
+    pub deadline_s: Option<f64>,
+}
+
+impl ModelSettings {
+    /// Of a model that computes the same bits everywhere.
+    pub const fn exact(kind: String, settings: Vec<u8>) -> Self {
+        Self {
+            kind,
+            settings,
+            repeats: true,
+            deadline_s: None,
+        }
+    }
 }
 
 fn write<S: Serializer>(bytes: &[u8], to: S) -> Result<S::Ok, S::Error> {

@@ -46,6 +46,10 @@ pub struct Unknown {
     pub fixed: bool,
     /// The unknown that it follows, if it follows one.
     pub tie: Option<Tie>,
+    /// What differences move it by (coordinate), where its model says what suits it.
+    pub step: Option<f64>,
+    /// Name of what is suspected together with it where it is off: unknowns of one suspect act together.
+    pub suspect: Option<String>,
 }
 
 /// How the valley of an unknown is found: by scanning it on a grid, along several lines.
@@ -129,6 +133,8 @@ impl Unknown {
             absent: None,
             fixed: false,
             tie: None,
+            step: None,
+            suspect: None,
         }
     }
 

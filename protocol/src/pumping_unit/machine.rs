@@ -73,10 +73,10 @@ impl Machine {
     /// # Errors
     /// [`WireError::TooLong`] beyond what a message may hold.
     pub fn settings(&self) -> Result<ModelSettings, WireError> {
-        Ok(ModelSettings {
-            kind: Self::KIND.to_owned(),
-            settings: wire::encode(self)?,
-        })
+        Ok(ModelSettings::exact(
+            Self::KIND.to_owned(),
+            wire::encode(self)?,
+        ))
     }
 }
 

@@ -46,6 +46,8 @@ impl Sensor {
             },
             noise: None,
             step: Some(step),
+            weights: Vec::new(),
+            absolute: false,
             record: None,
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! A run that fails is graded: every complete run beats a failure in motion (the later the
 //! better), which beats a failure under static load (the more load carried the better).
-use protocol::case::{Case, ChannelRecord, Objective, Offset, Term};
+use protocol::case::{Case, Channel, ChannelRecord, Objective, Offset, Term};
 use protocol::job::{
     ChannelScore, Derivative, Evaluation, Failure, Observation, Reached, Verdict, single,
 };
@@ -38,7 +38,7 @@ pub(super) fn evaluation(
     let compared: Vec<Compared<'_>> = curves
         .filter_map(|((at, channel), simulated)| {
             let record = channel.record.as_ref()?;
-            let (score, residual) = compared(at, record, simulated, case.objective.offset);
+            let (score, residual) = compared(at, channel, record, simulated, case.objective.offset);
             Some(Compared {
                 name: &channel.name,
                 score,
@@ -61,10 +61,10 @@ pub(super) fn evaluation(
             Vec::new()
         },
         columns: if with_residual {
-            let names: Vec<&str> = case.channels_of(condition).map(|(_, c)| &*c.name).collect();
+            let channels: Vec<&Channel> = case.channels_of(condition).map(|(_, c)| c).collect();
             let columns = seen.columns.iter();
             columns
-                .map(|column| residual_by(&case.objective, &names, column))
+                .map(|column| residual_by(&case.objective, &channels, column))
                 .collect()
         } else {
             Vec::new()
@@ -85,13 +85,14 @@ fn graded(reached: Reached) -> f64 {
 struct Compared<'a> {
     name: &'a str,
     score: ChannelScore,
-    /// Measured minus simulated after offset removal.
+    /// Measured minus simulated after offset removal, times the weights of the values.
     residual: Vec<f64>,
 }
 
-/// The score of a channel, and measured minus simulated after offset removal.
+/// The score of a channel, and measured minus simulated after offset removal, times the weights.
 fn compared(
-    channel: usize,
+    at: usize,
+    channel: &Channel,
     record: &ChannelRecord,
     simulated: &[f64],
     treatment: Offset,
@@ -102,27 +103,48 @@ fn compared(
     let difference: Vec<f64> = pairs
         .map(|(measured, simulated)| measured - simulated)
         .collect();
-    let offset = difference.iter().sum::<f64>() / n;
+    let offset = weighted_mean(channel, &difference);
     let removed = match treatment {
         Offset::Free => offset,
         Offset::Fixed => 0.0,
     };
-    let residual: Vec<f64> = difference.iter().map(|d| d - removed).collect();
+    let plain: Vec<f64> = difference.iter().map(|d| d - removed).collect();
+    let weigh = |mut values: Vec<f64>| {
+        channel.weigh(&mut values);
+        values
+    };
+    let residual = weigh(plain.clone());
     let mean_square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>() / n;
     let mse = mean_square(&residual);
     let mean = measured.iter().sum::<f64>() / n;
     let deviation = measured.iter().map(|x| (x - mean).abs()).sum::<f64>() / n;
-    let range = peak_to_peak(measured);
+    let (range, deviation) = match peak_to_peak(measured) {
+        // a single number, or one that stays: what it is compared with is itself
+        0.0 => (2.0 * mean.abs(), mean.abs()),
+        range => (range, deviation),
+    };
     let score = ChannelScore {
-        channel,
+        channel: at,
         mse,
-        mse_fixed_offset: mean_square(&difference),
+        mse_fixed_offset: mean_square(&weigh(difference)),
         offset,
-        rmse_over_half_range: mse.sqrt() / (0.5 * range),
-        relative_error: residual.iter().map(|x| x.abs()).sum::<f64>() / n / deviation,
-        peak_to_peak_error: (peak_to_peak(simulated) - range) / range,
+        rmse_over_half_range: mean_square(&plain).sqrt() / (0.5 * range),
+        relative_error: plain.iter().map(|x| x.abs()).sum::<f64>() / n / deviation,
+        peak_to_peak_error: (peak_to_peak(simulated) - peak_to_peak(measured)) / range,
     };
     (score, residual)
+}
+
+/// Mean of differences, each as often as its weight's square says.
+fn weighted_mean(channel: &Channel, differences: &[f64]) -> f64 {
+    if channel.weights.is_empty() {
+        return differences.iter().sum::<f64>() / differences.len() as f64;
+    }
+    let pairs = differences.iter().zip(&channel.weights);
+    let (sum, all) = pairs.fold((0.0, 0.0), |(sum, all), (d, w)| {
+        (sum + w * w * d, all + w * w)
+    });
+    sum / all
 }
 
 fn peak_to_peak(values: &[f64]) -> f64 {
@@ -156,31 +178,33 @@ fn residual(objective: &Objective, compared: &[Compared<'_>]) -> Vec<f64> {
     terms.filter_map(scaled).flatten().collect()
 }
 
-/// The derivative of that residual, where `names` are those of the channels that have one.
-fn residual_by(objective: &Objective, names: &[&str], by: &Derivative) -> Derivative {
+/// The derivative of that residual; `channels` are those that the derivative's curves belong to.
+fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) -> Derivative {
     let Derivative::Curves { per, curves } = by else {
         return by.clone();
     };
     let mut all = Vec::new();
     for term in &objective.terms {
-        let at = names.iter().position(|name| *name == term.channel);
-        let Some(curve) = at
-            .and_then(|at| curves.get(at))
-            .filter(|curve| !curve.is_empty())
-        else {
+        let mut found = channels.iter().zip(curves);
+        let found = found.find(|(channel, _)| channel.name == term.channel);
+        let Some((channel, curve)) = found.filter(|(_, curve)| !curve.is_empty()) else {
             return Derivative::Missing {
                 reason: format!("`{}` is not differentiated", term.channel),
             };
         };
         let n = curve.len() as f64;
-        let curve = curve.iter().map(|x| f64::from(*x));
+        let mut curve: Vec<f64> = curve.iter().map(|x| f64::from(*x)).collect();
         let removed = match objective.offset {
-            Offset::Free => curve.clone().sum::<f64>() / n,
+            Offset::Free => weighted_mean(channel, &curve),
             Offset::Fixed => 0.0,
         };
         let scale = (term.weight / n).sqrt();
         // measured less simulated
-        all.extend(single(curve.map(|x| scale * (removed - x))));
+        for x in &mut curve {
+            *x = removed - *x;
+        }
+        channel.weigh(&mut curve);
+        all.extend(single(curve.into_iter().map(|x| scale * x)));
     }
     Derivative::Curves {
         per: per.clone(),
@@ -191,7 +215,27 @@ fn residual_by(objective: &Objective, names: &[&str], by: &Derivative) -> Deriva
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::job::Per;
+    use protocol::{case::Abscissa, job::Per};
+
+    fn channel(name: &str, weights: &[f64]) -> Channel {
+        Channel {
+            name: name.to_owned(),
+            title: name.to_owned(),
+            unit: "N".to_owned(),
+            condition: 0,
+            abscissa: Abscissa {
+                name: "time".to_owned(),
+                unit: "s".to_owned(),
+                points: vec![0.0, 1.0, 2.0, 3.0],
+                period: None,
+            },
+            noise: None,
+            step: None,
+            weights: weights.to_vec(),
+            absolute: false,
+            record: None,
+        }
+    }
 
     #[test]
     fn scores_follow_their_definitions() {
@@ -201,7 +245,7 @@ mod tests {
             spread: vec![0.0; 4],
         };
         let simulated = [0.0, 1.0, 6.0, 1.0];
-        let (free, residual) = compared(2, &record, &simulated, Offset::Free);
+        let (free, residual) = compared(2, &channel("a", &[]), &record, &simulated, Offset::Free);
         // differences 1, 2, -1, 2: mean 1
         assert_eq!((free.channel, residual), (2, vec![0.0, 1.0, -2.0, 1.0]));
         assert!((free.offset - 1.0).abs() < 1e-15);
@@ -210,7 +254,14 @@ mod tests {
         assert!((free.rmse_over_half_range - 1.5_f64.sqrt() / 2.0).abs() < 1e-15);
         assert!((free.relative_error - 1.0).abs() < 1e-15);
         assert!((free.peak_to_peak_error - 0.5).abs() < 1e-15);
-        let (fixed, _) = compared(2, &record, &simulated, Offset::Fixed);
+        // a value of weight 2 counts four times, for the offset as well
+        let weighted = channel("a", &[1.0, 1.0, 2.0, 1.0]);
+        let (score, residual) = compared(2, &weighted, &record, &simulated, Offset::Free);
+        assert!((score.offset - 1.0 / 7.0).abs() < 1e-15);
+        let square: f64 = residual.iter().map(|x| x * x).sum();
+        assert!((score.mse - square / 4.0).abs() < 1e-15);
+        assert!((residual[2] + 2.0 * 8.0 / 7.0).abs() < 1e-15);
+        let (fixed, _) = compared(2, &channel("a", &[]), &record, &simulated, Offset::Fixed);
         assert!((fixed.mse - 2.5).abs() < 1e-15);
     }
 
@@ -223,7 +274,12 @@ mod tests {
             spread: vec![0.0; 4],
         };
         let records = [record([1.0, 3.0, 5.0, 3.0]), record([2.0, 0.0, 1.0, 4.0])];
-        let names = ["b", "unscored", "a"];
+        let own = [
+            channel("b", &[1.0, 2.0, 0.5, 1.0]),
+            channel("unscored", &[]),
+            channel("a", &[]),
+        ];
+        let channels: Vec<&Channel> = own.iter().collect();
         let curves = [
             [0.5, 1.0, -2.0, 0.25],
             [9.0, 9.0, 9.0, 9.0],
@@ -244,18 +300,19 @@ mod tests {
                 offset,
             };
             let at = |by: f64| {
-                let all = [(0, "a", 2), (1, "b", 0)].map(|(at, name, own)| {
+                let all = [(0, 2), (1, 0)].map(|(at, own)| {
                     let simulated = curves[own].map(|x| 1.0 + by * x);
-                    let (score, residual) = compared(at, &records[at], &simulated, offset);
+                    let channel = channels[own];
+                    let (score, residual) = compared(at, channel, &records[at], &simulated, offset);
                     Compared {
-                        name,
+                        name: &channel.name,
                         score,
                         residual,
                     }
                 });
                 residual(&objective, &all)
             };
-            let Derivative::Curves { curves, .. } = residual_by(&objective, &names, &derivative)
+            let Derivative::Curves { curves, .. } = residual_by(&objective, &channels, &derivative)
             else {
                 unreachable!("it has one")
             };
@@ -267,7 +324,7 @@ mod tests {
             for (found, expected) in curves[0].iter().zip(expected) {
                 assert!((f64::from(*found) - expected).abs() < 1e-6);
             }
-            let none = residual_by(&objective, &names[..1], &derivative);
+            let none = residual_by(&objective, &channels[..1], &derivative);
             assert!(matches!(none, Derivative::Missing { .. }));
         }
     }

@@ -1,6 +1,6 @@
 //! The process of one slot, seen from its worker.
 use super::task::{CaseBytes, SlotOptions};
-use crate::{slot, stream};
+use crate::{process_tree, slot, stream};
 use protocol::{
     id::ContentHash,
     job::Job,
@@ -149,6 +149,8 @@ impl Child {
             .ok()
             .and_then(Pid::from_raw);
         if let Some(group) = group {
+            // while its children are still known to be its own
+            process_tree::end_with_all(group);
             // fails if the whole group has ended by itself
             drop(kill_process_group(group, Signal::KILL).map_err(io::Error::from));
         }

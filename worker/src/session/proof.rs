@@ -36,7 +36,9 @@ pub(super) enum Proof {
 
 impl Proof {
     /// What came out; why this worker cannot work if nothing did.
-    pub(super) fn of(outcome: Option<Outcome>) -> Result<Self, String> {
+    ///
+    /// Where a model does not repeat its bits, only whether it came to an answer is compared.
+    pub(super) fn of(outcome: Option<Outcome>, repeats: bool) -> Result<Self, String> {
         match outcome {
             None => Ok(Self::Missing),
             Some(Outcome::Failed(
@@ -47,6 +49,7 @@ impl Proof {
             )) => Err(format!(
                 "the reference individual of the case cannot be computed here: {failure}"
             )),
+            Some(Outcome::Done(_)) if !repeats => Ok(Self::Known(ContentHash::of(b"an answer"))),
             Some(outcome) => match wire::encode(&outcome) {
                 Ok(bytes) => Ok(Self::Known(ContentHash::of(&bytes))),
                 Err(error) => Err(format!("the reference individual has no name: {error}")),
@@ -63,8 +66,9 @@ impl Proof {
     }
 }
 
-/// The reference individual of a case, as a task; why there is none if there is none.
-pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
+/// The reference individual of a case, as a task, and whether its bits are the same everywhere; why there is none
+/// if there is none.
+pub(super) fn task(case: &CaseBytes) -> Result<(Task, bool), String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
     let condition = decoded.objective.condition;
@@ -77,12 +81,17 @@ pub(super) fn task(case: &CaseBytes) -> Result<Task, String> {
     };
     let reference = Individual::new(condition, decoded.start());
     let job = Job::Simulate(SimulateSpec::new(reference, reply));
-    Ok(Task {
+    let own = decoded.model.deadline_s.map(Duration::try_from_secs_f64);
+    let deadline = own
+        .and_then(Result::ok)
+        .map_or(DEADLINE, |own| own + DEADLINE);
+    let task = Task {
         attempt: ATTEMPT,
-        deadline: DEADLINE,
+        deadline,
         job: Box::new(job),
         case: Some(case.clone()),
-    })
+    };
+    Ok((task, decoded.model.repeats))
 }
 
 #[cfg(test)]
@@ -92,7 +101,7 @@ mod tests {
 
     #[test]
     fn a_proof_names_every_bit_and_only_a_case_may_be_at_fault() {
-        let of = |outcome| Proof::of(Some(outcome)).map(|proof| proof.known());
+        let of = |outcome| Proof::of(Some(outcome), true).map(|proof| proof.known());
         let one = of(Outcome::Done(Answer::Nothing(vec![1]))).unwrap();
         assert!(one.is_some());
         assert_ne!(one, of(Outcome::Done(Answer::Nothing(vec![2]))).unwrap());
@@ -101,6 +110,12 @@ mod tests {
         let how = "ended by signal 6".to_owned();
         let refused = of(Outcome::Failed(Failure::Crashed { how })).unwrap_err();
         assert!(refused.contains("cannot be computed here"), "{refused}");
-        assert_eq!(Proof::of(None), Ok(Proof::Missing), "cancelled: again");
+        assert_eq!(
+            Proof::of(None, true),
+            Ok(Proof::Missing),
+            "cancelled: again"
+        );
+        let inexact = |byte| Proof::of(Some(Outcome::Done(Answer::Nothing(vec![byte]))), false);
+        assert_eq!(inexact(1), inexact(2));
     }
 }

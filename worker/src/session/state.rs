@@ -42,6 +42,8 @@ pub(super) struct State {
     admitted: bool,
     case: Option<CaseBytes>,
     proof: Proof,
+    /// Whether the case's model computes the same bits everywhere.
+    repeats: bool,
     incoming: Option<Incoming>,
     pub(super) fetching: JoinSet<Result<Vec<u8>, LinkError>>,
     waiting: VecDeque<Order>,
@@ -63,6 +65,7 @@ impl State {
             admitted: false,
             case: None,
             proof: Proof::Missing,
+            repeats: true,
             incoming: None,
             fetching: JoinSet::new(),
             waiting: VecDeque::new(),
@@ -187,8 +190,9 @@ impl State {
         let case = self.case.as_ref().filter(|_| missing)?;
         let slot = (0..self.pool.len()).find(|slot| !self.running.contains_key(slot))?;
         match proof::task(case) {
-            Ok(task) => {
+            Ok((task, repeats)) => {
                 self.proof = Proof::Running;
+                self.repeats = repeats;
                 self.running.insert(slot, (task.attempt, case.hash));
                 self.pool.run(slot, task);
                 None
@@ -269,7 +273,7 @@ impl State {
                 self.fill();
                 return Step::Go;
             }
-            match Proof::of(freed.outcome) {
+            match Proof::of(freed.outcome, self.repeats) {
                 Ok(proof) => self.proof = proof,
                 Err(reason) => return Step::End(Ending::Refused(reason)),
             }

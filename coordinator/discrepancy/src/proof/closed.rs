@@ -5,7 +5,7 @@
 //! `closed = 1 - g_after / g_before`; intervals by resampling cycles, before and after on the same
 //! resample: its own, or of one that holds more of the same. A gap that closes does not prove a name: a wrong effect often closes most of it,
 //! which is why the best rejected rival is always shown beside.
-use crate::record::measured::{Curves, Record, mean_of, scatter, variance};
+use crate::record::measured::{Curves, Record, mean_of, power, scatter};
 use search::random::{Phase, Stream, Streams};
 use serde::Serialize;
 
@@ -109,6 +109,8 @@ struct Ruler {
     mean: Curves,
     /// Channels on which the gap is counted, and their variances.
     channels: Vec<(usize, f64)>,
+    /// Whether a channel's constant counts, by channel.
+    absolute: Vec<bool>,
     /// What the scatter between cycles explains of a squared residual.
     noise: f64,
 }
@@ -116,11 +118,17 @@ struct Ruler {
 impl Ruler {
     fn new(record: &Record) -> Self {
         let mean = record.mean();
-        let channel = |c: usize| (c, variance(&mean[c]).max(f64::MIN_POSITIVE));
+        let absolute: Vec<bool> = record
+            .channels
+            .iter()
+            .map(|own| own.channel.absolute)
+            .collect();
+        let channel = |c: usize| (c, power(&mean[c], absolute[c]).max(f64::MIN_POSITIVE));
         let mut ruler = Self {
             cycles: record.cycles.len().max(1) as f64,
             channels: record.scored().into_iter().map(channel).collect(),
             mean,
+            absolute,
             noise: 0.0,
         };
         ruler.noise = ruler.explained_by(&record.cycle_variance());
@@ -136,7 +144,7 @@ impl Ruler {
         let each = self.channels.iter().map(|&(c, whole)| {
             let pairs = mean[c].iter().zip(&simulated[c]);
             let residual: Vec<f64> = pairs.map(|(y, s)| y - s).collect();
-            variance(&residual) / whole
+            power(&residual, self.absolute[c]) / whole
         });
         each.sum::<f64>() / self.channels.len().max(1) as f64
     }

@@ -6,7 +6,7 @@
 //! `gap = (mean (y - s)^2 - mean se^2) / mean y^2`. A gap of 0 means that nothing is left to explain.
 //! Shares of sectors and orders are those of the squared residual; they say where to look, not what
 //! it is.
-use crate::record::measured::variance;
+use crate::record::measured::power;
 use crate::record::spectrum::Orders;
 use protocol::case::ChannelRecord;
 use std::ops::RangeInclusive;
@@ -34,8 +34,8 @@ pub struct Gap {
 
 impl Gap {
     /// Compares a record with a simulated curve on the same abscissa; nothing if they have not as
-    /// many values or none.
-    pub fn between(record: &ChannelRecord, simulated: &[f64]) -> Option<Self> {
+    /// many values or none. `absolute` says that the constant of their difference counts.
+    pub fn between(record: &ChannelRecord, simulated: &[f64], absolute: bool) -> Option<Self> {
         let n = record.mean.len();
         if n == 0 || simulated.len() != n {
             return None;
@@ -45,18 +45,18 @@ impl Gap {
             .map(|(measured, simulated)| measured - simulated)
             .collect();
         let mean = residual.iter().sum::<f64>() / n as f64;
-        for x in &mut residual {
-            *x -= mean;
+        if !absolute && n > 1 {
+            residual.iter_mut().for_each(|x| *x -= mean);
         }
         let spread = record.spread.iter().map(|x| x * x).sum::<f64>() / n as f64;
         Some(Self {
-            mse: variance(&residual),
+            mse: power(&residual, absolute),
             noise: if record.cycles > 1 {
                 spread / record.cycles as f64
             } else {
                 0.0
             },
-            variance: variance(&record.mean),
+            variance: power(&record.mean, absolute),
             sectors: sectors(&residual),
             bands: bands(&residual),
         })
@@ -149,7 +149,7 @@ mod tests {
     #[test]
     fn a_perfect_simulation_leaves_no_gap_and_an_offset_is_none() {
         let measured: Vec<f64> = wave(1, 10.0).iter().map(|x| x + 40.0).collect();
-        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0), false).unwrap();
         assert!(gap.share() < 1e-20 && gap.mse < 1e-20);
         assert!((gap.variance - 50.0).abs() < 1e-9);
     }
@@ -162,7 +162,7 @@ mod tests {
             .enumerate()
             .map(|(i, x)| x + if i % 2 == 0 { 0.1 } else { -0.1 })
             .collect();
-        let gap = Gap::between(&record(measured, 0.2, 4), &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 4), &wave(1, 10.0), false).unwrap();
         assert!(gap.share() < 1e-12, "{}", gap.share());
         assert!((gap.over_noise().unwrap() - 1.0).abs() < 1e-9);
         assert!((gap.bands[3] - 1.0).abs() < 1e-9, "{:?}", gap.bands);
@@ -176,7 +176,7 @@ mod tests {
                 *x += 3.0;
             }
         }
-        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0), false).unwrap();
         let (sector, share) = gap.worst_sector();
         assert!(sector == 3 && share > 0.9, "{:?}", gap.sectors);
 
@@ -185,7 +185,7 @@ mod tests {
             .zip(wave(60, 0.5))
             .map(|(a, b)| a + b)
             .collect();
-        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0)).unwrap();
+        let gap = Gap::between(&record(measured, 0.2, 5), &wave(1, 10.0), false).unwrap();
         assert_eq!(gap.worst_band().0, 31..=120);
         assert!(gap.worst_band().1 > 0.999);
         assert!((gap.share() - (0.125 - 0.008) / 50.0).abs() < 1e-3 * gap.share() + 1e-5);
@@ -193,8 +193,8 @@ mod tests {
 
     #[test]
     fn different_grids_and_one_cycle_are_said() {
-        assert!(Gap::between(&record(wave(1, 1.0), 0.0, 5), &[1.0]).is_none());
-        let gap = Gap::between(&record(wave(1, 1.0), 0.0, 1), &wave(2, 1.0)).unwrap();
+        assert!(Gap::between(&record(wave(1, 1.0), 0.0, 5), &[1.0], false).is_none());
+        let gap = Gap::between(&record(wave(1, 1.0), 0.0, 1), &wave(2, 1.0), false).unwrap();
         assert!(gap.over_noise().is_none() && gap.share() > 1.0);
     }
 }

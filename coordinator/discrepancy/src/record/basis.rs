@@ -1,11 +1,11 @@
 //! The coordinates in which curves are compared: orders of a period where the abscissa has one and the
 //! grid is even, samples elsewhere. Whoever whitens or maps asks here and need not know which.
-use crate::record::measured::{Record, variance};
+use crate::record::measured::Record;
 use crate::record::samples::Samples;
 use crate::record::scatter::unexplained;
 use crate::record::spectrum::{Orders, Spectra};
 use nalgebra::Complex;
-use protocol::case::Abscissa;
+use protocol::case::{Abscissa, Channel};
 
 type C = Complex<f64>;
 
@@ -74,7 +74,7 @@ impl Basis {
     pub fn rms(&self, row: usize, entries: &[C]) -> f64 {
         match self {
             Self::Orders(_) => (2.0 * entries.iter().map(C::norm_sqr).sum::<f64>()).sqrt(),
-            Self::Samples(samples) => variance(&samples[row].curve(entries)).sqrt(),
+            Self::Samples(samples) => samples[row].rms(entries),
         }
     }
 
@@ -110,17 +110,23 @@ impl Group {
     /// Which of a record's channels are compared in what, up to an order where they have a period.
     /// `inputs` are curves by which cycles may differ because their input did.
     pub fn of(record: &Record, highest: usize, inputs: &[Vec<Vec<f64>>]) -> Vec<Self> {
-        let mut groups: Vec<(Vec<usize>, Abscissa)> = Vec::new();
-        for (c, channel) in record.channels.iter().enumerate() {
-            let abscissa = &channel.channel.abscissa;
-            match groups.iter_mut().find(|(_, own)| own == abscissa) {
+        let mut groups: Vec<(Vec<usize>, &Channel)> = Vec::new();
+        for (c, own) in record.channels.iter().enumerate() {
+            let own = &own.channel;
+            let alike = |other: &Channel| {
+                other.abscissa == own.abscissa
+                    && is_turn(other) == is_turn(own)
+                    && other.absolute == own.absolute
+            };
+            match groups.iter_mut().find(|(_, other)| alike(other)) {
                 Some((channels, _)) => channels.push(c),
-                None => groups.push((vec![c], abscissa.clone())),
+                None => groups.push((vec![c], own)),
             }
         }
-        let group = |(channels, abscissa): (Vec<usize>, Abscissa)| {
+        let group = |(channels, first): (Vec<usize>, &Channel)| {
+            let abscissa = first.abscissa.clone();
             let n = abscissa.points.len();
-            let basis = if is_turn(&abscissa) {
+            let basis = if is_turn(first) {
                 Basis::Orders(Orders::new(n, highest))
             } else {
                 Basis::Samples(samples(record, &channels, &abscissa, inputs))
@@ -171,8 +177,13 @@ impl Group {
     }
 }
 
-/// Whether an abscissa is one period in equal steps.
-fn is_turn(abscissa: &Abscissa) -> bool {
+/// Whether a channel is compared by the orders of its period: that is in equal steps, its values count alike, and
+/// a constant does not.
+fn is_turn(channel: &Channel) -> bool {
+    let abscissa = &channel.abscissa;
+    if channel.absolute || !channel.weights.is_empty() {
+        return false;
+    }
     let (Some(period), Some(first)) = (abscissa.period, abscissa.points.first()) else {
         return false;
     };
@@ -204,7 +215,7 @@ fn samples(
         };
         return channels
             .iter()
-            .map(|_| Samples::new(points, length))
+            .map(|&c| Samples::of(&record.channels[c].channel, length))
             .collect();
     }
     let own = |curves: &Vec<Vec<f64>>| -> Spectra {
@@ -219,8 +230,9 @@ fn samples(
             .map(|cycle| cycle[row].iter().map(|y| y.re).collect())
             .collect()
     };
-    (0..channels.len())
-        .map(|row| Samples::likeliest(points, &of(row)))
+    let channels = channels.iter().enumerate();
+    channels
+        .map(|(row, &c)| Samples::likeliest(&record.channels[c].channel, &of(row)))
         .collect()
 }
 

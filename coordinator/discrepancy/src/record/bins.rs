@@ -74,9 +74,11 @@ pub(crate) fn along(group: &Group, entries: &[Complex<f64>]) -> Vec<f64> {
         Basis::Samples(_) => {
             let bins = Bins::of(group);
             let (mut sums, mut counts) = (vec![0.0; bins.count], vec![0.0; bins.count]);
-            // a sample's entry says what it adds to the one before: the first has none
-            for (entry, x) in entries.iter().zip(group.abscissa.points.iter().skip(1)) {
-                let ahead = ((x - bins.from) / bins.width).max(0.0);
+            // a sample's entry says what it adds to the one before: the first has none where constants do not count
+            let points = &group.abscissa.points;
+            let left_out = points.len().saturating_sub(entries.len());
+            for (entry, x) in entries.iter().zip(points.iter().skip(left_out)) {
+                let ahead = ((x - bins.from) / bins.width.max(f64::MIN_POSITIVE)).max(0.0);
                 #[expect(
                     clippy::cast_possible_truncation,
                     clippy::cast_sign_loss,

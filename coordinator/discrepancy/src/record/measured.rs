@@ -243,6 +243,16 @@ pub(crate) fn variance(values: &[f64]) -> f64 {
     values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
 }
 
+/// Mean square, about the mean where a constant does not count. What does not move has no mean to be counted from.
+pub(crate) fn power(values: &[f64], absolute: bool) -> f64 {
+    let about_zero = || values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64;
+    match values {
+        [_] => about_zero(),
+        _ if absolute => about_zero(),
+        _ => variance(values),
+    }
+}
+
 /// Mean of equally shaped curves; empty of none.
 pub fn mean_of(cycles: &[&Curves]) -> Curves {
     let Some(first) = cycles.first() else {
@@ -278,6 +288,8 @@ pub(crate) mod tests {
             },
             noise: None,
             step: None,
+            weights: Vec::new(),
+            absolute: false,
             record: None,
         };
         Recorded {

@@ -2,10 +2,12 @@
 //!
 //! Noise that forgets what it was over a correlation length `l` (an Ornstein-Uhlenbeck process: the
 //! first-order autoregression of any grid) has `rho_i = exp(-(x_i+1 - x_i) / l)` between neighbours, and
-//! its innovations `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as itself. A
-//! constant is turned into one entry that is left out, for channels have no zero; so of n samples n - 1
-//! entries remain.
+//! its innovations `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as itself. Where a
+//! channel has no zero, a constant is turned into one entry that is left out; so of n samples n - 1 entries
+//! remain. Values that do not count alike are multiplied by their weights first.
+use crate::record::measured::power;
 use nalgebra::Complex;
+use protocol::case::Channel;
 
 type C = Complex<f64>;
 
@@ -14,14 +16,23 @@ type C = Complex<f64>;
 pub struct Samples {
     /// Correlation of each sample with the one before it; 0 for the first.
     rho: Vec<f64>,
-    /// The direction of the reflection that turns a constant into the first entry.
+    /// The direction of the reflection that turns a constant into the first entry; empty where the constant
+    /// counts.
     mirror: Vec<f64>,
+    /// Weights of the values; empty where all count alike.
+    weights: Vec<f64>,
 }
 
 impl Samples {
-    /// On a grid, ascending, of at least two points, for noise of a correlation length in the grid's unit;
-    /// 0 where every sample is on its own.
-    pub fn new(points: &[f64], length: f64) -> Self {
+    /// On the places of a channel, for noise of a correlation length in their unit; 0 where every sample is on
+    /// its own.
+    pub fn of(channel: &Channel, length: f64) -> Self {
+        let points = &channel.abscissa.points;
+        Self::new(points, &channel.weights, channel.absolute, length)
+    }
+
+    /// On a grid, ascending; of at least two points where the constant does not count.
+    fn new(points: &[f64], weights: &[f64], absolute: bool, length: f64) -> Self {
         let gaps = points.windows(2).map(|pair| pair[1] - pair[0]);
         let rho = gaps.map(|gap| {
             if length > 0.0 {
@@ -33,7 +44,11 @@ impl Samples {
         let mut samples = Self {
             rho: std::iter::once(0.0).chain(rho).collect(),
             mirror: Vec::new(),
+            weights: weights.to_vec(),
         };
+        if absolute {
+            return samples;
+        }
         let mut mirror = samples.innovations(&vec![1.0; points.len()]);
         let norm = length_of(&mirror);
         if let Some(first) = mirror.first_mut() {
@@ -47,11 +62,13 @@ impl Samples {
 
     /// For the noise of several curves about their common mean on a grid: the correlation length under
     /// which they are likeliest, their constants left open.
-    pub fn likeliest(points: &[f64], deviations: &[Vec<f64>]) -> Self {
+    pub fn likeliest(channel: &Channel, deviations: &[Vec<f64>]) -> Self {
         /// Correlation lengths that are tried: this many between neighbours, and the whole grid.
         const TRIED: u32 = 60;
-        let (Some(first), Some(last)) = (points.first(), points.last()) else {
-            return Self::new(points, 0.0);
+        let points = &channel.abscissa.points;
+        let (Some(first), Some(last), 4..) = (points.first(), points.last(), points.len()) else {
+            // so few tell no length
+            return Self::of(channel, 0.0);
         };
         let shortest = 0.2 * (last - first) / points.len() as f64;
         let ratio = libm::log((last - first) / shortest) / f64::from(TRIED);
@@ -61,16 +78,23 @@ impl Samples {
             } else {
                 shortest * libm::exp(ratio * f64::from(k))
             };
-            Self::new(points, length)
+            Self::of(channel, length)
         });
         let surprise = tried.map(|samples| (samples.surprise(deviations), samples));
         let least = surprise.min_by(|(a, _), (b, _)| a.total_cmp(b));
-        least.map_or_else(|| Self::new(points, 0.0), |(_, samples)| samples)
+        least.map_or_else(|| Self::of(channel, 0.0), |(_, samples)| samples)
     }
 
     /// Entries of a curve.
     pub fn len(&self) -> usize {
-        self.rho.len().saturating_sub(1)
+        self.rho
+            .len()
+            .saturating_sub(usize::from(!self.is_absolute()))
+    }
+
+    /// Whether the constant counts.
+    pub const fn is_absolute(&self) -> bool {
+        self.mirror.is_empty()
     }
 
     /// Whether a curve has none.
@@ -81,32 +105,41 @@ impl Samples {
     /// The entries of a curve; they have no imaginary part.
     pub fn transform(&self, curve: &[f64]) -> Vec<C> {
         let mirrored = self.reflected(self.innovations(curve));
-        mirrored.into_iter().skip(1).map(C::from).collect()
+        let left_out = usize::from(!self.is_absolute());
+        mirrored.into_iter().skip(left_out).map(C::from).collect()
     }
 
-    /// The curve whose entries these are, up to a constant.
+    /// The curve whose entries these are, up to a constant where that does not count.
     pub fn curve(&self, entries: &[C]) -> Vec<f64> {
-        let all = std::iter::once(0.0).chain(entries.iter().map(|e| e.re));
+        let left_out = (!self.is_absolute()).then_some(0.0);
+        let all = left_out.into_iter().chain(entries.iter().map(|e| e.re));
         let mut before = 0.0;
         let step = |(rho, e): (&f64, f64)| {
             before = rho * before + (1.0 - rho * rho).sqrt() * e;
             before
         };
-        self.rho
-            .iter()
-            .zip(self.reflected(all.collect()))
-            .map(step)
-            .collect()
+        let all = self.reflected(all.collect());
+        let mut curve: Vec<f64> = self.rho.iter().zip(all).map(step).collect();
+        for (y, weight) in curve.iter_mut().zip(&self.weights) {
+            *y /= weight;
+        }
+        curve
+    }
+
+    /// Root mean square of the curve of entries, about its mean where the constant does not count.
+    pub fn rms(&self, entries: &[C]) -> f64 {
+        power(&self.curve(entries), self.is_absolute()).sqrt()
     }
 
     fn innovations(&self, curve: &[f64]) -> Vec<f64> {
         let mut before = 0.0;
-        let step = |(rho, y): (&f64, &f64)| {
+        let step = |(i, (rho, y)): (usize, (&f64, &f64))| {
+            let y = self.weights.get(i).map_or(*y, |weight| weight * y);
             let innovation = (y - rho * before) / (1.0 - rho * rho).sqrt();
-            before = *y;
+            before = y;
             innovation
         };
-        self.rho.iter().zip(curve).map(step).collect()
+        self.rho.iter().zip(curve).enumerate().map(step).collect()
     }
 
     fn reflected(&self, mut x: Vec<f64>) -> Vec<f64> {
@@ -122,7 +155,11 @@ impl Samples {
     fn surprise(&self, deviations: &[Vec<f64>]) -> f64 {
         let square = |curve: &Vec<f64>| self.transform(curve).iter().map(C::norm_sqr).sum::<f64>();
         let sum: f64 = deviations.iter().map(square).sum();
-        let constant = length_of(&self.innovations(&vec![1.0; self.rho.len()]));
+        let constant = if self.is_absolute() {
+            1.0
+        } else {
+            length_of(&self.innovations(&vec![1.0; self.rho.len()]))
+        };
         let determinant: f64 = self.rho.iter().map(|rho| libm::log(1.0 - rho * rho)).sum();
         self.len() as f64 * libm::log(sum.max(f64::MIN_POSITIVE))
             + determinant
@@ -137,7 +174,24 @@ fn length_of(x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::measured::tests::recorded;
+    use protocol::case::Abscissa;
     use search::random::{Phase, Streams};
+
+    /// A channel on a grid, with weights where there are some.
+    fn channel(points: &[f64], weights: &[f64], absolute: bool) -> Channel {
+        Channel {
+            abscissa: Abscissa {
+                name: "time".to_owned(),
+                unit: "s".to_owned(),
+                points: points.to_vec(),
+                period: None,
+            },
+            weights: weights.to_vec(),
+            absolute,
+            ..recorded(0).channel
+        }
+    }
 
     /// A grid whose steps differ.
     fn uneven(n: usize) -> Vec<f64> {
@@ -167,7 +221,7 @@ mod tests {
     #[test]
     fn a_constant_has_no_entry_and_every_other_curve_comes_back() {
         let points = uneven(50);
-        let samples = Samples::new(&points, 0.03);
+        let samples = Samples::of(&channel(&points, &[], false), 0.03);
         assert!(
             samples
                 .transform(&[4.0; 50])
@@ -184,6 +238,24 @@ mod tests {
         );
     }
 
+    /// Where the constant counts every curve comes back as it was, weights or not, and of a single value there is
+    /// one entry.
+    #[test]
+    fn a_constant_counts_where_a_channel_has_a_zero() {
+        let points = uneven(20);
+        let weights: Vec<f64> = (0..20).map(|i| 1.0 + f64::from(i % 3)).collect();
+        for weights in [&[][..], &weights] {
+            let samples = Samples::of(&channel(&points, weights, true), 0.02);
+            let curve: Vec<f64> = (0..20).map(|i| 5.0 + f64::from(i * i % 7)).collect();
+            let entries = samples.transform(&curve);
+            assert_eq!(entries.len(), 20);
+            let back = samples.curve(&entries);
+            assert!(back.iter().zip(&curve).all(|(b, y)| (b - y).abs() < 1e-9));
+        }
+        let one = Samples::of(&channel(&[3.0], &[4.0], true), 0.0);
+        assert_eq!(one.transform(&[2.5]), [C::from(10.0)]);
+    }
+
     /// Entries of coloured noise are as strong as those of the few cycles from which its length was
     /// estimated, and have no correlation from one to the next.
     #[test]
@@ -197,7 +269,7 @@ mod tests {
             let less =
                 |cycle: &Vec<f64>| cycle.iter().enumerate().map(|(i, y)| y - mean(i)).collect();
             let deviations: Vec<Vec<f64>> = cycles.iter().map(less).collect();
-            let samples = Samples::likeliest(&points, &deviations);
+            let samples = Samples::likeliest(&channel(&points, &[], false), &deviations);
             let power = |curve: &Vec<f64>| -> f64 {
                 samples.transform(curve).iter().map(C::norm_sqr).sum()
             };
@@ -225,7 +297,7 @@ mod tests {
         let cycles: Vec<Vec<f64>> = (0..3)
             .map(|seed| coloured(&points, 1e-4, seed, 1.0))
             .collect();
-        let samples = Samples::likeliest(&points, &cycles);
+        let samples = Samples::likeliest(&channel(&points, &[], false), &cycles);
         assert!(samples.rho.iter().all(|rho| *rho < 0.2));
     }
 }

@@ -61,6 +61,8 @@ fn channel(curve: usize, noise: Option<f64>) -> Recorded {
             },
             noise,
             step: None,
+            weights: Vec::new(),
+            absolute: false,
             record: None,
         },
     }

@@ -77,6 +77,8 @@ fn channel(name: &str, condition: usize) -> Channel {
         },
         noise: None,
         step: None,
+        weights: Vec::new(),
+        absolute: false,
         record: None,
     }
 }

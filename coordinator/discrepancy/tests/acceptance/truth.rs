@@ -379,6 +379,8 @@ pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Reco
         },
         noise,
         step: None,
+        weights: Vec::new(),
+        absolute: false,
         record: None,
     };
     Recorded {

@@ -14,6 +14,7 @@ use crate::space::Space;
 pub const CATALOGUE: &[Preset] = &[
     quick::QUICK,
     quick::LEAST_SQUARES,
+    quick::DESCENT,
     quick::HYBRID,
     generations::PAPER,
     generations::PAPER_BATCH,

@@ -27,7 +27,7 @@ pub struct LevenbergSettings {
     pub iterations: u32,
     /// How far two starts must lie apart in some gene (coordinate).
     pub apart: f64,
-    /// First difference step (coordinate).
+    /// First difference step (coordinate), where the case states none of its own.
     pub step: f64,
     /// How far one step moves a gene (coordinate).
     pub longest: f64,
@@ -172,7 +172,7 @@ impl Levenberg {
                 start: *start,
                 lower: interval.from,
                 upper: interval.to,
-                step: self.settings.step,
+                step: axis.unknown.step.unwrap_or(self.settings.step),
                 longest: self.settings.longest,
                 prior: None,
             }

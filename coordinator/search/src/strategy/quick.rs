@@ -73,6 +73,26 @@ pub const LEAST_SQUARES: Preset = Preset {
     ..QUICK
 };
 
+/// One descent from the start: what calibrators of other programs do.
+pub const DESCENT: Preset = Preset {
+    name: "descent",
+    summary: "one Levenberg-Marquardt descent of the residual from the start",
+    settings: |plan| Settings::of(&QuickSettings::descent(plan.space)),
+    groups: &[Group {
+        named: "",
+        place: "/parts/1/least_squares",
+        table: levenberg::SETTINGS,
+        without: &["starts", "apart", "heat"],
+    }],
+    promise: Promise {
+        // it stays in the basin that it begins in
+        many_basins: 1e3,
+        valley: None,
+        ..LEAST_SQUARES.promise
+    },
+    ..QUICK
+};
+
 /// A global search first, then descents of the residual vector.
 pub const HYBRID: Preset = Preset {
     name: "hybrid",
@@ -204,6 +224,19 @@ impl QuickSettings {
             trust,
             parts: hybrid,
         }
+    }
+
+    /// From the start alone, to the floor.
+    pub fn descent(space: &Space) -> Self {
+        let Self { trust, mut parts } = Self::least_squares(space);
+        if let Some(Part::LeastSquares(descent)) = parts.last_mut() {
+            descent.starts = 1;
+            descent.iterations = 50;
+        }
+        let descent = parts.pop();
+        let mut parts = vec![Part::Points { points: 1 }];
+        parts.extend(descent);
+        Self { trust, parts }
     }
 
     /// A few points and a scan from which descents of the residual vector begin: about 300 evaluations,

@@ -38,6 +38,8 @@ pub(super) struct Place<'a> {
     pub(super) measured: Option<&'a Path>,
     /// The condition whose records must be there.
     pub(super) calibrated: Option<&'a str>,
+    /// Whether channels have a zero.
+    pub(super) absolute: bool,
 }
 
 impl Place<'_> {
@@ -125,7 +127,11 @@ impl Source<'_> {
                 "give the standard deviation of one value, or leave it out",
             ));
         }
-        let (points, mut cycles) = self.places_and_cycles(place)?;
+        let record::Read {
+            places: points,
+            mut cycles,
+            weights,
+        } = self.places_and_cycles(place)?;
         let file = entry.record.as_ref().map(|record| &record.file);
         let missing = file
             .filter(|file| place.lacks(file, &entry.condition))
@@ -152,7 +158,9 @@ impl Source<'_> {
                     period: *period,
                 },
                 noise: entry.noise,
-                step: entry.noise.map(step),
+                step: entry.noise.map(|noise| step(noise, &weights)),
+                weights,
+                absolute: place.absolute,
                 record,
             },
             cycles,
@@ -162,8 +170,8 @@ impl Source<'_> {
     }
 
     /// Where the values stand, and what was measured there.
-    fn places_and_cycles(&self, place: &Place<'_>) -> Result<(Vec<f64>, Vec<Vec<f64>>), CaseError> {
-        let (points, cycles) = match (&self.entry.record, &self.entry.abscissa.points) {
+    fn places_and_cycles(&self, place: &Place<'_>) -> Result<record::Read, CaseError> {
+        let read = match (&self.entry.record, &self.entry.abscissa.points) {
             (Some(entry), None) => {
                 let role = format!(
                     "the record of channel `{}` in {}",
@@ -175,10 +183,13 @@ impl Source<'_> {
                 } else {
                     place.of(&entry.file)
                 };
-                let read = record::read(&path, entry, &role)?;
-                (read.places, read.cycles)
+                record::read(&path, entry, &role)?
             }
-            (None, Some(points)) => (self.spaced(*points)?, Vec::new()),
+            (None, Some(points)) => record::Read {
+                places: self.spaced(*points)?,
+                cycles: Vec::new(),
+                weights: Vec::new(),
+            },
             (record, _) => {
                 let both = record.is_some();
                 return Err(self.refused(
@@ -198,19 +209,28 @@ impl Source<'_> {
                 ));
             }
         };
-        self.check_period(&points)?;
-        Ok((points, cycles))
+        self.check_period(&read.places)?;
+        let least = if place.absolute { 1 } else { 2 };
+        if read.places.len() < least {
+            return Err(self.refused(
+                &["abscissa"],
+                format!("{} value", read.places.len()),
+                "two or more: without a zero only what changes is compared",
+                "say offset = \"fixed\" in [objective] if its values have a zero",
+            ));
+        }
+        Ok(read)
     }
 
     /// Equally spaced places.
     fn spaced(&self, points: PointsEntry) -> Result<Vec<f64>, CaseError> {
         let PointsEntry { first, step, count } = points;
         let ascends = step > 0.0 && step.is_finite() && first.is_finite();
-        if !ascends || !(2..=MOST_POINTS).contains(&count) {
+        if !ascends || !(1..=MOST_POINTS).contains(&count) {
             return Err(self.refused(
                 &["abscissa", "points"],
                 format!("{{ first = {first}, step = {step}, count = {count} }}"),
-                &format!("finite numbers, step above 0, count 2 to {MOST_POINTS}"),
+                &format!("finite numbers, step above 0, count 1 to {MOST_POINTS}"),
                 "state where the curve is to be computed",
             ));
         }
@@ -243,8 +263,9 @@ impl Source<'_> {
     }
 }
 
-/// The greatest power of two that is no more than a thousandth of the noise.
-fn step(noise: f64) -> i32 {
+/// The greatest power of two that is no more than a thousandth of the noise of the value that counts most.
+fn step(noise: f64, weights: &[f64]) -> i32 {
+    let noise = noise / weights.iter().copied().fold(1.0, f64::max);
     #[expect(
         clippy::cast_possible_truncation,
         reason = "the logarithm of a finite number"

@@ -40,8 +40,5 @@ pub(super) fn settings(model: &ModelEntry, conditions: &[ConditionEntry]) -> Mod
     };
     // what was read as TOML can be written as TOML
     let text = toml::to_string(&own).unwrap_or_default();
-    ModelSettings {
-        kind: model.kind.clone(),
-        settings: text.into_bytes(),
-    }
+    ModelSettings::exact(model.kind.clone(), text.into_bytes())
 }

@@ -48,6 +48,9 @@ pub(super) struct UnknownEntry {
     pub(super) tie: Option<Tie>,
     pub(super) prior: Option<PriorEntry>,
     pub(super) valley: Option<Valley>,
+    /// What differences move it by: a share of its value on a logarithmic scale, else in its unit.
+    pub(super) difference: Option<f64>,
+    pub(super) suspect: Option<String>,
 }
 
 /// One condition, with what the model alone understands of it.
@@ -75,6 +78,9 @@ pub(super) struct ChannelEntry {
     #[serde(default)]
     pub(super) held_out: bool,
     pub(super) record: Option<RecordEntry>,
+    /// Where the model's program leaves it, if it is one of somebody's own: its kind reads that.
+    #[serde(rename = "source")]
+    _source: Option<Table>,
 }
 
 /// The axis of a curve.
@@ -108,6 +114,18 @@ pub(super) struct RecordEntry {
     pub(super) column: String,
     /// Column of the cycles' numbers.
     pub(super) cycle: Option<String>,
+    /// Column of the values' weights.
+    pub(super) weight: Option<String>,
+    /// Which rows are this channel's: a column of words, and its word.
+    pub(super) rows: Option<RowsEntry>,
+}
+
+/// Which rows of a table are meant.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct RowsEntry {
+    pub(super) column: String,
+    pub(super) is: String,
 }
 
 /// What a calibration minimises.

@@ -26,6 +26,9 @@
 //! absent = 0.0                      # optional: the value at which it does nothing; `start = absent` leaves it
 //!                                   # out, for a diagnosis to suspect
 //! fixed = true                      # optional: known, and not searched; needs no bounds
+//! suspect = "leakage"               # optional, with `absent`: unknowns of one name are suspected together
+//! difference = 0.01                 # optional: what differences move it by, a share of its value; on a linear
+//!                                   # scale in its unit
 //! tie = { to = "other", ratio = 1.0 }   # optional: always so many times another one; needs no start, no bounds
 //!
 //! [[conditions]]
@@ -42,6 +45,8 @@
 //! held_out = false                  # optional: as for a condition
 //! noise = 0.05                      # standard deviation of one value; needed where nothing was repeated
 //! record = { file = "measured/5hz.csv", at = "phase_deg", column = "force_n", cycle = "cycle" }
+//!                                   # weight = "COLUMN": factor of each value's difference; its noise is `noise`
+//!                                   # over it. rows = { column = "COLUMN", is = "WORD" }: those rows alone
 //!
 //! [[channels]]                      # what is not measured says where it is computed
 //! name = "velocity"
@@ -52,7 +57,8 @@
 //! [objective]                       # what a calibration minimises: weighted mean squared errors
 //! condition = "5hz"
 //! terms = [{ channel = "force", weight = 1.0 }]
-//! offset = "free"                   # sensors without an absolute zero; or "fixed"
+//! offset = "free"                   # sensors without an absolute zero; or "fixed": then constants count
+//!                                   # everywhere, and a channel may be a single number
 //! ```
 //!
 //! `[[effects]]` are those of every case. A record is a table in CSV, gzipped if it ends in `.gz`: one
@@ -64,6 +70,7 @@ mod file;
 mod objective;
 mod read;
 mod record;
+mod rows;
 mod unknowns;
 
 pub(crate) use read::read;

@@ -14,7 +14,7 @@ use super::{
     objective, unknowns,
 };
 use discrepancy::record::{Curves, Record, Recorded, Stated};
-use protocol::case::Case;
+use protocol::case::{Case, Offset};
 use std::path::Path;
 
 /// Reads a case of a model that nobody here knows.
@@ -39,6 +39,10 @@ pub(crate) fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
             .objective
             .as_ref()
             .map(|entry| entry.condition.as_str()),
+        absolute: file
+            .objective
+            .as_ref()
+            .is_some_and(|entry| entry.offset == Offset::Fixed),
     };
     let read = channels::read(document, &file.channels, &file.conditions, &place)?;
     let objective = objective::read(document, file.objective.as_ref(), &file.conditions, &read)?;
@@ -70,7 +74,7 @@ pub(crate) fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
 /// The cycles of a condition, each by itself; none where nothing was measured.
 ///
 /// # Errors
-/// Channels of one condition that stand at different places or have another number of cycles.
+/// Channels of one condition that have another number of cycles.
 fn cycles(
     document: &Document,
     entries: &[ConditionEntry],
@@ -88,25 +92,18 @@ fn cycles(
         return Ok(None);
     };
     for (_, at, read) in &measured {
-        let same = read.channel.abscissa == first.channel.abscissa;
-        if same && read.cycles.len() == first.cycles.len() {
+        if read.cycles.len() == first.cycles.len() {
             continue;
         }
         return Err(document.field(
             &[Step::Key("channels"), Step::Index(*at), Step::Key("record")],
+            format!("{} cycles", read.cycles.len()),
             format!(
-                "{} cycles of {} values over {}",
-                read.cycles.len(),
-                read.channel.abscissa.points.len(),
-                read.channel.abscissa.name
-            ),
-            format!(
-                "as channel `{}` of the same condition: {} cycles of {} values at the same places",
+                "as many as channel `{}` of the same condition has: {}",
                 first.channel.name,
                 first.cycles.len(),
-                first.channel.abscissa.points.len()
             ),
-            "bring the channels of a condition to the same places and cycles",
+            "give the channels of a condition the same cycles",
         ));
     }
     let recorded = |(curve, _, read): &(usize, usize, &channels::Read)| Recorded {

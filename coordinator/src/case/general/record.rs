@@ -6,6 +6,7 @@ use super::{
         table::Table,
     },
     file::RecordEntry,
+    rows,
 };
 use std::path::Path;
 
@@ -16,13 +17,16 @@ pub(super) struct Read {
     pub(super) places: Vec<f64>,
     /// Values, cycle by cycle.
     pub(super) cycles: Vec<Vec<f64>>,
+    /// Weights of the values; empty where all count alike.
+    pub(super) weights: Vec<f64>,
 }
 
 /// Reads a record.
 ///
 /// # Errors
 /// A file or column that is not there, cells that are no numbers, places that do not ascend or differ
-/// between cycles, numbers of cycles that are not whole or fall, a sensor that never moves.
+/// between cycles, numbers of cycles that are not whole or fall, weights that are not positive, a sensor that
+/// never moves.
 pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read, CaseError> {
     let packed = path.extension().is_some_and(|end| end == "gz");
     let bytes = if packed {
@@ -30,16 +34,28 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
     } else {
         file::read(path, role)?
     };
+    let bytes = match &entry.rows {
+        Some(rows) => rows::of(path, &bytes, &rows.column, &rows.is)?,
+        None => bytes,
+    };
     let named = [entry.at.as_str(), entry.column.as_str()].into_iter();
-    let named: Vec<&str> = named.chain(entry.cycle.as_deref()).collect();
+    let more = entry
+        .cycle
+        .as_deref()
+        .into_iter()
+        .chain(entry.weight.as_deref());
+    let named: Vec<&str> = named.chain(more).collect();
     let table = Table::read(path, &bytes, &named)?;
-    let [at, values, numbers @ ..] = table.columns.as_slice() else {
+    let [at, values, more @ ..] = table.columns.as_slice() else {
         return Ok(Read {
             places: Vec::new(),
             cycles: Vec::new(),
+            weights: Vec::new(),
         });
     };
-    let begins = begins(path, &table, numbers.first())?;
+    let numbers = more.first().filter(|_| entry.cycle.is_some());
+    let weights = more.last().filter(|_| entry.weight.is_some());
+    let begins = begins(path, &table, numbers)?;
     let ends = begins.iter().skip(1).copied().chain([at.len()]);
     let spans: Vec<_> = begins
         .iter()
@@ -51,8 +67,16 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
     for span in &spans {
         check_places(path, &table, &places, span.start, &at[span.clone()])?;
     }
+    let length = places.len();
+    if let Some(weights) = weights {
+        check_weights(path, &table, weights, length)?;
+    }
     let first = values.first().copied().unwrap_or_default();
-    if values.iter().all(|value| value.total_cmp(&first).is_eq()) {
+    // values that are weighted may be those of different things
+    if weights.is_none()
+        && values.len() > 1
+        && values.iter().all(|value| value.total_cmp(&first).is_eq())
+    {
         return Err(contradiction(
             path,
             format!("column `{}`", entry.column),
@@ -65,7 +89,36 @@ pub(super) fn read(path: &Path, entry: &RecordEntry, role: &str) -> Result<Read,
         .into_iter()
         .map(|span| values[span].to_vec())
         .collect();
-    Ok(Read { places, cycles })
+    let weights = weights.and_then(|all| all.get(..length));
+    Ok(Read {
+        places,
+        cycles,
+        weights: weights.unwrap_or_default().to_vec(),
+    })
+}
+
+/// Weights are positive, and in every cycle those of the first.
+fn check_weights(
+    path: &Path,
+    table: &Table,
+    weights: &[f64],
+    length: usize,
+) -> Result<(), CaseError> {
+    for (row, weight) in weights.iter().enumerate() {
+        let first = weights[row % length];
+        if *weight > 0.0 && weight.total_cmp(&first).is_eq() {
+            continue;
+        }
+        return Err(table.cell(
+            path,
+            (row, table.names.len() - 1),
+            weight.to_string(),
+            "above 0, and in every cycle the same",
+            "leave the row out where a value is not to count; a channel with `points` and without a record \
+             predicts it",
+        ));
+    }
+    Ok(())
 }
 
 /// The rows in which cycles begin.

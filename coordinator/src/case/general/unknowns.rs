@@ -7,7 +7,7 @@ use super::{
     },
     file::UnknownEntry,
 };
-use protocol::case::{Unknown, check_unknowns};
+use protocol::case::{Scale, Unknown, check_unknowns};
 
 /// Reads the unknowns.
 ///
@@ -61,6 +61,10 @@ fn unknown(entry: &UnknownEntry, start: f64) -> Unknown {
         absent: entry.absent,
         fixed: entry.fixed,
         tie: entry.tie.clone(),
+        step: entry
+            .difference
+            .map(|difference| difference_step(entry, difference)),
+        suspect: entry.suspect.clone(),
     }
 }
 
@@ -73,4 +77,17 @@ fn start(entry: &UnknownEntry, all: &[UnknownEntry], ties: usize) -> f64 {
         Some(tie.ratio * start(other, all, ties - 1))
     };
     entry.start.or_else(tied).unwrap_or(f64::NAN)
+}
+
+/// What differences move an unknown by, in coordinates.
+fn difference_step(entry: &UnknownEntry, difference: f64) -> f64 {
+    match entry.scale {
+        Scale::Logarithmic => libm::log10(1.0 + difference),
+        Scale::Linear => {
+            let bounds = entry.lower.zip(entry.upper);
+            bounds.map_or(f64::NAN, |(lower, upper)| {
+                2.0 * difference / (upper - lower)
+            })
+        }
+    }
 }

@@ -6,9 +6,13 @@ use crate::cli::{
         terminal,
     },
 };
+use crate::external::{self, Proposal};
 use clap::{Args, Subcommand};
 use serde::Serialize;
-use std::{collections::BTreeMap, path::PathBuf};
+use std::{
+    collections::BTreeMap,
+    path::{Path, PathBuf},
+};
 
 /// Check a case folder, or begin a new one.
 #[derive(Debug, Args)]
@@ -33,6 +37,28 @@ enum Action {
         /// Folder to make.
         folder: PathBuf,
     },
+    /// Make a case of a model that is calibrated with PEST: parameters, observations, weights, templates and
+    /// instructions as its control file says.
+    #[command(after_help = format!("\
+Examples:
+  horsehead case import decay/model.pst
+  horsehead case import model.pst my-case
+
+The case is a folder of its own; all that lies in the control file's folder is copied into it and
+travels with it. Parameters keep bounds, transformations, ties, scales and difference steps,
+observations their weights; those of weight 0 become predictions, prior information is measured
+like everything else. The objective is PEST's, and `calibrate --preset descent` goes down it as
+PEST does. What has no meaning here is listed.
+
+{EXIT_CODES}"))]
+    Import {
+        /// Control file of PEST.
+        control: PathBuf,
+        /// Folder to make [default: the control file's name, beside it].
+        folder: Option<PathBuf>,
+        #[command(flatten)]
+        output: OutputChoice,
+    },
 }
 
 /// What `case check --output json` prints.
@@ -50,6 +76,11 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.action {
         Action::Check { choice, output } => check(choice, *output),
         Action::New { folder } => begin(folder),
+        Action::Import {
+            control,
+            folder,
+            output,
+        } => import(control, folder.as_deref(), *output),
     }
 }
 
@@ -67,7 +98,53 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
     terminal::print(output.output, || summary.text.clone(), &object)
 }
 
-fn begin(folder: &std::path::Path) -> anyhow::Result<()> {
+/// What `case import --output json` prints.
+#[derive(Debug, Serialize)]
+struct ImportOutput {
+    /// The case folder.
+    case: String,
+    /// Parameters that are estimated.
+    parameters: usize,
+    /// Observations that count.
+    observations: usize,
+    /// What was taken otherwise than it stands, or not at all.
+    notes: Vec<String>,
+}
+
+fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow::Result<()> {
+    let imported = external::import::import(control, folder).map_err(|error| Usage {
+        message: error.to_string(),
+        help: "nothing was written".to_owned(),
+    })?;
+    let [parameters, observations] = imported.counts;
+    let object = ImportOutput {
+        case: imported.folder.display().to_string(),
+        parameters,
+        observations,
+        notes: imported.notes,
+    };
+    for note in &object.notes {
+        terminal::tell(&format!("note: {note}"));
+    }
+    // what was written is read as every command will read it
+    crate::case::check(&imported.folder, &crate::case::Overrides::default())?;
+    let Proposal { name, entry, .. } = external::proposed(&imported.folder)?;
+    let entry = exchange::allow::Allowed {
+        entry: [(name, entry)].into(),
+    };
+    let words = || {
+        let case = &object.case;
+        format!(
+            "wrote {case}: {parameters} parameters, {observations} observations\n\n\
+             Machines that work on it must allow this entry; on this one\n  horsehead allow {case}\n\
+             writes it:\n\n{}\nThen\n  horsehead calibrate {case} --preset descent\n",
+            exchange::allow::text(&entry)
+        )
+    };
+    terminal::print(output.output, words, &object)
+}
+
+fn begin(folder: &Path) -> anyhow::Result<()> {
     let file = folder.join("case.toml");
     if file.exists() {
         return Err(Usage {

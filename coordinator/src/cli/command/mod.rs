@@ -3,6 +3,7 @@
 //! A command is a file with its `Arguments` and the function `run`; here it costs its name in two
 //! lists. Its help shows examples and the exit codes, its options have twins in the environment, and
 //! its results go through [`terminal`].
+mod allow;
 mod ask_tell;
 mod bench;
 mod calibrate;
@@ -79,6 +80,7 @@ commands! {
     Explain: explain,
     Export: export,
     Case: case,
+    Allow: allow,
     Keys: keys,
     Bench: bench,
     Completions: completions [&mut Cli::command()],

@@ -8,7 +8,6 @@ use super::{
 };
 use crate::{
     account,
-    case::write_genes,
     cli::{
         argument::output::Output,
         run::{
@@ -66,8 +65,7 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
         "Calibrated parameters of {}: preset {}, seed {}, log {}",
         run.case.name, run.manifest.preset, run.manifest.seed, calibration.origin.digest
     );
-    let genes = write_genes(&run.case, &found.calibrated.best.genes, &about);
-    folder.write(GENES, &genes)?;
+    folder.write_genes(&run.case, &found.calibrated.best.genes, &about)?;
     let mut files = report::write_calibration(folder.path(), &calibration)?;
     files.extend(tables::calibration(run)?);
     files.extend([GENES, RESULT].map(|name| folder.file(name)));

@@ -4,7 +4,7 @@ use super::{
     terminal,
 };
 use crate::{
-    case::{Loaded, append_effects, write_genes, write_starts},
+    case::{Loaded, append_effects, write_starts},
     cli::{
         argument::output::Output,
         run::{
@@ -50,8 +50,10 @@ impl Answer<'_> {
             return Ok(());
         };
         let about = format!("Parameters of {}", self.run.folder.path().display());
-        let genes = write_genes(&self.loaded.case, &fit.model.genes(fit.x()), &about);
-        self.run.folder.write(GENES, &genes)
+        let genes = fit.model.genes(fit.x());
+        self.run
+            .folder
+            .write_genes(&self.loaded.case, &genes, &about)
     }
 
     /// Writes the files into the run folder; returns the object of `--output json`.

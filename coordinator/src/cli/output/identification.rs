@@ -1,11 +1,10 @@
 //! The files and the output of a finished identification.
 use super::{object::identification::object, terminal};
 use crate::{
-    case::write_genes,
     cli::{
         argument::output::Output,
         run::{
-            folder::{GENES, RESULT},
+            folder::RESULT,
             identification::{Found, Identification},
         },
     },
@@ -31,8 +30,8 @@ pub(crate) fn show(
         wall_s,
     };
     let about = format!("Parameters of {}", run.folder.path().display());
-    let genes = write_genes(&run.case, &found.identified.genes, &about);
-    run.folder.write(GENES, &genes)?;
+    run.folder
+        .write_genes(&run.case, &found.identified.genes, &about)?;
     let files = report::write(run.folder.path(), &subject)?;
     for page in files.iter().take(1) {
         terminal::tell(&format!("open {}", page.display()));

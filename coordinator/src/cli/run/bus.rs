@@ -2,6 +2,7 @@
 use crate::{
     cli::{argument::door::Door, output::problem::Usage},
     journal::JournalError,
+    kind,
     runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
     study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
 };
@@ -59,6 +60,10 @@ pub(crate) struct Bus {
 impl Bus {
     /// Opens or resumes the journal and starts local workers.
     pub(crate) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
+        let unready = (options.local_workers > 0).then(|| kind::of(case).unready(case));
+        if let Some((message, help)) = unready.flatten() {
+            return Err(Usage { message, help }.into());
+        }
         let options = options.for_dispatch(case)?;
         let dispatch = Dispatch::open(options)
             .await

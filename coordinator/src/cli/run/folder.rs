@@ -9,9 +9,11 @@ use super::{
     manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
 };
 use crate::{
+    case::write_genes,
     cli::output::{problem::Usage, terminal},
     draft,
     journal::{self, Recording},
+    kind,
 };
 use anyhow::Context as _;
 use protocol::{case::Case, event::Event};
@@ -189,6 +191,20 @@ impl RunFolder {
         let mut text = serde_json::to_string_pretty(value)?;
         text.push('\n');
         self.write(name, &text)
+    }
+
+    /// Writes values of a case's unknowns, with a line that says where they come from.
+    pub(crate) fn write_genes(
+        &self,
+        case: &Case,
+        genes: &[f64],
+        about: &str,
+    ) -> anyhow::Result<()> {
+        self.write(GENES, &write_genes(case, genes, about))?;
+        if let Some((name, text)) = kind::of(case).gene_file(case, genes) {
+            self.write(name, &text)?;
+        }
+        Ok(())
     }
 
     /// Writes a file as a whole: whoever reads it finds the old one or the new one.

@@ -1,0 +1,115 @@
+//! `horsehead allow`: what a case's own program may do on this machine.
+use crate::{
+    cli::{
+        argument::output::OutputChoice,
+        output::{
+            problem::{EXIT_CODES, Usage},
+            terminal,
+        },
+    },
+    draft,
+    external::{Proposal, proposed},
+};
+use clap::Args;
+use exchange::allow::{self, Allowed};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Let this machine start the program of a case.
+///
+/// A case of the kind `command` names an entry of a list that each machine keeps for itself, and cannot say
+/// more: what is started, with which arguments and within what limits stands in the list alone. This
+/// command shows the entry that the case needs, with every file that the program would find in its folder, and
+/// writes it. Once the case's files change, they are to be looked at and allowed again.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead allow my-model
+  horsehead allow my-model --dry-run
+
+The list is $HORSEHEAD_ALLOW, else horsehead/allow.toml in $XDG_CONFIG_HOME or ~/.config. It may be
+edited: limits of time, memory and output, variables of the environment, runs at a time. Workers
+read it when they start; copy the entry to every machine that is to work on the case.
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Case folder, with `case.toml` in it.
+    #[arg(value_name = "CASE")]
+    case: PathBuf,
+    /// Show the entry and write nothing.
+    #[arg(long, env = "HORSEHEAD_DRY_RUN")]
+    dry_run: bool,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// What `allow --output json` prints.
+#[derive(Debug, Serialize)]
+struct AllowOutput<'a> {
+    /// File of the list.
+    list: String,
+    /// Name of the entry.
+    entry: &'a str,
+    /// What stands in it.
+    #[serde(flatten)]
+    allowed: &'a allow::Entry,
+    /// Files that the program finds in its folder.
+    case_files: &'a [String],
+    /// Whether it was written.
+    written: bool,
+}
+
+/// Shows the entry, and writes it.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let Proposal {
+        name,
+        mut entry,
+        files,
+    } = proposed(&arguments.case)?;
+    let path = allow::path();
+    let mut allowed = allow::read(&path).map_err(|problem| Usage {
+        message: problem.to_string(),
+        help: "nothing was written".to_owned(),
+    })?;
+    if let Some(own) = allowed.entry.get(&name) {
+        // limits and variables are this machine's business and stay as they are
+        entry = allow::Entry {
+            program: entry.program,
+            arguments: entry.arguments,
+            files: entry.files,
+            version: entry.version,
+            ..own.clone()
+        };
+    }
+    let alone = Allowed {
+        entry: [(name.clone(), entry.clone())].into(),
+    };
+    let shown = allow::text(&alone);
+    allowed.entry.insert(name.clone(), entry.clone());
+    if !arguments.dry_run {
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder)?;
+        }
+        draft::replace(&path, allow::text(&allowed).as_bytes())?;
+    }
+    let words = if arguments.dry_run {
+        "would be written to"
+    } else {
+        "written to"
+    };
+    let table = || {
+        let list: String = files.iter().map(|file| format!("#   {file}\n")).collect();
+        format!(
+            "# {words} {}\n{shown}# it finds in its folder:\n{list}",
+            path.display()
+        )
+    };
+    let object = AllowOutput {
+        list: path.display().to_string(),
+        entry: &name,
+        allowed: &entry,
+        case_files: &files,
+        written: !arguments.dry_run,
+    };
+    terminal::print(arguments.output.output, table, &object)
+}

@@ -1,0 +1,77 @@
+//! What a machine would have to allow for a case: an entry of its list, made of what the case proposes.
+use super::file::OwnFile;
+use crate::case::{CaseError, Overrides, document::Step, load_with_notes, source::document};
+use exchange::allow::Entry;
+use protocol::external::{External, entry_of};
+use std::{
+    env,
+    path::{Path, PathBuf},
+};
+
+/// An entry as a case proposes it.
+#[derive(Debug)]
+pub(crate) struct Proposal {
+    /// The name that the case uses.
+    pub(crate) name: String,
+    /// What would be written.
+    pub(crate) entry: Entry,
+    /// Paths of the files that the program reads or is made of.
+    pub(crate) files: Vec<String>,
+}
+
+/// What a case proposes.
+///
+/// # Errors
+/// A case that cannot be read, is of another kind, or proposes nothing.
+pub(crate) fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
+    let overrides = Overrides::default();
+    let case = load_with_notes(folder, &overrides)?.case;
+    let document = document(folder, &overrides)?;
+    let Some((name, external)) = entry_of(&case.model.kind).zip(External::of(&case.model).ok())
+    else {
+        return Err(document.field(
+            &[Step::Key("model"), Step::Key("kind")],
+            format!("\"{}\"", case.model.kind),
+            "\"command\": only programs of somebody's own are to be allowed",
+            "a case of another kind needs no permission",
+        ));
+    };
+    let own: OwnFile = document.parse()?;
+    let Some((program, arguments)) = own.model.command.split_first() else {
+        return Err(document.field(
+            &[Step::Key("model"), Step::Key("command")],
+            "absent",
+            "the program with its arguments, as [\"python3\", \"model.py\"]",
+            "add it, or write the entry by hand; `horsehead allow --help` says where",
+        ));
+    };
+    let mut entry = Entry::new(found(program), arguments.to_vec());
+    entry.files = Some(external.digest());
+    if let Some((program, arguments)) = own.model.version.split_first() {
+        entry.version = vec![found(program).display().to_string()];
+        entry.version.extend(arguments.iter().cloned());
+    }
+    let files = external.files.iter().map(|file| file.path.clone());
+    let filled = external
+        .fills
+        .iter()
+        .map(|fill| format!("{} (filled in)", fill.file));
+    Ok(Proposal {
+        name: name.to_owned(),
+        entry,
+        files: files.chain(filled).collect(),
+    })
+}
+
+/// Where a program lies: as the shell finds it; as it is named where it travels with the case.
+fn found(program: &str) -> PathBuf {
+    let plain = Path::new(program);
+    if program.contains('/') {
+        return plain.to_owned();
+    }
+    let path = env::var_os("PATH").unwrap_or_default();
+    let mut places = env::split_paths(&path).map(|folder| folder.join(plain));
+    places
+        .find(|place| place.is_file())
+        .unwrap_or_else(|| plain.to_owned())
+}

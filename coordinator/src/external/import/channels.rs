@@ -1,0 +1,158 @@
+//! PEST's observations as channels: one for each group, over the numbers of its observations. What has no weight is
+//! predicted.
+use super::OBSERVATIONS;
+use exchange::pest::Control;
+use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
+
+/// Channel of prior information.
+const PRIOR: &str = "prior_information";
+
+/// Observations that become one channel.
+#[derive(Debug)]
+pub(super) struct Group {
+    /// Name of the channel.
+    pub(super) name: String,
+    /// Whether they have weights.
+    pub(super) is_measured: bool,
+    pub(super) rows: Vec<Row>,
+}
+
+/// One observation.
+#[derive(Debug)]
+pub(super) struct Row {
+    name: String,
+    value: f64,
+    weight: f64,
+}
+
+/// The groups in the order in which they appear.
+pub(super) fn groups(control: &Control) -> Vec<Group> {
+    let mut all: Vec<Group> = Vec::new();
+    let observations = control.observations.iter();
+    let observations = observations.map(|it| (it.group.as_str(), &it.name, it.value, it.weight));
+    let prior = control.prior.iter();
+    let prior = prior.map(|it| (PRIOR, &it.name, it.value, it.weight));
+    for (group, name, value, weight) in observations.chain(prior) {
+        let row = Row {
+            name: name.clone(),
+            value,
+            weight,
+        };
+        let (channel, is_measured) = (plain(group), weight > 0.0);
+        match all
+            .iter_mut()
+            .find(|own| own.name == channel && own.is_measured == is_measured)
+        {
+            Some(own) => own.rows.push(row),
+            None => all.push(Group {
+                name: channel,
+                is_measured,
+                rows: vec![row],
+            }),
+        }
+    }
+    // a group of which a part counts is two channels
+    let measured: Vec<String> = all
+        .iter()
+        .filter(|it| it.is_measured)
+        .map(|it| it.name.clone())
+        .collect();
+    for group in all.iter_mut().filter(|it| !it.is_measured) {
+        if measured.contains(&group.name) {
+            group.name.push_str("_predicted");
+        }
+    }
+    all
+}
+
+/// A name of letters, digits, `_` and `-`.
+fn plain(name: &str) -> String {
+    let letter = |letter: char| {
+        let is_plain = letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-');
+        if is_plain { letter } else { '_' }
+    };
+    name.chars().map(letter).collect()
+}
+
+/// The table of all observations.
+pub(super) fn table(groups: &[Group]) -> String {
+    let mut text = "channel,number,observation,value,weight\n".to_owned();
+    for group in groups {
+        for (at, row) in group.rows.iter().enumerate() {
+            let Row {
+                name,
+                value,
+                weight,
+            } = row;
+            let number = at + 1;
+            let cells = format!("{},{number},{name},{value},{weight}\n", group.name);
+            text.push_str(&cells);
+        }
+    }
+    text
+}
+
+/// `[[channels]]`.
+pub(super) fn tables(groups: &[Group], condition: &str) -> ArrayOfTables {
+    groups
+        .iter()
+        .map(|group| channel(group, condition))
+        .collect()
+}
+
+fn channel(group: &Group, condition: &str) -> Table {
+    let mut table = Table::new();
+    table.insert("name", value(&group.name));
+    table.insert("unit", value("1"));
+    table.insert("condition", value(condition));
+    let mut abscissa = InlineTable::new();
+    abscissa.insert("name", "number".into());
+    abscissa.insert("unit", "1".into());
+    if group.is_measured {
+        // weights are taken for inverse standard deviations
+        table.insert("noise", value(1.0));
+        let rows = [("column", "channel"), ("is", &group.name)];
+        let rows: InlineTable = rows.into_iter().collect();
+        let texts = [
+            ("file", OBSERVATIONS),
+            ("at", "number"),
+            ("column", "value"),
+            ("weight", "weight"),
+        ];
+        let mut record: InlineTable = texts.into_iter().collect();
+        record.insert("rows", rows.into());
+        table.insert("record", value(record));
+    } else {
+        let count = i64::try_from(group.rows.len()).unwrap_or(i64::MAX);
+        let mut points = InlineTable::new();
+        points.insert("first", 1.0.into());
+        points.insert("step", 1.0.into());
+        points.insert("count", count.into());
+        abscissa.insert("points", points.into());
+    }
+    table.insert("abscissa", value(abscissa));
+    let names: Array = group
+        .rows
+        .iter()
+        .map(|row| Value::from(&row.name))
+        .collect();
+    let source: InlineTable = [("named", names)].into_iter().collect();
+    table.insert("source", value(source));
+    table
+}
+
+/// `[objective]`: PEST's, the sum of the squared weighted residuals.
+pub(super) fn objective(groups: &[Group], condition: &str) -> Table {
+    let measured = groups.iter().filter(|group| group.is_measured);
+    let term = |group: &Group| {
+        let mut term = InlineTable::new();
+        term.insert("channel", Value::from(&group.name));
+        term.insert("weight", Value::from(group.rows.len() as f64));
+        term
+    };
+    let mut table = Table::new();
+    table.insert("condition", value(condition));
+    table.insert("terms", value(measured.map(term).collect::<Array>()));
+    table.insert("offset", value("fixed"));
+    table
+}

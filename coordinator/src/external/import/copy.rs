@@ -1,0 +1,58 @@
+//! A folder with all that lies in it, copied.
+use protocol::external::MOST_BYTES;
+use std::{fs, io, path::Path};
+
+/// Copies what lies in a folder; gives the names of its entries, and what was left out. A case may lie beside its
+/// control file: other cases and what is hidden stay behind.
+pub(super) fn all(from: &Path, to: &Path) -> io::Result<(Vec<String>, Vec<String>)> {
+    let (mut names, mut notes, mut bytes) = (Vec::new(), Vec::new(), 0);
+    let mut entries = fs::read_dir(from)?.collect::<io::Result<Vec<_>>>()?;
+    entries.sort_by_key(fs::DirEntry::file_name);
+    let target = fs::canonicalize(to)?;
+    for entry in entries {
+        let path = entry.path();
+        let Some(name) = entry.file_name().to_str().map(str::to_owned) else {
+            notes.push(format!(
+                "{} has a name that is no text and stays behind",
+                path.display()
+            ));
+            continue;
+        };
+        let is_case = path.join("case.toml").exists()
+            || fs::canonicalize(&path).is_ok_and(|own| own == target);
+        if name.starts_with('.') || is_case {
+            continue;
+        }
+        if !copied(&path, &to.join(&name), &mut bytes)? {
+            notes.push(format!(
+                "{name} is neither file nor folder, or too large to travel: it stays behind"
+            ));
+            continue;
+        }
+        names.push(name);
+    }
+    Ok((names, notes))
+}
+
+/// Copies a file or folder; false for what is neither, or more than may travel.
+fn copied(from: &Path, to: &Path, bytes: &mut u64) -> io::Result<bool> {
+    let found = fs::symlink_metadata(from)?;
+    if found.is_dir() {
+        fs::create_dir(to)?;
+        for entry in fs::read_dir(from)? {
+            let entry = entry?;
+            if !copied(&entry.path(), &to.join(entry.file_name()), bytes)? {
+                fs::remove_dir_all(to)?;
+                return Ok(false);
+            }
+        }
+        return Ok(true);
+    }
+    *bytes += found.len();
+    if !found.is_file() || *bytes > MOST_BYTES as u64 {
+        *bytes -= found.len();
+        return Ok(false);
+    }
+    fs::copy(from, to)?;
+    Ok(true)
+}

@@ -1,0 +1,124 @@
+//! PEST's parameters as unknowns, and what is known of them beside their bounds.
+use exchange::pest::{
+    Control, IncrementKind, Parameter, ParameterGroup, PriorInformation, Transform,
+};
+use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
+
+/// PEST++ takes the bounds for four standard deviations.
+const BOUNDS_SD: f64 = 4.0;
+
+/// Whether a parameter is estimated itself.
+pub(super) const fn is_searched(transform: &Transform) -> bool {
+    matches!(transform, Transform::None | Transform::Log)
+}
+
+/// `[[unknowns]]`.
+pub(super) fn tables(control: &Control) -> ArrayOfTables {
+    let parameters = control.parameters.iter();
+    parameters
+        .map(|parameter| table(control, parameter))
+        .collect()
+}
+
+fn table(control: &Control, own: &Parameter) -> Table {
+    let mut table = Table::new();
+    table.insert("name", value(&own.name));
+    table.insert("unit", value("1"));
+    let logarithmic = is_logarithmic(control, own);
+    table.insert(
+        "scale",
+        value(if logarithmic { "logarithmic" } else { "linear" }),
+    );
+    if let Transform::Tied(to) = &own.transform {
+        let other = control.parameters.iter().find(|other| other.name == *to);
+        let ratio = other.map_or(1.0, |other| own.initial / other.initial);
+        let tie: InlineTable = [("to", Value::from(to)), ("ratio", ratio.into())]
+            .into_iter()
+            .collect();
+        table.insert("tie", value(tie));
+        return table;
+    }
+    table.insert("start", value(own.initial));
+    if own.transform == Transform::Fixed {
+        table.insert("fixed", value(true));
+        return table;
+    }
+    table.insert("lower", value(own.lower));
+    table.insert("upper", value(own.upper));
+    let deviation = if logarithmic {
+        libm::log10(own.upper / own.lower) / BOUNDS_SD
+    } else {
+        // halves of the interval
+        2.0 / BOUNDS_SD
+    };
+    let prior = [("value", own.initial), ("deviation", deviation)];
+    let prior: InlineTable = prior
+        .into_iter()
+        .map(|(key, number)| (key, Value::from(number)))
+        .collect();
+    table.insert("prior", value(prior));
+    let group = control.groups.iter().find(|group| group.name == own.group);
+    if let Some(difference) = group.and_then(|group| difference(own, group, logarithmic)) {
+        table.insert("difference", value(difference));
+    }
+    table
+}
+
+/// A tied parameter is searched on the scale of the one that it follows.
+fn is_logarithmic(control: &Control, own: &Parameter) -> bool {
+    match &own.transform {
+        Transform::Log => true,
+        Transform::Tied(to) => {
+            let other = control.parameters.iter().find(|other| other.name == *to);
+            other.is_some_and(|other| other.transform == Transform::Log && own.initial > 0.0)
+        }
+        Transform::None | Transform::Fixed => false,
+    }
+}
+
+/// What differences move a parameter by, at its initial value: a share of it on a logarithmic scale, else in its
+/// unit.
+fn difference(own: &Parameter, group: &ParameterGroup, logarithmic: bool) -> Option<f64> {
+    let size = own.initial.abs();
+    let step = match group.increment_kind {
+        IncrementKind::Absolute => group.increment,
+        IncrementKind::Relative | IncrementKind::RelativeToMax => group.increment * size,
+    };
+    let step = step.max(group.floor);
+    let share = if logarithmic { step / size } else { step };
+    let most = if logarithmic {
+        9.0
+    } else {
+        0.5 * (own.upper - own.lower)
+    };
+    (share > 0.0 && share <= most).then_some(share)
+}
+
+/// How a parameter is written, where not as it is.
+pub(super) fn written(own: &Parameter) -> Option<(String, Value)> {
+    if own.scale == 1.0 && own.offset == 0.0 {
+        return None;
+    }
+    let parts = [("factor", own.scale), ("offset", own.offset)];
+    let parts: InlineTable = parts
+        .into_iter()
+        .map(|(key, number)| (key, Value::from(number)))
+        .collect();
+    Some((own.name.clone(), parts.into()))
+}
+
+/// Prior information as an equation, which is measured like everything else.
+pub(super) fn equation(prior: &PriorInformation) -> InlineTable {
+    let term = |term: &exchange::pest::PriorTerm| {
+        let mut parts = InlineTable::new();
+        parts.insert("parameter", Value::from(&term.parameter));
+        parts.insert("factor", Value::from(term.factor));
+        parts.insert("log", Value::from(term.log));
+        parts
+    };
+    let terms: Array = prior.terms.iter().map(term).collect();
+    let mut equation = InlineTable::new();
+    equation.insert("name", Value::from(&prior.name));
+    equation.insert("terms", Value::from(terms));
+    equation
+}

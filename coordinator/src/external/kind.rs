@@ -1,0 +1,105 @@
+//! Programs of somebody's own as the coordinator's general parts ask for them.
+use super::{
+    assemble::assemble,
+    file::OwnFile,
+    report::{Files, parameters},
+};
+use crate::{
+    case::{CaseError, Loaded, document::Step, general, source::Source},
+    kind::Kind,
+    report::Drawing,
+};
+use protocol::{
+    case::{Case, ModelSettings},
+    external::{External, KIND, entry_of, kind_of},
+    wire,
+};
+
+/// Longest deadline of one run (s): a week.
+const LONGEST_S: f64 = 604_800.0;
+
+/// Models that are programs of somebody's own.
+pub(crate) struct Externals;
+
+impl Kind for Externals {
+    fn name(&self) -> &'static str {
+        KIND
+    }
+
+    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
+        let document = source.document;
+        let own: OwnFile = document.parse()?;
+        let way = |key| [Step::Key("model"), Step::Key(key)];
+        let entry = &own.model.entry;
+        let is_plain =
+            |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-' | '.');
+        if entry.is_empty() || entry.len() > 64 || !entry.chars().all(is_plain) {
+            return Err(document.field(
+                &way("entry"),
+                format!("\"{entry}\""),
+                "1 to 64 letters, digits, `_`, `-` and `.`",
+                "name the entry of the workers' lists that starts the program",
+            ));
+        }
+        document.within(
+            "model.deadline_s",
+            own.model.deadline_s,
+            1e-3..=LONGEST_S,
+            "s",
+        )?;
+        let mut loaded = general::read(source)?;
+        let external = assemble(source, &own, &loaded.case)?;
+        let settings = wire::encode(&external).map_err(|error| {
+            document.field(
+                &way("files"),
+                error.to_string(),
+                "what fits into one message",
+                "leave large files on the workers",
+            )
+        })?;
+        loaded.case.model = ModelSettings {
+            kind: kind_of(entry),
+            settings,
+            repeats: own.model.repeatable,
+            deadline_s: Some(own.model.deadline_s),
+        };
+        Ok(loaded)
+    }
+
+    fn drawing(&self) -> &'static dyn Drawing {
+        &Files
+    }
+
+    fn gene_file(&self, case: &Case, genes: &[f64]) -> Option<(&'static str, String)> {
+        Some(("calibrated.par", parameters(case, genes)))
+    }
+
+    fn unready(&self, case: &Case) -> Option<(String, String)> {
+        let name = entry_of(&case.model.kind)?;
+        let path = exchange::allow::path();
+        let remedy = "look at what it starts, and allow it on this machine: horsehead allow CASE";
+        let allowed = match exchange::allow::read(&path) {
+            Ok(allowed) => allowed,
+            Err(problem) => return Some((problem.to_string(), "correct the file".to_owned())),
+        };
+        let Some(entry) = allowed.entry.get(name) else {
+            let message = format!(
+                "this machine does not allow the case's program: {} has no entry `{name}`",
+                path.display()
+            );
+            return Some((message, remedy.to_owned()));
+        };
+        let external = External::of(&case.model).ok()?;
+        let other = entry
+            .files
+            .as_ref()
+            .is_some_and(|own| *own != external.digest());
+        other.then(|| {
+            let message = format!(
+                "the case's files are not those that entry `{name}` of {} was allowed for",
+                path.display()
+            );
+            (message, remedy.to_owned())
+        })
+    }
+}

@@ -1,0 +1,233 @@
+//! What a machine allows to be started for the cases of others: a list in a file of its own, which no case and no
+//! coordinator writes.
+//!
+//! ```toml
+//! [entry.decay]
+//! program = "/usr/bin/python3"
+//! arguments = ["model.py"]
+//! files = "5f1c.."                # the case's files that this was said of; without it any
+//! cores = 1                       # what one run keeps busy
+//! at_once = 2                     # most runs at a time [as many as fit]
+//! wall_s = 3600.0                 # longest run
+//! memory_mib = 8192               # address space of each process, 0 for no limit
+//! output_mib = 256                # what one run may write
+//! folder = "/scratch"             # where runs have their folders [the system's folder for temporary files]
+//! environment = { OMP_NUM_THREADS = "1" }   # beside PATH, HOME, LANG, LC_ALL, TZ, TMPDIR
+//! pass = ["LM_LICENSE_FILE"]      # further variables that are handed on
+//! version = ["/usr/bin/python3", "--version"]   # machines on which it says other things do not work together
+//! keep_failed = false             # whether the folder of a failed run stays
+//! ```
+use crate::Problem;
+use serde::{Deserialize, Serialize};
+use std::{
+    collections::BTreeMap,
+    env, fs,
+    io::ErrorKind,
+    path::{Path, PathBuf},
+    thread,
+};
+
+/// Variable of the environment that names another file.
+pub const VARIABLE: &str = "HORSEHEAD_ALLOW";
+
+/// All that a machine allows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Allowed {
+    /// By the name that cases use.
+    #[serde(default)]
+    pub entry: BTreeMap<String, Entry>,
+}
+
+/// One program with its arguments and limits.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Entry {
+    /// The program; absolute, or below the folder of a run.
+    pub program: PathBuf,
+    /// Its arguments.
+    #[serde(default)]
+    pub arguments: Vec<String>,
+    /// Digest of the case's files that were looked at; any are taken where there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub files: Option<String>,
+    /// Hardware threads that one run keeps busy.
+    #[serde(default = "one")]
+    pub cores: u32,
+    /// Most runs at a time.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at_once: Option<u32>,
+    /// Longest run (s).
+    #[serde(default = "hour")]
+    pub wall_s: f64,
+    /// Address space of each process (MiB); 0 for no limit.
+    #[serde(default = "eight_gib")]
+    pub memory_mib: u64,
+    /// What one run may write, its outputs included (MiB); 0 for no limit.
+    #[serde(default = "quarter_gib")]
+    pub output_mib: u64,
+    /// Where runs have their folders.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub folder: Option<PathBuf>,
+    /// Variables that are set.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub environment: BTreeMap<String, String>,
+    /// Variables that are handed on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub pass: Vec<String>,
+    /// A command that says the program's version.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub version: Vec<String>,
+    /// Whether the folder of a failed run stays.
+    #[serde(default)]
+    pub keep_failed: bool,
+}
+
+const fn one() -> u32 {
+    1
+}
+
+const fn hour() -> f64 {
+    3600.0
+}
+
+const fn eight_gib() -> u64 {
+    8192
+}
+
+const fn quarter_gib() -> u64 {
+    256
+}
+
+impl Entry {
+    /// A program with its arguments, within the usual limits.
+    pub fn new(program: PathBuf, arguments: Vec<String>) -> Self {
+        Self {
+            program,
+            arguments,
+            files: None,
+            cores: one(),
+            at_once: None,
+            wall_s: hour(),
+            memory_mib: eight_gib(),
+            output_mib: quarter_gib(),
+            folder: None,
+            environment: BTreeMap::new(),
+            pass: Vec::new(),
+            version: Vec::new(),
+            keep_failed: false,
+        }
+    }
+
+    /// Runs that this machine holds at a time; none where slots alone limit them.
+    pub fn places(&self) -> Option<u32> {
+        let threads = thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let threads = u32::try_from(threads).unwrap_or(u32::MAX);
+        let fit = (self.cores > 1).then(|| (threads / self.cores).max(1));
+        match (self.at_once, fit) {
+            (Some(stated), Some(fit)) => Some(stated.min(fit).max(1)),
+            (stated, fit) => stated.or(fit).map(|places| places.max(1)),
+        }
+    }
+}
+
+/// The file of this machine and user.
+pub fn path() -> PathBuf {
+    let of = |name: &str| {
+        env::var_os(name)
+            .filter(|value| !value.is_empty())
+            .map(PathBuf::from)
+    };
+    of(VARIABLE).unwrap_or_else(|| {
+        let folder = of("XDG_CONFIG_HOME")
+            .or_else(|| Some(of("HOME")?.join(".config")))
+            .unwrap_or_else(|| PathBuf::from("/etc"));
+        folder.join("horsehead/allow.toml")
+    })
+}
+
+/// Reads a list; one that is not there allows nothing.
+///
+/// # Errors
+/// A file that cannot be read, is no such list, or allows something impossible.
+pub fn read(path: &Path) -> Result<Allowed, Problem> {
+    let file = path.display().to_string();
+    let problem = |line, found: String| Problem {
+        file: file.clone(),
+        line,
+        found,
+        allowed: "a list of what may be started".to_owned(),
+        remedy: "correct it, or remove it and allow cases anew with `horsehead allow CASE`"
+            .to_owned(),
+    };
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Allowed::default()),
+        Err(error) => return Err(problem(None, error.to_string())),
+    };
+    let allowed: Allowed = toml::from_str(&text).map_err(|error| {
+        let before = error.span().and_then(|span| text.get(..span.start));
+        let line = before.map(|before| before.lines().count().max(1));
+        problem(line, error.message().to_owned())
+    })?;
+    for (name, entry) in &allowed.entry {
+        let fault = if entry.program.as_os_str().is_empty() {
+            Some("program is empty".to_owned())
+        } else if !(entry.wall_s > 0.0 && entry.wall_s.is_finite()) {
+            Some(format!("wall_s = {}", entry.wall_s))
+        } else if entry.cores == 0 || entry.at_once == Some(0) {
+            Some("cores or at_once is 0".to_owned())
+        } else {
+            None
+        };
+        if let Some(fault) = fault {
+            return Err(problem(None, format!("entry `{name}`: {fault}")));
+        }
+    }
+    Ok(allowed)
+}
+
+/// The text of a list.
+pub fn text(allowed: &Allowed) -> String {
+    // what is made of tables, texts and numbers can be written
+    toml::to_string(allowed).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_list_comes_back_and_what_is_impossible_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("allow.toml");
+        assert_eq!(read(&path), Ok(Allowed::default()));
+        let entry = Entry::new("/bin/true".into(), vec!["-x".to_owned()]);
+        let allowed = Allowed {
+            entry: [("a".to_owned(), entry)].into(),
+        };
+        fs::write(&path, text(&allowed)).unwrap();
+        assert_eq!(read(&path), Ok(allowed));
+        for (bad, words) in [
+            ("[entry.a]\nprogram = \"\"\n", "program is empty"),
+            ("[entry.a]\nprogram = \"x\"\nwall_s = 0.0\n", "wall_s"),
+            ("[entry.a]\nprogram = \"x\"\ncores = 0\n", "cores"),
+            ("[entry.a]\nprogramme = \"x\"\n", "programme"),
+            ("entry = 3\n", "line 1"),
+        ] {
+            fs::write(&path, bad).unwrap();
+            let error = read(&path).unwrap_err().to_string();
+            assert!(error.contains(words), "{bad}: {error}");
+        }
+    }
+
+    #[test]
+    fn places_follow_from_cores_and_what_is_stated() {
+        let mut entry = Entry::new("/bin/true".into(), Vec::new());
+        assert_eq!(entry.places(), None);
+        entry.at_once = Some(3);
+        assert_eq!(entry.places(), Some(3));
+        entry.cores = u32::MAX;
+        assert_eq!(entry.places(), Some(1));
+    }
+}

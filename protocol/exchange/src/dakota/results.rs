@@ -1,0 +1,135 @@
+//! The results file that a driver leaves.
+use crate::{Problem, number, problem::clip};
+
+/// What a driver says of an evaluation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Results {
+    /// A value for each function and, where the file has them, gradients.
+    Values {
+        /// In the order of the functions.
+        values: Vec<f64>,
+        /// Derivatives of each by the variables; empty where there are none.
+        gradients: Vec<Vec<f64>>,
+    },
+    /// It could not be evaluated: the file begins with `fail`.
+    Fail,
+}
+
+/// Reads a results file: `value [label]` for each function, then `[ gradient ]`; Hessians (`[[ .. ]]`) are passed
+/// over.
+///
+/// # Errors
+/// Too few or too many values, a label that is another function's, what is no finite number.
+pub fn results(file: &str, text: &str, functions: &[String]) -> Result<Results, Problem> {
+    let first = text.trim_start();
+    let is_fail = first
+        .get(..4)
+        .is_some_and(|word| word.eq_ignore_ascii_case("fail"));
+    if is_fail {
+        return Ok(Results::Fail);
+    }
+    let (values, rest) = match text.find('[') {
+        Some(at) => text.split_at(at),
+        None => (text, ""),
+    };
+    let lines = values
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.trim().is_empty());
+    let mut read = Vec::new();
+    for (at, line) in lines {
+        let refused = |found: String, allowed: String| {
+            Problem::at(
+                file,
+                at + 1,
+                found,
+                allowed,
+                "look at what the program wrote",
+            )
+        };
+        let mut words = line.split_whitespace();
+        let value = words.next().and_then(number).ok_or_else(|| {
+            refused(
+                format!("`{}`", clip(line)),
+                "a finite number, with or without its label".to_owned(),
+            )
+        })?;
+        let Some(function) = functions.get(read.len()) else {
+            return Err(refused(
+                "one value more".to_owned(),
+                format!("{} values", functions.len()),
+            ));
+        };
+        if let Some(label) = words.next().filter(|label| label != function) {
+            return Err(refused(
+                format!("label `{}`", clip(label)),
+                format!("`{function}`"),
+            ));
+        }
+        read.push(value);
+    }
+    if read.len() < functions.len() {
+        return Err(Problem {
+            file: file.to_owned(),
+            line: None,
+            found: format!("{} values", read.len()),
+            allowed: format!("{} values, one for each function", functions.len()),
+            remedy: "look whether the program has finished the file".to_owned(),
+        });
+    }
+    Ok(Results::Values {
+        values: read,
+        gradients: gradients(file, rest)?,
+    })
+}
+
+/// The lists between single brackets.
+fn gradients(file: &str, text: &str) -> Result<Vec<Vec<f64>>, Problem> {
+    let plain = text.split("[[").next().unwrap_or_default();
+    let lists = plain.split('[').skip(1);
+    let list = |list: &str| {
+        let inside = list.split(']').next().unwrap_or_default();
+        let numbers = inside.split_whitespace().map(number);
+        numbers
+            .collect::<Option<Vec<f64>>>()
+            .ok_or_else(|| Problem {
+                file: file.to_owned(),
+                line: None,
+                found: format!("gradient `[{}]`", clip(list)),
+                allowed: "finite numbers between brackets".to_owned(),
+                remedy: "look at what the program wrote".to_owned(),
+            })
+    };
+    lists.map(list).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_and_gradients_are_read_and_a_failure_is_one() {
+        let functions = ["w1".to_owned(), "w2".to_owned()];
+        let of = |text: &str| results("r", text, &functions);
+        let expected = Results::Values {
+            values: vec![1.5, 2000.0],
+            gradients: vec![vec![1.0, 2.0], vec![3.0, 4.0]],
+        };
+        assert_eq!(
+            of(" 1.5 w1\n2.0D3\n[ 1 2 ]\n[3 4]\n[[ 1 2 3 4 ]]\n"),
+            Ok(expected)
+        );
+        assert_eq!(of(" FAIL: no convergence\n"), Ok(Results::Fail));
+        for (text, words) in [
+            ("", "0 values"),
+            ("1.5\n", "1 values"),
+            ("1\n2\n3\n", "one value more"),
+            ("1 w2\n2\n", "label `w2`"),
+            ("nan\n2\n", "line 1"),
+            ("1\n2\n[ x ]\n", "gradient"),
+        ] {
+            let error = of(text).unwrap_err().to_string();
+            assert!(error.contains(words), "{text:?}: {error}");
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! What a control file says, held against itself; what PEST++ takes in spite of it becomes a note.
+use super::{Control, Parameter, Transform};
+use crate::Problem;
+use std::collections::BTreeSet;
+
+/// A logarithm needs a positive bound: so far below the initial value is far enough.
+const BELOW: f64 = 1e-10;
+
+/// What stands there, and what should.
+type Fault = (String, &'static str);
+
+pub(super) fn check(file: &str, control: &mut Control) -> Result<(), Problem> {
+    let whole = names(control)
+        .and_then(|()| groups_and_ties(control))
+        .and_then(|()| equations(control));
+    let each = whole.and_then(|()| {
+        let notes = control.parameters.iter_mut().map(parameter);
+        notes.collect::<Result<Vec<Option<String>>, Fault>>()
+    });
+    let notes = each.map_err(|(found, allowed)| Problem {
+        file: file.to_owned(),
+        line: None,
+        found,
+        allowed: allowed.to_owned(),
+        remedy: "correct the control file".to_owned(),
+    })?;
+    control.notes.extend(notes.into_iter().flatten());
+    Ok(())
+}
+
+/// There is something to calibrate, and every name is one's own.
+fn names(control: &Control) -> Result<(), Fault> {
+    let (parameters, observations) = (&control.parameters, &control.observations);
+    if parameters.is_empty() || observations.is_empty() {
+        let (here, there) = (parameters.len(), observations.len());
+        let found = format!("{here} parameters and {there} observations");
+        return Err((found, "one of each at least"));
+    }
+    if control.commands.is_empty() || control.outputs.is_empty() {
+        let found = "no command line, or no output file".to_owned();
+        return Err((found, "a model that is run and read"));
+    }
+    let mut seen = BTreeSet::new();
+    let names = parameters.iter().map(|it| &it.name);
+    for name in names.chain(observations.iter().map(|it| &it.name)) {
+        if !seen.insert(name) {
+            return Err((format!("`{name}` twice"), "a name of its own"));
+        }
+    }
+    Ok(())
+}
+
+/// Every group is there, and every tie leads to what varies.
+fn groups_and_ties(control: &Control) -> Result<(), Fault> {
+    let known = |name: &String| name == "none" || control.groups.iter().any(|it| it.name == *name);
+    for parameter in &control.parameters {
+        let (name, group) = (&parameter.name, &parameter.group);
+        if parameter.varies() && !control.groups.is_empty() && !known(group) {
+            let found = format!("group `{group}` of {name}");
+            return Err((found, "one of the parameter groups"));
+        }
+        if let Transform::Tied(to) = &parameter.transform {
+            let mut others = control.parameters.iter();
+            if !others.any(|other| other.name == *to && other.varies()) {
+                let found = format!("{name} tied to `{to}`");
+                return Err((found, "tied to a parameter that varies"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Prior information is about parameters, and no weight is negative.
+fn equations(control: &Control) -> Result<(), Fault> {
+    for prior in &control.prior {
+        for term in &prior.terms {
+            let mut parameters = control.parameters.iter();
+            if parameters.all(|it| it.name != term.parameter) {
+                let found = format!("`{}` in prior information {}", term.parameter, prior.name);
+                return Err((found, "a parameter"));
+            }
+        }
+    }
+    let weights = control.observations.iter().map(|it| (&it.name, it.weight));
+    let weights = weights.chain(control.prior.iter().map(|it| (&it.name, it.weight)));
+    for (name, weight) in weights {
+        if weight < 0.0 {
+            return Err((format!("weight {weight} of {name}"), "0 or more"));
+        }
+    }
+    Ok(())
+}
+
+impl Parameter {
+    /// Whether it is estimated itself.
+    const fn varies(&self) -> bool {
+        matches!(self.transform, Transform::None | Transform::Log)
+    }
+}
+
+/// Value and bounds of one parameter; what is accepted in spite of itself, in words.
+fn parameter(own: &mut Parameter) -> Result<Option<String>, Fault> {
+    let (name, initial) = (own.name.clone(), own.initial);
+    let mut note = None;
+    if own.transform == Transform::Log {
+        if initial <= 0.0 || own.upper <= 0.0 {
+            let found = format!("{name}, logarithmic, at {initial} up to {}", own.upper);
+            return Err((found, "positive"));
+        }
+        if own.lower <= 0.0 {
+            own.lower = BELOW * initial;
+            note = Some(format!(
+                "{name} is logarithmic with a lower bound of 0 or less, which has no logarithm: it \
+                 becomes {:e}",
+                own.lower
+            ));
+        }
+    }
+    let (lower, upper) = (own.lower, own.upper);
+    let inside = (lower..=upper).contains(&initial);
+    if own.varies() && !inside {
+        let found = format!("{name} = {initial} outside {lower} to {upper}");
+        return Err((found, "within its bounds"));
+    }
+    if own.varies() && lower >= upper {
+        return Err((format!("{name} from {lower} to {upper}"), "an interval"));
+    }
+    if own.transform == Transform::Fixed && !inside {
+        note = Some(format!(
+            "{name} is fixed at {initial}, outside its bounds {lower} to {upper}: the bounds mean nothing"
+        ));
+    }
+    Ok(note)
+}

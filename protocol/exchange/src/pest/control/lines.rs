@@ -1,0 +1,125 @@
+//! A control file as sections of lines, without comments and options.
+use crate::{Problem, problem::clip};
+
+/// A line of a file.
+#[derive(Clone, Debug)]
+pub(super) struct Line {
+    /// From 1.
+    pub(super) number: usize,
+    pub(super) text: String,
+}
+
+/// A section: what stands between one `*` and the next.
+#[derive(Clone, Debug)]
+pub(super) struct Section {
+    /// In small letters.
+    pub(super) name: String,
+    /// Line of its heading.
+    pub(super) number: usize,
+    pub(super) lines: Vec<Line>,
+}
+
+/// A control file.
+#[derive(Debug)]
+pub(super) struct Lines {
+    pub(super) file: String,
+    pub(super) sections: Vec<Section>,
+    /// `++name(value)`.
+    pub(super) options: Vec<(String, String)>,
+}
+
+impl Lines {
+    pub(super) fn of(file: &str, text: &str) -> Result<Self, Problem> {
+        let mut all = Self {
+            file: file.to_owned(),
+            sections: Vec::new(),
+            options: Vec::new(),
+        };
+        let mut begun = false;
+        for (at, line) in text.lines().enumerate() {
+            let number = at + 1;
+            let line = line.split('#').next().unwrap_or_default().trim();
+            if line.is_empty() {
+                continue;
+            }
+            if !begun {
+                let word = line.split_whitespace().next().unwrap_or_default();
+                if !word.eq_ignore_ascii_case("pcf") {
+                    let found = format!("`{}`", clip(line));
+                    return Err(Problem::at(
+                        file,
+                        number,
+                        found,
+                        "`pcf`",
+                        "name a control file of PEST",
+                    ));
+                }
+                begun = true;
+            } else if let Some(options) = line.strip_prefix("++") {
+                all.options.extend(self::options(options));
+            } else if let Some(name) = line.strip_prefix('*') {
+                let name: Vec<&str> = name.split_whitespace().collect();
+                all.sections.push(Section {
+                    name: name.join(" ").to_lowercase(),
+                    number,
+                    lines: Vec::new(),
+                });
+            } else if let Some(section) = all.sections.last_mut() {
+                section.lines.push(Line {
+                    number,
+                    text: line.to_owned(),
+                });
+            } else {
+                let found = format!("`{}`", clip(line));
+                return Err(Problem::at(
+                    file,
+                    number,
+                    found,
+                    "a section, as `* control data`",
+                    "remove the line",
+                ));
+            }
+        }
+        if begun {
+            return Ok(all);
+        }
+        Err(Problem::at(
+            file,
+            1,
+            "nothing",
+            "`pcf` and sections",
+            "name a control file of PEST",
+        ))
+    }
+
+    /// The section of a name, if there is one.
+    pub(super) fn section(&self, name: &str) -> Option<&Section> {
+        self.sections.iter().find(|section| section.name == name)
+    }
+
+    /// A problem in a line.
+    pub(super) fn problem(
+        &self,
+        number: usize,
+        found: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> Problem {
+        Problem::at(
+            &self.file,
+            number,
+            found,
+            allowed,
+            "correct the control file",
+        )
+    }
+}
+
+/// `name(value)`, as often as it stands in a line.
+fn options(line: &str) -> Vec<(String, String)> {
+    let each = line.split(')').filter_map(|part| part.split_once('('));
+    each.map(|(name, value)| {
+        let name = name.trim().trim_start_matches('+').trim();
+        (name.to_lowercase(), value.trim().to_owned())
+    })
+    .collect()
+}

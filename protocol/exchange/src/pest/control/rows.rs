@@ -1,0 +1,155 @@
+//! Rows of a control file's tables: words of a line, or cells of a CSV under their names.
+use super::lines::{Lines, Section};
+use crate::{Problem, number, problem::clip};
+use std::collections::BTreeMap;
+
+/// A row: where it stands, and its cells by name.
+pub(super) struct Row {
+    pub(super) file: String,
+    pub(super) line: usize,
+    cells: BTreeMap<String, String>,
+}
+
+impl Row {
+    /// The words of a line under the names of their places.
+    pub(super) fn of(file: &str, line: usize, names: &[&str], words: &[&str]) -> Self {
+        let cells = names.iter().zip(words);
+        Self {
+            file: file.to_owned(),
+            line,
+            cells: cells
+                .map(|(name, word)| ((*name).to_owned(), (*word).to_owned()))
+                .collect(),
+        }
+    }
+
+    fn problem(&self, found: String, allowed: &str) -> Problem {
+        Problem::at(
+            &self.file,
+            self.line,
+            found,
+            allowed,
+            "correct the control file",
+        )
+    }
+
+    /// A cell in small letters.
+    pub(super) fn word(&self, name: &str) -> Result<String, Problem> {
+        self.plain(name).map(|cell| cell.to_lowercase())
+    }
+
+    /// A cell as it stands.
+    pub(super) fn plain(&self, name: &str) -> Result<String, Problem> {
+        let found = self.cells.get(name).filter(|cell| !cell.is_empty());
+        found.cloned().ok_or_else(|| {
+            self.problem(
+                "a row that is too short".to_owned(),
+                &format!("one with {name}"),
+            )
+        })
+    }
+
+    /// A cell in small letters, or what stands for it where there is none.
+    pub(super) fn word_or(&self, name: &str, other: &str) -> String {
+        self.word(name).unwrap_or_else(|_| other.to_owned())
+    }
+
+    /// A number.
+    pub(super) fn number(&self, name: &str) -> Result<f64, Problem> {
+        let cell = self.plain(name)?;
+        number(&cell)
+            .ok_or_else(|| self.problem(format!("{name} = `{}`", clip(&cell)), "a finite number"))
+    }
+
+    /// A number, or what stands for it where there is none.
+    pub(super) fn number_or(&self, name: &str, other: f64) -> Result<f64, Problem> {
+        if self.cells.get(name).is_none_or(String::is_empty) {
+            return Ok(other);
+        }
+        self.number(name)
+    }
+}
+
+/// The rows of a section: its lines, or those of the files that an external section names. Nothing where there is
+/// neither.
+pub(super) fn rows(
+    lines: &Lines,
+    name: &str,
+    columns: &[&str],
+    open: &dyn Fn(&str) -> Result<String, String>,
+) -> Result<Vec<Row>, Problem> {
+    let mut all = Vec::new();
+    if let Some(section) = lines.section(name) {
+        for line in &section.lines {
+            let words: Vec<&str> = line.text.split_whitespace().collect();
+            all.push(Row::of(&lines.file, line.number, columns, &words));
+        }
+    }
+    let external = lines
+        .sections
+        .iter()
+        .filter(|section| section.name == format!("{name} external"));
+    for section in external {
+        all.extend(files(lines, section, open)?);
+    }
+    Ok(all)
+}
+
+/// The rows of an external section's files.
+fn files(
+    lines: &Lines,
+    section: &Section,
+    open: &dyn Fn(&str) -> Result<String, String>,
+) -> Result<Vec<Row>, Problem> {
+    let mut all = Vec::new();
+    for line in &section.lines {
+        // behind the name words say how it is read, as `sep ,`
+        let mut words = line.text.split_whitespace();
+        let file = words.next().unwrap_or_default();
+        if words.next().is_some() {
+            let found = format!("`{}`", clip(&line.text));
+            return Err(lines.problem(line.number, found, "the name of a CSV file alone"));
+        }
+        let text = open(file).map_err(|error| {
+            lines.problem(
+                line.number,
+                format!("{file}: {error}"),
+                "a file that can be read",
+            )
+        })?;
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(text.as_bytes());
+        let broken = |error: csv::Error| {
+            let at = error.position().map_or(1, csv::Position::line);
+            let at = usize::try_from(at).unwrap_or(1);
+            Problem::at(
+                file,
+                at,
+                error.to_string(),
+                "a table in CSV",
+                "correct the file",
+            )
+        };
+        let names: Vec<String> = reader
+            .headers()
+            .map_err(broken)?
+            .iter()
+            .map(str::to_lowercase)
+            .collect();
+        for record in reader.records() {
+            let record = record.map_err(broken)?;
+            let number = record.position().map_or(1, csv::Position::line);
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let cells: Vec<&str> = record.iter().collect();
+            all.push(Row::of(
+                file,
+                usize::try_from(number).unwrap_or(1),
+                &names,
+                &cells,
+            ));
+        }
+    }
+    Ok(all)
+}

@@ -1,0 +1,84 @@
+//! A number in a field of so many characters, with as many digits as fit.
+
+/// The text of a value in at most `width` characters: exact where that fits, else as near as the field allows; none
+/// where not even one digit does.
+pub fn fit(value: f64, width: usize) -> Option<String> {
+    if !value.is_finite() {
+        return None;
+    }
+    let exact = [format!("{value}"), format!("{value:e}")];
+    if let Some(text) = exact
+        .into_iter()
+        .filter(|text| text.len() <= width)
+        .min_by_key(String::len)
+    {
+        return Some(pointed(text, width));
+    }
+    let rounded = (0..=17_usize).flat_map(|digits| {
+        let after = digits.saturating_sub(1);
+        [format!("{value:.digits$}"), format!("{value:.after$e}")]
+    });
+    let fitting = rounded.filter(|text| text.len() <= width);
+    let off = |text: &String| {
+        text.parse::<f64>()
+            .map_or(f64::INFINITY, |read| (read - value).abs())
+    };
+    let best = fitting.min_by(|a, b| off(a).total_cmp(&off(b)).then(a.len().cmp(&b.len())))?;
+    // zero in place of a number that is none is no digit of it
+    let lost = value != 0.0 && best.parse::<f64>().is_ok_and(|read| read == 0.0);
+    (!lost).then(|| pointed(best, width))
+}
+
+/// With a point where there is room for one: a program that reads integers where it finds them takes it for a real
+/// number.
+fn pointed(text: String, width: usize) -> String {
+    if text.contains(['.', 'e']) || text.len() >= width {
+        text
+    } else {
+        text + "."
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fit;
+    use proptest::prelude::*;
+
+    #[test]
+    fn as_many_digits_as_fit_are_written() {
+        for (value, width, text) in [
+            (12.5, 17, "12.5"),
+            (3.0, 8, "3."),
+            (3.0, 1, "3"),
+            (std::f64::consts::PI, 5, "3.142"),
+            (-std::f64::consts::PI, 5, "-3.14"),
+            (1.0e-7, 6, "1e-7"),
+            (123_456_789.0, 6, "1.23e8"),
+            (0.0, 3, "0."),
+        ] {
+            assert_eq!(
+                fit(value, width).as_deref(),
+                Some(text),
+                "{value} in {width}"
+            );
+        }
+        assert_eq!(fit(-1.5e-200, 4), None);
+        assert_eq!(fit(f64::NAN, 20), None);
+    }
+
+    proptest! {
+        #[test]
+        fn what_is_written_fits_and_is_near(value in prop::num::f64::NORMAL, width in 3_usize..30) {
+            if let Some(text) = fit(value, width) {
+                prop_assert!(text.len() <= width);
+                let read = crate::number(&text);
+                prop_assert!(read.is_some(), "{text}");
+                if width >= 24 {
+                    prop_assert_eq!(read, Some(value));
+                }
+            } else {
+                prop_assert!(width < 8);
+            }
+        }
+    }
+}

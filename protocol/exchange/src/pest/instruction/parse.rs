@@ -1,0 +1,156 @@
+//! From the text of an instruction file to instructions.
+use super::{Instruction, Instructions, Line, NOBODY};
+use crate::{Problem, problem::clip};
+use std::collections::BTreeSet;
+
+/// Farthest column, and most lines of one step.
+const FARTHEST: usize = 100_000_000;
+
+pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
+    let (mark, body) = head(file, text)?;
+    let mut lines: Vec<Line> = Vec::new();
+    let mut names = BTreeSet::new();
+    for (at, text) in body.lines().enumerate() {
+        let number = at + 2;
+        let refused = |found: String, allowed: &str| {
+            Problem::at(file, number, found, allowed, "correct the instruction")
+        };
+        let all = tokens(text, mark).map_err(|found| {
+            let allowed = "a marker, lN, w, tN, [name]a:b, (name)a:b or !name!";
+            refused(format!("`{}`", clip(&found)), allowed)
+        })?;
+        if all.is_empty() {
+            continue;
+        }
+        for name in all
+            .iter()
+            .filter_map(|token| token.as_ref().ok()?.observation())
+        {
+            if name != NOBODY && !names.insert(name.to_owned()) {
+                return Err(refused(
+                    format!("`{name}` once more"),
+                    "a name that no other observation has",
+                ));
+            }
+        }
+        let goes_on = matches!(all.first(), Some(Err(Continued)));
+        let own = all.into_iter().skip(usize::from(goes_on));
+        let Ok(all) = own.collect::<Result<Vec<Instruction>, Continued>>() else {
+            return Err(refused(
+                "`&` further on".to_owned(),
+                "`&` at the beginning alone",
+            ));
+        };
+        match (goes_on, lines.last_mut()) {
+            (true, Some(line)) => line.all.extend(all),
+            (true, None) => {
+                return Err(refused(
+                    "`&`".to_owned(),
+                    "a line that begins with a marker or lN",
+                ));
+            }
+            (false, _) => {
+                if !matches!(
+                    all.first(),
+                    Some(Instruction::Marker(_) | Instruction::Lines(_))
+                ) {
+                    return Err(refused(
+                        format!("`{}`", clip(text)),
+                        "a line that begins with a marker, lN or `&`",
+                    ));
+                }
+                lines.push(Line { number, all });
+            }
+        }
+    }
+    Ok(Instructions {
+        file: file.to_owned(),
+        lines,
+    })
+}
+
+/// The delimiter that the first line states, and the lines behind it.
+fn head<'a>(file: &str, text: &'a str) -> Result<(char, &'a str), Problem> {
+    let (first, body) = text.split_once('\n').unwrap_or((text, ""));
+    let mut words = first.split_whitespace();
+    let is_marked = words
+        .next()
+        .is_some_and(|word| word.eq_ignore_ascii_case("pif"));
+    let mark = words.next().and_then(|word| {
+        let mut letters = word.chars();
+        let mark = letters.next()?;
+        let is_free = !mark.is_alphanumeric() && !"!:&[](),".contains(mark);
+        (letters.next().is_none() && is_free).then_some(mark)
+    });
+    let (true, Some(mark)) = (is_marked, mark) else {
+        let found = format!("`{}`", clip(first));
+        let allowed =
+            "`pif` and one delimiter that is no letter, no digit and none of ! : & [ ] ( ) ,";
+        return Err(Problem::at(
+            file,
+            1,
+            found,
+            allowed,
+            "write it as the first line of the instructions",
+        ));
+    };
+    Ok((mark, body))
+}
+
+/// `&`: the line goes on with the one before.
+struct Continued;
+
+/// The instructions of a line; what is none as text.
+fn tokens(line: &str, mark: char) -> Result<Vec<Result<Instruction, Continued>>, String> {
+    let mut all = Vec::new();
+    let mut rest = line.trim_start();
+    while let Some(first) = rest.chars().next() {
+        let (token, after) = if first == mark {
+            let inside = rest.get(first.len_utf8()..).unwrap_or_default();
+            let (text, after) = inside.split_once(mark).ok_or(rest)?;
+            if text.is_empty() {
+                return Err(rest.to_owned());
+            }
+            (Ok(Instruction::Marker(text.to_owned())), after)
+        } else {
+            // a marker may stand directly behind
+            let end = rest.find(|letter: char| letter.is_whitespace() || letter == mark);
+            let (word, after) = rest.split_at(end.unwrap_or(rest.len()));
+            (instruction(word).ok_or(word)?, after)
+        };
+        all.push(token);
+        rest = after.trim_start();
+    }
+    Ok(all)
+}
+
+fn instruction(word: &str) -> Option<Result<Instruction, Continued>> {
+    let number = |text: &str| {
+        let number = text.parse::<usize>().ok()?;
+        (1..=FARTHEST).contains(&number).then_some(number)
+    };
+    let lower = word.to_lowercase();
+    let mut letters = lower.chars();
+    let first = letters.next()?;
+    let rest = letters.as_str();
+    let name = |text: &str| {
+        let name = text.trim();
+        (!name.is_empty()).then(|| name.to_owned())
+    };
+    let between = |close: char| {
+        let (own, columns) = rest.split_once(close)?;
+        let (from, to) = columns.split_once(':')?;
+        let (from, to) = (number(from)?, number(to)?);
+        (from <= to).then_some((name(own)?, from, to))
+    };
+    Some(Ok(match first {
+        '&' if rest.is_empty() => return Some(Err(Continued)),
+        'w' if rest.is_empty() => Instruction::Word,
+        'l' => Instruction::Lines(number(rest)?),
+        't' => Instruction::Tab(number(rest)?),
+        '!' => Instruction::Free(name(rest.strip_suffix('!')?)?),
+        '[' => between(']').map(|(name, from, to)| Instruction::Fixed(name, from, to))?,
+        '(' => between(')').map(|(name, from, to)| Instruction::SemiFixed(name, from, to))?,
+        _ => return None,
+    }))
+}

@@ -1,0 +1,194 @@
+//! Templates: a text with fields that take the values of parameters.
+use crate::{Problem, problem::clip};
+use std::collections::BTreeMap;
+
+/// Longest template (bytes).
+const MOST: usize = 64 << 20;
+
+/// A template, read once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Template {
+    file: String,
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Part {
+    Text(String),
+    Field {
+        /// The parameter, in small letters.
+        name: String,
+        /// Its width with both delimiters (characters).
+        width: usize,
+        /// Line of the template.
+        line: usize,
+    },
+}
+
+impl Template {
+    /// Reads a template: `ptf` and a delimiter in the first line, then a text in which a parameter's name stands
+    /// between two of them.
+    ///
+    /// # Errors
+    /// Another first line, a delimiter without its like, a field without a name.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
+        let (first, body) = text.split_once('\n').unwrap_or((text, ""));
+        let mut words = first.split_whitespace();
+        let is_marked = words
+            .next()
+            .is_some_and(|word| word.eq_ignore_ascii_case("ptf"));
+        let mark = words.next().and_then(|word| {
+            let mut letters = word.chars();
+            let mark = letters.next()?;
+            (letters.next().is_none() && !mark.is_alphanumeric()).then_some(mark)
+        });
+        let (true, Some(mark), true) = (is_marked, mark, text.len() <= MOST) else {
+            let found = format!("`{}`", clip(first));
+            let allowed = "`ptf` and one delimiter that is neither letter nor digit";
+            return Err(Problem::at(
+                file,
+                1,
+                found,
+                allowed,
+                "write it as the first line of the template",
+            ));
+        };
+        let mut parts = Vec::new();
+        for (number, line) in body.split_inclusive('\n').enumerate() {
+            let number = number + 2;
+            let mut pieces = line.split(mark);
+            parts.push(Part::Text(pieces.next().unwrap_or_default().to_owned()));
+            while let Some(field) = pieces.next() {
+                let name = field.trim().to_lowercase();
+                let Some(after) = pieces.next() else {
+                    let found = format!("a `{mark}` without its like");
+                    let allowed = "two delimiters about each parameter's name";
+                    return Err(Problem::at(
+                        file,
+                        number,
+                        found,
+                        allowed,
+                        "add it, or choose another delimiter",
+                    ));
+                };
+                if name.is_empty() || name.contains(char::is_whitespace) {
+                    let found = format!("`{mark}{}{mark}`", clip(field));
+                    let allowed = "one parameter's name between the delimiters";
+                    return Err(Problem::at(
+                        file,
+                        number,
+                        found,
+                        allowed,
+                        "write the name into the field",
+                    ));
+                }
+                parts.push(Part::Field {
+                    name,
+                    width: field.chars().count() + 2,
+                    line: number,
+                });
+                parts.push(Part::Text(after.to_owned()));
+            }
+        }
+        Ok(Self {
+            file: file.to_owned(),
+            parts,
+        })
+    }
+
+    /// The parameters with the width of their narrowest field (characters).
+    pub fn fields(&self) -> BTreeMap<String, usize> {
+        let mut fields = BTreeMap::new();
+        for part in &self.parts {
+            if let Part::Field { name, width, .. } = part {
+                let narrowest = fields.entry(name.clone()).or_insert(*width);
+                *narrowest = (*narrowest).min(*width);
+            }
+        }
+        fields
+    }
+
+    /// The text with a parameter's text in each of its fields, at the right end.
+    ///
+    /// # Errors
+    /// A parameter that has no text, or one that is wider than its field.
+    pub fn fill(&self, texts: &BTreeMap<String, String>) -> Result<String, Problem> {
+        let mut filled = String::new();
+        for part in &self.parts {
+            match part {
+                Part::Text(text) => filled.push_str(text),
+                Part::Field { name, width, line } => {
+                    let text = texts
+                        .get(name)
+                        .filter(|text| text.chars().count() <= *width);
+                    let Some(text) = text else {
+                        let found = format!("the field of `{name}`, {width} wide");
+                        let allowed = "that of a parameter whose value fits into it";
+                        return Err(Problem::at(
+                            &self.file,
+                            *line,
+                            found,
+                            allowed,
+                            "correct the name, or widen the field",
+                        ));
+                    };
+                    filled.extend(std::iter::repeat_n(' ', width - text.chars().count()));
+                    filled.push_str(text);
+                }
+            }
+        }
+        Ok(filled)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn fields_are_filled_at_their_own_width() {
+        let text = "ptf #\nk = #K     #\nboth #k# and # Q #\n";
+        let template = Template::parse("a.tpl", text).unwrap();
+        let fields = [("k".to_owned(), 3), ("q".to_owned(), 5)];
+        assert_eq!(template.fields(), BTreeMap::from(fields));
+        let texts = [
+            ("k".to_owned(), "2.5".to_owned()),
+            ("q".to_owned(), "7".to_owned()),
+        ];
+        let filled = template.fill(&BTreeMap::from(texts)).unwrap();
+        assert_eq!(filled, "k =      2.5\nboth 2.5 and     7\n");
+        let wide = [("k".to_owned(), "2.55".to_owned())];
+        let error = template
+            .fill(&BTreeMap::from(wide))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("line 3") && error.contains("`k`"), "{error}");
+    }
+
+    #[test]
+    fn what_is_no_template_is_refused_by_line() {
+        for (text, words) in [
+            ("", "line 1"),
+            ("ptf\n", "line 1"),
+            ("ptf a\n", "line 1"),
+            ("pif #\n", "line 1"),
+            ("ptf #\nx #a\n", "line 2"),
+            ("ptf #\n\n##\n", "line 3"),
+            ("ptf #\n#a b#\n", "line 2"),
+        ] {
+            let error = Template::parse("a.tpl", text).unwrap_err().to_string();
+            assert!(error.contains(words), "{text:?}: {error}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn nothing_panics(text in "(ptf #\n)?[a-c# \n]{0,60}") {
+            if let Ok(template) = Template::parse("t", &text) {
+                let texts = template.fields().into_keys().map(|name| (name, "1".to_owned())).collect();
+                prop_assert!(template.fill(&texts).is_ok());
+            }
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! From values to the files that the program reads.
+use exchange::{Problem, dakota, pest};
+use protocol::external::{Fill, FillForm};
+use std::collections::BTreeMap;
+
+/// A file that is filled in for every individual, read once.
+#[derive(Debug)]
+pub(super) struct Template {
+    /// Where it is written.
+    pub(super) file: String,
+    form: Form,
+}
+
+#[derive(Debug)]
+enum Form {
+    Pest(pest::Template),
+    Braces(dakota::Template),
+    Dakota(dakota::Form),
+}
+
+/// All of a case's templates.
+#[derive(Debug)]
+pub(super) struct Templates {
+    all: Vec<Template>,
+    /// The narrowest field of each parameter, where one limits its digits.
+    widths: BTreeMap<String, usize>,
+}
+
+impl Templates {
+    /// Reads them.
+    pub(super) fn new(fills: &[Fill]) -> Result<Self, Problem> {
+        let all: Vec<Template> = fills.iter().map(template).collect::<Result<_, _>>()?;
+        let mut widths = BTreeMap::new();
+        for template in &all {
+            if let Form::Pest(own) = &template.form {
+                for (name, width) in own.fields() {
+                    let narrowest = widths.entry(name).or_insert(width);
+                    *narrowest = width.min(*narrowest);
+                }
+            }
+        }
+        Ok(Self { all, widths })
+    }
+
+    /// The files with the text of each, for values by name in the case's order. Digits that do not fit into a
+    /// field of PEST are lost to every file.
+    pub(super) fn filled(
+        &self,
+        values: &[(String, f64)],
+        functions: &[String],
+        evaluation: u64,
+    ) -> Result<Vec<(&str, String)>, Problem> {
+        let mut texts = BTreeMap::new();
+        let mut written = Vec::new();
+        for (name, value) in values {
+            let text = match self.widths.get(&name.to_lowercase()) {
+                None => Some(value.to_string()),
+                Some(width) => pest::fit(*value, *width),
+            };
+            let text = text.ok_or_else(|| Problem {
+                file: "the templates".to_owned(),
+                line: None,
+                found: format!("no digit of {name} = {value} fits into its narrowest field"),
+                allowed: "a field that holds the number".to_owned(),
+                remedy: "widen the field between its markers".to_owned(),
+            })?;
+            written.push((name.clone(), exchange::number(&text).unwrap_or(*value)));
+            texts.insert(name.to_lowercase(), text.clone());
+            texts.insert(name.clone(), text);
+        }
+        let fill = |template: &Template| match &template.form {
+            Form::Pest(own) => own.fill(&texts),
+            Form::Braces(own) => own.fill(&texts),
+            Form::Dakota(form) => Ok(dakota::parameters(*form, &written, functions, evaluation)),
+        };
+        let files = self.all.iter();
+        files
+            .map(|template| Ok((template.file.as_str(), fill(template)?)))
+            .collect()
+    }
+}
+
+fn template(fill: &Fill) -> Result<Template, Problem> {
+    let form = match &fill.form {
+        FillForm::Pest(text) => Form::Pest(pest::Template::parse(&fill.file, text)?),
+        FillForm::Braces(text) => Form::Braces(dakota::Template::parse(&fill.file, text)?),
+        FillForm::Dakota(name) => {
+            Form::Dakota(dakota::Form::named(name).ok_or_else(|| Problem {
+                file: fill.file.clone(),
+                line: None,
+                found: format!("form `{name}` of Dakota's parameters"),
+                allowed: "standard, aprepro or json".to_owned(),
+                remedy: "correct it".to_owned(),
+            })?)
+        }
+    };
+    Ok(Template {
+        file: fill.file.clone(),
+        form,
+    })
+}

@@ -1,0 +1,223 @@
+//! From the files that the program left to the curves of a condition.
+use exchange::{Problem, dakota, object, pest, table};
+use protocol::{
+    case::Channel,
+    external::{Equation, Reading, ReadingForm, Source},
+};
+use std::collections::BTreeMap;
+
+/// How the files are read, found out once.
+#[derive(Debug)]
+pub(super) struct Readings {
+    all: Vec<(String, Form)>,
+}
+
+#[derive(Debug)]
+enum Form {
+    Pest(pest::Instructions),
+    Dakota(Vec<String>),
+    Whole,
+}
+
+/// What the files of one run hold.
+#[derive(Debug, Default)]
+pub(super) struct Left {
+    /// Values that have a name of their own.
+    pub(super) named: BTreeMap<String, f64>,
+    /// Texts of all files, reading by reading.
+    texts: Vec<String>,
+    /// Whether the program itself called the individual a failure.
+    pub(super) is_fail: bool,
+}
+
+impl Readings {
+    /// Reads what tells how to read.
+    pub(super) fn new(readings: &[Reading]) -> Result<Self, Problem> {
+        let form = |reading: &Reading| {
+            let form = match &reading.form {
+                ReadingForm::Pest(text) => {
+                    Form::Pest(pest::Instructions::parse(&reading.file, text)?)
+                }
+                ReadingForm::Dakota(functions) => Form::Dakota(functions.clone()),
+                ReadingForm::Table | ReadingForm::Object => Form::Whole,
+            };
+            Ok((reading.file.clone(), form))
+        };
+        Ok(Self {
+            all: readings.iter().map(form).collect::<Result<_, Problem>>()?,
+        })
+    }
+
+    /// Names of the functions that Dakota's files ask for.
+    pub(super) fn functions(&self) -> Vec<String> {
+        let lists = self.all.iter().filter_map(|(_, form)| match form {
+            Form::Dakota(functions) => Some(functions.clone()),
+            Form::Pest(_) | Form::Whole => None,
+        });
+        lists.flatten().collect()
+    }
+
+    /// The files that the program leaves.
+    pub(super) fn files(&self) -> impl Iterator<Item = &str> {
+        self.all.iter().map(|(file, _)| file.as_str())
+    }
+
+    /// Reads all files; `left` gives the text of one.
+    ///
+    /// # Errors
+    /// What is missing or cannot be read, in words.
+    pub(super) fn read(
+        &self,
+        left: impl Fn(&str) -> Result<String, String>,
+    ) -> Result<Left, String> {
+        let mut all = Left::default();
+        for (file, form) in &self.all {
+            let text = left(file)?;
+            match form {
+                Form::Pest(instructions) => {
+                    let values = instructions.read(file, &text);
+                    all.named.extend(values.map_err(|error| error.to_string())?);
+                }
+                Form::Dakota(functions) => {
+                    let results = dakota::results(file, &text, functions);
+                    match results.map_err(|error| error.to_string())? {
+                        dakota::Results::Fail => all.is_fail = true,
+                        dakota::Results::Values { values, .. } => {
+                            all.named.extend(functions.iter().cloned().zip(values));
+                        }
+                    }
+                }
+                Form::Whole => {}
+            }
+            all.texts.push(text);
+        }
+        Ok(all)
+    }
+
+    /// The curve of a channel.
+    ///
+    /// # Errors
+    /// Values that are not there, or not as many as the channel has places, in words.
+    pub(super) fn curve(
+        &self,
+        source: &Source,
+        channel: &Channel,
+        left: &Left,
+    ) -> Result<Vec<f64>, String> {
+        let places = &channel.abscissa.points;
+        let of = |reading: &usize| {
+            let file = self.all.get(*reading).map_or("", |(file, _)| file.as_str());
+            (file, left.texts.get(*reading).map_or("", String::as_str))
+        };
+        let (file, values, at) = match source {
+            Source::Named(names) => {
+                let value = |name: &String| {
+                    let found = left.named.get(name).copied();
+                    found.ok_or_else(|| format!("nothing read is named `{name}`"))
+                };
+                let values = names.iter().map(value).collect::<Result<Vec<f64>, _>>()?;
+                ("", values, None)
+            }
+            Source::Column {
+                reading,
+                at,
+                column,
+            } => {
+                let (file, text) = of(reading);
+                let read = |name: &String| {
+                    table::column(file, text, name).map_err(|error| error.to_string())
+                };
+                let at = at.as_ref().map(read).transpose()?;
+                (file, read(column)?, at)
+            }
+            Source::Pointer {
+                reading,
+                values,
+                at,
+            } => {
+                let (file, text) = of(reading);
+                let read = |pointer: &String| {
+                    object::values(file, text, pointer).map_err(|error| error.to_string())
+                };
+                let at = at.as_ref().map(read).transpose()?;
+                (file, read(values)?, at)
+            }
+        };
+        match at {
+            Some(at) => brought(file, &at, &values, places),
+            None if values.len() == places.len() => Ok(values),
+            None => Err(format!(
+                "{file} holds {} values of channel `{}`, which has {} places",
+                values.len(),
+                channel.name,
+                places.len()
+            )),
+        }
+    }
+}
+
+/// Values of equations at parameters, by name.
+pub(super) fn equated(
+    equations: &[Equation],
+    values: &BTreeMap<String, f64>,
+) -> BTreeMap<String, f64> {
+    let sum = |equation: &Equation| {
+        let terms = equation.terms.iter().map(|term| {
+            let value = values.get(&term.parameter).copied().unwrap_or(f64::NAN);
+            term.factor * if term.log { libm::log10(value) } else { value }
+        });
+        (equation.name.clone(), terms.sum())
+    };
+    equations.iter().map(sum).collect()
+}
+
+/// A curve at other places, along straight lines between its own.
+fn brought(file: &str, at: &[f64], values: &[f64], places: &[f64]) -> Result<Vec<f64>, String> {
+    if at.len() != values.len() || at.is_empty() {
+        return Err(format!(
+            "{file} holds {} values at {} places",
+            values.len(),
+            at.len()
+        ));
+    }
+    if at.windows(2).any(|pair| pair[1] <= pair[0]) {
+        return Err(format!("the places in {file} do not ascend"));
+    }
+    let (first, last) = (at[0], at[at.len() - 1]);
+    // the last digit of a place that was written as text is not held against it
+    let slack = 1e-9 * (last - first).abs();
+    let value = |place: &f64| {
+        if *place < first - slack || *place > last + slack {
+            return Err(format!(
+                "{file} goes from {first} to {last}, but a value is wanted at {place}"
+            ));
+        }
+        let above = at
+            .partition_point(|own| own < place)
+            .clamp(1, at.len().max(2) - 1);
+        let Some((from, to)) = at.get(above - 1).zip(at.get(above)) else {
+            return Ok(values[0]);
+        };
+        let share = ((place - from) / (to - from)).clamp(0.0, 1.0);
+        Ok(values[above - 1] + share * (values[above] - values[above - 1]))
+    };
+    places.iter().map(value).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_are_brought_to_the_channels_places() {
+        let at = [0.0, 1.0, 3.0];
+        let values = [0.0, 2.0, 4.0];
+        let found = brought("f", &at, &values, &[0.0, 0.5, 2.0, 3.0]).unwrap();
+        assert_eq!(found, [0.0, 1.0, 3.0, 4.0]);
+        let error = brought("f", &at, &values, &[3.5]).unwrap_err();
+        assert!(error.contains("from 0 to 3"), "{error}");
+        brought("f", &[1.0, 1.0], &[0.0, 0.0], &[1.0]).unwrap_err();
+        brought("f", &[], &[], &[1.0]).unwrap_err();
+        assert_eq!(brought("f", &[1.0], &[5.0], &[1.0]).unwrap(), [5.0]);
+    }
+}

@@ -1,0 +1,233 @@
+//! A program with a case, ready for any number of individuals.
+use super::{
+    fill::Templates,
+    gather::{Readings, equated},
+    run::{self, Turn},
+    scratch::{self, Scratch},
+};
+use crate::simulator::Model;
+use exchange::allow::Entry;
+use protocol::{
+    case::Case,
+    external::External,
+    job::{Counters, Derivative, Failure, Observation, Reached, SimulateSpec, Verdict, Word},
+};
+use std::{
+    collections::BTreeMap,
+    path::PathBuf,
+    sync::atomic::{AtomicU64, Ordering},
+    time::Duration,
+};
+
+/// What a program is said to have ended with that called an individual a failure itself.
+const FAIL: Word = Word::new("fail");
+
+/// A program with a case.
+#[derive(Debug)]
+pub(super) struct Prepared {
+    case: Case,
+    external: External,
+    entry: Entry,
+    /// The entry's name.
+    name: String,
+    templates: Templates,
+    readings: Readings,
+    /// Where folders are made.
+    place: PathBuf,
+    /// Words of exit statuses that are verdicts.
+    verdicts: Vec<(i32, Word)>,
+    /// Counts evaluations.
+    evaluations: AtomicU64,
+}
+
+impl Prepared {
+    pub(super) fn new(
+        case: &Case,
+        external: External,
+        entry: Entry,
+        name: &str,
+    ) -> Result<Self, Failure> {
+        let wrong = |field: &'static str| {
+            move |problem: exchange::Problem| Failure::misconfigured(field, problem.to_string())
+        };
+        let lists = [
+            ("unknowns", external.parameters.len(), case.unknowns.len()),
+            (
+                "conditions",
+                external.conditions.len(),
+                case.conditions.len(),
+            ),
+            ("channels", external.curves.len(), case.channels.len()),
+        ];
+        for (field, stated, needed) in lists {
+            if stated != needed {
+                let problem = format!("{stated} are described, the case has {needed}");
+                return Err(Failure::misconfigured(field, problem));
+            }
+        }
+        let verdict = |(status, word): &(i32, String)| {
+            let word = Word::of(word).ok_or_else(|| {
+                let problem = format!("`{word}` is no word of small letters, digits and `_`");
+                Failure::misconfigured("model.verdicts", problem)
+            });
+            Ok((*status, word?))
+        };
+        let place = scratch::place(&entry);
+        scratch::clean(&place);
+        Ok(Self {
+            templates: Templates::new(&external.fills).map_err(wrong("model.inputs"))?,
+            readings: Readings::new(&external.readings).map_err(wrong("model.outputs"))?,
+            verdicts: external
+                .verdicts
+                .iter()
+                .map(verdict)
+                .collect::<Result<_, Failure>>()?,
+            case: case.clone(),
+            external,
+            entry,
+            name: name.to_owned(),
+            place,
+            evaluations: AtomicU64::new(0),
+        })
+    }
+
+    /// What templates are filled in with.
+    fn values(&self, spec: &SimulateSpec) -> Result<Vec<(String, f64)>, Failure> {
+        let individual = &spec.individual;
+        let condition = individual.condition;
+        let own = self.external.conditions.get(condition).ok_or_else(|| {
+            Failure::misconfigured("condition", format!("there is no condition {condition}"))
+        })?;
+        let parameters = self.external.parameters.iter().zip(&individual.genes);
+        let unknowns = parameters.map(|(parameter, value)| {
+            let written = parameter.factor * value + parameter.offset;
+            (parameter.name.clone(), written)
+        });
+        Ok(own.iter().cloned().chain(unknowns).collect())
+    }
+
+    /// What equations are about: the unknowns themselves, by their own names.
+    fn plain(&self, spec: &SimulateSpec) -> BTreeMap<String, f64> {
+        let individual = &spec.individual;
+        let own = self.external.conditions.get(individual.condition);
+        let unknowns = self.case.unknowns.iter().zip(&individual.genes);
+        let unknowns = unknowns.map(|(unknown, value)| (unknown.name.clone(), *value));
+        own.into_iter().flatten().cloned().chain(unknowns).collect()
+    }
+
+    /// How long one run may take: what the case says, and no more than the entry allows.
+    fn deadline(&self) -> Duration {
+        let own = self.case.model.deadline_s.unwrap_or(f64::INFINITY);
+        let seconds = own.min(self.entry.wall_s);
+        Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX)
+    }
+
+    fn evaluate(&self, spec: &SimulateSpec) -> Result<Observation, Failure> {
+        let crashed = |how: String| Failure::Crashed { how };
+        let values = self.values(spec)?;
+        let number = self.evaluations.fetch_add(1, Ordering::Relaxed) + 1;
+        let functions = self.readings.functions();
+        let files = self
+            .templates
+            .filled(&values, &functions, number)
+            .map_err(|problem| Failure::misconfigured("model.inputs", problem.to_string()))?;
+        let turn = Turn::wait(&self.place, &self.name, &self.entry)
+            .map_err(|error| crashed(format!("{}: {error}", self.place.display())))?;
+        let mut scratch = Scratch::new(&self.place)
+            .map_err(|error| crashed(format!("no folder in {}: {error}", self.place.display())))?;
+        let prepared = scratch.unpack(&self.external.files).and_then(|()| {
+            let mut files = files.iter();
+            files.try_for_each(|(path, text)| scratch.write(path, text.as_bytes(), 0o600))
+        });
+        // what a case brings along as a result is none
+        let prepared = prepared.and_then(|()| {
+            self.readings.files().try_for_each(|file| {
+                drop(std::fs::remove_file(scratch.inside(file)?));
+                Ok(())
+            })
+        });
+        prepared.map_err(|error| crashed(format!("the program's folder: {error}")))?;
+        let outcome = self.ran(spec, &scratch);
+        drop(turn);
+        outcome.map_err(|failure| self.noted(failure, &mut scratch))
+    }
+
+    /// Starts the program in a folder that is ready, and reads what it leaves.
+    fn ran(&self, spec: &SimulateSpec, scratch: &Scratch) -> Result<Observation, Failure> {
+        let ended = run::run(&self.entry, scratch, self.deadline())?;
+        let shown = self.entry.program.display();
+        if !ended.status.success() {
+            let code = ended.status.code();
+            let verdict = self
+                .verdicts
+                .iter()
+                .find(|(status, _)| Some(*status) == code);
+            return match verdict {
+                Some((_, word)) => Ok(failed(*word)),
+                None => Err(Failure::Crashed {
+                    how: format!("{shown} {}", run::words(ended.status, scratch)),
+                }),
+            };
+        }
+        let unusable = |what: String| Failure::Crashed {
+            how: format!(
+                "{shown} ended in good order, but {what}{}",
+                run::last_words(scratch)
+            ),
+        };
+        let left = |file: &str| run::left(scratch, file, &self.entry);
+        let mut left = self.readings.read(left).map_err(unusable)?;
+        if left.is_fail {
+            return Ok(failed(FAIL));
+        }
+        left.named
+            .extend(equated(&self.external.equations, &self.plain(spec)));
+        let condition = spec.individual.condition;
+        let channels = self.case.channels_of(condition);
+        let curve = |(at, channel): (usize, &protocol::case::Channel)| {
+            let source = self.external.curves.get(at);
+            let source = source.ok_or_else(|| format!("channel {at} comes from nowhere"))?;
+            self.readings.curve(source, channel, &left)
+        };
+        let curves: Vec<Vec<f64>> = channels
+            .map(curve)
+            .collect::<Result<_, _>>()
+            .map_err(unusable)?;
+        Ok(Observation {
+            verdict: Verdict::Complete,
+            counters: Counters::default(),
+            curves,
+            columns: Derivative::none(&spec.columns),
+        })
+    }
+
+    /// A failure that leaves its folder behind, where the entry wants that.
+    fn noted(&self, failure: Failure, scratch: &mut Scratch) -> Failure {
+        if let (Failure::Crashed { how }, true) = (&failure, self.entry.keep_failed) {
+            let kept = scratch.keep().display();
+            return Failure::Crashed {
+                how: format!("{how}\n  its folder is kept: {kept}"),
+            };
+        }
+        failure
+    }
+}
+
+/// A run that the program itself calls a failure.
+fn failed(kind: Word) -> Observation {
+    Observation {
+        verdict: Verdict::Failed {
+            kind,
+            reached: Reached::TimeFraction(0.0),
+        },
+        counters: Counters::default(),
+        curves: Vec::new(),
+        columns: Vec::new(),
+    }
+}
+
+impl Model for Prepared {
+    fn observe(&self, spec: &SimulateSpec, _: bool) -> Result<Observation, Failure> {
+        self.evaluate(spec)
+    }
+}

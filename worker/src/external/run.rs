@@ -1,0 +1,231 @@
+//! One run of somebody's program: started within its limits, watched, ended with all that it started.
+use super::scratch::Scratch;
+use crate::process_tree;
+use exchange::allow::Entry;
+use protocol::job::Failure;
+use rustix::process::{WaitOptions, getpid, set_child_subreaper, wait};
+use std::{
+    env,
+    fs::{self, File},
+    io::{self, Read, Seek, SeekFrom},
+    os::unix::process::{CommandExt, ExitStatusExt},
+    path::Path,
+    process::{Child, Command, ExitStatus, Stdio},
+    sync::mpsc::{self, RecvTimeoutError},
+    thread,
+    time::{Duration, Instant},
+};
+
+/// How often it is looked at what the program has written.
+const LOOK: Duration = Duration::from_millis(500);
+/// How much of a program's last words is shown (bytes), and how many lines.
+const LAST: u64 = 2000;
+const LINES: usize = 8;
+/// Variables of this process that every program gets.
+const PASSED: [&str; 6] = ["PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR"];
+
+/// How a program ended in time.
+pub(super) struct Ended {
+    pub(super) status: ExitStatus,
+}
+
+/// Starts the program of an entry in a folder and waits for its end, at most until the deadline.
+///
+/// # Errors
+/// [`Failure::Crashed`] if it cannot be started or writes too much, [`Failure::Deadline`] if it does not end.
+pub(super) fn run(entry: &Entry, scratch: &Scratch, deadline: Duration) -> Result<Ended, Failure> {
+    let crashed = |how: String| Failure::Crashed { how };
+    let failed = |what: &str, error: &io::Error| crashed(format!("{what}: {error}"));
+    // whatever the program leaves without a parent becomes ours, and is ended
+    set_child_subreaper(Some(getpid())).map_err(|error| failed("subreaper", &error.into()))?;
+    let began = Instant::now();
+    let mut child = begin(entry, scratch).map_err(|error| {
+        failed(
+            &format!("{} cannot be started", entry.program.display()),
+            &error,
+        )
+    })?;
+    let ended = watch(&mut child, entry, scratch, began + deadline);
+    process_tree::end_below(getpid());
+    while let Ok(Some(_)) = wait(WaitOptions::NOHANG) {}
+    match ended {
+        Ok(status) => Ok(Ended { status }),
+        Err(Stopped::Late) => Err(Failure::Deadline {
+            limit_ms: u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX),
+        }),
+        Err(Stopped::TooMuch) => Err(crashed(format!(
+            "it wrote more than the {} MiB that its entry allows (output_mib){}",
+            entry.output_mib,
+            last_words(scratch)
+        ))),
+        Err(Stopped::Unknown(error)) => Err(failed("its end is unknown", &error)),
+    }
+}
+
+/// Why a program was not waited for any longer.
+enum Stopped {
+    Late,
+    TooMuch,
+    Unknown(io::Error),
+}
+
+fn begin(entry: &Entry, scratch: &Scratch) -> io::Result<Child> {
+    let said = File::create(scratch.said())?;
+    let mut command = Command::new(env::current_exe()?);
+    command
+        .arg("start")
+        .args(["--memory", &entry.memory_mib.to_string()])
+        .args(["--file", &entry.output_mib.to_string()])
+        .arg("--")
+        .arg(&entry.program)
+        .args(&entry.arguments)
+        .current_dir(scratch.work())
+        .stdin(Stdio::null())
+        .stderr(said.try_clone()?)
+        .stdout(said)
+        // a group of its own: a signal that it sends to its group does not reach us
+        .process_group(0)
+        .env_clear();
+    for name in PASSED
+        .into_iter()
+        .chain(entry.pass.iter().map(String::as_str))
+    {
+        if let Some(value) = env::var_os(name) {
+            command.env(name, value);
+        }
+    }
+    command.envs(&entry.environment).spawn()
+}
+
+/// Waits for the end, from a thread of its own so that nobody has to look again and again.
+fn watch(
+    child: &mut Child,
+    entry: &Entry,
+    scratch: &Scratch,
+    until: Instant,
+) -> Result<ExitStatus, Stopped> {
+    let (over, ended) = mpsc::channel();
+    let most = entry.output_mib.saturating_mul(1 << 20);
+    thread::scope(|scope| {
+        let waiting = scope.spawn(move || {
+            let status = child.wait();
+            // whoever watched may have gone
+            let _unheard = over.send(());
+            status
+        });
+        let stopped = loop {
+            let left = until.saturating_duration_since(Instant::now());
+            match ended.recv_timeout(left.min(LOOK)) {
+                Ok(()) | Err(RecvTimeoutError::Disconnected) => break None,
+                Err(RecvTimeoutError::Timeout) if left.is_zero() => break Some(Stopped::Late),
+                Err(RecvTimeoutError::Timeout) if most > 0 && scratch.bytes() > most => {
+                    break Some(Stopped::TooMuch);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+        };
+        if stopped.is_some() {
+            process_tree::end_below(getpid());
+        }
+        let status = waiting.join();
+        match (stopped, status) {
+            (Some(stopped), _) => Err(stopped),
+            (None, Ok(Ok(status))) => Ok(status),
+            (None, Ok(Err(error))) => Err(Stopped::Unknown(error)),
+            (None, Err(_)) => Err(Stopped::Unknown(io::Error::other("the thread that waited"))),
+        }
+    })
+}
+
+/// What a status says, with the last lines of what the program said.
+pub(super) fn words(status: ExitStatus, scratch: &Scratch) -> String {
+    let how = match (status.signal(), status.code()) {
+        (Some(25), _) => {
+            "ended by signal 25: it wrote a longer file than its entry allows (output_mib)"
+                .to_owned()
+        }
+        (Some(signal), _) => format!("ended by signal {signal}"),
+        (None, Some(127)) => "could not be started, or ended with status 127".to_owned(),
+        (None, Some(code)) => format!("ended with status {code}"),
+        (None, None) => "ended without a status".to_owned(),
+    };
+    how + &last_words(scratch)
+}
+
+/// The last lines of what a program said, as the end of a message.
+pub(super) fn last_words(scratch: &Scratch) -> String {
+    let text = tail(&scratch.said()).unwrap_or_default();
+    let text: String = text
+        .chars()
+        .filter(|letter| !letter.is_control() || *letter == '\n')
+        .collect();
+    let lines: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .collect();
+    let last = lines
+        .get(lines.len().saturating_sub(LINES)..)
+        .unwrap_or_default();
+    if last.is_empty() {
+        "; it said nothing".to_owned()
+    } else {
+        format!("; its last words:\n  {}", last.join("\n  "))
+    }
+}
+
+fn tail(path: &Path) -> io::Result<String> {
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    file.seek(SeekFrom::Start(length.saturating_sub(LAST)))?;
+    let mut bytes = Vec::new();
+    file.take(LAST).read_to_end(&mut bytes)?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// A file that the program left, as text.
+///
+/// # Errors
+/// What is missing, is no plain file, or is longer than the entry allows.
+pub(super) fn left(scratch: &Scratch, file: &str, entry: &Entry) -> Result<String, String> {
+    let path = scratch.inside(file).map_err(|error| error.to_string())?;
+    let found = fs::symlink_metadata(&path).map_err(|_| format!("it left no file `{file}`"))?;
+    if !found.is_file() {
+        return Err(format!("`{file}` is no plain file"));
+    }
+    let most = entry.output_mib.saturating_mul(1 << 20);
+    if most > 0 && found.len() > most {
+        return Err(format!(
+            "`{file}` has {} bytes, allowed are {most} (output_mib)",
+            found.len()
+        ));
+    }
+    let bytes = fs::read(&path).map_err(|error| format!("`{file}`: {error}"))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// Takes one of the places that an entry has on this machine, and keeps it until it is dropped.
+pub(super) struct Turn {
+    _lock: File,
+}
+
+impl Turn {
+    /// Waits for a place.
+    pub(super) fn wait(place: &Path, name: &str, entry: &Entry) -> io::Result<Option<Self>> {
+        /// Pause between looks for a place.
+        const PAUSE: Duration = Duration::from_millis(10);
+        let Some(places) = entry.places() else {
+            return Ok(None);
+        };
+        loop {
+            for number in 0..places {
+                let path = place.join(format!("horsehead-{name}.{number}.lock"));
+                let mut options = fs::OpenOptions::new();
+                let file = options.create(true).append(true).open(path)?;
+                if file.try_lock().is_ok() {
+                    return Ok(Some(Self { _lock: file }));
+                }
+            }
+            thread::sleep(PAUSE);
+        }
+    }
+}

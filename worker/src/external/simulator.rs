@@ -1,0 +1,103 @@
+//! Programs of somebody's own, as a kind of model: one kind for each entry of this machine's list.
+use super::model::Prepared;
+use crate::simulator::{Model, Simulator};
+use exchange::allow::{self, Allowed, Entry};
+use protocol::{
+    announce::{EffectDescriptor, ModelDescriptor},
+    case::Case,
+    external::{External, KIND, entry_of, kind_of},
+    id::ContentHash,
+    job::Failure,
+};
+use std::process::{Command, Stdio};
+
+/// All that this machine allows to be started.
+#[derive(Clone, Copy, Debug)]
+pub struct Externals;
+
+impl Simulator for Externals {
+    fn kind(&self) -> &'static str {
+        KIND
+    }
+
+    fn digest(&self) -> String {
+        ContentHash::of(KIND.as_bytes()).to_string()
+    }
+
+    fn effects(&self) -> Vec<EffectDescriptor> {
+        Vec::new()
+    }
+
+    fn described(&self) -> Vec<ModelDescriptor> {
+        let allowed = match allow::read(&allow::path()) {
+            Ok(allowed) => allowed,
+            Err(problem) => {
+                tracing::warn!("no program of the list is started here: {problem}");
+                Allowed::default()
+            }
+        };
+        let entries = allowed.entry.iter();
+        entries
+            .map(|(name, entry)| ModelDescriptor {
+                kind: kind_of(name),
+                digest: digest(entry),
+                effects: Vec::new(),
+            })
+            .collect()
+    }
+
+    fn simulates(&self, kind: &str) -> bool {
+        entry_of(kind).is_some()
+    }
+
+    fn prepare(&self, case: &Case) -> Result<Box<dyn Model>, Failure> {
+        let name = entry_of(&case.model.kind).unwrap_or_default();
+        let path = allow::path();
+        let problem = |text: String| Failure::Refused { reason: text };
+        let allowed = allow::read(&path).map_err(|error| problem(error.to_string()))?;
+        let entry = allowed.entry.get(name).ok_or_else(|| {
+            problem(format!(
+                "{} has no entry `{name}`: `horsehead allow CASE` on this machine writes it",
+                path.display()
+            ))
+        })?;
+        let external = External::of(&case.model)
+            .map_err(|error| Failure::misconfigured("model", error.to_string()))?;
+        let files = external.digest();
+        if entry.files.as_ref().is_some_and(|own| *own != files) {
+            return Err(problem(format!(
+                "the case's files are not those that entry `{name}` of {} was allowed for: look at what has \
+                 changed, then `horsehead allow CASE`",
+                path.display()
+            )));
+        }
+        Ok(Box::new(Prepared::new(
+            case,
+            external,
+            entry.clone(),
+            name,
+        )?))
+    }
+
+    fn own(&self, name: &str, _: &[u8]) -> Result<Vec<u8>, Failure> {
+        Err(Failure::Refused {
+            reason: format!("a program of somebody's own knows no job `{name}`"),
+        })
+    }
+}
+
+/// Names what the entry's version command says, where it has one: machines that say other things have other
+/// programs.
+fn digest(entry: &Entry) -> String {
+    let said = entry.version.split_first().map(|(program, arguments)| {
+        let output = Command::new(program)
+            .args(arguments)
+            .stdin(Stdio::null())
+            .output();
+        match output {
+            Ok(output) => [output.stdout, output.stderr].concat(),
+            Err(error) => error.to_string().into_bytes(),
+        }
+    });
+    ContentHash::of(&said.unwrap_or_default()).to_string()
+}

@@ -1,0 +1,85 @@
+//! Everything that a process has started, found by who is whose parent: neither another session nor an
+//! emptied environment hides from that. It knows no slots and no jobs.
+use rustix::{
+    io,
+    process::{Pid, Signal, kill_process},
+};
+use std::{fs, thread, time::Duration};
+
+/// How often a tree that goes on growing is looked at, and how long it is left alone between.
+const LOOKS: u32 = 500;
+const PAUSE: Duration = Duration::from_millis(2);
+
+/// A process as the system lists it.
+#[derive(Clone, Copy, Debug)]
+struct Listed {
+    pid: i32,
+    parent: i32,
+    /// Whether it has ended and only its status is left.
+    is_over: bool,
+}
+
+/// Ends all that `root` has started, by itself or by way of others, but not `root`. What has lost its parent is
+/// found where `root` is the one that inherits it (a subreaper).
+pub(crate) fn end_below(root: Pid) {
+    for _ in 0..LOOKS {
+        let living: Vec<Pid> = below(root.as_raw_nonzero().get())
+            .into_iter()
+            .filter_map(Pid::from_raw)
+            .collect();
+        if living.is_empty() {
+            return;
+        }
+        for pid in living {
+            // fails if it has just ended
+            drop(kill_process(pid, Signal::KILL).map_err(std::io::Error::from));
+        }
+        thread::sleep(PAUSE);
+    }
+}
+
+/// Ends a process and all that it has started. It is stopped first, so that it starts nothing more meanwhile.
+pub(crate) fn end_with_all(root: Pid) {
+    let tell = |signal| -> io::Result<()> { kill_process(root, signal) };
+    drop(tell(Signal::STOP).map_err(std::io::Error::from));
+    end_below(root);
+    drop(tell(Signal::KILL).map_err(std::io::Error::from));
+}
+
+/// The processes below one that have not ended.
+fn below(root: i32) -> Vec<i32> {
+    let all = listed();
+    let mut found = vec![root];
+    let mut at = 0;
+    while at < found.len() {
+        let parent = found[at];
+        let children = all.iter().filter(|one| one.parent == parent);
+        let new: Vec<i32> = children
+            .map(|one| one.pid)
+            .filter(|pid| !found.contains(pid))
+            .collect();
+        found.extend(new);
+        at += 1;
+    }
+    let living = |pid: &i32| all.iter().any(|one| one.pid == *pid && !one.is_over);
+    found.into_iter().skip(1).filter(living).collect()
+}
+
+fn listed() -> Vec<Listed> {
+    let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
+    let listed = entries.filter_map(|entry| {
+        let pid = entry.file_name().to_str()?.parse().ok()?;
+        let stat = fs::read_to_string(entry.path().join("stat")).ok()?;
+        // behind the name, which is in parentheses and may hold anything
+        let (_, rest) = stat.rsplit_once(')')?;
+        let mut words = rest.split_whitespace();
+        let state = words.next()?;
+        let parent = words.next()?.parse().ok()?;
+        Some(Listed {
+            pid,
+            parent,
+            is_over: matches!(state, "Z" | "X"),
+        })
+    });
+    listed.collect()
+}
