@@ -37,7 +37,8 @@ pub(super) enum Proof {
 impl Proof {
     /// What came out; why this worker cannot work if nothing did.
     ///
-    /// Where a model does not repeat its bits, only whether it came to an answer is compared.
+    /// Where a model does not repeat its bits there is nothing to compare; that its program fails at the reference
+    /// individual is for the run's own jobs to say.
     pub(super) fn of(outcome: Option<Outcome>, repeats: bool) -> Result<Self, String> {
         match outcome {
             None => Ok(Self::Missing),
@@ -49,7 +50,10 @@ impl Proof {
             )) => Err(format!(
                 "the reference individual of the case cannot be computed here: {failure}"
             )),
-            Some(Outcome::Done(_)) if !repeats => Ok(Self::Known(ContentHash::of(b"an answer"))),
+            Some(
+                Outcome::Done(_)
+                | Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
+            ) if !repeats => Ok(Self::Known(ContentHash::of(b"not compared"))),
             Some(outcome) => match wire::encode(&outcome) {
                 Ok(bytes) => Ok(Self::Known(ContentHash::of(&bytes))),
                 Err(error) => Err(format!("the reference individual has no name: {error}")),

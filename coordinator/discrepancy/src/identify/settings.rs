@@ -10,5 +10,6 @@ pub(super) const FREE: Settings = Settings {
     step_range: 10.0,
     level: 1e-3,
     central: true,
+    finish: false,
     exact: false,
 };

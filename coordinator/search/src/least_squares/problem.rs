@@ -45,6 +45,9 @@ pub struct Settings {
     pub level: f64,
     /// Whether columns are central differences: twice the points, second-order accurate.
     pub central: bool,
+    /// Whether a search by one-sided differences that has converged goes on with central ones until it has
+    /// converged once more: their error moves the minimum no longer.
+    pub finish: bool,
     /// Whether whoever evaluates may know columns: they are asked for, and only those that it has not are
     /// differenced.
     pub exact: bool,
@@ -70,6 +73,7 @@ impl Default for Settings {
             step_range: 10.0,
             level: 0.0,
             central: false,
+            finish: false,
             exact: false,
         }
     }

@@ -214,7 +214,13 @@ impl LeastSquares {
             *step = differences::next_step(*step, variable, change, &self.settings);
         }
         let small = self.last_decrease < self.settings.decrease;
-        if small || self.gradient_ratio() < self.settings.gradient {
+        let converged = small || self.gradient_ratio() < self.settings.gradient;
+        let differenced = self.settings.finish && !self.settings.exact;
+        if converged && differenced && !self.settings.central {
+            self.settings.central = true;
+            self.last_decrease = 1.0;
+            self.plan_columns(Vec::new());
+        } else if converged {
             self.phase = Phase::Over(Ended::Converged);
         } else if self.iteration >= self.settings.iterations {
             self.phase = Phase::Over(Ended::Iterations);

@@ -36,6 +36,7 @@ pub const CMA_ES: Preset = Preset {
         distance: 1e-3,
         opens_at_recommended: false,
         valley: None,
+        chance: true,
     },
     build: build_as::<CmaEsSettings>,
 };

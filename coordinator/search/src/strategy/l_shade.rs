@@ -35,6 +35,7 @@ pub const L_SHADE: Preset = Preset {
         distance: 0.1,
         opens_at_recommended: true,
         valley: None,
+        chance: true,
     },
     build: build_as::<LShadeSettings>,
 };

@@ -37,6 +37,18 @@ pub struct LevenbergSettings {
     pub heat: u32,
     /// How columns come about.
     pub derivatives: Derivatives,
+    /// How near its floor a descent ends.
+    pub finish: Finish,
+}
+
+/// How near its floor a descent ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Finish {
+    /// Where a step no longer lowers the fitness by a thousandth.
+    Usual,
+    /// Within a hundredth of a standard deviation of the unknowns: differences become central ones at the end.
+    Exact,
 }
 
 /// How the columns of a Jacobian come about.
@@ -91,6 +103,11 @@ pub(super) const SETTINGS: &[Setting] = &[
         Values::Words(&["exact", "differences"]),
         "columns from one simulation where the model gives them, or from one each",
     ),
+    Setting::new(
+        "finish",
+        Values::Words(&["usual", "exact"]),
+        "how near the floor a descent ends: exact goes on with central differences",
+    ),
 ];
 
 /// Rounds after which most descents are at their floor.
@@ -137,13 +154,25 @@ impl Levenberg {
             }
         }
         let search = |(x, fitness): (Vec<f64>, f64)| {
+            let usual = Settings::default();
+            let exact = self.settings.finish == Finish::Exact;
+            // steps that the case states are those that suit its model
+            let stated = self
+                .space
+                .axes()
+                .iter()
+                .any(|axis| axis.unknown.step.is_some());
             let settings = Settings {
+                finish: exact,
+                gradient: if exact { 5e-4 } else { usual.gradient },
+                decrease: if exact { 1e-6 } else { usual.decrease },
+                step_range: if stated { 1.0 } else { usual.step_range },
                 iterations: self.settings.iterations,
                 // a tenth of the residual: far above rounding, within what is nearly linear
                 change: 0.1 * libm::sqrt(fitness),
                 level: self.settings.level,
                 exact: self.settings.derivatives == Derivatives::Exact,
-                ..Settings::default()
+                ..usual
             };
             (LeastSquares::new(self.variables(&x), settings), 0)
         };

@@ -86,6 +86,8 @@ pub struct Promise {
     pub opens_at_recommended: bool,
     /// Evaluations within which it finds a narrow valley on a plateau, if it does.
     pub valley: Option<usize>,
+    /// Whether the seed decides where it goes.
+    pub chance: bool,
 }
 
 impl Preset {

@@ -12,7 +12,7 @@ use super::{
     ask_tell::Strategy,
     conductor::Conductor,
     design::{Points, hypercube},
-    levenberg::{self, Derivatives, Levenberg, LevenbergSettings},
+    levenberg::{self, Derivatives, Finish, Levenberg, LevenbergSettings},
     memetic::{
         generations::Memetic,
         settings::{self as memetic_settings, MemeticSettings},
@@ -50,6 +50,7 @@ pub const QUICK: Preset = Preset {
         distance: 0.01,
         opens_at_recommended: true,
         valley: Some(1_100),
+        chance: true,
     },
     build: build_as::<QuickSettings>,
 };
@@ -82,12 +83,13 @@ pub const DESCENT: Preset = Preset {
         named: "",
         place: "/parts/1/least_squares",
         table: levenberg::SETTINGS,
-        without: &["starts", "apart", "heat"],
+        without: &["starts", "apart", "heat", "finish"],
     }],
     promise: Promise {
         // it stays in the basin that it begins in
         many_basins: 1e3,
         valley: None,
+        chance: false,
         ..LEAST_SQUARES.promise
     },
     ..QUICK
@@ -232,6 +234,7 @@ impl QuickSettings {
         if let Some(Part::LeastSquares(descent)) = parts.last_mut() {
             descent.starts = 1;
             descent.iterations = 50;
+            descent.finish = Finish::Exact;
         }
         let descent = parts.pop();
         let mut parts = vec![Part::Points { points: 1 }];
@@ -258,6 +261,7 @@ impl QuickSettings {
             level: 1e-3,
             heat: 6,
             derivatives: Derivatives::Exact,
+            finish: Finish::Usual,
         }));
         Self { trust, parts }
     }

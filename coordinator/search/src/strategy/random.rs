@@ -31,6 +31,7 @@ pub const RANDOM: Preset = Preset {
         distance: 1.5,
         opens_at_recommended: false,
         valley: None,
+        chance: true,
     },
     build: build_as::<RandomSettings>,
 };

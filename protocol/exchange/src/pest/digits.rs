@@ -29,13 +29,13 @@ pub fn fit(value: f64, width: usize) -> Option<String> {
     (!lost).then(|| pointed(best, width))
 }
 
-/// With a point where there is room for one: a program that reads integers where it finds them takes it for a real
-/// number.
+/// With a point and a zero where there is room for both: a program that reads integers where it finds them takes it
+/// for a real number.
 fn pointed(text: String, width: usize) -> String {
-    if text.contains(['.', 'e']) || text.len() >= width {
+    if text.contains(['.', 'e']) || text.len() + 2 > width {
         text
     } else {
-        text + "."
+        text + ".0"
     }
 }
 
@@ -48,13 +48,13 @@ mod tests {
     fn as_many_digits_as_fit_are_written() {
         for (value, width, text) in [
             (12.5, 17, "12.5"),
-            (3.0, 8, "3."),
+            (3.0, 8, "3.0"),
             (3.0, 1, "3"),
             (std::f64::consts::PI, 5, "3.142"),
             (-std::f64::consts::PI, 5, "-3.14"),
             (1.0e-7, 6, "1e-7"),
             (123_456_789.0, 6, "1.23e8"),
-            (0.0, 3, "0."),
+            (0.0, 3, "0.0"),
         ] {
             assert_eq!(
                 fit(value, width).as_deref(),

@@ -51,6 +51,7 @@ pub(super) const PROMISE: Promise = Promise {
     distance: 0.3,
     opens_at_recommended: false,
     valley: None,
+    chance: true,
 };
 
 impl Recipe for MemeticSettings {
