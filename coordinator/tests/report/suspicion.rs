@@ -401,7 +401,7 @@ fn estimate(effect: &EffectDescriptor, value: f64, ln_evidence: f64) -> Estimate
     Estimate {
         id: effect.id.clone(),
         title: effect.title.clone(),
-        unknown: None,
+        unknowns: Vec::new(),
         parameters: parameters.collect(),
         p_value: 0.0,
         ln_evidence,

@@ -3,7 +3,7 @@
 //!
 //! A band spans what the record does not refuse: the linear one, each unknown within its own interval, and
 //! the curves of the outermost point of each profile's side. It is one of the simulated curve; noise is not in it.
-use super::answer::{Band, Curve, Sight};
+use super::answer::{Band, Curve, End, Sight};
 use super::profile::{Mark, NEAR, Next, RISE};
 use super::walk::Walked;
 use crate::laboratory::{Laboratory, channels};
@@ -81,17 +81,22 @@ fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
     curves
 }
 
-/// Covariance of the variables with every unknown within its own interval, the misfit counted in.
+/// Covariance of the variables, the misfit counted in; an unknown that the record does not see from both sides
+/// stays within its own interval. Of the others the Jacobian says how far they go.
 pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let fit = &walked.fit;
     let mut information = super::information::with_priors(jacobian, fit.variables());
     let misfit = walked.rise / RISE;
     for (k, _) in fit.model.space.axes().iter().enumerate() {
-        let mut width = 0.0;
+        let (mut width, mut seen) = (0.0, true);
         for side in walked.of(k) {
-            if let Next::Over(_, at) = walked.end(side) {
+            if let Next::Over(end, at) = walked.end(side) {
                 width += (at - fit.x()[k]).abs();
+                seen &= end == End::Rises;
             }
+        }
+        if seen {
+            continue;
         }
         let deviation = 0.5 * width / RISE.sqrt();
         if deviation > 0.0 {

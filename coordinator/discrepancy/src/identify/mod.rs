@@ -63,7 +63,9 @@ pub async fn identify<L: Laboratory>(
     let mut shown = experiments.during(Stage::Show);
     let sights = band::sights(&mut shown, &walked, conditions).await?;
     let phi = misfit(fit.chi_squared(), fit.entries());
-    let is_noise = base.is_noise(fit.chi_squared(), fit.x().len(), inputs.thresholds.adequacy);
+    // less than the noise that was stated is nothing to explain
+    let is_noise = fit.chi_squared() <= base.noise()
+        || base.is_noise(fit.chi_squared(), fit.x().len(), inputs.thresholds.adequacy);
     Ok(Some(Identified {
         genes: fit.model.genes(fit.x()),
         unknowns: estimate::estimates(&walked),

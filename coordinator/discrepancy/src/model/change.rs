@@ -57,7 +57,7 @@ fn term_of_nuisance(model: &Model, x: &[f64], nuisance: &Tolerated) -> Option<Te
 /// of the case.
 fn column_name(model: &Model, effect: &EffectDescriptor, parameter: &str) -> String {
     if is_off(model, effect) {
-        effect.id.clone()
+        parameter.to_owned()
     } else {
         format!("{}.{parameter}", effect.id)
     }

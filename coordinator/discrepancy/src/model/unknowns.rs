@@ -101,7 +101,7 @@ impl Model {
                 start: 0.0,
                 lower: interval.from,
                 upper: interval.to,
-                step: STEP,
+                step: axis.unknown.step.unwrap_or(STEP),
                 longest: LONGEST,
                 prior: prior.or(Some(match self.unstated {
                     Unstated::Recommended => Prior {
@@ -135,8 +135,9 @@ impl Model {
     pub fn genes(&self, x: &[f64]) -> Vec<f64> {
         let mut values = self.space.values(&x[..self.space.dimension()]);
         for (off, setting) in self.settings(x) {
-            if let (Some(off), Some((_, value))) = (off, setting.parameters.first()) {
-                values[off.position] = *value;
+            let positions = off.into_iter().flat_map(|off| &off.positions);
+            for (position, (_, value)) in positions.zip(&setting.parameters) {
+                values[*position] = *value;
             }
         }
         values

@@ -10,9 +10,9 @@ pub struct Estimate {
     pub id: String,
     /// In words.
     pub title: String,
-    /// The place in the case of the unknown that it is, if it is one that was off; its value is where to
-    /// start from. Nothing of an effect.
-    pub unknown: Option<usize>,
+    /// Places in the case of the unknowns that it is, parameter by parameter, if they were off; their values are
+    /// where to start from. Empty of an effect.
+    pub unknowns: Vec<usize>,
     /// Its parameters, in the effect's order.
     pub parameters: Vec<ParameterEstimate>,
     /// Family-wise p-value of its score test.
@@ -86,12 +86,12 @@ fn estimate(round: &Round, id: &str, after: &Fit) -> Option<Estimate> {
     Some(Estimate {
         id: id.to_owned(),
         title: effect.title.clone(),
-        unknown: fit
+        unknowns: fit
             .model
             .off
             .iter()
             .find(|off| off.suspect.id == id)
-            .map(|off| off.position),
+            .map_or_else(Vec::new, |off| off.positions.clone()),
         parameters: parameters.collect(),
         p_value: suspect.map_or(1.0, |s| family_wise(s.p_value(), round.suspects.len())),
         ln_evidence: round.nats(log_evidence),

@@ -468,8 +468,8 @@ fn an_unknown_that_is_off_is_a_suspect() {
     assert_eq!(answer.verdict, Verdict::Named, "{said}");
     let found = &answer.effects[0];
     assert_eq!(
-        (found.id.as_str(), found.unknown),
-        ("softening", Some(1)),
+        (found.id.as_str(), &found.unknowns[..]),
+        ("softening", &[1][..]),
         "{said}"
     );
     assert!(

@@ -18,7 +18,7 @@ pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
     let found = (1..).zip(&diagnosis.rounds).filter_map(|(number, round)| {
         let id = round.added.as_ref()?;
         let found = diagnosis.effects.iter().find(|effect| effect.id == *id)?;
-        let effect = found.unknown.is_none();
+        let effect = found.unknowns.is_empty();
         effect.then(|| entry(subject, found, number, &round.set))
     });
     found.collect()
@@ -27,11 +27,12 @@ pub fn effects(subject: &Subject<'_>) -> Vec<CaseEffect> {
 /// Unknowns of the case that were off and are not any more, with the values to start from.
 pub fn starts(subject: &Subject<'_>) -> Vec<(String, f64)> {
     let found = subject.diagnosis().effects.iter();
-    let found = found.filter_map(|one| {
-        let name = &subject.case.unknowns.get(one.unknown?)?.name;
-        Some((name.clone(), one.parameters.first()?.value))
+    let each = found.flat_map(|one| one.unknowns.iter().zip(&one.parameters));
+    let named = each.filter_map(|(position, parameter)| {
+        let unknown = subject.case.unknowns.get(*position)?;
+        Some((unknown.name.clone(), parameter.value))
     });
-    found.collect()
+    named.collect()
 }
 
 fn entry(subject: &Subject<'_>, found: &Estimate, round: u32, set: &[String]) -> CaseEffect {

@@ -58,7 +58,7 @@ fn estimate(id: &str) -> Estimate {
     Estimate {
         id: id.to_owned(),
         title: "Drift of the gauges".to_owned(),
-        unknown: None,
+        unknowns: Vec::new(),
         parameters: vec![ParameterEstimate {
             name: "size".to_owned(),
             unit: "MPa".to_owned(),
