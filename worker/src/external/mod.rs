@@ -15,3 +15,14 @@ mod simulator;
 pub mod start;
 
 pub use simulator::Externals;
+
+/// Removes what a slot left that was ended in the middle of a run.
+pub(crate) fn tidy() {
+    // without a list nothing was ever started here
+    let allowed = exchange::allow::read(&exchange::allow::path()).unwrap_or_default();
+    let places = allowed.entry.values().map(scratch::place);
+    let places: std::collections::BTreeSet<std::path::PathBuf> = places.collect();
+    for place in places {
+        scratch::clean(&place);
+    }
+}

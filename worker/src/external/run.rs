@@ -139,12 +139,14 @@ fn watch(
 
 /// What a status says, with the last lines of what the program said.
 pub(super) fn words(status: ExitStatus, scratch: &Scratch) -> String {
-    let how = match (status.signal(), status.code()) {
+    // a shell says the signal that ended what it had started
+    let of_child = status.code().filter(|code| (129..160).contains(code));
+    let signal = status.signal().or(of_child.map(|code| code - 128));
+    let how = match (signal, status.code()) {
         (Some(25), _) => {
-            "ended by signal 25: it wrote a longer file than its entry allows (output_mib)"
-                .to_owned()
+            "was ended: it wrote a longer file than its entry allows (output_mib)".to_owned()
         }
-        (Some(signal), _) => format!("ended by signal {signal}"),
+        (Some(signal), _) => format!("was ended by signal {signal}"),
         (None, Some(127)) => "could not be started, or ended with status 127".to_owned(),
         (None, Some(code)) => format!("ended with status {code}"),
         (None, None) => "ended without a status".to_owned(),

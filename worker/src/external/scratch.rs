@@ -1,7 +1,7 @@
 //! The folder of one evaluation: made, filled with the case's files, removed.
 //!
-//! Its name begins with the number of the process that made it, so that what a killed one leaves is found and
-//! removed by the next.
+//! A file in it is locked as long as its process lives, so that what a killed one leaves is known as such, in
+//! whatever namespace it ran, and removed by the next.
 use exchange::allow::Entry;
 use protocol::external::File;
 use std::{
@@ -11,10 +11,17 @@ use std::{
     path::{Component, Path, PathBuf},
     process,
     sync::atomic::{AtomicU64, Ordering},
+    time::Duration,
 };
 
 /// Begin of the names of all such folders.
 const PREFIX: &str = "horsehead-";
+
+/// The file that is locked, and the one that says that the folder is to stay.
+const LOCK: &str = "lock";
+const KEPT: &str = "kept";
+/// A folder without a lock is one that is being made, unless it is older than this.
+const NEW: Duration = Duration::from_mins(1);
 
 /// Numbers the folders of this process.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
@@ -23,6 +30,8 @@ static NUMBER: AtomicU64 = AtomicU64::new(0);
 #[derive(Debug)]
 pub(super) struct Scratch {
     root: PathBuf,
+    /// Says that somebody is at work here.
+    _lock: fs::File,
     /// Whether it stays where it is.
     kept: bool,
 }
@@ -35,13 +44,23 @@ pub(super) fn place(entry: &Entry) -> PathBuf {
 impl Scratch {
     /// Makes one.
     pub(super) fn new(place: &Path) -> io::Result<Self> {
-        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
-        let root = place.join(format!("{PREFIX}{}-{number}", process::id()));
-        // of an earlier process of this number
-        drop(fs::remove_dir_all(&root));
         let make = |path: &Path| fs::DirBuilder::new().mode(0o700).create(path);
-        make(&root)?;
-        let scratch = Self { root, kept: false };
+        let root = loop {
+            let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+            let root = place.join(format!("{PREFIX}{}-{number}", process::id()));
+            match make(&root) {
+                // a process of this number, in another namespace or another time
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                made => break made.map(|()| root)?,
+            }
+        };
+        let lock = fs::File::create(root.join(LOCK))?;
+        lock.lock()?;
+        let scratch = Self {
+            root,
+            _lock: lock,
+            kept: false,
+        };
         make(&scratch.work())?;
         Ok(scratch)
     }
@@ -104,7 +123,7 @@ impl Scratch {
     pub(super) fn keep(&mut self) -> &Path {
         self.kept = true;
         // a sign for whoever cleans up
-        drop(fs::write(self.root.join("kept"), ""));
+        drop(fs::write(self.root.join(KEPT), ""));
         &self.root
     }
 }
@@ -135,18 +154,32 @@ pub(super) fn clean(place: &Path) {
     let entries = fs::read_dir(place).into_iter().flatten().flatten();
     for entry in entries {
         let name = entry.file_name();
-        let owner = name.to_str().and_then(|name| {
-            let (owner, number) = name.strip_prefix(PREFIX)?.split_once('-')?;
-            number.parse::<u64>().ok()?;
-            owner.parse::<u32>().ok()
+        let is_ours = name.to_str().is_some_and(|name| {
+            let numbers = name
+                .strip_prefix(PREFIX)
+                .and_then(|rest| rest.split_once('-'));
+            numbers.is_some_and(|(owner, number)| {
+                [owner, number]
+                    .iter()
+                    .all(|part| part.parse::<u64>().is_ok())
+            })
         });
-        let is_over =
-            owner.is_some_and(|owner| !Path::new("/proc").join(owner.to_string()).exists());
-        if is_over && !entry.path().join("kept").exists() {
+        let path = entry.path();
+        if is_ours && !path.join(KEPT).exists() && is_over(&path) {
             // another user's stays
-            drop(fs::remove_dir_all(entry.path()));
+            drop(fs::remove_dir_all(path));
         }
     }
+}
+
+/// Whether nobody is at work in a folder.
+fn is_over(folder: &Path) -> bool {
+    if let Ok(lock) = fs::File::open(folder.join(LOCK)) {
+        return lock.try_lock().is_ok();
+    }
+    let made = fs::metadata(folder).and_then(|found| found.modified()).ok();
+    let age = made.and_then(|made| made.elapsed().ok());
+    age.is_some_and(|age| age > NEW)
 }
 
 #[cfg(test)]
@@ -177,18 +210,21 @@ mod tests {
             fs::create_dir(&path).unwrap();
             path
         };
-        // no process has the largest number
-        let [left, kept, own, other] = [
-            make("horsehead-4294967295-0"),
-            make("horsehead-4294967295-1"),
-            make(&format!("horsehead-{}-7", process::id())),
+        let [left, kept, other, new] = [
+            make("horsehead-7-0"),
+            make("horsehead-7-1"),
             make("horsehead-x"),
+            make("horsehead-7-2"),
         ];
+        for folder in [&left, &kept] {
+            fs::write(folder.join(LOCK), "").unwrap();
+        }
+        let own = Scratch::new(place.path()).unwrap();
         fs::write(kept.join("kept"), "").unwrap();
         clean(place.path());
         assert_eq!(
-            [left, kept, own, other].map(|path| path.exists()),
-            [false, true, true, true]
+            [left, kept, other, new, own.root.clone()].map(|path| path.exists()),
+            [false, true, true, true, true]
         );
     }
 }

@@ -1,6 +1,6 @@
 //! The process of one slot, seen from its worker.
 use super::task::{CaseBytes, SlotOptions};
-use crate::{process_tree, slot, stream};
+use crate::{external, process_tree, slot, stream};
 use protocol::{
     id::ContentHash,
     job::Job,
@@ -127,7 +127,9 @@ impl Child {
     /// Ends it and says how it ended.
     pub(super) fn end(mut self) -> String {
         self.kill();
-        match self.process.wait() {
+        let ended = self.process.wait();
+        external::tidy();
+        match ended {
             Ok(status) => words(status, self.memory_mib),
             Err(error) => format!("its end is unknown: {error}"),
         }
@@ -162,6 +164,7 @@ impl Drop for Child {
     fn drop(&mut self) {
         self.kill();
         drop(self.process.wait());
+        external::tidy();
     }
 }
 

@@ -42,6 +42,10 @@ impl Proof {
     pub(super) fn of(outcome: Option<Outcome>, repeats: bool) -> Result<Self, String> {
         match outcome {
             None => Ok(Self::Missing),
+            Some(
+                Outcome::Done(_)
+                | Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
+            ) if !repeats => Ok(Self::Known(ContentHash::of(b"not compared"))),
             Some(Outcome::Failed(
                 failure @ (Failure::Crashed { .. }
                 | Failure::Deadline { .. }
@@ -50,10 +54,6 @@ impl Proof {
             )) => Err(format!(
                 "the reference individual of the case cannot be computed here: {failure}"
             )),
-            Some(
-                Outcome::Done(_)
-                | Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
-            ) if !repeats => Ok(Self::Known(ContentHash::of(b"not compared"))),
             Some(outcome) => match wire::encode(&outcome) {
                 Ok(bytes) => Ok(Self::Known(ContentHash::of(&bytes))),
                 Err(error) => Err(format!("the reference individual has no name: {error}")),

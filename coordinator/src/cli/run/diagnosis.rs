@@ -11,7 +11,7 @@ use crate::{
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
 use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
-use protocol::announce::EffectDescriptor;
+use protocol::{announce::EffectDescriptor, case::Case};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -79,7 +79,12 @@ pub(crate) async fn diagnose<E: Evaluator>(
     let own = &manifest.settings;
     let inputs = Inputs {
         differences: own.differences,
-        ..inputs(loaded, manifest, &own.thresholds, (library, "quick"))?
+        ..inputs(
+            loaded,
+            manifest,
+            &own.thresholds,
+            (library, entrance(&loaded.case)),
+        )?
     };
     let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
     let off = off.into_iter().map(|off| off.suspect);
@@ -87,6 +92,13 @@ pub(crate) async fn diagnose<E: Evaluator>(
         diagnosed,
         library: inputs.library.into_iter().chain(off).collect(),
     })
+}
+
+/// The search that finds the way into the valley: where no valley is narrow, descents find it in a fraction of the
+/// simulations.
+fn entrance(case: &Case) -> &'static str {
+    let narrow = case.unknowns.iter().any(|unknown| unknown.valley.is_some());
+    if narrow { "quick" } else { "least-squares" }
 }
 
 /// What is fitted: the calibrated condition's record first. The library is without the effects of the case,

@@ -1,0 +1,1 @@
+! Put the macro that builds your model here.

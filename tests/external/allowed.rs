@@ -1,0 +1,87 @@
+//! What may be started is decided by the machine alone.
+use crate::rig::Rig;
+use std::fs;
+
+const GOOD: &str = "printf 'y\\n1\\n2\\n4\\n' > out.csv\n";
+
+#[test]
+fn nothing_is_started_that_was_not_allowed() {
+    let rig = Rig::new();
+    rig.shell_case(GOOD, "");
+    let said = rig.refused(&["simulate", "case"]);
+    assert!(
+        said.contains("does not allow") && said.contains("horsehead allow"),
+        "{said}"
+    );
+    let shown = rig.object(&["allow", "case", "--dry-run"]);
+    assert_eq!(
+        (&shown["entry"], &shown["written"]),
+        (&"shell".into(), &false.into())
+    );
+    assert!(!rig.file("allow.toml").exists());
+    rig.done(&["allow", "case"]);
+    rig.done(&["simulate", "case", "--out", "shown"]);
+    // other files are another program
+    fs::write(
+        rig.file("case/model.sh"),
+        "echo mischief > mischief\n".to_owned() + GOOD,
+    )
+    .unwrap();
+    let said = rig.refused(&["simulate", "case"]);
+    assert!(said.contains("files are not those"), "{said}");
+    rig.done(&["allow", "case"]);
+    rig.done(&["simulate", "case", "--out", "shown"]);
+    fs::write(rig.file("allow.toml"), "[entry.shell]\nprogramme = 1\n").unwrap();
+    let said = rig.refused(&["simulate", "case"]);
+    assert!(
+        said.contains("allow.toml") && said.contains("programme"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_a_case_has_wrong_is_said_by_file_and_field() {
+    let rig = Rig::new();
+    for (from, to, words) in [
+        (
+            "files = [\"model.sh\"]",
+            "files = [\"../model.sh\"]",
+            "model.files",
+        ),
+        ("files = [\"model.sh\"]", "files = [\"nowhere\"]", "nowhere"),
+        ("deadline_s = 20.0", "deadline_s = 0.0", "deadline_s"),
+        (
+            "braces = \"in.tpl\"",
+            "braces = \"in.tpl\", dakota = \"json\"",
+            "exactly one",
+        ),
+        (
+            "column = \"y\" }\n[obj",
+            "column = \"y\", file2 = \"z\" }\n[obj",
+            "file2",
+        ),
+        (
+            "file = \"out.csv\", column",
+            "file = \"out.cvs\", column",
+            "did you mean `out.csv`",
+        ),
+        ("entry = \"shell\"", "entry = \"a b\"", "model.entry"),
+        ("name = \"x\"", "name = \"z\"", "\"x\" is not allowed"),
+        (
+            "[model]\n",
+            "[model]\nverdicts = { 0 = \"fine\" }\n",
+            "verdicts",
+        ),
+    ] {
+        rig.shell_case(GOOD, "");
+        let path = rig.file("case/case.toml");
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from), "{from}");
+        fs::write(&path, text.replacen(from, to, 1)).unwrap();
+        let said = rig.refused(&["case", "check", "case"]);
+        assert!(
+            said.contains(words) && said.contains("case.toml"),
+            "{words}: {said}"
+        );
+    }
+}

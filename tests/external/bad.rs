@@ -1,0 +1,135 @@
+//! Programs that do everything wrong: each costs its own individual, says why, and leaves nothing behind.
+use crate::rig::Rig;
+use std::{
+    fs,
+    time::{Duration, Instant},
+};
+
+/// Why a simulation with such a program failed.
+fn failure(rig: &Rig) -> String {
+    let said = rig.refused(&["simulate", "case"]);
+    assert_eq!(rig.left(), Vec::<String>::new());
+    said
+}
+
+#[test]
+fn what_went_wrong_is_said_in_the_programs_own_words() {
+    for (program, words) in [
+        (
+            "echo the licence has run out >&2\nexit 1\n",
+            "the licence has run out",
+        ),
+        ("exit 0\n", "no file `out.csv`"),
+        ("printf 'y\\n1\\n2\\n' > out.csv\n", "2 values"),
+        ("printf 'y\\n1\\n2\\n4' | head -c 5 > out.csv\n", "2 values"),
+        ("printf 'y\\n1\\nNaN\\n4\\n' > out.csv\n", "line 3: `NaN`"),
+        ("printf 'z\\n1\\n2\\n4\\n' > out.csv\n", "column `y`"),
+        ("ln -s /etc/passwd out.csv\n", "no plain file"),
+        ("mkfifo out.csv\n", "no plain file"),
+        ("kill -9 $$\n", "signal 9"),
+    ] {
+        let said = failure(&Rig::shell(program, ""));
+        assert!(said.contains(words), "{program}: {said}");
+    }
+    let said = failure(&Rig::shell("exit 0\n", "").tap(|rig| rig.limit("/bin/sh", "/bin/nothing")));
+    assert!(said.contains("/bin/nothing"), "{said}");
+}
+
+#[test]
+fn what_hangs_is_ended_with_all_that_it_has_started() {
+    // a process of another session, without parent and without environment
+    let program =
+        "(setsid env -i /bin/sh -c 'echo $$ > '$PWD'/../../pid; sleep 600' &) ; sleep 600\n";
+    let rig = Rig::shell(program, "");
+    rig.limit("wall_s = 3600.0", "wall_s = 1.0");
+    let began = Instant::now();
+    let said = failure(&rig);
+    assert!(said.contains("longer than 1.0 s"), "{said}");
+    assert!(began.elapsed() < Duration::from_secs(60));
+    let pid = fs::read_to_string(rig.file("pid")).unwrap();
+    let path = format!("/proc/{}", pid.trim());
+    let is_over =
+        || !fs::read_to_string(format!("{path}/cmdline")).is_ok_and(|line| line.contains("sleep"));
+    tests::process::wait_until("its end", Duration::from_secs(10), is_over);
+}
+
+#[test]
+fn what_writes_without_end_is_ended() {
+    for program in ["while :; do echo nonsense; done\n", "cat /dev/zero > big\n"] {
+        let rig = Rig::shell(program, "");
+        rig.limit("output_mib = 256", "output_mib = 4");
+        let said = failure(&rig);
+        assert!(said.contains("output_mib"), "{said}");
+    }
+}
+
+#[test]
+fn what_the_program_calls_a_verdict_is_not_tried_again() {
+    let program = "echo run >> ../../count\nexit 3\n";
+    let rig = Rig::shell(program, "verdicts = { 3 = \"diverged\" }");
+    let shown = rig.run(&["simulate", "case", "--output", "json"]);
+    let text = String::from_utf8_lossy(&shown.stdout).into_owned();
+    assert!(text.contains("diverged"), "{text}");
+    // once by itself, and once for each worker that joined
+    let runs = fs::read_to_string(rig.file("count"))
+        .unwrap()
+        .lines()
+        .count();
+    assert!(runs <= 3, "{runs}");
+}
+
+/// After the first individuals have all failed there is one message with the program's last words.
+#[test]
+fn a_run_in_which_everything_fails_stops_and_says_why() {
+    let rig = Rig::shell("echo no such mesh >&2\nexit 1\n", "");
+    let said = rig.refused(&[
+        "calibrate",
+        "case",
+        "--preset",
+        "least-squares",
+        "--run",
+        "run",
+    ]);
+    let last = said.lines().rev().take(12).collect::<Vec<_>>().join("\n");
+    assert!(last.contains("no such mesh"), "{said}");
+}
+
+#[test]
+fn a_folder_of_a_failed_run_stays_where_that_is_wanted() {
+    let rig = Rig::shell("echo 7 > trace\nexit 1\n", "");
+    rig.limit("keep_failed = false", "keep_failed = true");
+    let said = rig.refused(&["simulate", "case"]);
+    assert!(said.contains("its folder is kept"), "{said}");
+    let left = rig.left();
+    let trace = rig.file(left.first().expect("a folder")).join("work/trace");
+    assert_eq!(fs::read_to_string(trace).unwrap(), "7\n");
+}
+
+#[test]
+fn no_more_run_at_a_time_than_a_machine_allows() {
+    // whoever finds another at work says so
+    let program = "mkdir ../../busy || { echo two at a time >&2; exit 1; }\nsleep 0.05\nrmdir ../../busy\n\
+                   printf 'y\\n1\\n2\\n4\\n' > out.csv\n";
+    let rig = Rig::shell(program, "");
+    rig.limit("cores = 1", "cores = 1\nat_once = 1");
+    rig.done(&[
+        "calibrate",
+        "case",
+        "--preset",
+        "random",
+        "--set",
+        "points=20",
+        "--run",
+        "run",
+    ]);
+}
+
+/// Something is done to a value on its way.
+trait Tap: Sized {
+    fn tap(self, with: impl FnOnce(&Self)) -> Self {
+        with(&self);
+        self
+    }
+}
+
+impl Tap for Rig {}

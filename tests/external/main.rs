@@ -1,0 +1,8 @@
+//! Models that are programs of somebody's own, from the files that they come with to an answer: PEST's models beside
+//! what PEST++ found, a Python program with an effect that the case starts without, and programs that do everything
+//! wrong. The programs are Python's or the shell's; nothing else is installed.
+mod allowed;
+mod bad;
+mod bench;
+mod pest;
+mod rig;

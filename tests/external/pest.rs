@@ -1,0 +1,133 @@
+//! Three models in PEST's files beside what PEST++ found with them.
+use crate::rig::{Rig, source};
+use serde_json::Value;
+use std::fs;
+
+/// What PEST++ found.
+fn found(model: &str) -> Value {
+    let text = fs::read_to_string(source("pest").join("pestpp.json")).unwrap();
+    serde_json::from_str::<Value>(&text).unwrap()[model].take()
+}
+
+/// Imports a model and allows its program.
+fn imported(model: &str) -> Rig {
+    let rig = Rig::new();
+    let control = source("pest").join(model).join("model.pst");
+    let made = rig.object(&["case", "import", control.to_str().unwrap(), "case"]);
+    assert_eq!(made["notes"].as_array().unwrap().len(), 0, "{made}");
+    rig.done(&["allow", "case"]);
+    rig
+}
+
+/// The value in which PEST++ counts standard deviations: the logarithm of what it estimates by that.
+fn counted(model: &str, name: &str, value: f64) -> f64 {
+    if (model, name) == ("decay", "floor") {
+        value
+    } else {
+        value.log10()
+    }
+}
+
+/// The same parameters within a hundredth of PEST++'s standard deviations, the same objective to four digits, at
+/// half of its runs.
+fn calibrated(model: &str) {
+    let (rig, expected) = (imported(model), found(model));
+    let result = rig.object(&["calibrate", "case", "--preset", "descent", "--run", "run"]);
+    let runs = result["evaluations"].as_u64().unwrap();
+    assert!(
+        2 * runs <= expected["runs"].as_u64().unwrap(),
+        "{model}: {runs} runs"
+    );
+    let phi = result["objective"]["optimised"].as_f64().unwrap();
+    let least = expected["phi"]
+        .as_array()
+        .unwrap()
+        .last()
+        .unwrap()
+        .as_f64()
+        .unwrap();
+    assert!(
+        (phi / least - 1.0).abs() < 5e-5,
+        "{model}: {phi} and {least}"
+    );
+    for (name, own) in expected["in_estimation_space"].as_object().unwrap() {
+        let value = result["unknowns"][name]["value"].as_f64().unwrap();
+        let theirs = expected["parameters"][name].as_f64().unwrap();
+        let off = counted(model, name, value) - counted(model, name, theirs);
+        let sd = own["sd"].as_f64().unwrap();
+        assert!(
+            (off / sd).abs() < 0.01,
+            "{model}: {name} is off by {} sd",
+            off / sd
+        );
+    }
+    for file in ["calibrated.par", "residuals.rei"] {
+        let text = fs::read_to_string(rig.file("run").join(file)).unwrap();
+        assert!(text.lines().count() > 3, "{text}");
+    }
+    assert_eq!(rig.left(), Vec::<String>::new());
+}
+
+#[test]
+fn parameters_and_objective_are_those_of_pest() {
+    for model in ["decay", "cantilever", "tanks"] {
+        calibrated(model);
+    }
+}
+
+/// Half a 95 % interval in standard deviations.
+const NORMAL: f64 = 1.96;
+
+/// Standard deviations of parameters and predictions lie within a tenth of PEST++'s. Those of its predictions are
+/// its own after it has lowered the weights of large residuals, those of ours are not.
+#[test]
+fn uncertainties_are_those_of_pest() {
+    for model in ["cantilever", "tanks"] {
+        let (rig, expected) = (imported(model), found(model));
+        let result = rig.object(&["identify", "case", "--run", "run"]);
+        assert_eq!(result["diagnose_first"], false, "{model}");
+        for (name, own) in expected["in_estimation_space"].as_object().unwrap() {
+            let [low, high] =
+                [0, 1].map(|end| result["unknowns"][name]["ci95"][end].as_f64().unwrap());
+            let half = 0.5 * (counted(model, name, high) - counted(model, name, low));
+            let ratio = half / NORMAL / own["sd"].as_f64().unwrap();
+            assert!((ratio - 1.0).abs() < 0.1, "{model}: {name} {ratio}");
+        }
+        let channel = if model == "tanks" {
+            "predictions"
+        } else {
+            "unseen"
+        };
+        let band = &result["prediction"]["model"][channel];
+        for (at, (name, own)) in expected["predictions"]
+            .as_object()
+            .unwrap()
+            .iter()
+            .enumerate()
+        {
+            let [low, high] = ["low", "high"].map(|end| band[end][at].as_f64().unwrap());
+            let ratio = 0.5 * (high - low) / NORMAL / own["sd"].as_f64().unwrap();
+            assert!((ratio - 1.0).abs() < 0.1, "{model}: {name} {ratio}");
+        }
+    }
+}
+
+#[test]
+fn what_is_there_is_not_written_over_and_what_cannot_be_read_is_said() {
+    let rig = Rig::new();
+    let control = source("pest/decay/model.pst");
+    let control = control.to_str().unwrap();
+    fs::create_dir(rig.file("case")).unwrap();
+    let said = rig.refused(&["case", "import", control, "case"]);
+    assert!(said.contains("exists already"), "{said}");
+    let text = fs::read_to_string(control).unwrap();
+    fs::write(rig.file("bad.pst"), text.replace("y03 9.106215", "y03 9,1")).unwrap();
+    let said = rig.refused(&["case", "import", "bad.pst"]);
+    assert!(
+        said.contains("line 23") && said.contains("obsval"),
+        "{said}"
+    );
+    assert!(!rig.file("bad").exists());
+    let said = rig.refused(&["case", "import", "nowhere.pst"]);
+    assert!(said.contains("nowhere.pst"), "{said}");
+}
