@@ -181,7 +181,7 @@ fn what_does_not_belong_is_named() {
         wire::unseal::<ToWorker>(Kind::ToWorker, &frame).unwrap_err()
     };
     assert_eq!(with(0, b'X'), WireError::Magic { found: *b"XH" });
-    assert_eq!(with(2, 9), WireError::Version { found: 9 });
+    assert_eq!(with(2, 99), WireError::Version { found: 99 });
     assert_eq!(
         with(3, 2),
         WireError::Kind {

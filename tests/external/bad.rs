@@ -45,7 +45,7 @@ fn what_hangs_is_ended_with_all_that_it_has_started() {
     let began = Instant::now();
     let said = failure(&rig);
     assert!(said.contains("longer than 1.0 s"), "{said}");
-    assert!(began.elapsed() < Duration::from_secs(60));
+    assert!(began.elapsed() < Duration::from_mins(1));
     let pid = fs::read_to_string(rig.file("pid")).unwrap();
     let path = format!("/proc/{}", pid.trim());
     let is_over =

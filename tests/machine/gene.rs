@@ -18,7 +18,7 @@ use protocol::{
 use search::space::Space;
 use search::strategy::{
     Settings, build,
-    levenberg::{Derivatives, LevenbergSettings},
+    levenberg::{Derivatives, Finish, LevenbergSettings},
     memetic::MemeticSettings,
     quick::{Part, QuickSettings},
 };
@@ -272,6 +272,7 @@ fn a_calibration_finds_the_sizes_of_effects() {
                 level: 0.0,
                 heat: 100,
                 derivatives: Derivatives::Exact,
+                finish: Finish::Usual,
             }),
         ],
     );

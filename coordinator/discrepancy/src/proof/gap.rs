@@ -46,7 +46,9 @@ impl Gap {
             .collect();
         let mean = residual.iter().sum::<f64>() / n as f64;
         if !absolute && n > 1 {
-            residual.iter_mut().for_each(|x| *x -= mean);
+            for x in &mut residual {
+                *x -= mean;
+            }
         }
         let spread = record.spread.iter().map(|x| x * x).sum::<f64>() / n as f64;
         Some(Self {

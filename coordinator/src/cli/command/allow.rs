@@ -98,7 +98,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         "written to"
     };
     let table = || {
-        let list: String = files.iter().map(|file| format!("#   {file}\n")).collect();
+        let list: String = files.iter().flat_map(|file| ["#   ", file, "\n"]).collect();
         format!(
             "# {words} {}\n{shown}# it finds in its folder:\n{list}",
             path.display()

@@ -1,9 +1,10 @@
 //! PEST's observations as channels: one for each group, over the numbers of its observations. What has no weight is
 //! predicted.
-use super::OBSERVATIONS;
 use exchange::pest::Control;
 use toml_edit::{Array, ArrayOfTables, InlineTable, Table, Value, value};
 
+/// File of the observations.
+pub(super) const OBSERVATIONS: &str = "observations.csv";
 /// Channel of prior information.
 const PRIOR: &str = "prior_information";
 

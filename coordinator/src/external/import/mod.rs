@@ -4,7 +4,7 @@ mod channels;
 mod copy;
 mod unknowns;
 
-use channels::Group;
+use channels::{Group, OBSERVATIONS};
 use exchange::{Problem, pest::Control};
 use std::{
     fs, io,
@@ -14,8 +14,6 @@ use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Val
 
 /// Name of the one condition of such a case.
 const CONDITION: &str = "model";
-/// File of the observations.
-pub(super) const OBSERVATIONS: &str = "observations.csv";
 /// How long one run may take where nobody has said so (s).
 const DEADLINE_S: f64 = 3600.0;
 

@@ -96,7 +96,8 @@ fn difference(own: &Parameter, group: &ParameterGroup, logarithmic: bool) -> Opt
 
 /// How a parameter is written, where not as it is.
 pub(super) fn written(own: &Parameter) -> Option<(String, Value)> {
-    if own.scale == 1.0 && own.offset == 0.0 {
+    let is_plain = own.scale.total_cmp(&1.0).is_eq() && own.offset.total_cmp(&0.0).is_eq();
+    if is_plain {
         return None;
     }
     let parts = [("factor", own.scale), ("offset", own.offset)];

@@ -1,5 +1,5 @@
 //! What a control file says, held against itself; what PEST++ takes in spite of it becomes a note.
-use super::{Control, Parameter, Transform};
+use super::said::{Control, Parameter, Transform};
 use crate::Problem;
 use std::collections::BTreeSet;
 

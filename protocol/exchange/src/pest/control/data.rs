@@ -1,9 +1,11 @@
 //! From the sections of a control file to what they say.
 use super::{
-    Control, IncrementKind, Method, Observation, Pair, Parameter, ParameterGroup, Transform,
     lines::{Lines, Section},
     prior,
     rows::{Row, rows},
+    said::{
+        Control, IncrementKind, Method, Observation, Pair, Parameter, ParameterGroup, Transform,
+    },
 };
 use crate::{Problem, problem::clip};
 

@@ -1,5 +1,5 @@
 //! Prior information: `name factor * log(parameter) + factor * parameter = value weight group`.
-use super::{PriorInformation, PriorTerm};
+use super::said::{PriorInformation, PriorTerm};
 use crate::{Problem, number, problem::clip};
 
 /// Reads the text of one, its name included; `refused` makes a problem of what stands there.

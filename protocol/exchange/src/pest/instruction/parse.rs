@@ -1,5 +1,5 @@
 //! From the text of an instruction file to instructions.
-use super::{Instruction, Instructions, Line, NOBODY};
+use super::list::{Instruction, Instructions, Line, NOBODY};
 use crate::{Problem, problem::clip};
 use std::collections::BTreeSet;
 

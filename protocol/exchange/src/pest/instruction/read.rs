@@ -1,5 +1,5 @@
 //! Instructions carried out on a file.
-use super::{Instruction, Instructions, Line, NOBODY};
+use super::list::{Instruction, Instructions, Line, NOBODY};
 use crate::{Problem, number, problem::clip};
 
 /// Where reading has come to.
