@@ -19,5 +19,6 @@ pub mod pumping_unit;
 pub mod quantile;
 pub mod report;
 pub mod runtime;
+pub mod simulated;
 pub mod store;
 pub mod study;

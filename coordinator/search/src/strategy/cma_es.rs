@@ -188,14 +188,17 @@ impl CmaEs {
         let spread = axes.map(|axis| self.settings.spread * axis.trust.length());
         let spread = DVector::from_iterator(self.space.dimension(), spread);
         let mut stream = self.streams.at(self.restarts, Phase::Initial, 0);
-        let start = self.space.axes().iter().map(|axis| {
-            let anywhere = axis.trust.from + stream.unit() * axis.trust.length();
-            if self.restarts == 0 { 0.0 } else { anywhere }
-        });
+        let start = if self.restarts == 0 {
+            self.space.origin()
+        } else {
+            let axes = self.space.axes().iter();
+            axes.map(|axis| axis.trust.from + stream.unit() * axis.trust.length())
+                .collect()
+        };
         let grown = self.settings.growth.saturating_pow(self.restarts);
         let population = self.settings.population.saturating_mul(grown);
         let most = self.settings.evaluations.max(4);
-        Course::new(start.collect(), &spread, population.min(most))
+        Course::new(start, &spread, population.min(most))
     }
 }
 

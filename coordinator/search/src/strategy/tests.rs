@@ -26,7 +26,11 @@ pub(super) fn run(strategy: &mut dyn Strategy, tell: &Tell<'_>, reorder: Option<
 }
 
 /// Runs a strategy on a function, residual vectors included.
-fn run_on(strategy: &mut dyn Strategy, function: &TestFunction, reorder: Option<Stream>) -> Record {
+pub(super) fn run_on(
+    strategy: &mut dyn Strategy,
+    function: &TestFunction,
+    reorder: Option<Stream>,
+) -> Record {
     let space = function.space();
     run_with(
         strategy,
@@ -70,7 +74,7 @@ fn run_with(
 }
 
 /// A preset's settings for a space, with 16 workers planned.
-fn settings(preset: &Preset, space: &Space) -> Settings {
+pub(super) fn settings(preset: &Preset, space: &Space) -> Settings {
     (preset.settings)(&Plan { space, workers: 16 })
 }
 

@@ -8,6 +8,7 @@ mod asked;
 mod orthogonal;
 mod rig;
 mod seen;
+mod started;
 mod swept;
 mod words;
 
