@@ -19,6 +19,7 @@ pub mod pumping_unit;
 pub mod quantile;
 pub mod report;
 pub mod runtime;
+pub mod scaling;
 pub mod simulated;
 pub mod store;
 pub mod study;

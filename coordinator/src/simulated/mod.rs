@@ -9,7 +9,7 @@ mod worker;
 
 pub use happening::Fault;
 pub use source::{Generations, Search, Source, job};
-pub use worker::{Worker, cost};
+pub use worker::{Running, Worker, cost, outcome};
 
 use crate::core::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy};
 use happening::What;

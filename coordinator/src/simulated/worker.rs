@@ -18,6 +18,16 @@ pub struct Running {
     pub begun: Duration,
 }
 
+impl Running {
+    /// How long its job says that it takes.
+    pub fn delay(&self) -> Duration {
+        match self.job {
+            Job::Nothing { delay_ms, .. } => Duration::from_millis(u64::from(delay_ms)),
+            Job::Simulate(_) | Job::Own { .. } | Job::Describe => Duration::ZERO,
+        }
+    }
+}
+
 /// So long in the slot, all of it computing.
 pub const fn cost(wall_us: u64) -> Cost {
     Cost {
@@ -27,7 +37,7 @@ pub const fn cost(wall_us: u64) -> Cost {
 }
 
 /// What comes of a job that does nothing; any other is refused.
-fn outcome(job: &Job) -> Outcome {
+pub fn outcome(job: &Job) -> Outcome {
     match job {
         Job::Nothing { reply_bytes, .. } => {
             Outcome::Done(Answer::Nothing(vec![1; *reply_bytes as usize]))

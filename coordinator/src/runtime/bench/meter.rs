@@ -4,8 +4,8 @@ use std::{fs, time::Duration};
 /// Name of the thread of sessions, whose processor time is not the coordinator's.
 pub(super) const SESSIONS: &str = "bench-sessions";
 
-/// Processor time of the coordinator.
-pub(super) fn cost() -> Duration {
+/// Processor time of the coordinator so far: of this process, less the threads of sessions.
+pub fn cost() -> Duration {
     cpu_time(|thread| thread != SESSIONS)
 }
 
