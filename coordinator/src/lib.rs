@@ -10,6 +10,7 @@ pub mod case;
 pub mod cli;
 pub mod core;
 mod digest;
+pub mod doctor;
 mod draft;
 pub mod journal;
 mod kind;

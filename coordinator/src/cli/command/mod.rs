@@ -9,6 +9,7 @@ mod calibrate;
 mod case;
 mod completions;
 mod diagnose;
+mod doctor;
 mod evaluate;
 mod explain;
 mod export;
@@ -80,6 +81,7 @@ commands! {
     Export: export,
     Case: case,
     Keys: keys,
+    Doctor: doctor,
     Bench: bench,
     Completions: completions [&mut Cli::command()],
 }

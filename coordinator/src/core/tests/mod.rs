@@ -7,7 +7,6 @@ use protocol::{
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Answer, Failure, Outcome},
     message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
-    wire,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},

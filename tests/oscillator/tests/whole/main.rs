@@ -7,6 +7,7 @@
 mod asked;
 mod orthogonal;
 mod rig;
+mod scaling;
 mod seen;
 mod started;
 mod swept;
