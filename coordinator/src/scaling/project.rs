@@ -36,12 +36,12 @@ pub fn project(
 ) -> Row {
     let seconds = |s: f64| Duration::try_from_secs_f64(s).unwrap_or_default();
     let mut cluster = Cluster::new(Setting {
-        mean: seconds(overheads.simulation_s),
-        spread: overheads.spread,
         handling: seconds(overheads.coordinator_us * 1e-6),
         delay: seconds(overheads.round_trip_ms * 1e-3),
         ..Setting::even(slots)
     });
+    let times = overheads.clone();
+    cluster.takes = Some(Box::new(move |job| seconds(times.takes_s(job))));
     let stand = Stand(space);
     let tell = |genes: &[f64]| stand.tell(genes);
     let mut source = Search::new(strategy, &tell);
@@ -84,7 +84,7 @@ mod tests {
         preset.set(&mut settings, "generations", "20").unwrap();
         let overheads = Overheads {
             simulation_s: 1.0,
-            spread: 0.3,
+            simulation_quantiles_s: vec![0.5, 1.0, 1.5],
             coordinator_us,
             round_trip_ms: 1.0,
         };

@@ -1,5 +1,6 @@
 //! One search on one number of slots: how fast it was, and where slot time went.
 use protocol::event::Spent;
+use search::random::{Phase, Streams};
 use serde::{Deserialize, Serialize};
 
 /// What slots did.
@@ -91,16 +92,36 @@ pub struct Row {
 }
 
 /// What was measured for the projection, or of it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Overheads {
     /// Mean computing time of a simulation in one slot \[s\].
     pub simulation_s: f64,
-    /// Standard deviation of the same over the mean \[1\].
-    pub spread: f64,
+    /// Quantiles of the same at 0, 5 .. 100 % \[s\]: many simulations end early, others take long.
+    pub simulation_quantiles_s: Vec<f64>,
     /// Processor time of the coordinator for a job and its result over TCP \[us\].
     pub coordinator_us: f64,
     /// Median round trip of a job that does nothing over TCP on loopback \[ms\].
     pub round_trip_ms: f64,
+}
+
+impl Overheads {
+    /// How long a job takes \[s\]: drawn from the quantiles, a property of the job alone.
+    pub fn takes_s(&self, job: u64) -> f64 {
+        let index = usize::try_from(job).unwrap_or(usize::MAX);
+        let mut stream = Streams::new(1, 6).at(0, Phase::Mutation, index);
+        let last = self.simulation_quantiles_s.len().saturating_sub(1);
+        let place = stream.unit() * last as f64;
+        let below = place.floor();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a place in a short list"
+        )]
+        let at = |index: f64| self.simulation_quantiles_s.get(index as usize).copied();
+        let low = at(below).unwrap_or(self.simulation_s);
+        let high = at(below + 1.0).unwrap_or(low);
+        low + (place - below) * (high - low)
+    }
 }
 
 /// How searches scale.
@@ -131,9 +152,9 @@ impl Scaled {
         let assumptions = [
             "A projection runs the coordinator's own state machine on a simulated clock.".to_owned(),
             format!(
-                "Simulations take {:.3} s on average with a spread of {:.2}, lognormal, whatever is simulated: \
-                 as measured here in one slot.",
-                overheads.simulation_s, overheads.spread
+                "Simulations take {:.3} s on average, drawn from the quantiles of those that were measured here in \
+                 one slot, whatever is simulated.",
+                overheads.simulation_s
             ),
             format!(
                 "The coordinator takes {:.0} us over each result, one after the other, as measured over TCP \
@@ -183,11 +204,14 @@ mod tests {
     fn speed_up_is_against_what_one_slot_takes() {
         let overheads = Overheads {
             simulation_s: 0.1,
-            spread: 0.3,
+            simulation_quantiles_s: vec![0.05, 0.15],
             coordinator_us: 100.0,
             round_trip_ms: 0.2,
         };
-        let scaled = Scaled::new(overheads, vec![row(1, 12.5, 10.0), row(2, 8.0, 15.0)]);
+        let scaled = Scaled::new(
+            overheads.clone(),
+            vec![row(1, 12.5, 10.0), row(2, 8.0, 15.0)],
+        );
         let speed: Vec<(f64, f64)> = {
             let rows = scaled.rows.iter();
             rows.map(|row| (row.speed_up, row.efficiency)).collect()
@@ -216,5 +240,22 @@ mod tests {
             (shares.useful, shares.barrier, shares.lost),
             (0.75, 0.25, 0.0)
         );
+    }
+
+    #[test]
+    fn jobs_take_what_was_measured_each_its_own() {
+        let overheads = Overheads {
+            simulation_s: 1.0,
+            simulation_quantiles_s: vec![0.0, 0.0, 0.5, 4.0],
+            coordinator_us: 100.0,
+            round_trip_ms: 0.2,
+        };
+        let times: Vec<f64> = (0..9000).map(|job| overheads.takes_s(job)).collect();
+        assert_eq!(times[7], overheads.takes_s(7));
+        // a third takes nothing, a third up to half a second, a third up to four
+        let shorter = |than: f64| times.iter().filter(|time| **time <= than).count();
+        assert!(shorter(0.0).abs_diff(3000) < 150 && shorter(0.5).abs_diff(6000) < 150);
+        let mean = times.iter().sum::<f64>() / 9000.0;
+        assert!((mean - 2.5 / 3.0).abs() < 0.05, "{mean}");
     }
 }

@@ -35,13 +35,6 @@ pub const CASE: ContentHash = ContentHash([7; 32]);
 /// What every worker computes of the proof.
 pub const PROOF: ContentHash = ContentHash([8; 32]);
 
-/// How long a job takes over the mean, lognormal with this spread \[1\]: a property of the job alone.
-pub fn uneven(seed: u64, job: usize, spread: f64) -> f64 {
-    let mut stream = Streams::new(seed, 6).at(0, Phase::Mutation, job);
-    let sigma = libm::sqrt(libm::log(1.0 + spread * spread));
-    libm::exp(sigma * stream.normal() - 0.5 * sigma * sigma)
-}
-
 /// What a worker says of itself.
 pub fn announcement(digest: &str) -> Announcement {
     Announcement {
@@ -69,9 +62,7 @@ pub struct Setting {
     pub slots: usize,
     /// Fixes every random choice.
     pub seed: u64,
-    /// Mean computing time.
-    pub mean: Duration,
-    /// Spread of computing times, lognormal: standard deviation over mean \[1\].
+    /// Spread of computing times, lognormal about one second: standard deviation over mean \[1\].
     pub spread: f64,
     /// Time that the coordinator takes over each result, one after the other.
     pub handling: Duration,
@@ -94,7 +85,6 @@ impl Setting {
             workers,
             slots: 1,
             seed: 1,
-            mean: Duration::from_secs(1),
             spread: 0.3,
             handling: Duration::ZERO,
             slow_one_in: 0,
@@ -113,6 +103,8 @@ pub struct Cluster {
     /// The time.
     pub now: Duration,
     setting: Setting,
+    /// How long jobs take by their number, in place of the setting's spread.
+    pub takes: Option<Box<dyn Fn(u64) -> Duration>>,
     /// When the coordinator is through with the results that have arrived.
     free_at: Duration,
     events: BTreeMap<(Duration, u64), What>,
@@ -151,6 +143,7 @@ impl Cluster {
             core,
             now: Duration::ZERO,
             setting,
+            takes: None,
             free_at: Duration::ZERO,
             events: BTreeMap::new(),
             sequence: 0,
@@ -215,9 +208,13 @@ impl Cluster {
 
     /// How long a job takes: a property of the job alone.
     fn time_of(&self, job: JobId) -> Duration {
+        if let Some(takes) = &self.takes {
+            return takes(job.0);
+        }
         let index = usize::try_from(job.0).expect("small");
-        let uneven = uneven(self.setting.seed, index, self.setting.spread);
-        self.setting.mean.mul_f64(uneven)
+        let mut stream = Streams::new(self.setting.seed, 6).at(0, Phase::Mutation, index);
+        let sigma = libm::sqrt(libm::log(1.0 + self.setting.spread * self.setting.spread));
+        Duration::from_secs_f64(libm::exp(sigma * stream.normal() - 0.5 * sigma * sigma))
     }
 
     /// Runs until the source is done, `limit` at most.

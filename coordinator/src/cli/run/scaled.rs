@@ -11,10 +11,10 @@ use crate::{
         argument::{door::Door, settings},
         output::{problem::Usage, terminal},
     },
-    journal,
+    journal, quantile,
     runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through},
     scaling::{How, Overheads, Row, Scaled, Shares, Stand, project},
-    simulated::{Search as Source, uneven},
+    simulated::Search as Source,
     study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all},
 };
 use anyhow::Context as _;
@@ -87,8 +87,8 @@ struct Measured {
     row: Row,
     /// Mean computing time \[s\].
     simulation_s: f64,
-    /// Standard deviation over mean \[1\].
-    spread: f64,
+    /// Quantiles of the same at 0, 5 .. 100 % \[s\].
+    simulation_quantiles_s: Vec<f64>,
 }
 
 impl Scaling {
@@ -255,10 +255,11 @@ impl Scale<'_> {
         bus.close().await?;
         let evaluations = found.first().map_or(0, |found| found.evaluations);
         let (_, costs) = account::read_with_costs(&journal.join(journal::FILE))?;
-        let times: Vec<f64> = costs.values().map(|cost| cost.wall_s).collect();
-        let mean = times.iter().sum::<f64>() / times.len().max(1) as f64;
-        let squares: f64 = times.iter().map(|time| (time - mean) * (time - mean)).sum();
-        let deviation = (squares / times.len().saturating_sub(1).max(1) as f64).sqrt();
+        let mut times: Vec<f64> = costs.values().map(|cost| cost.wall_s).collect();
+        times.sort_by(f64::total_cmp);
+        let quantiles = (0..=100)
+            .step_by(5)
+            .filter_map(|at| quantile::of(&times, at));
         Ok(Measured {
             row: row(
                 (How::Computed, search, slots),
@@ -266,8 +267,8 @@ impl Scale<'_> {
                 (wall, processor),
                 [before, after],
             ),
-            simulation_s: mean,
-            spread: deviation / mean,
+            simulation_s: times.iter().sum::<f64>() / times.len().max(1) as f64,
+            simulation_quantiles_s: quantiles.collect(),
         })
     }
 
@@ -287,7 +288,7 @@ impl Scale<'_> {
         let result = result.map_err(|error| bus::explain(&error))?;
         Ok(Overheads {
             simulation_s: alone.simulation_s,
-            spread: alone.spread,
+            simulation_quantiles_s: alone.simulation_quantiles_s.clone(),
             coordinator_us: result.coordinator_cpu_us_per_job,
             round_trip_ms: result.rtt_median_ms,
         })
@@ -306,7 +307,7 @@ impl Scale<'_> {
             ..
         } = self.run.manifest.settings;
         let takes = |id: u64| {
-            let uneven = uneven(1, usize::try_from(id).unwrap_or_default(), overheads.spread);
+            let uneven = overheads.takes_s(id) / overheads.simulation_s;
             Duration::try_from_secs_f64(sleep_s * uneven).unwrap_or_default()
         };
         let stand = Stand(self.space);

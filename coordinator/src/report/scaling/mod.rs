@@ -131,13 +131,24 @@ fn shares(scaled: &Scaled) -> Table {
 }
 
 fn assumptions(scaled: &Scaled) -> Section {
-    let own = scaled.overheads;
+    let own = &scaled.overheads;
     let facts = vec![
         Fact::new(
             "a simulation in one slot",
             format!("{} s", figure(own.simulation_s)),
         ),
-        Fact::new("spread of the same", fixed(own.spread, 2)),
+        Fact::new(
+            "half of them took at most",
+            format!(
+                "{} s",
+                figure(
+                    own.simulation_quantiles_s
+                        .get(10)
+                        .copied()
+                        .unwrap_or(f64::NAN)
+                )
+            ),
+        ),
         Fact::new(
             "coordinator, a result over TCP",
             format!("{} us", fixed(own.coordinator_us, 0)),

@@ -9,7 +9,7 @@ mod silent;
 mod slept;
 
 pub use measure::bench;
-pub use meter::cost as processor_time;
+pub use meter::processor_time;
 pub use plan::{BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult};
 pub use sessions::connect;
 pub use silent::keep_silent;

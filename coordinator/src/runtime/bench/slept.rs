@@ -1,6 +1,6 @@
 //! Jobs that sleep, on sessions of another process: a source of jobs is run to its end on more slots than there
 //! are processors.
-use super::{meter::cost, sessions::Connections};
+use super::{meter::processor_time, sessions::Connections};
 use crate::{
     runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions},
     simulated::Source,
@@ -45,7 +45,7 @@ pub async fn sleep_through(
     while dispatch.snapshot().workers.len() < slots && opened.elapsed() < JOINING {
         sleep(Duration::from_millis(5)).await;
     }
-    let (begun, processor, before) = (Instant::now(), cost(), dispatch.snapshot());
+    let (begun, processor, before) = (Instant::now(), processor_time(), dispatch.snapshot());
     let mut results = 0;
     while !source.is_done() {
         for (id, job) in source.ask() {
@@ -62,7 +62,7 @@ pub async fn sleep_through(
     let slept = Slept {
         slots: before.workers.len(),
         wall: begun.elapsed(),
-        processor: cost().saturating_sub(processor),
+        processor: processor_time().saturating_sub(processor),
         results,
         spent: [before.spent, dispatch.snapshot().spent],
     };

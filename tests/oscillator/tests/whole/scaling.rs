@@ -70,9 +70,16 @@ fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
     assert_eq!(slept["evaluations"], 48, "8 for each slot");
     assert!(number(&slept["speed_up"]) > 2.0, "{slept}");
     let overheads = &object["overheads"];
-    for key in ["simulation_s", "spread", "coordinator_us", "round_trip_ms"] {
+    for key in ["simulation_s", "coordinator_us", "round_trip_ms"] {
         assert!(number(&overheads[key]) > 0.0, "{overheads}");
     }
+    let quantiles = overheads["simulation_quantiles_s"].as_array().unwrap();
+    assert_eq!(quantiles.len(), 21);
+    assert!(
+        quantiles
+            .windows(2)
+            .all(|pair| number(&pair[0]) <= number(&pair[1]))
+    );
     assert_eq!(object["assumptions"].as_array().unwrap().len(), 6);
     words::check_folder(run.as_ref());
     let page = fs::read_to_string(rig.file("run/report.html")).unwrap();

@@ -24,9 +24,10 @@ use crate::{
     report::{scaling as report, text},
     scaling::Scaled,
 };
+use anyhow::Context as _;
 use clap::{Args, builder::PossibleValuesParser};
 use search::{space::Space, strategy::CATALOGUE};
-use std::path::PathBuf;
+use std::{fs, path::PathBuf};
 
 /// Measure how searches scale with slots, and project it to more; the same command resumes.
 #[derive(Debug, Args)]
@@ -149,6 +150,8 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
 /// Measures, projects and shows.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let run = begin(arguments)?;
+    let folder = run.folder.path();
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     run.remember(0.0)?;
     let scaled = bus::block_on(async {
         let mut stop = interrupt::listen();
