@@ -24,7 +24,7 @@ pub(super) fn blame(error: &LinkError) -> Check {
                 "`ip route get ADDRESS` says how this machine would go there; check the cable, the VPN and that \
                  the other machine is up",
             ),
-            _ => (
+            Silence::Dropped { .. } | _ => (
                 Layer::Firewall,
                 "check that the coordinator runs there, and let its port through the firewalls between: UDP for \
                  quic/, TCP for tcp/",
@@ -40,7 +40,12 @@ pub(super) fn blame(error: &LinkError) -> Check {
             "both ends need certificates of one `horsehead keys new`: copy the worker's folder again, and name \
              the dialled host in --host",
         ),
-        _ => (
+        LinkError::Locator { .. }
+        | LinkError::Protocol { .. }
+        | LinkError::Exposed { .. }
+        | LinkError::Transport { .. }
+        | LinkError::Piece { .. }
+        | _ => (
             Layer::Version,
             "something answers there that is no coordinator of this version: check the port, and use the same \
              build of horsehead and horsehead-worker on every machine",

@@ -11,7 +11,7 @@ pub use happening::Fault;
 pub use source::{Generations, Search, Source, job};
 pub use worker::{Running, Worker, cost, outcome};
 
-use crate::core::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy};
+use crate::core::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Stop};
 use happening::What;
 use protocol::{
     announce::{Announcement, ModelDescriptor},
@@ -105,6 +105,8 @@ pub struct Cluster {
     setting: Setting,
     /// How long jobs take by their number, in place of the setting's spread.
     pub takes: Option<Box<dyn Fn(u64) -> Duration>>,
+    /// Why the run cannot go on.
+    stopped: Option<Stop>,
     /// When the coordinator is through with the results that have arrived.
     free_at: Duration,
     events: BTreeMap<(Duration, u64), What>,
@@ -144,6 +146,7 @@ impl Cluster {
             now: Duration::ZERO,
             setting,
             takes: None,
+            stopped: None,
             free_at: Duration::ZERO,
             events: BTreeMap::new(),
             sequence: 0,
@@ -233,6 +236,7 @@ impl Cluster {
             );
             self.now = time;
             self.happen(what);
+            assert!(self.stopped.is_none(), "{:?}", self.stopped);
             if !self.fresh.is_empty() {
                 for (job, outcome) in mem::take(&mut self.fresh) {
                     source.tell(job.0, &outcome);
@@ -254,7 +258,7 @@ impl Cluster {
         match what {
             What::Up(from, message @ FromWorker::Done(_)) => {
                 self.free_at = self.free_at.max(self.now) + self.setting.handling;
-                let wait = self.free_at - self.now;
+                let wait = self.free_at.saturating_sub(self.now);
                 self.at(wait, What::Heard(from, message));
             }
             What::Up(from, message) | What::Heard(from, message) => {
@@ -372,7 +376,7 @@ impl Cluster {
                 Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
                 Command::Record(_) => {}
                 Command::Notice(notice) => self.notices.push(notice),
-                Command::Stop(stop) => panic!("{stop}"),
+                Command::Stop(stop) => self.stopped = Some(stop),
             }
         }
         if !storing.is_empty() {

@@ -113,7 +113,7 @@ fn table(object: &DoctorOutput) -> String {
         let state = if check.healthy { "ok" } else { "FAILS" };
         let mut text = format!("{:<12} {state:<6} {}\n", check.layer.as_str(), check.found);
         if !check.remedy.is_empty() {
-            text += &format!("{:<12} remedy {}\n", "", check.remedy);
+            text.extend(["             remedy ", &check.remedy, "\n"]);
         }
         text
     };
