@@ -130,6 +130,8 @@ pub struct Space {
     givers: Vec<Giver>,
     /// Their names.
     names: Vec<String>,
+    /// Where a search is to look first (coordinate), the best first.
+    starts: Vec<Vec<f64>>,
 }
 
 /// What gives an unknown its value.
@@ -170,6 +172,7 @@ impl Space {
             axes,
             givers,
             names: names.collect(),
+            starts: Vec::new(),
         })
     }
 
@@ -195,6 +198,28 @@ impl Space {
             }
         });
         Self::new(&moved.collect::<Vec<_>>())
+    }
+
+    /// The same space, to be searched from these individuals: values of all unknowns [declared units], the
+    /// best first.
+    #[must_use]
+    pub fn beginning_at(self, individuals: &[Vec<f64>]) -> Self {
+        let starts = individuals
+            .iter()
+            .map(|values| self.point(values))
+            .collect();
+        Self { starts, ..self }
+    }
+
+    /// What a first population holds in its first places (coordinate), the best first.
+    pub fn starts(&self) -> &[Vec<f64>] {
+        &self.starts
+    }
+
+    /// Where a search of one point begins (coordinate): at the best start, or at the case's.
+    pub fn origin(&self) -> Vec<f64> {
+        let best = self.starts.first().cloned();
+        best.unwrap_or_else(|| vec![0.0; self.dimension()])
     }
 
     /// The unknowns that are searched.

@@ -20,6 +20,7 @@ pub mod identification;
 mod kind;
 pub(crate) mod number;
 pub(crate) mod orthogonal;
+pub(crate) mod scaling;
 mod section;
 pub mod table;
 pub mod words;

@@ -15,8 +15,8 @@ mod sleep;
 
 pub use crate::core::{Completed, Policy, Snapshot, WorkerSnapshot};
 pub use bench::{
-    BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult, bench, connect,
-    keep_silent,
+    BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult, Slept, bench, connect,
+    keep_silent, processor_time, sleep_through,
 };
 pub use dispatch::Dispatch;
 pub use engine::Summary;

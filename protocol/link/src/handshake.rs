@@ -4,7 +4,7 @@
 //! certificates to the same address and reads the answer: a host that is not known, a port that
 //! is closed, a certificate that one of the two ends does not accept.
 use crate::{
-    LinkError,
+    LinkError, OUT_OF_DATE, Silence,
     gate::terms::{KNOCK, UNLISTED, WELCOME},
     keys::{Keys, provider},
     locator::Locator,
@@ -30,19 +30,19 @@ const NO_SUCH_PROTOCOL: u64 = 120;
 /// Whether anybody listens for plain connections there.
 pub(crate) async fn knock(to: &Locator) -> Result<(), LinkError> {
     let address = resolve(to).await?;
-    let silent = |how: String| LinkError::Silent {
+    let silent = |how: Silence| LinkError::Silent {
         locator: to.to_string(),
         how,
     };
     match timeout(PATIENCE, TcpStream::connect(address)).await {
         Ok(Ok(_)) => Ok(()),
-        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => Err(silent(
-            "TCP port closed: no coordinator listens there".to_owned(),
-        )),
-        Ok(Err(error)) => Err(silent(error.to_string())),
-        Err(_) => Err(silent(
-            "no such machine, or a firewall drops TCP on that port".to_owned(),
-        )),
+        Ok(Err(error)) if error.kind() == ErrorKind::ConnectionRefused => {
+            Err(silent(Silence::Closed { protocol: "TCP" }))
+        }
+        Ok(Err(error)) => Err(silent(Silence::Unreachable {
+            reason: error.to_string(),
+        })),
+        Err(_) => Err(silent(Silence::Dropped { protocol: "TCP" })),
     }
 }
 
@@ -76,19 +76,17 @@ pub(crate) async fn shake(to: &Locator, keys: &Keys) -> Result<(), LinkError> {
         .map_err(|error| transport(error.to_string()))?;
     // with TLS 1.3 a client is connected before its certificate is looked at: the answer comes after
     let shaken = async { Ok(connecting.await?.closed().await) };
-    let silent = |how: &str| LinkError::Silent {
+    let silent = |how: Silence| LinkError::Silent {
         locator: to.to_string(),
-        how: how.to_owned(),
+        how,
     };
     let ended = tokio::select! {
         ended = timeout(PATIENCE, shaken) => ended.unwrap_or(Err(ConnectionError::TimedOut)),
-        how = closed(address) => return Err(silent(&how)),
+        how = closed(address) => return Err(silent(how)),
     };
     let ended = ended.unwrap_or_else(|error| error);
     if ended == ConnectionError::TimedOut {
-        return Err(silent(
-            "no coordinator there, or a firewall drops UDP on that port",
-        ));
+        return Err(silent(Silence::Dropped { protocol: "UDP" }));
     }
     explain(&ended, to, keys)
 }
@@ -110,7 +108,7 @@ async fn resolve(to: &Locator) -> Result<SocketAddr, LinkError> {
 }
 
 /// Completes only if the other machine says that nobody can be reached there.
-async fn closed(address: SocketAddr) -> String {
+async fn closed(address: SocketAddr) -> Silence {
     let asked = tokio::task::spawn_blocking(move || {
         let any: SocketAddr = match address {
             SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
@@ -127,11 +125,11 @@ async fn closed(address: SocketAddr) -> String {
         .await
         .map(|received| received.map_err(|error| (error.kind(), error)))
     {
-        Ok(Err((ErrorKind::ConnectionRefused, _))) => {
-            "UDP port closed: no coordinator listens there".to_owned()
-        }
+        Ok(Err((ErrorKind::ConnectionRefused, _))) => Silence::Closed { protocol: "UDP" },
         Ok(Err((ErrorKind::NetworkUnreachable | ErrorKind::HostUnreachable, error))) => {
-            error.to_string()
+            Silence::Unreachable {
+                reason: error.to_string(),
+            }
         }
         Ok(_) | Err(_) => std::future::pending().await,
     }
@@ -194,7 +192,7 @@ fn distrust(words: &str, to: &Locator, keys: &Keys) -> String {
         );
     }
     if has("xpired") {
-        return "its certificate is out of date (or this machine's clock is wrong)".to_owned();
+        return format!("{OUT_OF_DATE} (or this machine's clock is wrong)");
     }
     words.to_owned()
 }

@@ -2,8 +2,9 @@
 //! converged.
 //!
 //! The distribution is `covariance.rs` with active updates; restarts are those of Auger and Hansen, "A
-//! restart CMA evolution strategy with increasing population size" (CEC 2005). What leaves the box is mirrored
-//! at its wall. Only the order of results counts, so failures are merely last.
+//! restart CMA evolution strategy with increasing population size" (CEC 2005). Points are bent
+//! to the box as by pycma's `BoxConstraintsLinQuadTransformation` (N. Hansen, github.com/CMA-ES/pycma): where an
+//! optimum lies at a wall, steps towards it keep their size. Only the order of results counts, so failures are merely last.
 use super::{
     archive::{Archive, Evaluated},
     ask_tell::Strategy,
@@ -141,6 +142,8 @@ struct Course {
 
 /// A course has converged when it reaches no farther than this (coordinate).
 const REACH: f64 = 1e-12;
+/// Share of an interval next to each wall in which points are bent to it.
+const BEND: f64 = 0.03;
 /// And when the best of late rounds differ by less, relative to their size or absolutely.
 const FLAT: [f64; 2] = [1e-12, 1e-14];
 
@@ -189,13 +192,18 @@ impl CmaEs {
         let spread = axes.map(|axis| self.settings.spread * axis.trust.length());
         let spread = DVector::from_iterator(self.space.dimension(), spread);
         let mut stream = self.streams.at(self.restarts, Phase::Initial, 0);
-        let start = self.space.axes().iter().map(|axis| {
-            let anywhere = axis.trust.from + stream.unit() * axis.trust.length();
-            if self.restarts == 0 { 0.0 } else { anywhere }
-        });
+        let start = if self.restarts == 0 {
+            self.space.origin()
+        } else {
+            let axes = self.space.axes().iter();
+            axes.map(|axis| axis.trust.from + stream.unit() * axis.trust.length())
+                .collect()
+        };
         let grown = self.settings.growth.saturating_pow(self.restarts);
         let population = self.settings.population.saturating_mul(grown);
         let most = self.settings.evaluations.max(4);
+        let axes = self.space.axes().iter().zip(start);
+        let start = axes.map(|(axis, x)| unbent(axis.interval(), x));
         Course::new(start.collect(), &spread, population.min(most))
     }
 }
@@ -217,9 +225,7 @@ impl Piece for CmaEs {
             let z = normal(self.space.dimension(), &mut stream);
             let x = course.distribution.point(&z);
             let axes = self.space.axes().iter().zip(x.iter());
-            let inside: Vec<f64> = axes
-                .map(|(axis, x)| mirrored(axis.interval(), *x))
-                .collect();
+            let inside: Vec<f64> = axes.map(|(axis, x)| bent(axis.interval(), *x)).collect();
             self.running.push(z);
             drafts.push(Draft {
                 genes: self.space.values(&inside),
@@ -243,11 +249,6 @@ impl Piece for CmaEs {
         if whole && course.absorb(&drawn, results) {
             self.course = None;
             self.restarts += 1;
-        } else if let Some(course) = &mut self.course {
-            let axes = self.space.axes().iter();
-            for (axis, mean) in axes.zip(course.distribution.mean.iter_mut()) {
-                *mean = mirrored(axis.interval(), *mean);
-            }
         }
     }
 
@@ -266,14 +267,39 @@ impl Piece for CmaEs {
     }
 }
 
-/// A point beyond a wall comes as far back from it.
-fn mirrored(interval: Interval, x: f64) -> f64 {
+/// A point of the search as one in the box: bent near a wall so that the wall itself lies at the bottom of a
+/// parabola, mirrored beyond it.
+fn bent(interval: Interval, y: f64) -> f64 {
     let length = interval.length();
-    if (interval.from..=interval.to).contains(&x) || length <= 0.0 || !x.is_finite() {
-        return interval.clamp(x);
+    if length <= 0.0 || !y.is_finite() {
+        return interval.clamp(y);
     }
-    let around = (x - interval.from).rem_euclid(2.0 * length);
-    interval.clamp(interval.from + around.min(2.0 * length - around))
+    let bend = BEND * length;
+    let period = 2.0 * (length + 2.0 * bend);
+    let around = (y - interval.from + bend).rem_euclid(period);
+    // from wall to wall, 0 at the lower one
+    let inside = around.min(period - around) - bend;
+    let near = |x: f64| (x + bend) * (x + bend) / (4.0 * bend);
+    interval.clamp(if inside < bend {
+        interval.from + near(inside)
+    } else if inside > length - bend {
+        interval.to - near(length - inside)
+    } else {
+        interval.from + inside
+    })
+}
+
+/// The point of the search that is bent to one in the box.
+fn unbent(interval: Interval, x: f64) -> f64 {
+    let bend = BEND * interval.length();
+    let (low, high) = (x - interval.from, interval.to - x);
+    if low < bend {
+        interval.from - bend + 2.0 * libm::sqrt(bend * low.max(0.0))
+    } else if high < bend {
+        interval.to + bend - 2.0 * libm::sqrt(bend * high.max(0.0))
+    } else {
+        x
+    }
 }
 
 #[cfg(test)]
@@ -281,11 +307,34 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_leaves_the_box_comes_back_from_its_wall() {
-        let unit = Interval { from: 1.0, to: 3.0 };
-        for (x, inside) in [(2.5, 2.5), (3.5, 2.5), (0.0, 2.0), (7.25, 2.75)] {
-            assert!((mirrored(unit, x) - inside).abs() < 1e-12, "{x}");
+    fn points_are_bent_to_the_box_and_mirrored_beyond() {
+        let interval = Interval { from: 1.0, to: 3.0 };
+        for y in [1.06, 2.0, 2.94] {
+            assert!(
+                (bent(interval, y) - y).abs() < 1e-12,
+                "{y}: the middle is as it was"
+            );
         }
-        assert!(mirrored(unit, f64::INFINITY) <= 3.0);
+        let bend = 2.0 * BEND;
+        for (y, inside) in [
+            (1.0 - bend, 1.0),
+            (3.0 + bend, 3.0),
+            (1.0, 1.0 + 0.25 * bend),
+        ] {
+            assert!((bent(interval, y) - inside).abs() < 1e-12, "{y}");
+            assert!((unbent(interval, inside) - y).abs() < 1e-6, "{y}");
+        }
+        // the same far from either side of a wall, and once around
+        for offset in [0.01, 0.3, 1.7] {
+            let [below, above] = [1.0 - bend - offset, 1.0 - bend + offset];
+            assert!((bent(interval, below) - bent(interval, above)).abs() < 1e-12);
+            let around = above + 2.0 * (2.0 + 2.0 * bend);
+            assert!((bent(interval, around) - bent(interval, above)).abs() < 1e-12);
+        }
+        for step in -400..400 {
+            let x = bent(interval, f64::from(step) / 50.0);
+            assert!((1.0..=3.0).contains(&x), "{step}");
+        }
+        assert!(bent(interval, f64::INFINITY) <= 3.0);
     }
 }

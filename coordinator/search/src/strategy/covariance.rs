@@ -75,7 +75,7 @@ impl Distribution {
     }
 
     /// One generation of adaptation from the normal numbers, best first; rounds count from 1. `active`
-    /// moves the covariance away from the worse half as well (equations 49 to 53).
+    /// moves the covariance away from the worse half as well (equations 49 to 53), with pycma's rate of the step.
     pub(super) fn update(&mut self, ranked: &[DVector<f64>], round: u32, active: bool) {
         let n = self.mean.len() as f64;
         let parents = ranked.len() / 2;
@@ -86,7 +86,8 @@ impl Distribution {
         let weights: Vec<f64> = raw.iter().map(|weight| weight / total).collect();
         let mass = 1.0 / weights.iter().map(|weight| weight * weight).sum::<f64>();
 
-        let c_sigma = (mass + 2.0) / (n + mass + 5.0);
+        // pycma's step follows a little faster than the tutorial's
+        let c_sigma = (mass + 2.0) / (n + mass + if active { 3.0 } else { 5.0 });
         let overshoot = (libm::sqrt((mass - 1.0) / (n + 1.0)) - 1.0).max(0.0);
         let d_sigma = 1.0 + 2.0 * overshoot + c_sigma;
         let c_path = (4.0 + mass / n) / (n + 4.0 + 2.0 * mass / n);

@@ -30,6 +30,20 @@ pub(super) fn hypercube(intervals: &[Interval], count: usize, streams: Streams) 
     points
 }
 
+/// The start and these points; where a space has starts of its own they stand in their first places, none is
+/// left out.
+pub(super) fn led(space: &Space, others: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let starts = match space.starts() {
+        [] => vec![space.origin()],
+        starts => starts.to_vec(),
+    };
+    let replaced = starts.len() - 1;
+    starts
+        .into_iter()
+        .chain(others.into_iter().skip(replaced))
+        .collect()
+}
+
 /// Points as a piece of a strategy: one batch.
 pub(super) struct Points {
     /// Those that have not been asked for.

@@ -8,7 +8,7 @@ use super::{
     archive::{Archive, Evaluated},
     ask_tell::Strategy,
     conductor::Conductor,
-    design::hypercube,
+    design::{hypercube, led},
     offer::{Group, Preset, Promise},
     piece::{Batch, Draft, Piece},
     proposal::Purpose,
@@ -146,8 +146,9 @@ impl LShade {
     fn first(&self, count: usize) -> Vec<(Vec<f64>, [f64; 2])> {
         let trust: Vec<Interval> = self.space.axes().iter().map(|axis| axis.trust).collect();
         let others = hypercube(&trust, count.saturating_sub(1), self.streams);
-        let start = std::iter::once(vec![0.0; self.space.dimension()]);
-        start.chain(others).map(|x| (x, [0.0; 2])).collect()
+        let points = led(&self.space, others);
+        let points = points.into_iter().take(count);
+        points.map(|x| (x, [0.0; 2])).collect()
     }
 
     /// A trial for the individual at a place.

@@ -38,6 +38,7 @@ pub mod scan;
 pub mod setting;
 pub mod settings;
 mod sobol;
+mod table;
 #[cfg(test)]
 mod tests;
 mod told;
@@ -53,4 +54,5 @@ pub use piece::{Batch, Draft, Piece};
 pub use proposal::{Proposal, Purpose};
 pub use setting::SettingsError;
 pub use settings::{Recipe, Settings};
+pub use table::build_after;
 pub use told::Told;

@@ -11,7 +11,7 @@
 use super::{
     ask_tell::Strategy,
     conductor::Conductor,
-    design::{Points, hypercube},
+    design::{Points, hypercube, led},
     levenberg::{self, Derivatives, Finish, Levenberg, LevenbergSettings},
     memetic::{
         generations::Memetic,
@@ -310,10 +310,8 @@ impl Recipe for QuickSettings {
         let mut pieces: Vec<Box<dyn Piece>> = Vec::with_capacity(self.parts.len());
         let mut reuse_clones = true;
         let start = |points: usize, streams| {
-            let mut start = vec![vec![0.0; space.dimension()]];
             let others = points.saturating_sub(1);
-            start.extend(hypercube(&self.trust, others, streams));
-            start
+            led(space, hypercube(&self.trust, others, streams))
         };
         for (scope, part) in (1..).zip(&self.parts) {
             let streams = Streams::new(seed, scope);

@@ -12,7 +12,6 @@ use crate::{
 };
 use clap::{Args, Subcommand};
 use link::locator::Locator;
-use protocol::{case::Case, wire};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -284,7 +283,7 @@ async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchO
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };
-    let options = options.for_dispatch(&empty_case()?)?;
+    let options = options.for_dispatch(&bus::empty_case()?)?;
     let result = runtime::bench(options, plan)
         .await
         .map_err(|error| bus::explain(&error))?;
@@ -307,15 +306,6 @@ async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchO
         coordinator_rss_mib: result.coordinator_rss_mib,
         silent: result.silent,
     })
-}
-
-/// A case in which everything is zero or empty: jobs that do nothing need no more. Its encoding
-/// is a row of zeros, whose length depends on the version of the case.
-fn empty_case() -> anyhow::Result<Case> {
-    let zeros = [0; 4096];
-    (1..zeros.len())
-        .find_map(|length| wire::decode(&zeros[..length]).ok())
-        .ok_or_else(|| anyhow::anyhow!("this version of the case cannot be all zeros"))
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 use crate::cli::{
     argument::{
         case::{CaseChoice, LoadedCase},
+        individuals::Individuals,
         output::OutputChoice,
         settings::{self, SettingsChoice},
         workers::WorkersChoice,
@@ -14,9 +15,10 @@ use crate::cli::{
     },
     run::{
         begun::Run,
+        bus,
         calibration::{Calibration, calibrate, seen},
         folder::{RunFolder, SEEN},
-        manifest::{self, Manifest, Start},
+        manifest::{self, FirstTable, Manifest, Start},
         session::Session,
     },
 };
@@ -26,9 +28,9 @@ use clap::{Args, builder::PossibleValuesParser};
 use protocol::case::Case;
 use search::{
     space::Space,
-    strategy::{CATALOGUE, Plan, Preset, preset},
+    strategy::{CATALOGUE, Plan, Preset, Settings, build_after, preset},
 };
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Identify the unknowns of a case from its records; the same command resumes.
 #[derive(Debug, Args)]
@@ -57,6 +59,10 @@ pub(super) struct Arguments {
     /// an earlier calibration or diagnosis.
     #[arg(long, value_name = "FILE", env = "HORSEHEAD_GENES")]
     genes: Option<PathBuf>,
+    /// Table of individuals to evaluate before the search and to begin it with: a CSV file with a column for
+    /// each unknown that the case searches. The run keeps them, and goes on without the file.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_START")]
+    start: Option<PathBuf>,
     /// Fixes every random choice: the same seed gives the same bits.
     #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
     seed: u64,
@@ -88,6 +94,7 @@ Examples:
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --set encoding=gray --set population=40
   horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
   horsehead calibrate cases/cyjs10-5-37hb --genes runs/cyjs10-5-37hb-diagnose-seed1/calibrated.toml
+  horsehead calibrate cases/cyjs10-5-37hb --preset l-shade --start individuals.csv
 
 Presets:
 {presets}
@@ -118,6 +125,37 @@ fn searched(case: &Case, start: Option<&Start>) -> Result<Space, Usage> {
     })
 }
 
+/// The table of individuals to begin with, if there is one.
+fn first_table(file: Option<&Path>, space: &Space) -> anyhow::Result<Option<FirstTable>> {
+    let read = |file: &Path| -> anyhow::Result<FirstTable> {
+        let rows = Individuals::read(file, space)?.rows;
+        Ok(FirstTable {
+            file: std::path::absolute(file)?,
+            individuals: rows.iter().map(|row| space.expand(row)).collect(),
+        })
+    };
+    file.map(read).transpose()
+}
+
+/// Refuses a table that the search cannot begin with.
+fn check_table(
+    table: Option<&FirstTable>,
+    settings: &Settings,
+    space: &Space,
+    seed: u64,
+) -> Result<(), Usage> {
+    let Some(table) = table else {
+        return Ok(());
+    };
+    let built = build_after(settings, space, seed, &table.individuals);
+    built.map(drop).map_err(|error| Usage {
+        message: format!("{}: {error}", table.file.display()),
+        help: "leave rows out, let the search go on for longer with --set, or score the whole table with \
+               `horsehead sweep FILE`"
+            .to_owned(),
+    })
+}
+
 /// The run that was asked for, as it begins or goes on.
 fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
     let LoadedCase {
@@ -140,20 +178,29 @@ fn begin(arguments: &Arguments) -> anyhow::Result<Calibration> {
         .set
         .extend(window.map(|length| ("window".to_owned(), length)));
     let mut chosen = choice.choose(preset, &plan)?;
+    let mut table = first_table(arguments.start.as_deref(), &space)?;
     let path = if let Some(path) = &arguments.run {
         path.clone()
     } else {
         let replaced = arguments.choice.measured.as_deref();
-        RunFolder::default_path(&case, preset.name, &chosen.set, replaced, arguments.seed)?
+        let mut decides = chosen.set.clone();
+        if let Some(table) = &table {
+            let hash = bus::content_hash(&table.individuals)?.to_string();
+            decides.push(["start-", hash.get(..8).unwrap_or_default()].concat());
+        }
+        RunFolder::default_path(&case, preset.name, &decides, replaced, arguments.seed)?
     };
-    let earlier = Calibration::open(&path)
-        .ok()
-        .map(|run| run.manifest.settings);
-    choice.keep(&mut chosen, preset, earlier.as_ref());
+    let earlier = Calibration::open(&path).ok().map(|run| run.manifest);
+    let settings = earlier.as_ref().map(|earlier| &earlier.settings);
+    choice.keep(&mut chosen, preset, settings);
+    // its file is not needed again
+    table = table.or_else(|| earlier.and_then(|earlier| earlier.table));
+    check_table(table.as_ref(), &chosen.settings, &space, arguments.seed)?;
     let manifest = Manifest {
         preset: preset.name.to_owned(),
         set: chosen.set,
         start,
+        table,
         measured,
         synthetic,
         notes,

@@ -99,6 +99,7 @@ fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
             workers: 1,
         }),
         start: None,
+        table: None,
         case_folder: folder.to_owned(),
         measured: "X".to_owned(),
         synthetic: false,

@@ -10,6 +10,7 @@ mod calibrate;
 mod case;
 mod completions;
 mod diagnose;
+mod doctor;
 mod evaluate;
 mod explain;
 mod export;
@@ -82,6 +83,7 @@ commands! {
     Case: case,
     Allow: allow,
     Keys: keys,
+    Doctor: doctor,
     Bench: bench,
     Completions: completions [&mut Cli::command()],
 }

@@ -47,6 +47,7 @@ fn manifest(case: &Case, seed: u64) -> Manifest {
             workers: 1,
         }),
         start: None,
+        table: None,
         case_folder: shipped(),
         measured: "X".to_owned(),
         synthetic: false,

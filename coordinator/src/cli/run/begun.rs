@@ -92,6 +92,14 @@ impl<S: Decides> Run<S> {
             Some(format!("its seed is {}, not {}", was.seed, is.seed))
         } else if was.start_genes() != is.start_genes() {
             Some("it starts at other genes".to_owned())
+        } else if was.first_individuals() != is.first_individuals() {
+            Some(match &was.table {
+                Some(table) => format!(
+                    "it begins with other individuals, those that {} held",
+                    table.file.display()
+                ),
+                None => "it begins without a table of individuals".to_owned(),
+            })
         } else if was.settings != is.settings {
             let difference = is.settings.difference(&was.settings);
             Some(match was.preset.as_str() {

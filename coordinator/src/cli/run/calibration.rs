@@ -32,7 +32,8 @@ pub(crate) async fn calibrate<E: Evaluator>(
 ) -> anyhow::Result<Found> {
     let (case, manifest) = (&run.case, &run.manifest);
     let space = manifest.space(case)?;
-    let built = strategy::build(&manifest.settings, &space, manifest.seed);
+    let first = manifest.first_individuals().unwrap_or_default();
+    let built = strategy::build_after(&manifest.settings, &space, manifest.seed, first);
     let mut strategy = built.map_err(StudyError::from)?;
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
     let wanted = comparison(case, &calibrated.best.genes);

@@ -98,6 +98,9 @@ pub(crate) struct Manifest<S = Settings> {
     /// Where it starts, if not at the recommended values.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) start: Option<Start>,
+    /// Individuals that its search evaluates first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) table: Option<FirstTable>,
     /// Where the case was read from.
     pub(crate) case_folder: PathBuf,
     /// Where the records came from.
@@ -118,6 +121,17 @@ struct Identity<'a, S> {
     settings: &'a S,
     #[serde(skip_serializing_if = "Option::is_none")]
     start: Option<&'a [f64]>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    table: Option<&'a [Vec<f64>]>,
+}
+
+/// Individuals that a search evaluates first. A run keeps them, and goes on without their file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct FirstTable {
+    /// The table that they come from.
+    pub(crate) file: PathBuf,
+    /// Values of all unknowns, row by row [declared units].
+    pub(crate) individuals: Vec<Vec<f64>>,
 }
 
 /// Values of the case's genes that a run starts at.
@@ -151,6 +165,12 @@ impl<S> Manifest<S> {
         self.start.as_ref().map(|start| start.genes.as_slice())
     }
 
+    /// Individuals that its search evaluates first.
+    pub(crate) fn first_individuals(&self) -> Option<&[Vec<f64>]> {
+        let table = self.table.as_ref();
+        table.map(|table| table.individuals.as_slice())
+    }
+
     /// The space that it searches.
     ///
     /// # Errors
@@ -181,6 +201,7 @@ impl<S: Decides> Manifest<S> {
             seed,
             settings,
             start: None,
+            table: None,
             case_folder: std::path::absolute(case_folder)?,
             measured: case_folder.display().to_string(),
             synthetic: false,
@@ -195,6 +216,7 @@ impl<S: Decides> Manifest<S> {
             seed: self.seed,
             settings: &self.settings,
             start: self.start_genes(),
+            table: self.first_individuals(),
         };
         Ok(serde_json::to_string(&identity)?)
     }

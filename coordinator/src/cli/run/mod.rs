@@ -11,6 +11,7 @@ pub(super) mod kind;
 pub(super) mod manifest;
 pub(crate) mod once;
 pub(super) mod orthogonal;
+pub(super) mod scaled;
 pub(super) mod searches;
 pub(super) mod session;
 pub(super) mod swept;

@@ -33,6 +33,7 @@ pub(crate) fn facts<S: Serialize>(
         seed,
         settings,
         start,
+        table,
         case_folder,
         measured,
         synthetic,
@@ -43,6 +44,10 @@ pub(crate) fn facts<S: Serialize>(
         || "recommended".to_owned(),
         |start| start.file.display().to_string(),
     );
+    let table = table.as_ref().map_or_else(String::new, |table| {
+        let count = table.individuals.len();
+        format!("{} ({count} individuals)", table.file.display())
+    });
     Ok(vec![
         ("kind", kind.clone()),
         ("program", program.clone()),
@@ -53,6 +58,7 @@ pub(crate) fn facts<S: Serialize>(
         ("seed", seed.to_string()),
         ("settings", serde_json::to_string(settings)?),
         ("start", start),
+        ("individuals", table),
         ("case_folder", case_folder.display().to_string()),
         ("measured", measured.clone()),
         (

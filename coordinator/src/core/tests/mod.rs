@@ -1,12 +1,12 @@
 //! Scenarios: whole clusters without a socket, a file or a clock.
 use super::*;
+use crate::simulated::{self, CASE, MODEL, PROOF, announcement, cost, job};
 use protocol::{
-    announce::{Announcement, ModelDescriptor},
+    announce::Announcement,
     event::{Event, Spent},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{Answer, Failure, Job, Outcome},
-    message::{Attempt, Beat, Cost, Done, FromWorker, Order, ToWorker},
-    wire,
+    job::{Answer, Failure, Outcome},
+    message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -19,14 +19,8 @@ mod admission;
 mod failure;
 mod lease;
 mod loss;
-mod simulated;
 mod tail;
 mod window;
-
-/// Kind of the case's model.
-const MODEL: &str = "model";
-const CASE: ContentHash = ContentHash([7; 32]);
-const PROOF: ContentHash = ContentHash([8; 32]);
 
 /// A core with the time and everything it asked for.
 struct Scene {
@@ -40,14 +34,6 @@ struct Scene {
     other: Vec<Command>,
     /// What workers say that a job took.
     wall_us: u64,
-}
-
-/// So long in the slot.
-const fn cost(wall_us: u64) -> Cost {
-    Cost {
-        wall_us,
-        cpu_us: wall_us,
-    }
 }
 
 impl Scene {
@@ -241,33 +227,8 @@ impl Scene {
     }
 }
 
-fn job(n: u64) -> Job {
-    Job::Nothing {
-        payload: n.to_le_bytes().to_vec(),
-        reply_bytes: 1,
-        delay_ms: 0,
-    }
-}
-
 fn crash() -> Failure {
     Failure::Crashed {
         how: "signal 11".to_owned(),
-    }
-}
-
-fn announcement(digest: &str) -> Announcement {
-    Announcement {
-        protocol: wire::VERSION,
-        build: concat!(env!("CARGO_PKG_VERSION"), " test").to_owned(),
-        host: "host".to_owned(),
-        pid: 3,
-        slots: 1,
-        cores: 8,
-        job_kinds: Vec::new(),
-        models: vec![ModelDescriptor {
-            kind: MODEL.to_owned(),
-            digest: digest.to_owned(),
-            effects: Vec::new(),
-        }],
     }
 }

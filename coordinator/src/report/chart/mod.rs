@@ -20,6 +20,7 @@ pub(crate) mod panel;
 pub(crate) mod points;
 mod rows;
 pub(crate) mod scale;
+mod speed_up;
 pub(crate) mod strip;
 mod worker;
 
@@ -35,4 +36,5 @@ pub(super) use latent_force::latent_forces;
 pub(super) use main_effect::main_effects;
 pub(super) use order_map::order_map;
 pub use overlay::{overlay, overlays};
+pub(super) use speed_up::speed_up;
 pub(super) use worker::workers;

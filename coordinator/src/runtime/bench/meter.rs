@@ -1,10 +1,17 @@
 //! What the system says that this process has used.
+use rustix::time::{ClockId, clock_gettime};
 use std::{fs, time::Duration};
 
 /// Name of the thread of sessions, whose processor time is not the coordinator's.
 pub(super) const SESSIONS: &str = "bench-sessions";
 
-/// Processor time of the coordinator.
+/// Processor time of this process so far, threads that have ended included.
+pub fn processor_time() -> Duration {
+    let now = clock_gettime(ClockId::ProcessCPUTime);
+    Duration::try_from(now).unwrap_or_default()
+}
+
+/// Processor time of the coordinator: of the living threads of this process, but those of sessions.
 pub(super) fn cost() -> Duration {
     cpu_time(|thread| thread != SESSIONS)
 }

@@ -2,9 +2,10 @@
 //! of their own over the bus.
 //!
 //! They speak the protocol as real ones do (announcement, proof, heartbeat, results) and answer a
-//! job that does nothing at once. They repeat nothing: the memory link loses nothing, and over the bus
+//! job that does nothing at once, or after the sleep that it asks for. They repeat nothing: the memory link loses nothing, and over the bus
 //! what is not answered in time is offered again.
 use super::meter::SESSIONS;
+use crate::simulated::{Running, Worker, outcome};
 use link::{
     Blob, LinkError, WorkerEnd,
     keys::{Keys, Role},
@@ -15,9 +16,9 @@ use link::{
 use protocol::{
     announce::Announcement,
     id::{ContentHash, RunId, WorkerId},
-    job::{Answer, Failure, Job, Outcome, kind},
+    job::{Job, kind},
     key::Lane,
-    message::{Beat, Cost, Done, FromWorker, Order, ToWorker},
+    message::{Attempt, Beat, Cost, Done, FromWorker, Order, ToWorker},
     wire::{self, Kind},
 };
 use std::{
@@ -31,7 +32,7 @@ use std::{
 use tokio::{
     sync::Semaphore,
     task::JoinSet,
-    time::{MissedTickBehavior, sleep},
+    time::{Instant, MissedTickBehavior, sleep, sleep_until},
 };
 
 /// How often a worker speaks.
@@ -152,7 +153,18 @@ async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
     let mut number = 0;
     let mut beats = tokio::time::interval(BEAT);
     beats.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let begun = Instant::now();
+    // the slot of jobs that sleep, with what is in it and until when
+    let mut sleeper = Worker::new(0, 1, 1.0);
+    let mut asleep: Option<(Attempt, Instant)> = None;
     loop {
+        if asleep.is_none()
+            && let Some(attempt) = sleeper.begin(begun.elapsed())
+        {
+            let delay = sleeper.running.last().map(Running::delay);
+            asleep = Some((attempt, Instant::now() + delay.unwrap_or_default()));
+        }
+        let until = asleep.map_or_else(Instant::now, |(_, until)| until);
         let message = tokio::select! {
             frame = link.receive() => {
                 let Some(frame) = frame else { return };
@@ -162,16 +174,35 @@ async fn serve<L: WorkerEnd>(mut link: L, id: WorkerId) {
                 match message {
                     ToWorker::Admitted { case: hash, .. } => {
                         (run, case) = (of, Some(hash));
-                        beat(&mut number, case)
+                        beat(&mut number, case, &sleeper)
+                    }
+                    ToWorker::Run(order) if sleeps(&order.job) => {
+                        sleeper.take(*order);
+                        continue;
                     }
                     ToWorker::Run(order) => FromWorker::Done(Box::new(answer(*order))),
                     ToWorker::Identify => announce(id),
                     ToWorker::Ended | ToWorker::Refused { .. } => return,
-                    ToWorker::Cancel(_) | ToWorker::Stored(_) => continue,
+                    ToWorker::Cancel(attempt) => {
+                        sleeper.cancel(attempt, begun.elapsed());
+                        asleep = asleep.filter(|(running, _)| *running != attempt);
+                        continue;
+                    }
+                    ToWorker::Stored(attempts) => {
+                        sleeper.settle(attempts);
+                        continue;
+                    }
+                }
+            }
+            () = sleep_until(until), if asleep.is_some() => {
+                let woken = asleep.take();
+                match woken.and_then(|(attempt, _)| sleeper.finish(attempt, begun.elapsed())) {
+                    Some(done) => FromWorker::Done(Box::new(done)),
+                    None => continue,
                 }
             }
             _ = beats.tick() => match case {
-                Some(_) => beat(&mut number, case),
+                Some(_) => beat(&mut number, case, &sleeper),
                 None => announce(id),
             },
         };
@@ -201,31 +232,26 @@ fn announce(id: WorkerId) -> FromWorker {
     }))
 }
 
-fn beat(number: &mut u64, case: Option<ContentHash>) -> FromWorker {
+/// Jobs that are answered at once are never seen to run.
+fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &Worker) -> FromWorker {
     *number += 1;
-    // nothing runs when a beat is sent, as far as anybody can see
+    let proof = ContentHash::of(b"sessions compute nothing");
     FromWorker::Beat(Beat {
         number: *number,
-        case,
-        proof: Some(ContentHash::of(b"sessions compute nothing")),
-        ..Beat::default()
+        ..sleeper.beat(case, proof)
     })
 }
 
+/// Whether a job takes time.
+const fn sleeps(job: &Job) -> bool {
+    matches!(job, Job::Nothing { delay_ms, .. } if *delay_ms > 0)
+}
+
 fn answer(Order { attempt, job, .. }: Order) -> Done {
-    let work = job.work_hash();
-    let outcome = match job {
-        Job::Nothing { reply_bytes, .. } => {
-            Outcome::Done(Answer::Nothing(vec![0; reply_bytes as usize]))
-        }
-        Job::Simulate(_) | Job::Own { .. } | Job::Describe => Outcome::Failed(Failure::Refused {
-            reason: "a session without slots computes nothing".to_owned(),
-        }),
-    };
     Done {
         attempt,
-        work,
+        work: job.work_hash(),
         cost: Cost::default(),
-        outcome,
+        outcome: outcome(&job),
     }
 }

@@ -7,7 +7,9 @@
 mod asked;
 mod orthogonal;
 mod rig;
+mod scaling;
 mod seen;
+mod started;
 mod swept;
 mod words;
 

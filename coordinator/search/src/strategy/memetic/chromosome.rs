@@ -90,6 +90,12 @@ impl Codec {
         self.space.expand(&own)
     }
 
+    /// The chromosome nearest to one of the starts of the space.
+    pub(super) fn start(&self, index: usize) -> Option<Chromosome> {
+        let point = self.space.starts().get(index)?;
+        Some(self.encode(point))
+    }
+
     /// The chromosome nearest to a point (coordinate).
     pub(super) fn encode(&self, point: &[f64]) -> Chromosome {
         let genes = point.iter().zip(&self.intervals).zip(self.space.axes());

@@ -52,8 +52,11 @@ impl Craft {
         self.streams.at(at.generation, phase, at.index)
     }
 
-    /// A random individual of the first population.
-    pub(super) fn random(&self, index: usize) -> Chromosome {
+    /// An individual of the first population: a start of the space, or a random one.
+    pub(super) fn first(&self, index: usize) -> Chromosome {
+        if let Some(start) = self.codec.start(index) {
+            return start;
+        }
         let at = At {
             generation: 0,
             index,

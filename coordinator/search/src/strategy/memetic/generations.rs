@@ -113,7 +113,7 @@ impl Memetic {
     fn initial(&self) -> Vec<Chromosome> {
         let size = self.craft.settings.population;
         let mut population: Vec<_> = self.start.iter().take(size).cloned().collect();
-        population.extend((population.len()..size).map(|index| self.craft.random(index)));
+        population.extend((population.len()..size).map(|index| self.craft.first(index)));
         population
     }
 

@@ -237,7 +237,7 @@ impl Window {
     fn breed(&self, id: u64, purpose: Purpose) -> Chromosome {
         let index = usize::try_from(id).unwrap_or(usize::MAX);
         if purpose == Purpose::Initial {
-            return self.craft.random(index);
+            return self.craft.first(index);
         }
         let (craft, population) = (&self.craft, &self.population);
         let at = At {

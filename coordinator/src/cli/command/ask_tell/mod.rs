@@ -20,7 +20,8 @@ One JSON object a line in, one out. First in:
              {{\"name\": \"x0\", \"lower\": -1, \"upper\": 1, \"scale\": \"linear\", \"start\": 0.2}}],
    \"seed\": 1, \"budget\": 500, \"settings\": {{\"population\": 20}}}}   (on one line)
 The start is the middle, the seed 1, the budget what the strategy plans and the settings those of the
-preset where they are left out; `horsehead calibrate --help` lists settings. Then out:
+preset where they are left out; `horsehead calibrate --help` lists settings. \"start\": [[1e5, 0.1], ..]
+are points to evaluate before the search, on top of what it plans, and to begin it with. Then out:
   {{\"ask\": [{{\"id\": 0, \"x\": [1e6, 0.2]}}]}}
 and in, in any order, one point or many to a line:
   {{\"tell\": [{{\"id\": 0, \"f\": 3.5}}, {{\"id\": 1, \"failed\": true}}]}}

@@ -5,7 +5,7 @@ use crate::cli::argument::settings::SettingsChoice;
 use protocol::case::{self, Unknown};
 use search::{
     space::Space,
-    strategy::{Finish, Plan, Residual, Strategy, Told, build, preset},
+    strategy::{Finish, Plan, Residual, Strategy, Told, build_after, preset},
 };
 use std::collections::BTreeMap;
 
@@ -39,6 +39,33 @@ impl Axis {
     }
 }
 
+/// Points to begin with, each inside the bounds.
+fn first_points(space: &Space, points: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, Refused> {
+    for (number, point) in (1..).zip(points) {
+        let axes = space.axes();
+        let refuse = |why: String| {
+            let help =
+                "give each point of `start` one number per axis of `space`, inside its bounds";
+            Err(Refused::new(format!("start: point {number} {why}"), help))
+        };
+        if point.len() != axes.len() {
+            return refuse(format!(
+                "has {} numbers, the space {}",
+                point.len(),
+                axes.len()
+            ));
+        }
+        for (axis, value) in axes.iter().zip(point) {
+            let unknown = &axis.unknown;
+            if !(unknown.lower..=unknown.upper).contains(value) {
+                let bounds = format!("outside {:e} to {:e}", unknown.lower, unknown.upper);
+                return refuse(format!("has {} = {value:e}, {bounds}", unknown.name));
+            }
+        }
+    }
+    Ok(points.to_vec())
+}
+
 impl Opening {
     /// Reads the first line.
     pub(super) fn read(line: &str) -> Result<Self, Refused> {
@@ -67,7 +94,8 @@ impl Opening {
         };
         let chosen = SettingsChoice { set }.choose(preset, &plan);
         let chosen = chosen.map_err(|usage| Refused::new(usage.message, usage.help))?;
-        let strategy = build(&chosen.settings, &space, self.seed);
+        let first = first_points(&space, &self.start)?;
+        let strategy = build_after(&chosen.settings, &space, self.seed, &first);
         let strategy = strategy.map_err(|error| {
             Refused::new(
                 format!("settings: {error}"),

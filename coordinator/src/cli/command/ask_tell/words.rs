@@ -15,6 +15,9 @@ pub(super) struct Opening {
     pub(super) seed: u64,
     /// Most evaluations.
     pub(super) budget: Option<u64>,
+    /// Points to evaluate first and to begin the search with.
+    #[serde(default)]
+    pub(super) start: Vec<Vec<f64>>,
     /// Settings by name.
     #[serde(default)]
     pub(super) settings: BTreeMap<String, Value>,

@@ -2,6 +2,7 @@
 mod file;
 mod grid;
 mod orthogonal;
+mod scaling;
 
 use crate::cli::output::problem::EXIT_CODES;
 use clap::{Args, Subcommand};
@@ -29,6 +30,7 @@ Examples:
   horsehead sweep grid.toml
   horsehead sweep individuals.csv --case cases/cyjs10-5-37hb --output json
   horsehead sweep orthogonal cases/cyjs10-5-37hb
+  horsehead sweep scaling cases/cyjs10-5-37hb
 
 {EXIT_CODES}")
 )]
@@ -42,12 +44,14 @@ pub(super) struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Kind {
     Orthogonal(orthogonal::Arguments),
+    Scaling(scaling::Arguments),
 }
 
 /// Sweeps.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     match &arguments.kind {
         Some(Kind::Orthogonal(arguments)) => orthogonal::run(arguments),
+        Some(Kind::Scaling(arguments)) => scaling::run(arguments),
         None => file::run(&arguments.file),
     }
 }

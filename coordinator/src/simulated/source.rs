@@ -1,16 +1,29 @@
 //! Where the jobs of a simulated cluster come from: generations, or a search.
-use super::*;
+use protocol::job::{Job, Outcome};
 use search::strategy::{Strategy, Told};
+use std::collections::BTreeMap;
+
+/// A job that does nothing, told from others by its number.
+pub fn job(n: u64) -> Job {
+    Job::Nothing {
+        payload: n.to_le_bytes().to_vec(),
+        reply_bytes: 1,
+        delay_ms: 0,
+    }
+}
 
 /// Where jobs come from.
-pub(in crate::core::tests) trait Source {
+pub trait Source {
+    /// Jobs that can be done now.
     fn ask(&mut self) -> Vec<(u64, Job)>;
+    /// Takes what came of one.
     fn tell(&mut self, id: u64, outcome: &Outcome);
+    /// Whether nothing more is wanted.
     fn is_done(&self) -> bool;
 }
 
 /// Generations of equal size: nothing is asked before all of the last one is there.
-pub(in crate::core::tests) struct Generations {
+pub struct Generations {
     size: u64,
     left: u64,
     next: u64,
@@ -18,7 +31,8 @@ pub(in crate::core::tests) struct Generations {
 }
 
 impl Generations {
-    pub(in crate::core::tests) const fn new(size: u64, count: u64) -> Self {
+    /// So many generations of so many jobs.
+    pub const fn new(size: u64, count: u64) -> Self {
         Self {
             size,
             left: count,
@@ -50,28 +64,31 @@ impl Source for Generations {
 }
 
 /// A search, with a function for the physics.
-pub(in crate::core::tests) struct Search<'a> {
-    pub(in crate::core::tests) strategy: Box<dyn Strategy>,
-    pub(in crate::core::tests) tell: &'a dyn Fn(&[f64]) -> Told,
+pub struct Search<'a> {
+    /// The search.
+    pub strategy: Box<dyn Strategy>,
+    /// The physics.
+    pub tell: &'a dyn Fn(&[f64]) -> Told,
+    /// Proposals from this number on are not evaluated.
+    pub limit: u64,
     open: BTreeMap<u64, Vec<f64>>,
     log: blake3::Hasher,
 }
 
 impl<'a> Search<'a> {
-    pub(in crate::core::tests) fn new(
-        strategy: Box<dyn Strategy>,
-        tell: &'a dyn Fn(&[f64]) -> Told,
-    ) -> Self {
+    /// The whole of a search.
+    pub fn new(strategy: Box<dyn Strategy>, tell: &'a dyn Fn(&[f64]) -> Told) -> Self {
         Self {
             strategy,
             tell,
+            limit: u64::MAX,
             open: BTreeMap::new(),
             log: blake3::Hasher::new(),
         }
     }
 
     /// The name of everything that was evaluated, in index order.
-    pub(in crate::core::tests) fn digest(mut self) -> String {
+    pub fn digest(mut self) -> String {
         for entry in self.strategy.archive().entries() {
             self.log.update(&entry.id.to_le_bytes());
             for gene in &entry.genes {
@@ -85,8 +102,9 @@ impl<'a> Search<'a> {
 
 impl Source for Search<'_> {
     fn ask(&mut self) -> Vec<(u64, Job)> {
-        let proposals = self.strategy.ask();
-        let jobs = proposals.into_iter().map(|proposal| {
+        let asked = self.strategy.ask().into_iter();
+        let wanted = asked.filter(|proposal| proposal.id < self.limit);
+        let jobs = wanted.map(|proposal| {
             self.open.insert(proposal.id, proposal.genes);
             (proposal.id, job(proposal.id))
         });
@@ -94,11 +112,13 @@ impl Source for Search<'_> {
     }
 
     fn tell(&mut self, id: u64, _outcome: &Outcome) {
-        let genes = self.open.remove(&id).expect("asked for");
-        self.strategy.tell(id, (self.tell)(&genes));
+        if let Some(genes) = self.open.remove(&id) {
+            self.strategy.tell(id, (self.tell)(&genes));
+        }
     }
 
     fn is_done(&self) -> bool {
-        self.strategy.finished().is_some()
+        let evaluated = self.strategy.archive().entries().len() as u64;
+        self.strategy.finished().is_some() || evaluated >= self.limit
     }
 }

@@ -6,7 +6,7 @@ use protocol::{
 
 /// What happens to workers.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::core::tests) enum Fault {
+pub enum Fault {
     /// It dies with all it holds, the transport says so, and another one comes in its place.
     Kill,
     /// It stands still; its connection stays.
@@ -19,6 +19,8 @@ pub(in crate::core::tests) enum Fault {
 #[derive(Clone)]
 pub(super) enum What {
     Up(WorkerId, FromWorker),
+    /// What was said is taken in.
+    Heard(WorkerId, FromWorker),
     Down(WorkerId, ToWorker),
     End(WorkerId, Attempt),
     Beat(WorkerId),

@@ -1,47 +1,92 @@
 //! A whole cluster on a simulated clock: the real core; workers, link and time are simulated.
 //!
 //! Every delay, speed, fault and computing time is drawn from a seed, so that a run of hours takes
-//! a fraction of a second and is the same each time.
+//! a fraction of a second and is the same each time. The tests of the core run on it, and so do projections of
+//! how a search scales.
 mod happening;
 mod source;
 mod worker;
 
-pub(super) use happening::Fault;
-pub(super) use source::{Generations, Search, Source};
+pub use happening::Fault;
+pub use source::{Generations, Search, Source, job};
+pub use worker::{Running, Worker, cost, outcome};
 
-use super::*;
+use crate::core::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Stop};
 use happening::What;
-use protocol::event::Event;
+use protocol::{
+    announce::{Announcement, ModelDescriptor},
+    event::Event,
+    id::{ContentHash, JobId, RunId, WorkerId},
+    job::Outcome,
+    message::{Done, FromWorker, ToWorker},
+    wire,
+};
 use search::random::{Phase, Streams};
-use worker::Worker;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    mem,
+    time::Duration,
+};
+
+/// Kind of the case's model.
+pub const MODEL: &str = "model";
+/// The case that every worker has.
+pub const CASE: ContentHash = ContentHash([7; 32]);
+/// What every worker computes of the proof.
+pub const PROOF: ContentHash = ContentHash([8; 32]);
+
+/// What a worker says of itself.
+pub fn announcement(digest: &str) -> Announcement {
+    Announcement {
+        protocol: wire::VERSION,
+        build: concat!(env!("CARGO_PKG_VERSION"), " simulated").to_owned(),
+        host: "host".to_owned(),
+        pid: 3,
+        slots: 1,
+        cores: 8,
+        job_kinds: Vec::new(),
+        models: vec![ModelDescriptor {
+            kind: MODEL.to_owned(),
+            digest: digest.to_owned(),
+            effects: Vec::new(),
+        }],
+    }
+}
 
 /// What a cluster is like.
 #[derive(Clone, Copy)]
-pub(super) struct Setting {
-    pub(super) workers: u64,
-    pub(super) slots: usize,
-    pub(super) seed: u64,
+pub struct Setting {
+    /// How many workers.
+    pub workers: u64,
+    /// Slots of each.
+    pub slots: usize,
+    /// Fixes every random choice.
+    pub seed: u64,
     /// Spread of computing times, lognormal about one second: standard deviation over mean \[1\].
-    pub(super) spread: f64,
+    pub spread: f64,
+    /// Time that the coordinator takes over each result, one after the other.
+    pub handling: Duration,
     /// One in so many workers is half as fast; 0 for none.
-    pub(super) slow_one_in: u64,
+    pub slow_one_in: u64,
     /// Longest delay of a message.
-    pub(super) delay: Duration,
+    pub delay: Duration,
     /// Share of messages that are lost \[1\].
-    pub(super) loss: f64,
+    pub loss: f64,
     /// Share of messages that arrive twice \[1\].
-    pub(super) duplication: f64,
+    pub duplication: f64,
     /// Jobs that take their worker with them as soon as they are begun.
-    pub(super) killers: &'static [u64],
+    pub killers: &'static [u64],
 }
 
 impl Setting {
-    pub(super) const fn even(workers: u64) -> Self {
+    /// Workers of one slot that are equally fast on a good network.
+    pub const fn even(workers: u64) -> Self {
         Self {
             workers,
             slots: 1,
             seed: 1,
             spread: 0.3,
+            handling: Duration::ZERO,
             slow_one_in: 0,
             delay: Duration::from_millis(2),
             loss: 0.0,
@@ -51,25 +96,39 @@ impl Setting {
     }
 }
 
-pub(super) struct Cluster {
-    pub(super) core: Core,
-    pub(super) now: Duration,
+/// A coordinator and its workers.
+pub struct Cluster {
+    /// The coordinator.
+    pub core: Core,
+    /// The time.
+    pub now: Duration,
     setting: Setting,
+    /// How long jobs take by their number, in place of the setting's spread.
+    pub takes: Option<Box<dyn Fn(u64) -> Duration>>,
+    /// Why the run cannot go on.
+    stopped: Option<Stop>,
+    /// When the coordinator is through with the results that have arrived.
+    free_at: Duration,
     events: BTreeMap<(Duration, u64), What>,
     sequence: u64,
     workers: BTreeMap<WorkerId, Worker>,
-    pub(super) results: BTreeMap<u64, Outcome>,
+    /// What came of jobs, by number.
+    pub results: BTreeMap<u64, Outcome>,
     /// Delivered and not yet told.
     fresh: Vec<(JobId, Outcome)>,
-    pub(super) accounts: Vec<Event>,
-    pub(super) notices: Vec<Notice>,
+    /// What was written down of slot time.
+    pub accounts: Vec<Event>,
+    /// What people were told.
+    pub notices: Vec<Notice>,
     /// Slot time that was really spent computing, whatever for.
-    pub(super) computed: Duration,
-    pub(super) begun: u64,
+    pub computed: Duration,
+    /// Attempts that were begun.
+    pub begun: u64,
 }
 
 impl Cluster {
-    pub(super) fn new(setting: Setting) -> Self {
+    /// With its workers, who are about to say so.
+    pub fn new(setting: Setting) -> Self {
         let core = Core::new(CoreOptions {
             run: RunId(1),
             epoch: 1,
@@ -86,6 +145,9 @@ impl Cluster {
             core,
             now: Duration::ZERO,
             setting,
+            takes: None,
+            stopped: None,
+            free_at: Duration::ZERO,
             events: BTreeMap::new(),
             sequence: 0,
             workers: BTreeMap::new(),
@@ -104,7 +166,7 @@ impl Cluster {
     }
 
     /// Something happens to the worker of a place.
-    pub(super) fn fault(&mut self, at: Duration, place: u64, fault: Fault) {
+    pub fn fault(&mut self, at: Duration, place: u64, fault: Fault) {
         self.at(at, What::Fault(place, fault));
     }
 
@@ -149,16 +211,20 @@ impl Cluster {
 
     /// How long a job takes: a property of the job alone.
     fn time_of(&self, job: JobId) -> Duration {
+        if let Some(takes) = &self.takes {
+            return takes(job.0);
+        }
         let index = usize::try_from(job.0).expect("small");
         let mut stream = Streams::new(self.setting.seed, 6).at(0, Phase::Mutation, index);
-        let sigma = (1.0 + self.setting.spread * self.setting.spread)
-            .ln()
-            .sqrt();
-        Duration::from_secs_f64((sigma * stream.normal() - 0.5 * sigma * sigma).exp())
+        let sigma = libm::sqrt(libm::log(1.0 + self.setting.spread * self.setting.spread));
+        Duration::from_secs_f64(libm::exp(sigma * stream.normal() - 0.5 * sigma * sigma))
     }
 
     /// Runs until the source is done, `limit` at most.
-    pub(super) fn run(&mut self, source: &mut dyn Source, limit: Duration) {
+    ///
+    /// # Panics
+    /// If the core has not done everything by then, or breaks its own rules.
+    pub fn run(&mut self, source: &mut dyn Source, limit: Duration) {
         self.submit(source);
         while !source.is_done() {
             let ((time, _), what) = self.events.pop_first().expect("there is always a tick");
@@ -170,6 +236,7 @@ impl Cluster {
             );
             self.now = time;
             self.happen(what);
+            assert!(self.stopped.is_none(), "{:?}", self.stopped);
             if !self.fresh.is_empty() {
                 for (job, outcome) in mem::take(&mut self.fresh) {
                     source.tell(job.0, &outcome);
@@ -189,7 +256,14 @@ impl Cluster {
 
     fn happen(&mut self, what: What) {
         match what {
-            What::Up(from, message) => self.tell_core(Input::Heard { from, message }),
+            What::Up(from, message @ FromWorker::Done(_)) => {
+                self.free_at = self.free_at.max(self.now) + self.setting.handling;
+                let wait = self.free_at.saturating_sub(self.now);
+                self.at(wait, What::Heard(from, message));
+            }
+            What::Up(from, message) | What::Heard(from, message) => {
+                self.tell_core(Input::Heard { from, message });
+            }
             What::Stored(jobs) => self.tell_core(Input::Stored { jobs }),
             What::Tick => {
                 self.tell_core(Input::Tick);
@@ -225,7 +299,7 @@ impl Cluster {
                 let dead = self.workers.remove(&id).expect("just found");
                 // what it said last dies with it
                 self.events
-                    .retain(|_, what| !matches!(what, What::Up(from, _) if *from == id));
+                    .retain(|_, what| !matches!(what, What::Up(from, _) | What::Heard(from, _) if *from == id));
                 for running in &dead.running {
                     self.computed += self.now.saturating_sub(running.begun);
                 }
@@ -253,7 +327,7 @@ impl Cluster {
                 }
             }
             What::Beat(_) => {
-                let beat = worker.beat();
+                let beat = worker.beat(Some(CASE), PROOF);
                 let again: Vec<Done> = worker.outbox.values().cloned().collect();
                 self.send(What::Up(id, FromWorker::Beat(beat)));
                 for done in again {
@@ -266,7 +340,12 @@ impl Cluster {
                 announcement.slots = u32::try_from(worker.slots).expect("few");
                 self.send(What::Up(id, FromWorker::Announce(Box::new(announcement))));
             }
-            What::Down(..) | What::Up(..) | What::Tick | What::Stored(_) | What::Fault(..) => {}
+            What::Down(..)
+            | What::Up(..)
+            | What::Heard(..)
+            | What::Tick
+            | What::Stored(_)
+            | What::Fault(..) => {}
         }
         self.fill(id);
     }
@@ -297,7 +376,7 @@ impl Cluster {
                 Command::Record(event @ Event::Accounted(_)) => self.accounts.push(event),
                 Command::Record(_) => {}
                 Command::Notice(notice) => self.notices.push(notice),
-                Command::Stop(stop) => panic!("{stop}"),
+                Command::Stop(stop) => self.stopped = Some(stop),
             }
         }
         if !storing.is_empty() {
@@ -306,7 +385,7 @@ impl Cluster {
     }
 
     /// Time that accepted results took, over all slot time.
-    pub(super) fn capacity_used(&self) -> f64 {
+    pub fn capacity_used(&self) -> f64 {
         let slots = self.setting.workers * self.setting.slots as u64;
         let all = self.now.as_secs_f64() * slots as f64;
         self.core.snapshot(self.now).spent.useful_us as f64 / 1e6 / all

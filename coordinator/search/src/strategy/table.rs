@@ -1,0 +1,314 @@
+//! A search that begins with a table of individuals.
+//!
+//! The table is evaluated first, all of it at once. Then the search is made over a space that knows the
+//! individuals which survived, the best first ([`Space::beginning_at`]): populations have them in their first
+//! places, a local search begins at the best, and one that can use neither goes its own way. What the table
+//! has answered is not evaluated again. No strategy knows of any of this.
+use super::{
+    archive::{Archive, Evaluated, Residual},
+    ask_tell::Strategy,
+    catalogue::build,
+    outcome::{Best, Finish, Progress},
+    proposal::{Proposal, Purpose},
+    setting::{SettingsError, require},
+    settings::Settings,
+    told::Told,
+};
+use crate::space::Space;
+use std::collections::BTreeMap;
+
+/// Two values are the same where they differ by less, relative to their size: what comes back from its
+/// coordinate differs from what was read in the last bits.
+const SAME: f64 = 1e-12;
+
+/// The search that settings make over a space, from a seed, after these individuals: values of all unknowns
+/// [declared units] inside the bounds. They come on top of what the settings plan; without any it is the
+/// search of [`build`].
+///
+/// # Errors
+/// As [`build`]; if there are more individuals than evaluations are planned without them.
+pub fn build_after(
+    settings: &Settings,
+    space: &Space,
+    seed: u64,
+    individuals: &[Vec<f64>],
+) -> Result<Box<dyn Strategy>, SettingsError> {
+    let alone = build(settings, space, seed)?;
+    if individuals.is_empty() {
+        return Ok(alone);
+    }
+    let planned = alone.progress().expected_evaluations;
+    let (count, most) = (
+        individuals.len(),
+        format!("at most {planned}, as many as the search plans"),
+    );
+    require(
+        count as u64 <= planned,
+        "individuals to start with",
+        count,
+        &most,
+    )?;
+    let proposal = |(id, genes): (u64, &Vec<f64>)| Proposal {
+        id,
+        genes: genes.clone(),
+        generation: 0,
+        purpose: Purpose::Initial,
+    };
+    let outbox: Vec<Proposal> = (0..).zip(individuals).map(proposal).collect();
+    Ok(Box::new(AfterTable {
+        open: outbox
+            .iter()
+            .map(|one| (one.id, one.genes.clone()))
+            .collect(),
+        outbox,
+        early: BTreeMap::new(),
+        archive: Archive::default(),
+        table: count,
+        inner: alone,
+        own_ids: BTreeMap::new(),
+        known: 0,
+        recipe: (settings.clone(), space.clone(), seed),
+    }))
+}
+
+/// A table, then a search.
+struct AfterTable {
+    /// Individuals of the table.
+    table: usize,
+    /// The search: until the table is through, one that is never asked and says what is planned.
+    inner: Box<dyn Strategy>,
+    /// What it is made anew from.
+    recipe: (Settings, Space, u64),
+    /// Its own ids of what was asked in its name.
+    own_ids: BTreeMap<u64, u64>,
+    /// How many of its individuals the table has answered.
+    known: u64,
+    outbox: Vec<Proposal>,
+    /// Genes of the proposals that have not been consumed, by id.
+    open: BTreeMap<u64, Vec<f64>>,
+    early: BTreeMap<u64, Told>,
+    archive: Archive,
+}
+
+impl AfterTable {
+    /// The next id: one more than all that were asked for.
+    fn next_id(&self) -> u64 {
+        (self.archive.entries().len() + self.open.len()) as u64
+    }
+
+    /// Whether every individual of the table has its result.
+    fn is_through(&self) -> bool {
+        self.archive.entries().len() >= self.table
+    }
+
+    /// Makes the search of what the table has found.
+    fn begin(&mut self) {
+        let (settings, space, seed) = &self.recipe;
+        let survived: Vec<Vec<f64>> = {
+            let ranked = self.archive.ranked().into_iter();
+            ranked.map(|one| one.genes.clone()).collect()
+        };
+        let space = space.clone().beginning_at(&survived);
+        // settings that made one search make another over the same box
+        if let Ok(inner) = build(settings, &space, *seed) {
+            self.inner = inner;
+        }
+        self.pass_on();
+    }
+
+    /// What the table says of genes, if it holds them.
+    fn answered(&self, genes: &[f64]) -> Option<Told> {
+        let table = self.archive.entries().iter().take(self.table);
+        let same = |entry: &&Evaluated| {
+            let mut pairs = entry.genes.iter().zip(genes);
+            pairs.all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()))
+        };
+        table.into_iter().find(same).map(|entry| entry.told)
+    }
+
+    /// Hands on what the search asks for, but for individuals that the table has answered.
+    fn pass_on(&mut self) {
+        loop {
+            let asked = self.inner.ask();
+            if asked.is_empty() {
+                return;
+            }
+            for proposal in asked {
+                let initial = proposal.purpose == Purpose::Initial;
+                if let Some(told) = self.answered(&proposal.genes).filter(|_| initial) {
+                    self.known += 1;
+                    self.inner.tell(proposal.id, told);
+                    continue;
+                }
+                let id = self.next_id();
+                self.own_ids.insert(id, proposal.id);
+                self.open.insert(id, proposal.genes.clone());
+                self.outbox.push(Proposal { id, ..proposal });
+            }
+        }
+    }
+}
+
+impl Strategy for AfterTable {
+    fn ask(&mut self) -> Vec<Proposal> {
+        std::mem::take(&mut self.outbox)
+    }
+
+    fn tell(&mut self, id: u64, result: Told) {
+        if self.open.contains_key(&id) {
+            self.early.entry(id).or_insert(result);
+        }
+        while let Some((first, told)) = self.early.first_key_value().map(|(id, told)| (*id, *told))
+        {
+            if first != self.archive.entries().len() as u64 {
+                break;
+            }
+            self.early.pop_first();
+            let genes = self.open.remove(&first).unwrap_or_default();
+            self.archive.push(Evaluated {
+                id: first,
+                genes,
+                told,
+                residual: None,
+            });
+            if let Some(own) = self.own_ids.remove(&first) {
+                self.inner.tell(own, told);
+                self.pass_on();
+            } else if self.is_through() {
+                self.begin();
+            }
+        }
+    }
+
+    fn tell_residual(&mut self, id: u64, residual: Residual) {
+        if let Some(own) = self.own_ids.get(&id) {
+            self.inner.tell_residual(*own, residual);
+        }
+    }
+
+    fn finished(&self) -> Option<Finish> {
+        self.inner.finished().filter(|_| self.is_through())
+    }
+
+    fn progress(&self) -> Progress {
+        let inner = self.inner.progress();
+        let best = self.archive.best();
+        Progress {
+            evaluations: self.archive.entries().len() as u64,
+            expected_evaluations: (self.table as u64 + inner.expected_evaluations)
+                .saturating_sub(self.known),
+            best_fitness: best
+                .filter(|best| best.told.survived())
+                .map(|best| best.told.fitness),
+            ..inner
+        }
+    }
+
+    fn best(&self) -> Option<Best> {
+        self.archive.best().map(Best::from)
+    }
+
+    fn archive(&self) -> &Archive {
+        &self.archive
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        random::{Phase, Streams},
+        strategy::{
+            catalogue::{CATALOGUE, preset},
+            tests::{run_on, settings},
+        },
+        test_function::SPHERE,
+    };
+
+    /// Individuals at these coordinates on every axis.
+    fn at(space: &Space, coordinates: &[f64]) -> Vec<Vec<f64>> {
+        let one = |x: &f64| space.values(&vec![*x; space.dimension()]);
+        coordinates.iter().map(one).collect()
+    }
+
+    #[test]
+    fn every_search_evaluates_the_table_first_and_ends_no_worse_whatever_the_order() {
+        let space = SPHERE.space();
+        let table = at(&space, &[0.4, -0.3, 0.25]);
+        let least = table.iter().map(|genes| SPHERE.tell(&space, genes).fitness);
+        let least = least.fold(f64::INFINITY, f64::min);
+        for preset in CATALOGUE {
+            let made = || build_after(&settings(preset, &space), &space, 5, &table).unwrap();
+            let straight = run_on(made().as_mut(), &SPHERE, None);
+            let stream = Streams::new(1, 99).at(0, Phase::Initial, 0);
+            let shuffled = run_on(made().as_mut(), &SPHERE, Some(stream));
+            assert_eq!(straight, shuffled, "{}", preset.name);
+            for (genes, proposal) in table.iter().zip(&straight.asked) {
+                assert_eq!(*genes, proposal.genes, "{}", preset.name);
+            }
+            for (id, proposal) in (0..).zip(&straight.asked) {
+                assert_eq!(proposal.id, id, "{}", preset.name);
+            }
+            assert!(straight.best.fitness <= least, "{}", preset.name);
+        }
+    }
+
+    #[test]
+    fn a_population_has_the_table_in_its_first_places_and_does_not_ask_again() {
+        let space = SPHERE.space();
+        let table = at(&space, &[0.4, -0.3, 0.25]);
+        let l_shade = settings(preset("l-shade").unwrap(), &space);
+        let alone = build(&l_shade, &space, 5).unwrap().ask().len();
+        let mut search = build_after(&l_shade, &space, 5, &table).unwrap();
+        let expected = search.progress().expected_evaluations;
+        for proposal in search.ask() {
+            search.tell(proposal.id, SPHERE.tell(&space, &proposal.genes));
+        }
+        assert_eq!(search.ask().len(), alone - table.len());
+        // what the table answers counts once
+        assert_eq!(search.progress().expected_evaluations, expected - 3);
+        let led = space.clone().beginning_at(&table);
+        let paper = settings(preset("paper").unwrap(), &space);
+        let first = build(&paper, &led, 5);
+        let first = first.unwrap().ask();
+        for (genes, proposal) in table.iter().zip(first) {
+            for (a, b) in space.point(genes).iter().zip(space.point(&proposal.genes)) {
+                assert!((a - b).abs() < 0.05, "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_local_search_begins_at_the_best_that_survived() {
+        let space = SPHERE.space();
+        let table = at(&space, &[0.9, -0.6, 0.8]);
+        let cma_es = preset("cma-es").unwrap();
+        let mut settings = settings(cma_es, &space);
+        cma_es.set(&mut settings, "spread", "0.000001").unwrap();
+        let mut search = build_after(&settings, &space, 5, &table).unwrap();
+        for proposal in search.ask() {
+            // the second looks best and failed
+            let complete = proposal.id != 1;
+            let fitness = [3.0, 1.0, 2.0][usize::try_from(proposal.id).unwrap()];
+            search.tell(proposal.id, Told { fitness, complete });
+        }
+        for proposal in search.ask() {
+            for x in space.point(&proposal.genes) {
+                assert!((x - 0.8).abs() < 1e-3, "{x}");
+            }
+        }
+    }
+
+    #[test]
+    fn more_than_the_search_plans_is_refused_and_an_empty_table_changes_nothing() {
+        let space = SPHERE.space();
+        let random = preset("random").unwrap();
+        let mut settings = settings(random, &space);
+        random.set(&mut settings, "points", "2").unwrap();
+        let refused = build_after(&settings, &space, 5, &at(&space, &[0.1, 0.2, 0.3]));
+        let error = refused.err().unwrap().to_string();
+        assert!(error.contains("is 3, but must be at most 2"), "{error}");
+        let mut empty = build_after(&settings, &space, 5, &[]).unwrap();
+        assert_eq!(empty.ask(), build(&settings, &space, 5).unwrap().ask());
+    }
+}

@@ -1,0 +1,121 @@
+//! `horsehead doctor`: which layer between workers and a coordinator fails, and what to do.
+use crate::{
+    cli::{
+        argument::{case::load_case, output::OutputChoice},
+        output::{
+            problem::{EXIT_CODES, Usage},
+            terminal,
+        },
+        run::bus,
+    },
+    doctor::{Check, Layer, dial, listen},
+};
+use clap::Args;
+use link::locator::Locator;
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Say why workers do not reach a coordinator: the layer that fails, and the remedy.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead doctor --connect quic/head.example:7447 --tls worker-01
+  horsehead doctor --listen quic/0.0.0.0:7447 --tls keys
+  horsehead doctor --listen quic/0.0.0.0:7447 --tls keys --case cases/cyjs10-5-37hb
+
+On a worker's machine, with the folder of a worker, --connect takes the steps that a worker takes, up
+to the first word of a coordinator that runs. On the coordinator's machine, before it runs, --listen
+looks whether it could listen there. Layers: case, certificate, clock, name, route, port, firewall,
+version. Exit code 1 where one fails.
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    /// Where workers dial.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_CONNECT", required_unless_present = "listen", conflicts_with = "listen", value_parser = Locator::parse)]
+    connect: Option<Locator>,
+    /// Where the coordinator is to listen.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN", value_parser = Locator::parse)]
+    listen: Option<Locator>,
+    /// Key material: of a worker with --connect, of the coordinator with --listen.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
+    /// Case folder to look at first.
+    #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE")]
+    case: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Of `horsehead doctor`.
+#[derive(Debug, Serialize)]
+struct DoctorOutput {
+    /// `worker` or `coordinator`.
+    side: &'static str,
+    /// The address.
+    locator: String,
+    /// Whether every layer holds.
+    healthy: bool,
+    /// Layers in the order in which they were looked at; the first that fails is the last.
+    checks: Vec<Check>,
+}
+
+/// Looks, and says what was found.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let mut checks = Vec::new();
+    if let Some(case) = &arguments.case {
+        checks.push(match load_case(case, None) {
+            Ok(loaded) => Check::good(Layer::Case, loaded.case.name),
+            Err(error) => {
+                let remedy =
+                    "`horsehead case check CASE` says more; correct the file that is named";
+                Check::bad(Layer::Case, error.to_string(), remedy)
+            }
+        });
+    }
+    let tls = arguments.tls.as_deref();
+    let (side, at) = match (&arguments.connect, &arguments.listen) {
+        (_, Some(at)) => ("coordinator", at),
+        (Some(at), None) => ("worker", at),
+        (None, None) => {
+            return Err(Usage {
+                message: "neither --connect nor --listen is given".to_owned(),
+                help: "name the address that workers dial, or that the coordinator listens on"
+                    .to_owned(),
+            }
+            .into());
+        }
+    };
+    if checks.iter().all(|check| check.healthy) {
+        checks.extend(match side {
+            "coordinator" => listen(at, tls),
+            _ => bus::block_on(async { Ok(dial(at, tls).await) })?,
+        });
+    }
+    let object = DoctorOutput {
+        side,
+        locator: at.to_string(),
+        healthy: checks.iter().all(|check| check.healthy),
+        checks,
+    };
+    terminal::print(arguments.output.output, || table(&object), &object)?;
+    match object.checks.iter().find(|check| !check.healthy) {
+        Some(failed) => Err(anyhow::anyhow!(
+            "{} fails: {}",
+            failed.layer.as_str(),
+            failed.found
+        )),
+        None => Ok(()),
+    }
+}
+
+fn table(object: &DoctorOutput) -> String {
+    let line = |check: &Check| {
+        let state = if check.healthy { "ok" } else { "FAILS" };
+        let mut text = format!("{:<12} {state:<6} {}\n", check.layer.as_str(), check.found);
+        if !check.remedy.is_empty() {
+            text.extend(["             remedy ", &check.remedy, "\n"]);
+        }
+        text
+    };
+    object.checks.iter().map(line).collect()
+}

@@ -1,0 +1,186 @@
+//! `horsehead sweep scaling`: how much faster searches are on more slots, and where slot time goes.
+use crate::{
+    case::require_record,
+    cli::{
+        argument::{
+            case::{CaseChoice, LoadedCase},
+            output::OutputChoice,
+            workers::cores,
+        },
+        output::{
+            problem::{EXIT_CODES, Usage},
+            progress::Display,
+            terminal,
+        },
+        run::{
+            begun::Run,
+            bus,
+            folder::{RESULT, RunFolder},
+            interrupt,
+            manifest::{Decides as _, Manifest},
+            scaled::{Scaling, scale},
+        },
+    },
+    report::{scaling as report, text},
+    scaling::Scaled,
+};
+use anyhow::Context as _;
+use clap::{Args, builder::PossibleValuesParser};
+use search::{space::Space, strategy::CATALOGUE};
+use std::{fs, path::PathBuf};
+
+/// Measure how searches scale with slots, and project it to more; the same command resumes.
+#[derive(Debug, Args)]
+#[command(after_help = format!("\
+Examples:
+  horsehead sweep scaling cases/cyjs10-5-37hb
+  horsehead sweep scaling cases/cyjs10-5-37hb --presets paper,paper-batch,window --populations 40,80
+  horsehead sweep scaling cases/cyjs10-5-37hb --sleeping 0 --projected 80 --output json
+
+Workers of this machine simulate the case; sessions of one other process sleep, over TCP; slots of
+which there are not so many are projected, by the coordinator's own state machine on a simulated
+clock, from what was measured. What the projection takes for granted stands in the result.
+
+{EXIT_CODES}"))]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    choice: CaseChoice,
+    /// The searches: presets of `horsehead calibrate` with a population.
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_value = "paper,window",
+        env = "HORSEHEAD_PRESETS",
+        value_parser = PossibleValuesParser::new(CATALOGUE.iter().map(|preset| preset.name))
+    )]
+    presets: Vec<String>,
+    /// Individuals of a generation.
+    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "80", env = "HORSEHEAD_POPULATIONS", value_parser = clap::value_parser!(u64).range(4..=100_000))]
+    populations: Vec<u64>,
+    /// Evaluations of each search on workers of this machine, and of a sleeping one; of that at least 8 a slot.
+    #[arg(long, value_name = "N", default_value_t = 160, env = "HORSEHEAD_EVALUATIONS", value_parser = clap::value_parser!(u64).range(4..=1_000_000))]
+    evaluations: u64,
+    /// Worker processes of this machine that simulate [default: 1 and one per core].
+    #[arg(long, value_name = "N,..", value_delimiter = ',', env = "HORSEHEAD_CREWS", value_parser = clap::value_parser!(u64).range(1..=1024))]
+    crews: Vec<u64>,
+    /// Sessions that sleep; 0 for none.
+    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "64,512", env = "HORSEHEAD_SLEEPING", value_parser = clap::value_parser!(u64).range(0..=990))]
+    sleeping: Vec<u64>,
+    /// For how long they sleep on average [s].
+    #[arg(long, value_name = "S", default_value_t = 1.0, env = "HORSEHEAD_SLEEP", value_parser = seconds)]
+    sleep: f64,
+    /// Slots of projections; 0 for none.
+    #[arg(long, value_name = "N,..", value_delimiter = ',', default_value = "80,1000,10000", env = "HORSEHEAD_PROJECTED", value_parser = clap::value_parser!(u64).range(0..=20_000))]
+    projected: Vec<u64>,
+    /// Fixes every random choice.
+    #[arg(long, default_value_t = 1, env = "HORSEHEAD_SEED")]
+    seed: u64,
+    /// Run folder [default: runs/CASE-sweep-scaling-set-HASH-seedN, the hash that of all options].
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "not a number".to_owned())?;
+    if (0.001..=3600.0).contains(&seconds) {
+        Ok(seconds)
+    } else {
+        Err("choose 0.001 to 3600".to_owned())
+    }
+}
+
+/// In order, each once, without what stands for none.
+fn counts(all: &[u64]) -> Vec<u64> {
+    let mut counts: Vec<u64> = all.iter().copied().filter(|count| *count > 0).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    counts
+}
+
+fn begin(arguments: &Arguments) -> anyhow::Result<Run<Scaling>> {
+    let LoadedCase {
+        case,
+        measured,
+        synthetic,
+        notes,
+    } = arguments.choice.load()?;
+    require_record(&arguments.choice.case, &case, case.objective.condition)?;
+    let crews = match arguments.crews.as_slice() {
+        [] => vec![1, cores() as u64],
+        some => some.to_vec(),
+    };
+    let settings = Scaling {
+        presets: arguments.presets.clone(),
+        populations: counts(&arguments.populations),
+        evaluations: arguments.evaluations,
+        crews: counts(&crews),
+        sleeping: counts(&arguments.sleeping),
+        sleep_s: arguments.sleep,
+        projected: counts(&arguments.projected),
+    };
+    // every search can be made before anything runs
+    let space = Space::new(&case.unknowns)?;
+    for search in settings.searches() {
+        Scaling::settings(search, &space, 1).map_err(|error| Usage {
+            message: error.to_string(),
+            help:
+                "choose presets that have a population, as paper, paper-batch, window and l-shade"
+                    .to_owned(),
+        })?;
+    }
+    let path = if let Some(path) = &arguments.run {
+        path.clone()
+    } else {
+        let replaced = arguments.choice.measured.as_deref();
+        let decides = [settings.arguments()];
+        RunFolder::default_path(&case, "sweep-scaling", &decides, replaced, arguments.seed)?
+    };
+    let manifest = Manifest {
+        measured,
+        synthetic,
+        notes,
+        ..Manifest::new(&arguments.choice.case, arguments.seed, settings)?
+    };
+    Run::begin(&path, manifest, case)
+}
+
+/// Measures, projects and shows.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let run = begin(arguments)?;
+    let folder = run.folder.path();
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    run.remember(0.0)?;
+    let scaled = bus::block_on(async {
+        let mut stop = interrupt::listen();
+        let mut display = Display::counting("searches done", run.case.objective_unit());
+        let scaled = scale(&run, &mut display, &mut stop).await;
+        display.clear();
+        scaled
+    });
+    let scaled = scaled.inspect_err(|_| {
+        let path = run.folder.path().display();
+        let command = run.resume_command();
+        terminal::tell(&format!(
+            "rows so far are kept in {path}; to go on:\n  {command}"
+        ));
+    })?;
+    show(&run, &scaled, arguments.output)
+}
+
+/// Writes the files of a finished sweep and prints its result.
+fn show(run: &Run<Scaling>, scaled: &Scaled, output: OutputChoice) -> anyhow::Result<()> {
+    let subject = report::Subject {
+        case: &run.case,
+        scaled,
+        origin: run.origin(String::new())?,
+    };
+    let files = report::write(run.folder.path(), &subject)?;
+    run.folder.write_json(RESULT, scaled)?;
+    let page = files.first().map(|page| page.display().to_string());
+    terminal::tell(&format!("open {}", page.unwrap_or_default()));
+    let tables = || text(&report::report(&subject), terminal::styled());
+    terminal::print(output.output, tables, scaled)
+}

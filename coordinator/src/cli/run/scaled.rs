@@ -1,0 +1,373 @@
+//! The work of a sweep over slots: every row in turn, each kept in a file of the run folder as soon as it is there.
+use super::{
+    begun::Run,
+    bus::{self, Bus, Options},
+    folder::RunFolder,
+    manifest::Decides,
+};
+use crate::{
+    account,
+    cli::{
+        argument::{door::Door, settings},
+        output::{problem::Usage, terminal},
+    },
+    journal, quantile,
+    runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through},
+    scaling::{How, Overheads, Row, Scaled, Shares, Stand, project},
+    simulated::Search as Source,
+    study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all},
+};
+use anyhow::Context as _;
+use protocol::event::Spent;
+use search::{
+    space::Space,
+    strategy::{Plan, Settings, Strategy, build, preset},
+};
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use std::{
+    fs,
+    time::{Duration, Instant},
+};
+
+/// Sessions and jobs by which the coordinator's cost of a result is measured, and bytes of each: about a score.
+const MEASURED: (usize, u64, u32) = (16, 4000, 300);
+/// Evaluations of a sleeping search for each of its slots, at least.
+const EACH: u64 = 8;
+/// How often individuals are scored until all workers have joined.
+const WARMING: u32 = 200;
+
+/// What decides a sweep over slots.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Scaling {
+    /// Names of the searches' presets.
+    pub(crate) presets: Vec<String>,
+    /// Individuals of a generation.
+    pub(crate) populations: Vec<u64>,
+    /// Evaluations of a search on workers of this machine, and at least of a sleeping one.
+    pub(crate) evaluations: u64,
+    /// Worker processes that simulate.
+    pub(crate) crews: Vec<u64>,
+    /// Sessions that sleep.
+    pub(crate) sleeping: Vec<u64>,
+    /// For how long on average \[s\].
+    pub(crate) sleep_s: f64,
+    /// Slots of projections.
+    pub(crate) projected: Vec<u64>,
+}
+
+impl Decides for Scaling {
+    const KIND: &'static str = "sweep scaling";
+
+    fn arguments(&self) -> String {
+        let list = |name: &str, all: &[u64]| {
+            let all: Vec<String> = all.iter().map(u64::to_string).collect();
+            let all = if all.is_empty() {
+                "0".to_owned()
+            } else {
+                all.join(",")
+            };
+            format!(" --{name} {all}")
+        };
+        [
+            format!(" --presets {}", self.presets.join(",")),
+            list("populations", &self.populations),
+            format!(" --evaluations {}", self.evaluations),
+            list("crews", &self.crews),
+            list("sleeping", &self.sleeping),
+            format!(" --sleep {}", self.sleep_s),
+            list("projected", &self.projected),
+        ]
+        .concat()
+    }
+}
+
+/// A row with what its simulations took.
+#[derive(Serialize, Deserialize)]
+struct Measured {
+    row: Row,
+    /// Mean computing time \[s\].
+    simulation_s: f64,
+    /// Quantiles of the same at 0, 5 .. 100 % \[s\].
+    simulation_quantiles_s: Vec<f64>,
+}
+
+impl Scaling {
+    /// The settings of a search for so many slots.
+    ///
+    /// # Errors
+    /// If the preset has no population, or it may not be that.
+    pub(crate) fn settings(
+        (name, population): (&str, u64),
+        space: &Space,
+        slots: u64,
+    ) -> anyhow::Result<Settings> {
+        let preset = preset(name).context("the catalogue has lost a preset")?;
+        let workers = usize::try_from(slots)?;
+        let mut chosen = (preset.settings)(&Plan { space, workers });
+        let set = preset.set(&mut chosen, "population", &population.to_string());
+        set.map_err(|error| settings::refuse(preset, error))?;
+        Ok(chosen)
+    }
+
+    /// Every search.
+    pub(crate) fn searches(&self) -> impl Iterator<Item = (&str, u64)> {
+        let each = self.presets.iter();
+        each.flat_map(|name| {
+            self.populations
+                .iter()
+                .map(move |own| (name.as_str(), *own))
+        })
+    }
+}
+
+/// Measures every row that the run folder does not hold.
+///
+/// # Errors
+/// If settings make no search, if nobody evaluates any more, or the user stops; rows that are there stay.
+pub(crate) async fn scale(
+    run: &Run<Scaling>,
+    watch: &mut dyn Watch<ProgressView>,
+    stop: &mut Stop,
+) -> anyhow::Result<Scaled> {
+    let (settings, space) = (&run.manifest.settings, run.manifest.space(&run.case)?);
+    let mut scale = Scale {
+        run,
+        space: &space,
+        folder: &run.folder,
+    };
+    let mut rows = Vec::new();
+    let mut alone: Option<Measured> = None;
+    for search in settings.searches() {
+        for slots in settings.crews.iter().copied() {
+            let name = file(How::Computed, search, slots);
+            let make =
+                async |scale: &mut Scale<'_>| scale.compute(search, slots, watch, stop).await;
+            let measured = scale.kept(&name, make).await?;
+            rows.push(measured.row.clone());
+            if alone.as_ref().is_none_or(|least| slots < least.row.slots) {
+                alone = Some(measured);
+            }
+        }
+    }
+    let alone = alone.context("no crew was asked for")?;
+    let make = async |scale: &mut Scale<'_>| scale.overheads(&alone).await;
+    let overheads = scale.kept("overheads.json", make).await?;
+    for search in settings.searches() {
+        for slots in settings.sleeping.iter().copied() {
+            let make = async |scale: &mut Scale<'_>| scale.sleep(search, slots, &overheads).await;
+            rows.push(scale.kept(&file(How::Slept, search, slots), make).await?);
+        }
+        for slots in settings.projected.iter().copied() {
+            let make = async |scale: &mut Scale<'_>| {
+                let strategy = scale.strategy(search, slots)?;
+                Ok(project(search, strategy, scale.space, slots, &overheads))
+            };
+            rows.push(
+                scale
+                    .kept(&file(How::Projected, search, slots), make)
+                    .await?,
+            );
+        }
+    }
+    Ok(Scaled::new(overheads, rows))
+}
+
+/// The file of a row, and the folder of its journal.
+fn file(how: How, (preset, population): (&str, u64), slots: u64) -> String {
+    format!("{}-{preset}-{population}-{slots}.json", how.as_str())
+}
+
+/// A run whose rows are measured.
+struct Scale<'a> {
+    run: &'a Run<Scaling>,
+    space: &'a Space,
+    folder: &'a RunFolder,
+}
+
+impl Scale<'_> {
+    /// What a file holds, or what is made and kept there. A time must be in one piece: half a row begins anew.
+    async fn kept<T: Serialize + DeserializeOwned>(
+        &mut self,
+        name: &str,
+        make: impl AsyncFnOnce(&mut Self) -> anyhow::Result<T>,
+    ) -> anyhow::Result<T> {
+        if self.folder.file(name).exists() {
+            return self.folder.read_json(name);
+        }
+        terminal::tell(&format!("measuring {}", name.trim_end_matches(".json")));
+        let made = make(self).await?;
+        self.folder.write_json(name, &made)?;
+        Ok(made)
+    }
+
+    fn strategy(&self, search: (&str, u64), slots: u64) -> anyhow::Result<Box<dyn Strategy>> {
+        let settings = Scaling::settings(search, self.space, slots)?;
+        Ok(build(&settings, self.space, self.run.manifest.seed)?)
+    }
+
+    /// A search of the case on so many worker processes.
+    async fn compute(
+        &self,
+        search: (&str, u64),
+        slots: u64,
+        watch: &mut dyn Watch<ProgressView>,
+        stop: &mut Stop,
+    ) -> anyhow::Result<Measured> {
+        let case = &self.run.case;
+        let journal = self
+            .folder
+            .file(&file(How::Computed, search, slots))
+            .with_extension("");
+        if journal.exists() {
+            fs::remove_dir_all(&journal).with_context(|| journal.display().to_string())?;
+        }
+        let count = usize::try_from(slots)?;
+        let options = Options {
+            run_dir: journal.clone(),
+            door: Door::default(),
+            local_workers: count,
+            kind: Scaling::KIND.to_owned(),
+            settings: String::new(),
+        };
+        let mut bus = Bus::open(options, case).await?;
+        // starting programs and fetching the case is over before the clock starts
+        for round in 0..WARMING {
+            let near = (0..2 * slots).map(|index| {
+                let offset = 1e-6 * (f64::from(round) * 2.0 * slots as f64 + index as f64);
+                self.space.values(&vec![offset; self.space.dimension()])
+            });
+            let near: Vec<_> = near.collect();
+            score_all(&mut bus, case, &near, watch, stop).await?;
+            if bus.crew().workers.len() >= count {
+                break;
+            }
+        }
+        let list = [Search {
+            settings: Scaling::settings(search, self.space, slots)?,
+            seed: self.run.manifest.seed,
+            evaluations: Some(self.run.manifest.settings.evaluations),
+        }];
+        let (before, begun, processor) = (bus.crew().spent, Instant::now(), processor_time());
+        let mut sweep = Sweep::new(case, self.space);
+        let found = sweep.run(&mut bus, &list, watch, stop).await?;
+        let (wall, after) = (begun.elapsed(), bus.crew().spent);
+        let processor = processor_time().saturating_sub(processor);
+        bus.close().await?;
+        let evaluations = found.first().map_or(0, |found| found.evaluations);
+        let (_, costs) = account::read_with_costs(&journal.join(journal::FILE))?;
+        let mut times: Vec<f64> = costs.values().map(|cost| cost.wall_s).collect();
+        times.sort_by(f64::total_cmp);
+        let quantiles = (0..=100)
+            .step_by(5)
+            .filter_map(|at| quantile::of(&times, at));
+        Ok(Measured {
+            row: row(
+                (How::Computed, search, slots),
+                evaluations,
+                (wall, processor),
+                [before, after],
+            ),
+            simulation_s: times.iter().sum::<f64>() / times.len().max(1) as f64,
+            simulation_quantiles_s: quantiles.collect(),
+        })
+    }
+
+    /// What jobs that do nothing cost, beside what simulations take.
+    async fn overheads(&self, alone: &Measured) -> anyhow::Result<Overheads> {
+        let (workers, jobs, result_bytes) = MEASURED;
+        let plan = BenchPlan {
+            by: BenchWorkers::Connections,
+            workers,
+            jobs,
+            result_bytes,
+            silent: None,
+        };
+        let scratch = tempfile::tempdir()?;
+        let options = empty_run(scratch.path())?;
+        let result = runtime::bench(options, plan).await;
+        let result = result.map_err(|error| bus::explain(&error))?;
+        Ok(Overheads {
+            simulation_s: alone.simulation_s,
+            simulation_quantiles_s: alone.simulation_quantiles_s.clone(),
+            coordinator_us: result.coordinator_cpu_us_per_job,
+            round_trip_ms: result.rtt_median_ms,
+        })
+    }
+
+    /// A search on so many sessions that sleep as unevenly as simulations take.
+    async fn sleep(
+        &self,
+        search: (&str, u64),
+        slots: u64,
+        overheads: &Overheads,
+    ) -> anyhow::Result<Row> {
+        let Scaling {
+            evaluations,
+            sleep_s,
+            ..
+        } = self.run.manifest.settings;
+        let takes = |id: u64| {
+            let uneven = overheads.takes_s(id) / overheads.simulation_s;
+            Duration::try_from_secs_f64(sleep_s * uneven).unwrap_or_default()
+        };
+        let stand = Stand(self.space);
+        let tell = |genes: &[f64]| stand.tell(genes);
+        let mut source = Source::new(self.strategy(search, slots)?, &tell);
+        source.limit = evaluations.max(EACH * slots);
+        let scratch = tempfile::tempdir()?;
+        let options = empty_run(scratch.path())?;
+        let slept = sleep_through(options, usize::try_from(slots)?, &mut source, &takes).await;
+        let slept = slept.map_err(|error| bus::explain(&error))?;
+        if slept.slots < usize::try_from(slots)? {
+            return Err(Usage {
+                message: format!("only {} of {slots} sessions joined", slept.slots),
+                help: "ask for fewer with --sleeping; `ulimit -n` says how many connections a process may hold"
+                    .to_owned(),
+            }
+            .into());
+        }
+        let evaluated = source.strategy.archive().entries().len() as u64;
+        let times = (slept.wall, slept.processor);
+        Ok(row(
+            (How::Slept, search, slots),
+            evaluated,
+            times,
+            slept.spent,
+        ))
+    }
+}
+
+/// A run of jobs that do nothing, in a scratch folder.
+fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOptions> {
+    let options = Options {
+        run_dir: folder.to_owned(),
+        door: Door::default(),
+        local_workers: 0,
+        kind: "bench".to_owned(),
+        settings: "{}".to_owned(),
+    };
+    options.for_dispatch(&bus::empty_case()?)
+}
+
+/// A row of what was measured: times are wall time and the coordinator's processor time.
+fn row(
+    (how, (preset, population), slots): (How, (&str, u64), u64),
+    evaluations: u64,
+    (wall, processor): (Duration, Duration),
+    [before, after]: [Spent; 2],
+) -> Row {
+    Row {
+        how,
+        preset: preset.to_owned(),
+        population,
+        slots,
+        evaluations,
+        wall_s: wall.as_secs_f64(),
+        useful_s: after.useful_us.saturating_sub(before.useful_us) as f64 / 1e6,
+        shares: Shares::between(&before, &after),
+        coordinator_us_per_result: processor.as_secs_f64() * 1e6 / evaluations.max(1) as f64,
+        coordinator_share: processor.as_secs_f64() / wall.as_secs_f64(),
+        speed_up: 0.0,
+        efficiency: 0.0,
+    }
+}

@@ -1,0 +1,55 @@
+//! Which layer an error of the link is of, and what to do about it.
+use super::check::{Check, Layer};
+use link::{LinkError, Silence};
+
+/// The layer that fails, with what the link says and the remedy.
+pub(super) fn blame(error: &LinkError) -> Check {
+    let (layer, remedy) = match error {
+        error if error.is_of_time() => (
+            Layer::Clock,
+            "compare `date` on both machines and set the clock that is wrong; if both are right, make new \
+             certificates with `horsehead keys`",
+        ),
+        LinkError::UnknownHost { .. } => (
+            Layer::Name,
+            "check the spelling, and `getent hosts NAME` on this machine; or dial the machine's address",
+        ),
+        LinkError::Silent { how, .. } => match how {
+            Silence::Closed { .. } => (
+                Layer::Port,
+                "start the coordinator with --listen, and dial the port that it names",
+            ),
+            Silence::Unreachable { .. } => (
+                Layer::Route,
+                "`ip route get ADDRESS` says how this machine would go there; check the cable, the VPN and that \
+                 the other machine is up",
+            ),
+            Silence::Dropped { .. } | _ => (
+                Layer::Firewall,
+                "check that the coordinator runs there, and let its port through the firewalls between: UDP for \
+                 quic/, TCP for tcp/",
+            ),
+        },
+        LinkError::NoKeys { .. } | LinkError::Keys(_) => (
+            Layer::Certificate,
+            "`horsehead keys new DIR --host NAME` makes certificates; a worker has the folder DIR/worker-01 of \
+             its own, the coordinator all of DIR",
+        ),
+        LinkError::Distrusted { .. } | LinkError::Refused { .. } => (
+            Layer::Certificate,
+            "both ends need certificates of one `horsehead keys new`: copy the worker's folder again, and name \
+             the dialled host in --host",
+        ),
+        LinkError::Locator { .. }
+        | LinkError::Protocol { .. }
+        | LinkError::Exposed { .. }
+        | LinkError::Transport { .. }
+        | LinkError::Piece { .. }
+        | _ => (
+            Layer::Version,
+            "something answers there that is no coordinator of this version: check the port, and use the same \
+             build of horsehead and horsehead-worker on every machine",
+        ),
+    };
+    Check::bad(layer, error.to_string(), remedy)
+}

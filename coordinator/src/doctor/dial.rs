@@ -1,0 +1,139 @@
+//! A worker's side: the same steps as a worker takes, with the same certificates, up to the first word of a
+//! coordinator.
+use super::{
+    blame::blame,
+    check::{Check, Layer},
+};
+use link::{
+    LinkError, WorkerEnd as _,
+    keys::{Keys, Role},
+    locator::{Locator, Protocol},
+    zenoh::ZenohWorker,
+};
+use protocol::{
+    id::RunId,
+    key::Lane,
+    message::{Beat, FromWorker, ToWorker},
+    wire::{self, Kind, WireError},
+};
+use std::{path::Path, time::Duration};
+use tokio::time::timeout;
+
+/// How often a coordinator is asked, a second each: the bus needs a moment to know who hears what.
+const ASKED: u32 = 8;
+
+/// What is found on the way to a coordinator, up to the first layer that fails.
+pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
+    let mut checks = Vec::new();
+    let keys = match tls
+        .map(|folder| Keys::read(folder, Role::Worker))
+        .transpose()
+    {
+        Ok(keys) => keys,
+        Err(error) => return vec![blame(&error.into())],
+    };
+    if let Some(keys) = &keys {
+        let found = format!("\"{}\" of {}", keys.owner(), keys.certificate().display());
+        checks.push(Check::good(Layer::Certificate, found));
+        checks.push(Check::good(Layer::Clock, "within the certificate's dates"));
+    }
+    let mut link = match ZenohWorker::open(to, keys.as_ref(), u64::from(std::process::id())).await {
+        Ok(link) => link,
+        Err(error) => {
+            let found = "the error is of a later layer";
+            checks.extend(passed(&error).map(|layer| Check::good(layer, found)));
+            checks.push(blame(&error));
+            return checks;
+        }
+    };
+    let answers = match to.protocol {
+        Protocol::Tcp => "the port is open",
+        Protocol::Quic => "either end takes the other's certificate",
+    };
+    for layer in [Layer::Name, Layer::Route, Layer::Port, Layer::Firewall] {
+        checks.push(Check::good(layer, answers));
+    }
+    checks.push(version(&mut link, to).await);
+    link.close().await;
+    checks
+}
+
+/// Layers that must hold where a link fails like this.
+fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
+    let answered = matches!(
+        error,
+        LinkError::Distrusted { .. } | LinkError::Refused { .. }
+    );
+    let count = match blame(error).layer {
+        Layer::Certificate | Layer::Clock if answered => 4,
+        Layer::Case | Layer::Certificate | Layer::Clock | Layer::Name => 0,
+        Layer::Route => 1,
+        Layer::Port | Layer::Firewall => 2,
+        Layer::Version => 4,
+    };
+    [Layer::Name, Layer::Route, Layer::Port, Layer::Firewall]
+        .into_iter()
+        .take(count)
+}
+
+/// Asks as a worker that nobody knows: a coordinator bids it to say who it is, and keeps no memory of it.
+async fn version(link: &mut ZenohWorker, to: &Locator) -> Check {
+    let run = RunId::default();
+    let Ok(question) = wire::seal(Kind::FromWorker, run, &FromWorker::Beat(Beat::default())) else {
+        return Check::bad(
+            Layer::Version,
+            "a message cannot be made",
+            "install this program anew",
+        );
+    };
+    for _ in 0..ASKED {
+        link.send(run, Lane::Control, question.clone());
+        if let Ok(heard) = timeout(Duration::from_secs(1), link.receive()).await {
+            return heard.map_or_else(|| nobody(to), |frame| understood(&frame));
+        }
+    }
+    nobody(to)
+}
+
+fn nobody(to: &Locator) -> Check {
+    blame(&LinkError::Transport {
+        doing: format!("hear a coordinator at {to}"),
+        reason: "the address answers, but nothing that the bus carries comes back".to_owned(),
+    })
+}
+
+/// What a coordinator's word says of its version.
+fn understood(frame: &[u8]) -> Check {
+    const SAME: &str = "use the same build of horsehead and horsehead-worker on every machine";
+    let own = wire::VERSION;
+    match wire::unseal::<ToWorker>(Kind::ToWorker, frame) {
+        Ok((run, _)) => Check::good(Layer::Version, format!("protocol {own}, run {run}")),
+        Err(WireError::Version { found }) => Check::bad(
+            Layer::Version,
+            format!("the coordinator speaks protocol {found}, this program {own}"),
+            SAME,
+        ),
+        Err(error) => Check::bad(Layer::Version, error.to_string(), SAME),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_word_of_another_version_is_told_as_such() {
+        let mut frame = wire::seal(Kind::ToWorker, RunId(3), &ToWorker::Identify).unwrap();
+        assert!(understood(&frame).healthy);
+        // the version is the third byte of every frame, whatever comes after
+        frame[2] += 1;
+        let check = understood(&frame);
+        assert_eq!((check.layer, check.healthy), (Layer::Version, false));
+        assert!(
+            check
+                .found
+                .contains(&format!("protocol {}", wire::VERSION + 1)),
+            "{check:?}"
+        );
+    }
+}

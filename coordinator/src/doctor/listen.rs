@@ -1,0 +1,64 @@
+//! The coordinator's side: whether it could listen there.
+use super::{
+    blame::blame,
+    check::{Check, Layer},
+};
+use link::{
+    LinkError,
+    keys::{Keys, Role},
+    locator::{Locator, Protocol},
+};
+use std::{
+    io::ErrorKind,
+    net::{TcpListener, ToSocketAddrs as _, UdpSocket},
+    path::Path,
+};
+
+/// What is found at an address to listen on, up to the first layer that fails.
+pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
+    let mut checks = Vec::new();
+    match (at.protocol, tls) {
+        (Protocol::Tcp, _) => {}
+        (Protocol::Quic, None) => {
+            let locator = at.to_string();
+            return vec![blame(&LinkError::NoKeys { locator })];
+        }
+        (Protocol::Quic, Some(folder)) => match Keys::read(folder, Role::Coordinator) {
+            Ok(keys) => {
+                let names = keys.workers().len();
+                let found = format!("{}: {names} workers may join", folder.display());
+                checks.push(Check::good(Layer::Certificate, found));
+                checks.push(Check::good(Layer::Clock, "within the certificates' dates"));
+            }
+            Err(error) => return vec![blame(&error.into())],
+        },
+    }
+    let host = (at.bare_host(), at.port);
+    let addresses = host.to_socket_addrs().map(Iterator::collect::<Vec<_>>);
+    match addresses.map_err(|error| error.to_string()) {
+        Ok(found) => checks.push(Check::good(Layer::Name, format!("{found:?}"))),
+        Err(reason) => {
+            let locator = at.to_string();
+            checks.push(blame(&LinkError::UnknownHost { locator, reason }));
+            return checks;
+        }
+    }
+    let bound = match at.protocol {
+        Protocol::Tcp => TcpListener::bind(host).map(drop),
+        Protocol::Quic => UdpSocket::bind(host).map(drop),
+    };
+    checks.push(match bound {
+        Ok(()) => Check::good(Layer::Port, "free to listen on"),
+        Err(error) if error.kind() == ErrorKind::AddrNotAvailable => Check::bad(
+            Layer::Route,
+            format!("{at}: {error}"),
+            "no interface of this machine has that address: listen on 0.0.0.0, or on one that `ip address` shows",
+        ),
+        Err(error) => Check::bad(
+            Layer::Port,
+            format!("{at}: {error}"),
+            "a coordinator may run there already (`ss -tulpn` names who listens): choose another port, above 1023",
+        ),
+    });
+    checks
+}

@@ -1,0 +1,261 @@
+//! One search on one number of slots: how fast it was, and where slot time went.
+use protocol::event::Spent;
+use search::random::{Phase, Streams};
+use serde::{Deserialize, Serialize};
+
+/// What slots did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum How {
+    /// Workers of this machine simulated the case.
+    Computed,
+    /// Sessions of one other process slept, over TCP on loopback: all is real but the slots.
+    Slept,
+    /// The coordinator's state machine on a simulated clock.
+    Projected,
+}
+
+impl How {
+    /// As it is written.
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Computed => "computed",
+            Self::Slept => "slept",
+            Self::Projected => "projected",
+        }
+    }
+}
+
+/// Shares of slot time by use; together 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Shares {
+    /// Computing results that were accepted.
+    pub useful: f64,
+    /// Waiting for results that others compute.
+    pub barrier: f64,
+    /// Waiting for the next order though there was work.
+    pub starved: f64,
+    /// Computing what another slot brought first.
+    pub speculative: f64,
+    /// On attempts that failed.
+    pub failed: f64,
+    /// On attempts whose worker was lost.
+    pub lost: f64,
+}
+
+impl Shares {
+    /// Of the time between two accounts; all 0 where there was none.
+    pub fn between(before: &Spent, after: &Spent) -> Self {
+        let share = |of: fn(&Spent) -> u64| {
+            let us = of(after).saturating_sub(of(before)) as f64;
+            us / after.sum_us().saturating_sub(before.sum_us()).max(1) as f64
+        };
+        Self {
+            useful: share(|spent| spent.useful_us),
+            barrier: share(|spent| spent.barrier_us),
+            starved: share(|spent| spent.starved_us),
+            speculative: share(|spent| spent.speculative_us),
+            failed: share(|spent| spent.failed_us),
+            lost: share(|spent| spent.lost_us),
+        }
+    }
+}
+
+/// One search on one number of slots.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// What slots did.
+    pub how: How,
+    /// Name of the search's preset.
+    pub preset: String,
+    /// Individuals of a generation.
+    pub population: u64,
+    /// Jobs at a time.
+    pub slots: u64,
+    /// Evaluations that the search took.
+    pub evaluations: u64,
+    /// From the first that was asked to the last result \[s\].
+    pub wall_s: f64,
+    /// Computing time of the results that were accepted \[s\].
+    pub useful_s: f64,
+    /// What slot time went to.
+    pub shares: Shares,
+    /// Processor time of the coordinator, the search's own among it \[us a result\]; of a projection what it
+    /// assumes.
+    pub coordinator_us_per_result: f64,
+    /// The same over the wall time: at 1 one processor of the coordinator is busy all the time.
+    pub coordinator_share: f64,
+    /// Computing time that one slot alone takes for as many evaluations, over the wall time.
+    pub speed_up: f64,
+    /// The same over the slots.
+    pub efficiency: f64,
+}
+
+/// What was measured for the projection, or of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Overheads {
+    /// Mean computing time of a simulation in one slot \[s\].
+    pub simulation_s: f64,
+    /// Quantiles of the same at 0, 5 .. 100 % \[s\]: many simulations end early, others take long.
+    pub simulation_quantiles_s: Vec<f64>,
+    /// Processor time of the coordinator for a job and its result over TCP \[us\].
+    pub coordinator_us: f64,
+    /// Median round trip of a job that does nothing over TCP on loopback \[ms\].
+    pub round_trip_ms: f64,
+}
+
+impl Overheads {
+    /// How long a job takes \[s\]: drawn from the quantiles, a property of the job alone.
+    pub fn takes_s(&self, job: u64) -> f64 {
+        let index = usize::try_from(job).unwrap_or(usize::MAX);
+        let mut stream = Streams::new(1, 6).at(0, Phase::Mutation, index);
+        let last = self.simulation_quantiles_s.len().saturating_sub(1);
+        let place = stream.unit() * last as f64;
+        let below = place.floor();
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a place in a short list"
+        )]
+        let at = |index: f64| self.simulation_quantiles_s.get(index as usize).copied();
+        let low = at(below).unwrap_or(self.simulation_s);
+        let high = at(below + 1.0).unwrap_or(low);
+        low + (place - below) * (high - low)
+    }
+}
+
+/// How searches scale.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Scaled {
+    /// What the projection is made from.
+    pub overheads: Overheads,
+    /// What it takes for granted, sentence by sentence.
+    pub assumptions: Vec<String>,
+    /// Every search on every number of slots.
+    pub rows: Vec<Row>,
+}
+
+impl Scaled {
+    /// Rows with speed-up and efficiency, each against one slot: where one was measured with the same search, by
+    /// its computing time, otherwise by the row's own.
+    pub fn new(overheads: Overheads, mut rows: Vec<Row>) -> Self {
+        let per_evaluation = |row: &Row| row.useful_s / row.evaluations.max(1) as f64;
+        let alone: Vec<Row> = rows.iter().filter(|row| row.slots == 1).cloned().collect();
+        for row in &mut rows {
+            let same = alone.iter().find(|one| {
+                (one.how, &one.preset, one.population) == (row.how, &row.preset, row.population)
+            });
+            let once = per_evaluation(same.unwrap_or(row));
+            row.speed_up = once * row.evaluations as f64 / row.wall_s;
+            row.efficiency = row.speed_up / row.slots.max(1) as f64;
+        }
+        let assumptions = [
+            "A projection runs the coordinator's own state machine on a simulated clock.".to_owned(),
+            format!(
+                "Simulations take {:.3} s on average, drawn from the quantiles of those that were measured here in \
+                 one slot, whatever is simulated.",
+                overheads.simulation_s
+            ),
+            format!(
+                "The coordinator takes {:.0} us over each result, one after the other, as measured over TCP \
+                 on loopback with results of 300 bytes.",
+                overheads.coordinator_us
+            ),
+            format!(
+                "A message takes up to {:.2} ms, the round trip of loopback; a real network adds its own.",
+                overheads.round_trip_ms
+            ),
+            "Workers have one slot each, are equally fast, have joined and have the case; none fails.".to_owned(),
+            "Sleeping and projected searches minimise the squared distance from a point in the case's box: their \
+             individuals are not those of the case."
+                .to_owned(),
+        ];
+        Self {
+            overheads,
+            assumptions: assumptions.to_vec(),
+            rows,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(slots: u64, wall_s: f64, useful_s: f64) -> Row {
+        Row {
+            how: How::Computed,
+            preset: "paper".to_owned(),
+            population: 80,
+            slots,
+            evaluations: 100,
+            wall_s,
+            useful_s,
+            shares: Shares::default(),
+            coordinator_us_per_result: 100.0,
+            coordinator_share: 0.0,
+            speed_up: 0.0,
+            efficiency: 0.0,
+        }
+    }
+
+    /// Two slots that disturb each other take longer over each evaluation: that is no speed-up.
+    #[test]
+    fn speed_up_is_against_what_one_slot_takes() {
+        let overheads = Overheads {
+            simulation_s: 0.1,
+            simulation_quantiles_s: vec![0.05, 0.15],
+            coordinator_us: 100.0,
+            round_trip_ms: 0.2,
+        };
+        let scaled = Scaled::new(
+            overheads.clone(),
+            vec![row(1, 12.5, 10.0), row(2, 8.0, 15.0)],
+        );
+        let speed: Vec<(f64, f64)> = {
+            let rows = scaled.rows.iter();
+            rows.map(|row| (row.speed_up, row.efficiency)).collect()
+        };
+        assert_eq!(speed, [(0.8, 0.8), (1.25, 0.625)]);
+        // without one slot the row's own computing time counts
+        let other = Scaled::new(overheads, vec![row(4, 5.0, 15.0)]);
+        assert!((other.rows[0].speed_up - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn shares_are_of_the_time_between_two_accounts() {
+        let before = Spent {
+            connected_us: 10,
+            useful_us: 10,
+            ..Spent::default()
+        };
+        let after = Spent {
+            connected_us: 50,
+            useful_us: 40,
+            barrier_us: 10,
+            ..Spent::default()
+        };
+        let shares = Shares::between(&before, &after);
+        assert_eq!(
+            (shares.useful, shares.barrier, shares.lost),
+            (0.75, 0.25, 0.0)
+        );
+    }
+
+    #[test]
+    fn jobs_take_what_was_measured_each_its_own() {
+        let overheads = Overheads {
+            simulation_s: 1.0,
+            simulation_quantiles_s: vec![0.0, 0.0, 0.5, 4.0],
+            coordinator_us: 100.0,
+            round_trip_ms: 0.2,
+        };
+        let times: Vec<f64> = (0..9000).map(|job| overheads.takes_s(job)).collect();
+        assert_eq!(times[7].to_bits(), overheads.takes_s(7).to_bits());
+        // a third takes nothing, a third up to half a second, a third up to four
+        let shorter = |than: f64| times.iter().filter(|time| **time <= than).count();
+        assert!(shorter(0.0).abs_diff(3000) < 150 && shorter(0.5).abs_diff(6000) < 150);
+        let mean = times.iter().sum::<f64>() / 9000.0;
+        assert!((mean - 2.5 / 3.0).abs() < 0.05, "{mean}");
+    }
+}

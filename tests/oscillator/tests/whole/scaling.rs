@@ -1,0 +1,115 @@
+//! How searches scale: the contract of the object, and that rows which are there are not measured again.
+use crate::{
+    rig::{Rig, number},
+    words,
+};
+use serde_json::Value;
+use std::fs;
+
+fn rows(object: &Value) -> &[Value] {
+    object["rows"].as_array().map_or(&[], Vec::as_slice)
+}
+
+#[test]
+fn slots_are_computed_slept_and_projected_and_rows_are_kept() {
+    let rig = Rig::new();
+    let run = rig.path("run");
+    let words = [
+        "sweep",
+        "scaling",
+        "CASE",
+        "--run",
+        &run,
+        "--presets",
+        "window",
+        "--populations",
+        "8",
+        "--evaluations",
+        "40",
+        "--crews",
+        "2,1",
+        "--sleeping",
+        "6",
+        "--sleep",
+        "0.05",
+        "--projected",
+        "80",
+    ];
+    let object = rig.json(&words);
+    let told: Vec<(&str, u64)> = rows(&object)
+        .iter()
+        .map(|row| (row["how"].as_str().unwrap(), row["slots"].as_u64().unwrap()))
+        .collect();
+    assert_eq!(
+        told,
+        [
+            ("computed", 1),
+            ("computed", 2),
+            ("slept", 6),
+            ("projected", 80)
+        ]
+    );
+    for row in rows(&object) {
+        assert_eq!(
+            (&row["preset"], &row["population"]),
+            (&"window".into(), &8.into())
+        );
+        let shares = row["shares"].as_object().unwrap();
+        assert_eq!(shares.len(), 6);
+        let all: f64 = shares.values().map(number).sum();
+        assert!((all - 1.0).abs() < 1e-6, "{row}");
+        let speed_up = number(&row["speed_up"]);
+        let efficiency = number(&row["efficiency"]);
+        assert!(
+            (speed_up / number(&row["slots"]) / efficiency - 1.0).abs() < 1e-9,
+            "{row}"
+        );
+        assert!(number(&row["useful_s"]) > 0.0 && number(&row["coordinator_us_per_result"]) > 0.0);
+    }
+    let slept = &rows(&object)[2];
+    assert_eq!(slept["evaluations"], 48, "8 for each slot");
+    assert!(number(&slept["speed_up"]) > 2.0, "{slept}");
+    let overheads = &object["overheads"];
+    for key in ["simulation_s", "coordinator_us", "round_trip_ms"] {
+        assert!(number(&overheads[key]) > 0.0, "{overheads}");
+    }
+    let quantiles = overheads["simulation_quantiles_s"].as_array().unwrap();
+    assert_eq!(quantiles.len(), 21);
+    assert!(
+        quantiles
+            .windows(2)
+            .all(|pair| number(&pair[0]) <= number(&pair[1]))
+    );
+    assert_eq!(object["assumptions"].as_array().unwrap().len(), 6);
+    words::check_folder(run.as_ref());
+    let page = fs::read_to_string(rig.file("run/report.html")).unwrap();
+    assert!(
+        page.contains("Where slot time went") && page.contains("What the projection is made from")
+    );
+    assert!(rig.file("run/figures/speed_up.svg").exists());
+    // what is there is kept, what is not is measured
+    fs::remove_file(rig.file("run/projected-window-8-80.json")).unwrap();
+    let again = rig.json(&words);
+    assert_eq!(again, object, "a projection is the same each time");
+}
+
+#[test]
+fn searches_that_cannot_be_scaled_are_refused() {
+    let rig = Rig::new();
+    let run = rig.path("run");
+    let refused = |preset: &str, said: &str| {
+        let error = rig.refused(&[
+            "sweep",
+            "scaling",
+            "CASE",
+            "--run",
+            &run,
+            "--presets",
+            preset,
+        ]);
+        assert!(error.contains(said), "{error}");
+        assert!(!rig.file("run").exists(), "nothing is begun");
+    };
+    refused("random", "there is no setting `population`");
+    refused("papier", "possible values");
+}
