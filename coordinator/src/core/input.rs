@@ -1,6 +1,7 @@
 //! What the core is told, and what it wants done.
 use super::{
     completed::Completed,
+    drain::Drain,
     notice::{Notice, Stop},
 };
 use protocol::{
@@ -56,6 +57,13 @@ pub enum Input {
     Slept {
         /// For how long it slept.
         time: Duration,
+    },
+    /// Somebody takes a worker out of the work.
+    Drain {
+        /// The worker's name.
+        worker: WorkerId,
+        /// How.
+        how: Drain,
     },
     /// Time has passed.
     Tick,

@@ -22,6 +22,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod verify;
+mod workers;
 
 use super::output::{problem, terminal};
 use crate::pumping_unit::command as head;
@@ -80,6 +81,7 @@ commands! {
     Export: export,
     Case: case,
     Keys: keys,
+    Workers: workers,
     Bench: bench,
     Completions: completions [&mut Cli::command()],
 }
