@@ -1,6 +1,7 @@
 //! Plans as they are printed: complete, made without asking anybody, and right in the eyes of those who
 //! check such things, where they are installed.
 use super::*;
+use coordinator::nodes::Program;
 use std::process::Stdio;
 
 /// All files of a folder, with their contents.
@@ -154,4 +155,43 @@ fn a_printed_plan_does_what_a_launch_does() {
     let again = site.up(&["--ssh", "a", "--wait", "0"]);
     assert!(again.status.success(), "{}", errors(&again));
     assert_eq!(site.process("a", "worker-01"), process);
+}
+
+/// What `deploy/` has for those who launch by hand.
+#[test]
+fn the_files_of_deploy_pass_those_who_check_such_things() {
+    let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
+    for script in ["portable.sh", "slurm/workers.sbatch", "pbs/workers.pbs"] {
+        checked("bash", &["-n"], &deploy.join(script));
+        checked("shellcheck", &[], &deploy.join(script));
+    }
+    for manifest in ["deployment", "job", "network-policy"] {
+        let file = deploy.join(format!("k8s/{manifest}.yaml"));
+        checked("kubernetes-validate", &["--strict"], &file);
+    }
+    // a unit names a program that must be there
+    let scratch = tempfile::tempdir().unwrap();
+    let unit = scratch.path().join("horsehead-worker.service");
+    let text = fs::read_to_string(deploy.join("systemd/horsehead-worker.service")).unwrap();
+    let worker = tests::process::worker_program();
+    let text = text.replace("/usr/local/bin/horsehead-worker", worker.to_str().unwrap());
+    fs::write(&unit, text).unwrap();
+    checked("systemd-analyze", &["verify", "--man=no"], &unit);
+}
+
+/// `deploy/portable.sh` keeps its word, where it has been run.
+#[test]
+fn a_portable_worker_needs_no_newer_library_than_it_says() {
+    let made = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/portable");
+    let machines = ["x86_64", "aarch64"].map(|machine| (machine, made.join(machine)));
+    let mut found = 0;
+    for (machine, folder) in machines.into_iter().filter(|(_, folder)| folder.exists()) {
+        let program = Program::read(&folder.join("horsehead-worker")).unwrap();
+        assert_eq!(program.machine, machine);
+        assert!(program.glibc <= vec![2, 28], "{program:?}");
+        found += 1;
+    }
+    if found == 0 {
+        eprintln!("skipped: deploy/portable.sh has not been run");
+    }
 }
