@@ -1,20 +1,14 @@
 //! Workers that somebody takes out of the work: they get no new jobs, finish or hand back what they
 //! hold, and stay idle or end.
-use super::{lease::release, notice::Notice, roster::dismiss, slot_time::Use, state::Core};
+use super::{
+    input::Drain, lease::release, member::Member, notice::Notice, roster::dismiss, slot_time::Use,
+    state::Core,
+};
 use protocol::{
     id::WorkerId,
     message::{Attempt, ToWorker},
 };
 use std::time::Duration;
-
-/// How a worker is taken out of the work.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Drain {
-    /// What it holds is handed back at once; otherwise it finishes that.
-    pub now: bool,
-    /// It ends when it holds nothing; otherwise it stays, idle.
-    pub end: bool,
-}
 
 /// Takes a worker out of the work.
 pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration) {
@@ -40,7 +34,7 @@ pub(super) fn end_drained(core: &mut Core, now: Duration) {
     let ends = |(worker, how): (&WorkerId, &Drain)| how.end.then_some(*worker);
     let ending: Vec<WorkerId> = core.drained.iter().filter_map(ends).collect();
     for worker in ending {
-        let holds = |member: &super::member::Member| !member.leases.is_empty();
+        let holds = |member: &Member| !member.leases.is_empty();
         if core.members.get(&worker).is_none_or(holds) {
             continue;
         }

@@ -1,7 +1,6 @@
 //! What the core is told, and what it wants done.
 use super::{
     completed::Completed,
-    drain::Drain,
     notice::{Notice, Stop},
 };
 use protocol::{
@@ -11,6 +10,15 @@ use protocol::{
     message::{FromWorker, ToWorker},
 };
 use std::time::Duration;
+
+/// How a worker is taken out of the work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drain {
+    /// What it holds is handed back at once; otherwise it finishes that.
+    pub now: bool,
+    /// It ends when it holds nothing; otherwise it stays, idle.
+    pub end: bool,
+}
 
 /// Something that happened.
 #[derive(Clone, Debug, PartialEq)]

@@ -44,8 +44,7 @@ mod times;
 
 pub use completed::Completed;
 pub use crew::Hand;
-pub use drain::Drain;
-pub use input::{Command, Input};
+pub use input::{Command, Drain, Input};
 pub use job_set::JobSet;
 pub use lease::offered;
 pub use notice::{Notice, Stop};

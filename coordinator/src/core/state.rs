@@ -1,7 +1,14 @@
 //! All that the core remembers, and what can be said of it without knowing how it comes about.
 use super::{
-    drain::Drain, early::Early, failures::Failures, input::Command, job_set::JobSet,
-    member::Member, notice::Notice, policy::Policy, slot_time::Clocks, times::Times,
+    early::Early,
+    failures::Failures,
+    input::{Command, Drain},
+    job_set::JobSet,
+    member::Member,
+    notice::Notice,
+    policy::Policy,
+    slot_time::Clocks,
+    times::Times,
 };
 use protocol::{
     event::{Account, Event, Spent, WorkerAccount},

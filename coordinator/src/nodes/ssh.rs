@@ -25,7 +25,8 @@ const OPTIONS: [&str; 4] = [
 ];
 
 /// What every script on a host begins with.
-const HOME: &str = "set -eu\numask 077\nhome=${XDG_CACHE_HOME:-$HOME/.cache}/horsehead\n";
+const HOME: &str =
+    "set -eu\numask 077\nhome=${XDG_CACHE_HOME:-$HOME/.cache}/horsehead\nmkdir -p \"$home\"\n";
 
 /// Sets `process` to the worker's process, if it runs: a number alone may have become another's.
 const RUNNING: &str = r#"process=$(cat "$folder/process" 2>/dev/null || true)
@@ -247,7 +248,6 @@ if [ "$need" != 0 ]; then
     exit 11
   fi
 fi
-mkdir -p "$home"
 if [ -x "$worker" ] && [ "$(wc -c < "$worker")" -eq "$bytes" ]; then
   echo have
 else
@@ -305,13 +305,14 @@ echo $! > "$folder/process"
     )
 }
 
-/// Waits until the worker says that it takes part, or has ended.
+/// Waits until the worker says that it takes part, or has ended; in its first second it may not be
+/// there yet.
 fn watch(name: &str, wait_s: u64) -> String {
     format!(
         r#"{HOME}folder=$home/{name}
 waited=0
 while ! grep -q 'admitted run=' "$folder/log"; do
-  {running}  if [ -z "$process" ] || [ "$waited" -ge {wait_s} ]; then
+  {running}  if [ "$waited" -ge {wait_s} ] || {{ [ -z "$process" ] && [ "$waited" -ge 2 ]; }}; then
     tail -n 1 "$folder/log" >&2
     exit 13
   fi

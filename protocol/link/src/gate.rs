@@ -191,7 +191,7 @@ async fn shake(incoming: Incoming) -> Result<Connection, ConnectionError> {
 /// Lets a peer in whose certificate was accepted, if its name is on the list.
 async fn enter(house: &House, connection: Connection, from: SocketAddr) {
     let owner = owner(&connection).unwrap_or_default();
-    let Some(places) = house.listed.borrow().places(&owner) else {
+    let Some(places) = listed::places(house.listed.clone(), &owner).await else {
         house.refusals.unlisted(from, &owner);
         connection.close(VarInt::from_u32(UNLISTED), b"not on the list of workers");
         return;

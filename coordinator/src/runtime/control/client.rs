@@ -1,6 +1,6 @@
 //! Asking a running run.
 use super::{
-    SOCKET, through,
+    path::{SOCKET, through},
     words::{Question, Reply, Worker},
 };
 use std::{

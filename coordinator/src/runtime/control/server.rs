@@ -1,6 +1,6 @@
 //! Answering who asks through the socket.
 use super::{
-    SOCKET, through,
+    path::{SOCKET, through},
     words::{Question, Reply},
 };
 use std::{

@@ -9,11 +9,13 @@ use std::{
 };
 use tokio::{
     sync::{Semaphore, watch},
-    time::{MissedTickBehavior, interval},
+    time::{MissedTickBehavior, interval, timeout},
 };
 
 /// How often the file is read: whoever is taken out is gone well within five seconds.
 const AGAIN: Duration = Duration::from_secs(1);
+/// How long a name may take to be read that was written just now, by whoever launched its worker.
+const FRESH: Duration = Duration::from_millis(1200);
 
 /// By name, how many more connections each may have.
 #[derive(Clone, Debug)]
@@ -78,6 +80,16 @@ pub(super) async fn read_again(keys: Keys, inner: Arc<Inner>, say: watch::Sender
         }
         say.send_if_modified(|listed| listed.change(names));
     }
+}
+
+/// The places of a name that is on the list or about to be read.
+pub(super) async fn places(
+    mut listed: watch::Receiver<Listed>,
+    name: &str,
+) -> Option<Arc<Semaphore>> {
+    let there = listed.wait_for(|listed| listed.places(name).is_some());
+    let listed = timeout(FRESH, there).await.ok()?.ok()?;
+    listed.places(name)
 }
 
 /// Completes once a name is no longer on the list.
