@@ -6,6 +6,7 @@
     clippy::unwrap_used,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
+mod machines;
 mod plans;
 mod refusals;
 mod run;
@@ -64,6 +65,11 @@ struct Site {
 
 impl Site {
     fn new(workers: u32) -> Self {
+        Self::with_host(workers, "127.0.0.1")
+    }
+
+    /// The same for a coordinator that workers dial at another address.
+    fn with_host(workers: u32, host: &str) -> Self {
         let site = Self {
             folder: tempfile::tempdir().unwrap(),
             locator: free_quic_locator(),
@@ -78,7 +84,7 @@ impl Site {
             "new",
             keys.to_str().unwrap(),
             "--host",
-            "127.0.0.1",
+            host,
             "--workers",
             &workers.to_string(),
         ]);
@@ -127,10 +133,20 @@ impl Site {
         object["workers"].as_array().unwrap().clone()
     }
 
+    /// The folder of a worker on a host.
+    fn at(&self, host: &str, name: &str) -> PathBuf {
+        let entries = fs::read_dir(self.path(&format!("homes/{host}/.cache/horsehead")));
+        let mut folders = entries.unwrap().flatten().map(|entry| entry.path());
+        let is = |path: &PathBuf| {
+            let file = path.file_name().and_then(|name| name.to_str());
+            path.is_dir() && file.is_some_and(|file| file.starts_with(name))
+        };
+        folders.find(is).unwrap()
+    }
+
     /// Number of a worker's process on a host.
     fn process(&self, host: &str, name: &str) -> String {
-        let file = format!("homes/{host}/.cache/horsehead/{name}/process");
-        fs::read_to_string(self.path(&file))
+        fs::read_to_string(self.at(host, name).join("process"))
             .unwrap()
             .trim()
             .to_owned()

@@ -65,7 +65,7 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
         assert!(worker["last_seen_s"].as_f64().unwrap() < 4.0, "{worker}");
     }
     // what lies on a host is for its owner alone
-    let keys = site.path("homes/b/.cache/horsehead/worker-02");
+    let keys = site.at("b", "worker-02");
     assert_eq!(
         fs::metadata(keys).unwrap().permissions().mode() & 0o777,
         0o700
@@ -106,13 +106,8 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
     // another one finishes the work
     let came = site.up(&["--ssh", "c", "--slots", "4", "--wait", "30"]);
     assert!(came.status.success(), "{}", errors(&came));
-    let name = fs::read_dir(site.path("homes/c/.cache/horsehead"))
-        .unwrap()
-        .flatten();
-    let name = name
-        .filter(|entry| entry.path().is_dir())
-        .map(|entry| entry.file_name());
-    let name = name.last().unwrap().into_string().unwrap();
+    // the folders of the others are given away, and the name that was struck is not given again
+    let name = "worker-03";
     let mut seen = 0;
     let all = async {
         while seen < jobs {
@@ -123,15 +118,15 @@ async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_resta
     let in_time = tokio::time::timeout(Duration::from_mins(2), all).await;
     assert!(in_time.is_ok(), "{seen} of {jobs} results");
 
-    let logs = site.horsehead(&["workers", "logs", &name, "--tls", "keys"]);
+    let logs = site.horsehead(&["workers", "logs", name, "--tls", "keys"]);
     assert!(
         String::from_utf8_lossy(&logs.stdout).contains("connected to"),
         "{}",
         errors(&logs)
     );
-    let process = site.process("c", &name);
+    let process = site.process("c", name);
     assert!(runs(&process));
-    let down = site.horsehead(&["workers", "down", &name, "--run", "run"]);
+    let down = site.horsehead(&["workers", "down", name, "--run", "run"]);
     assert!(down.status.success(), "{}", errors(&down));
     let begun = Instant::now();
     while runs(&process) {

@@ -1,4 +1,4 @@
-//! Workers by Kubernetes: a Deployment whose pods dial the coordinator, with a NetworkPolicy that lets
+//! Workers by Kubernetes: a Deployment whose pods dial the coordinator, with a `NetworkPolicy` that lets
 //! them reach nothing else and a Secret of keys that `kubectl` makes from the folder.
 use super::{
     error::NodeError,
@@ -8,7 +8,7 @@ use super::{
 };
 use link::keys::{CA, WORKER};
 use serde_json::{Value, json};
-use std::net::IpAddr;
+use std::{fmt::Write as _, net::IpAddr, path::Path};
 
 /// Name of all objects.
 const NAME: &str = "horsehead-worker";
@@ -45,35 +45,10 @@ pub fn up(order: &Order, options: &str, name: Option<&str>) -> Result<Plan, Node
         ));
     }
     let namespace = of("namespace", "default");
-    let apply = ["kubectl", "apply", "-n", &namespace, "-f", "-"].map(str::to_owned);
-    let step = |what: &str, input: Input| Step::Run {
-        what: what.to_owned(),
-        command: apply.to_vec(),
-        input,
-        only_if: None,
-        asks: false,
-        remedy: "see what `kubectl auth can-i create deployments` and `kubectl config \
-                 current-context` say"
-            .to_owned(),
-    };
     let mut steps = Vec::new();
     if let (Some(folder), Some(name)) = (&order.tls, name) {
-        let mut make = [
-            "kubectl",
-            "create",
-            "secret",
-            "generic",
-            NAME,
-            "--dry-run=client",
-        ]
-        .map(str::to_owned)
-        .to_vec();
-        make.extend(["-o".to_owned(), "yaml".to_owned()]);
-        for file in [CA, WORKER[0], WORKER[1]] {
-            let path = folder.join(name).join(file);
-            make.push(format!("--from-file={file}={}", path.display()));
-        }
-        steps.push(step("make a secret of the keys", Input::Command(make)));
+        let make = Input::Command(secret(&folder.join(name)));
+        steps.push(apply("make a secret of the keys", &namespace, make));
     }
     let has_keys = !steps.is_empty();
     let objects = [
@@ -93,9 +68,13 @@ pub fn up(order: &Order, options: &str, name: Option<&str>) -> Result<Plan, Node
     let mut manifests = String::new();
     for object in objects {
         // JSON is YAML, and both kinds of people can read it when it is indented
-        manifests.push_str(&format!("---\n{object:#}\n"));
+        let _written = write!(manifests, "---\n{object:#}\n");
     }
-    steps.push(step("apply the manifests", Input::Text(manifests)));
+    steps.push(apply(
+        "apply the manifests",
+        &namespace,
+        Input::Text(manifests),
+    ));
     Ok(Plan {
         first: Vec::new(),
         parts: vec![Part {
@@ -108,6 +87,39 @@ pub fn up(order: &Order, options: &str, name: Option<&str>) -> Result<Plan, Node
             steps,
         }],
     })
+}
+
+/// Has Kubernetes make what it reads so.
+fn apply(what: &str, namespace: &str, input: Input) -> Step {
+    Step::Run {
+        what: what.to_owned(),
+        command: ["kubectl", "apply", "-n", namespace, "-f", "-"]
+            .map(str::to_owned)
+            .to_vec(),
+        input,
+        only_if: None,
+        asks: false,
+        remedy: "see what `kubectl auth can-i create deployments` and `kubectl config \
+                 current-context` say"
+            .to_owned(),
+    }
+}
+
+/// Writes a secret of the keys in a folder.
+fn secret(folder: &Path) -> Vec<String> {
+    let make = [
+        "kubectl",
+        "create",
+        "secret",
+        "generic",
+        NAME,
+        "--dry-run=client",
+        "-o",
+        "yaml",
+    ];
+    let from = |file: &str| format!("--from-file={file}={}", folder.join(file).display());
+    let files = [CA, WORKER[0], WORKER[1]].map(from);
+    make.map(str::to_owned).into_iter().chain(files).collect()
 }
 
 fn deployment(

@@ -43,20 +43,19 @@ pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>),
     let (mut all, mut made, mut steps) = (Vec::new(), Vec::new(), Vec::new());
     for (host, name) in hosts.iter().zip(names) {
         let is_new = name.is_none();
-        let name = match name.or_else(|| free.pop_first().cloned()) {
-            Some(name) => name,
-            None => {
-                let vacant =
-                    |name: &String| !keys.workers().contains(name) && !folder.join(name).exists();
-                let name = unused.find(vacant).ok_or_else(|| {
-                    NodeError::new(
-                        format!("{} has all the names that it may have", folder.display()),
-                        "remove folders of nodes that are gone, and their lines in `workers`",
-                    )
-                })?;
-                made.push(name.clone());
-                name
-            }
+        let known = name.or_else(|| free.pop_first().cloned());
+        let vacant = |name: &String| !keys.workers().contains(name) && !folder.join(name).exists();
+        let name = if let Some(name) = known {
+            name
+        } else {
+            let name = unused.find(vacant).ok_or_else(|| {
+                NodeError::new(
+                    format!("{} has all the names that it may have", folder.display()),
+                    "remove folders of nodes that are gone, and their lines in `workers`",
+                )
+            })?;
+            made.push(name.clone());
+            name
         };
         if is_new {
             steps.push(Step::Write {

@@ -47,7 +47,7 @@ pub fn carry_out(
         for _ in 0..plan.parts.len().min(AT_A_TIME) {
             scope.spawn(|| {
                 while let Some(part) = next() {
-                    tell(part, run(&part.place, &part.steps));
+                    tell(part, run(&part.place, &part.steps).map(drop));
                 }
             });
         }
@@ -55,8 +55,8 @@ pub fn carry_out(
     Ok(())
 }
 
-/// The steps of one place, in order.
-fn run(place: &str, steps: &[Step]) -> Result<(), LaunchError> {
+/// The steps of one place, in order; what the last that asks was answered.
+pub(super) fn run(place: &str, steps: &[Step]) -> Result<String, LaunchError> {
     let mut answer = String::new();
     for step in steps {
         match step {
@@ -84,14 +84,16 @@ fn run(place: &str, steps: &[Step]) -> Result<(), LaunchError> {
                     remedy,
                 };
                 let program = command.first().map_or("", String::as_str);
-                let output = call(command, input).map_err(|error| match error.kind() {
-                    io::ErrorKind::NotFound => failed(
+                let output = call(command, input).map_err(|error| {
+                    if error.kind() != io::ErrorKind::NotFound {
+                        return failed(error.to_string(), remedy.clone());
+                    }
+                    failed(
                         format!("there is no {program} on this machine"),
                         format!(
                             "install {program}, or carry out what --dry-run prints where there is one"
                         ),
-                    ),
-                    _ => failed(error.to_string(), remedy.clone()),
+                    )
                 })?;
                 if !output.status.success() {
                     let said = String::from_utf8_lossy(&output.stderr);
@@ -107,7 +109,7 @@ fn run(place: &str, steps: &[Step]) -> Result<(), LaunchError> {
             }
         }
     }
-    Ok(())
+    Ok(answer)
 }
 
 fn write(path: &Path, content: &str) -> io::Result<()> {

@@ -16,7 +16,7 @@ pub(super) fn line(words: &[String]) -> String {
 
 /// A text whose lines all end.
 pub(super) fn lines(text: &str) -> String {
-    text.lines().map(|line| format!("{line}\n")).collect()
+    text.lines().flat_map(|line| [line, "\n"]).collect()
 }
 
 /// `KEY=VALUE,KEY=VALUE` of an option.

@@ -25,6 +25,11 @@ pub(crate) struct HostsChoice {
 }
 
 impl HostsChoice {
+    /// Whether none was named.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.ssh.is_empty() && self.hosts.is_none()
+    }
+
     /// The hosts.
     pub(crate) fn read(&self) -> Result<Vec<Host>, NodeError> {
         match &self.hosts {

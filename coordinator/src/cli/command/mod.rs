@@ -53,7 +53,7 @@ macro_rules! commands {
     ($($name:ident: $file:ident $([$more:expr])?,)*) => {
         #[derive(Debug, Subcommand)]
         enum Command {
-            $($name($file::Arguments),)*
+            $($name(Box<$file::Arguments>),)*
         }
 
         impl Command {

@@ -16,7 +16,7 @@ pub(super) struct Arguments {
 enum Action {
     /// Start workers on other nodes, by ssh, Slurm, Kubernetes or this machine's systemd.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", up::EXAMPLES))]
-    Up(up::Arguments),
+    Up(Box<up::Arguments>),
     /// Show who works on a run: name, host, slots, version, jobs in hand, rate, last seen.
     #[command(after_help = format!("{}\n\n{EXIT_CODES}", crew::LIST))]
     List(crew::ListArguments),

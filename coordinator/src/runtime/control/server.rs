@@ -63,6 +63,7 @@ impl Drop for Control {
     }
 }
 
+#[expect(clippy::infinite_loop, reason = "it ends when its task is aborted")]
 async fn serve(
     listener: UnixListener,
     ask: impl Fn(Asked) -> bool + Clone + Send + Sync + 'static,

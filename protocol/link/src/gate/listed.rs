@@ -34,11 +34,11 @@ impl Listed {
     }
 
     /// The list is another one now; whoever stays keeps its connections. Whether that changes anything.
-    fn change(&mut self, names: BTreeSet<String>) -> bool {
-        if self.0.keys().eq(&names) {
+    fn change(&mut self, names: &BTreeSet<String>) -> bool {
+        if self.0.keys().eq(names) {
             return false;
         }
-        let Self(mut stays) = Self::new(&names);
+        let Self(mut stays) = Self::new(names);
         for (name, places) in &mut stays {
             if let Some(old) = self.0.remove(name) {
                 *places = old;
@@ -78,7 +78,7 @@ pub(super) async fn read_again(keys: Keys, inner: Arc<Inner>, say: watch::Sender
                 );
             }
         }
-        say.send_if_modified(|listed| listed.change(names));
+        say.send_if_modified(|listed| listed.change(&names));
     }
 }
 
@@ -100,7 +100,7 @@ pub(super) async fn struck(mut listed: watch::Receiver<Listed>, name: &str) {
         .await
         .is_err()
     {
-        std::future::pending().await
+        std::future::pending::<()>().await;
     }
 }
 
@@ -114,8 +114,8 @@ mod tests {
         let mut listed = Listed::new(&names(&["a", "b"]));
         let places = listed.places("a").unwrap();
         let _taken = places.try_acquire().unwrap();
-        assert!(!listed.change(names(&["b", "a"])));
-        assert!(listed.change(names(&["a", "c"])));
+        assert!(!listed.change(&names(&["b", "a"])));
+        assert!(listed.change(&names(&["a", "c"])));
         let left = |name: &str| listed.places(name).map(|places| places.available_permits());
         assert_eq!(left("a"), Some(CONNECTIONS - 1));
         assert_eq!((left("b"), left("c")), (None, Some(CONNECTIONS)));

@@ -1,9 +1,9 @@
 //! `workers list`, `drain` and `down`: asking the process that works on a run.
-use super::up::carry;
 use crate::{
     cli::{
         argument::{nodes::HostsChoice, output::OutputChoice},
         output::{problem::Usage, terminal},
+        run::launch::{carry, refuse},
     },
     nodes::ssh,
     report::table::{Row, Table, text},
@@ -120,9 +120,9 @@ pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
 
 /// Ends workers.
 pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
-    let hosts = arguments.hosts.read().map_err(super::up::refuse)?;
+    let hosts = arguments.hosts.read().map_err(refuse)?;
     if !hosts.is_empty() {
-        return carry(&ssh::down(&hosts));
+        return carry(&ssh::down(&hosts, ""));
     }
     let question = Question::Drain {
         names: arguments.names.clone(),

@@ -2,14 +2,10 @@
 use crate::{
     cli::{
         argument::nodes::HostsChoice,
-        output::{problem::Usage, terminal},
+        output::terminal,
+        run::launch::{carry, programs, refuse},
     },
-    nodes::{
-        NodeError, Order, Plan, Program, k8s, keys,
-        launch::{LaunchError, carry_out},
-        slurm, ssh, systemd,
-    },
-    runtime::locate::worker_program,
+    nodes::{NodeError, Order, Plan, k8s, keys, slurm, ssh, systemd},
 };
 use clap::{ArgGroup, Args};
 use link::{
@@ -20,7 +16,6 @@ use std::{
     env, fs,
     path::{Path, PathBuf},
     process::Command,
-    sync::atomic::{AtomicUsize, Ordering},
 };
 
 pub(super) const EXAMPLES: &str = "\
@@ -120,35 +115,6 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     carry(&plan)
 }
 
-/// Carries a plan out and tells how it ended at each place.
-pub(super) fn carry(plan: &Plan) -> anyhow::Result<()> {
-    let failed = AtomicUsize::new(0);
-    let remedy = |error: &LaunchError| Usage {
-        message: error.to_string(),
-        help: error.remedy.clone(),
-    };
-    carry_out(plan, &|part, ended| match ended {
-        Ok(()) => terminal::tell(&format!("{}: {}", part.place, part.then)),
-        Err(error) => {
-            failed.fetch_add(1, Ordering::Relaxed);
-            terminal::tell(&format!("error: {error}; {}", error.remedy));
-        }
-    })
-    .map_err(|error| remedy(&error))?;
-    match failed.into_inner() {
-        0 => Ok(()),
-        failed => anyhow::bail!("{failed} of {} places failed", plan.parts.len()),
-    }
-}
-
-pub(super) fn refuse(error: NodeError) -> anyhow::Error {
-    Usage {
-        message: error.message,
-        help: error.help,
-    }
-    .into()
-}
-
 fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
     let tls = match (arguments.connect.protocol, &arguments.tls) {
         (Protocol::Tcp, _) => None,
@@ -193,43 +159,6 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
         return systemd::up(&order, options, own, name.as_deref(), &configuration);
     }
     ssh::up(&order, &arguments.hosts.read()?, &programs, arguments.wait)
-}
-
-/// The worker that `horsehead` would start here, then those that were named for other machines, which
-/// come before it where they are for the same.
-fn programs(named: &[String]) -> Result<Vec<Program>, NodeError> {
-    let mut programs = Vec::new();
-    for text in named {
-        let wrong = |why: &str| NodeError {
-            message: format!("--worker-program {text}: {why}"),
-            help: "write ARCH=PATH with ARCH as `uname -m` says on the host".to_owned(),
-        };
-        let (machine, path) = text.split_once('=').ok_or_else(|| wrong("it has no ="))?;
-        let program = Program::read(Path::new(path))?;
-        if program.machine != machine {
-            return Err(wrong(&format!("it is a program for {}", program.machine)));
-        }
-        programs.push(program);
-    }
-    match worker_program() {
-        Ok(path) => {
-            let own = Program::read(&path)?;
-            if programs
-                .iter()
-                .all(|program| program.machine != own.machine)
-            {
-                programs.insert(0, own);
-            }
-        }
-        Err(error) if programs.is_empty() => {
-            return Err(NodeError {
-                message: error.to_string(),
-                help: "or name one with --worker-program ARCH=PATH".to_owned(),
-            });
-        }
-        Err(_) => {}
-    }
-    Ok(programs)
 }
 
 /// The folder of keys that all workers of a launch share, where they share a file system or a secret.
