@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Builds a worker that runs on systems with glibc 2.28 and newer (RHEL 8, Debian 10, Ubuntu 18.10), for
-# `horsehead workers up --worker-program`: cargo-zigbuild and ziglang from PyPI link it, into target/portable.
+# --worker-program: cargo-zigbuild and ziglang from PyPI link it, into target/portable.
 #
 #     deploy/portable.sh [MACHINE]        x86_64 or aarch64; needs rustup's target for a foreign one
 set -euo pipefail

@@ -103,7 +103,7 @@ pub fn host_of(folder: &Path, name: &str) -> Result<Host, NodeError> {
     let text = fs::read_to_string(&file).map_err(|error| {
         NodeError::new(
             format!("{}: {error}", file.display()),
-            "`horsehead workers up --ssh HOST` gives hosts their keys and writes this file",
+            "launching by ssh with this folder as --tls gives hosts their keys and writes this file",
         )
     })?;
     text.trim().parse()

@@ -23,7 +23,7 @@ Examples:
   horsehead workers up --connect quic/head:7447 --tls keys --ssh node1,node2,me@node3:2222
   horsehead workers up --connect quic/head:7447 --tls keys --hosts hosts.txt --dry-run
   horsehead workers up --connect quic/head:7447 --tls keys --slurm nodes=4,time=02:00:00
-  horsehead workers up --connect quic/10.0.0.1:7447 --tls keys --k8s replicas=4,image=horsehead-worker:1
+  horsehead workers up --connect quic/10.0.0.1:7447 --tls keys --k8s replicas=4
   horsehead workers up --connect quic/head:7447 --tls keys --systemd slots=2
 
 --dry-run prints all of it as a script of the shell, contacts nobody and writes nothing. Keys are read
