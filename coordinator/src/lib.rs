@@ -4,7 +4,7 @@
 //! individuals, the sans-I/O [`core`] leases them to workers, the [`journal`] records what came
 //! back, the [`account`] of slot time and the [`report`] show it, the [`store`] makes tables of it for queries. [`study`] is the loop from the first proposal to the
 //! comparison of the result, [`cli`] the commands around it, [`runtime`] the only asynchronous
-//! glue. Nothing here links the dynamics.
+//! glue, [`nodes`] what starts workers elsewhere. Nothing here links the dynamics.
 pub mod account;
 pub mod case;
 pub mod cli;
@@ -16,6 +16,7 @@ mod external;
 pub mod journal;
 mod kind;
 mod line;
+pub mod nodes;
 pub mod orthogonal;
 pub mod pumping_unit;
 pub mod quantile;

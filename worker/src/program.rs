@@ -44,7 +44,7 @@ pub fn run(simulators: Simulators) -> ExitCode {
     };
     let filter = EnvFilter::try_from_env("HORSEHEAD_LOG").unwrap_or_else(|_| {
         EnvFilter::new(format!(
-            "warn,worker::program={own},zenoh=off,zenoh_link=off,zenoh_transport=off"
+            "warn,worker::program={own},worker::session={own},zenoh=off,zenoh_link=off,zenoh_transport=off"
         ))
     });
     tracing_subscriber::fmt()

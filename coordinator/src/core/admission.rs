@@ -4,6 +4,7 @@
 //! by the case's own reference individual, which each worker computes once it holds the case. The
 //! first worker of a run sets what the others must come to, to the last bit.
 use super::{
+    drain::turn_away,
     member::Member,
     notice::Notice,
     roster::dismiss,
@@ -26,6 +27,9 @@ pub(super) fn announce(core: &mut Core, from: WorkerId, announcement: Announceme
     if let Some(reason) = absurdity(&announcement).or_else(|| objection(core, &announcement)) {
         let host = shown(&announcement.host);
         refuse(core, from, host, reason);
+        return;
+    }
+    if turn_away(core, from) {
         return;
     }
     if !core.members.contains_key(&from) {
@@ -73,7 +77,8 @@ fn admit(core: &mut Core, worker: WorkerId, announcement: Announcement, now: Dur
             .get_or_insert_with(|| effects.map(|effect| effect.id.clone()).collect());
     }
     core.refused.remove(&worker);
-    let member = Member::new(announcement, &core.clocks, now);
+    let mut member = Member::new(announcement, &core.clocks, now);
+    member.drained = core.drained.contains_key(&worker);
     core.members.insert(worker, member);
     core.notice(Notice::Joined {
         worker,

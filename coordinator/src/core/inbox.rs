@@ -1,6 +1,6 @@
 //! Everything that can happen to a core, and who sees to it.
 use super::{
-    admission, assign,
+    admission, assign, drain,
     input::{Command, Input},
     lease, membership, reconcile, result,
     slot_time::Doing,
@@ -30,11 +30,13 @@ impl Core {
             Input::Gone { worker } => membership::gone(self, worker, now),
             Input::Stored { jobs } => result::stored(self, jobs),
             Input::Slept { time } => membership::excuse(self, time, now),
+            Input::Drain { worker, how } => drain::drain(self, worker, how, now),
             Input::Tick => tick(self, now),
             Input::Finish => self.phase = Phase::Finishing,
             Input::Writable(writable) => self.paused = !writable,
             Input::Close => close(self, now),
         }
+        drain::end_drained(self, now);
         if self.may_give_out() && membership::is_complete(self, now) {
             assign::assign(self, now);
             tail::steal(self, now);

@@ -11,6 +11,15 @@ use protocol::{
 };
 use std::time::Duration;
 
+/// How a worker is taken out of the work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Drain {
+    /// What it holds is handed back at once; otherwise it finishes that.
+    pub now: bool,
+    /// It ends when it holds nothing; otherwise it stays, idle.
+    pub end: bool,
+}
+
 /// Something that happened.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Input {
@@ -56,6 +65,13 @@ pub enum Input {
     Slept {
         /// For how long it slept.
         time: Duration,
+    },
+    /// Somebody takes a worker out of the work.
+    Drain {
+        /// The worker's name.
+        worker: WorkerId,
+        /// How.
+        how: Drain,
     },
     /// Time has passed.
     Tick,

@@ -49,6 +49,8 @@ pub(super) struct Member {
     pub(super) leases: Vec<Lease>,
     /// It holds a job in quarantine and gets nothing else.
     pub(super) alone: bool,
+    /// Somebody has taken it out of the work: it gets nothing new.
+    pub(super) drained: bool,
     /// Attempts it holds of jobs that were not submitted (yet).
     pub(super) claims: Vec<Attempt>,
     /// Attempts that were taken from it, and when: it may compute them until it has read so.
@@ -68,6 +70,7 @@ impl Member {
             ready: false,
             leases: Vec::new(),
             alone: false,
+            drained: false,
             claims: Vec::new(),
             taken: Vec::new(),
             done: 0,
@@ -86,7 +89,7 @@ impl Member {
 
     /// Whether it may be given a job that another may hold too.
     pub(super) const fn takes_jobs(&self) -> bool {
-        self.ready && !self.alone
+        self.ready && !self.alone && !self.drained
     }
 
     /// How many slots have nothing to compute.

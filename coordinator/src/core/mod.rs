@@ -12,12 +12,14 @@
 //! this process could lose.
 //!
 //! Each file uses only what stands above it: what is remembered (`state` over `member`, `slot_time`,
-//! `policy`, `times`, `failures`); who holds which job (`lease`); `result` and `roster`; `terms`,
+//! `policy`, `times`, `failures`); who holds which job (`lease`); `result` and `roster`; `drain`, `terms`,
 //! `admission` and `reconcile`; `membership`; `assign` and `tail`; and at the top `inbox`, which is
 //! told what happens.
 mod admission;
 mod assign;
 mod completed;
+mod crew;
+mod drain;
 mod early;
 mod failures;
 mod inbox;
@@ -41,7 +43,8 @@ mod tests;
 mod times;
 
 pub use completed::Completed;
-pub use input::{Command, Input};
+pub use crew::Hand;
+pub use input::{Command, Drain, Input};
 pub use job_set::JobSet;
 pub use lease::offered;
 pub use notice::{Notice, Stop};

@@ -1,7 +1,14 @@
 //! All that the core remembers, and what can be said of it without knowing how it comes about.
 use super::{
-    early::Early, failures::Failures, input::Command, job_set::JobSet, member::Member,
-    notice::Notice, policy::Policy, slot_time::Clocks, times::Times,
+    early::Early,
+    failures::Failures,
+    input::{Command, Drain},
+    job_set::JobSet,
+    member::Member,
+    notice::Notice,
+    policy::Policy,
+    slot_time::Clocks,
+    times::Times,
 };
 use protocol::{
     event::{Account, Event, Spent, WorkerAccount},
@@ -46,6 +53,8 @@ pub struct Core {
     pub(super) options: CoreOptions,
     pub(super) members: BTreeMap<WorkerId, Member>,
     pub(super) refused: BTreeSet<WorkerId>,
+    /// Whom somebody has taken out of the work, also while it is away.
+    pub(super) drained: BTreeMap<WorkerId, Drain>,
     pub(super) jobs: BTreeMap<JobId, Pending>,
     pub(super) queue: BTreeSet<JobId>,
     /// Pending jobs that must run alone.
@@ -142,6 +151,7 @@ impl Core {
             options,
             members: BTreeMap::new(),
             refused: BTreeSet::new(),
+            drained: BTreeMap::new(),
             jobs: BTreeMap::new(),
             queue: BTreeSet::new(),
             suspects: BTreeSet::new(),

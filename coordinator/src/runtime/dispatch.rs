@@ -1,5 +1,6 @@
 //! An open run, as its owner sees it.
 use super::{
+    control::Control,
     engine::{Engine, Request, Summary},
     error::DispatchError,
     listen::{addresses, admissible, allow_connections, keys},
@@ -33,6 +34,8 @@ pub struct Dispatch {
     engine: JoinHandle<Summary>,
     listening: Vec<Locator>,
     recorded: usize,
+    /// The socket for questions about workers, where the file system has sockets.
+    control: Option<Control>,
 }
 
 impl Dispatch {
@@ -74,7 +77,19 @@ impl Dispatch {
             _ => None,
         };
         let only_local = options.listen.is_none();
-        Ok(Self::begin(parts, link, workers, only_local, listening))
+        let mut open = Self::begin(parts, link, workers, only_local, listening);
+        // a sender of its own would keep the run open for ever
+        let requests = open.requests.downgrade();
+        let ask = move |asked| {
+            let requests = requests.upgrade();
+            requests.is_some_and(|requests| requests.send(Request::Ask(asked)).is_ok())
+        };
+        open.control = Control::open(&options.run_dir, ask)
+            .inspect_err(|error| {
+                tracing::warn!("`horsehead workers list` cannot ask this run: {error}");
+            })
+            .ok();
+        Ok(open)
     }
 
     /// Opens a run over any link, without workers of its own; `make` is given the run's name and
@@ -112,6 +127,7 @@ impl Dispatch {
             engine,
             listening,
             recorded,
+            control: None,
         }
     }
 
@@ -166,6 +182,7 @@ impl Dispatch {
     pub async fn close(self) -> Result<Summary, DispatchError> {
         // an engine that has stopped needs no request
         drop(self.requests);
+        drop(self.control);
         self.engine.await.map_err(|_| DispatchError::Closed)
     }
 }

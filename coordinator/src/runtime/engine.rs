@@ -1,5 +1,10 @@
 //! The task of an open run: carries words between link, core and journal, and decides nothing.
 use super::{
+    control::{
+        Asked,
+        words::{Question, Reply},
+    },
+    crew,
     error::DispatchError,
     local::{LocalEvent, LocalWorkers},
     parts::Parts,
@@ -40,7 +45,12 @@ const LAST_WRITE: Duration = Duration::from_secs(1);
 /// What the owner of a run asks for.
 #[derive(Debug)]
 pub(super) enum Request {
-    Submit { id: JobId, job: Box<Job> },
+    Submit {
+        id: JobId,
+        job: Box<Job>,
+    },
+    /// Asked through the run's socket.
+    Ask(Asked),
 }
 
 /// How a run went, from the opening to the closing of this process.
@@ -117,6 +127,11 @@ impl<L: CoordinatorEnd> Engine<L> {
             tokio::select! {
                 request = requests.recv() => match request {
                     Some(Request::Submit { id, job }) => self.submit(id, *job),
+                    Some(Request::Ask((question, to))) => {
+                        let reply = self.ask(&question);
+                        // who asked may not wait any more
+                        drop(to.send(reply));
+                    }
                     None => break,
                 },
                 heard = self.link.receive() => match heard {
@@ -173,6 +188,16 @@ impl<L: CoordinatorEnd> Engine<L> {
             Ok(Some(_)) => self.give(Err(DispatchError::JobDiffers { job: id })),
             Err(error) => self.give(Err(error.into())),
         }
+    }
+
+    /// Answers a question about the workers, and does to them what it asks.
+    fn ask(&mut self, question: &Question) -> Reply {
+        let crew = self.core.crew(self.begun.elapsed());
+        let (drains, reply) = crew::answer(question, crew, |worker| self.link.owner(worker));
+        for (worker, how) in drains {
+            self.handle(Input::Drain { worker, how });
+        }
+        reply
     }
 
     fn hear(&mut self, heard: Heard) {

@@ -30,6 +30,8 @@ const LOOK: Duration = Duration::from_millis(50);
 const RESTARTS: u32 = 8;
 /// After so long a worker counts as having worked.
 const WORKED: Duration = Duration::from_mins(1);
+/// Exit status of a worker that was refused, or asked to end: it would be again.
+const REFUSED: i32 = 3;
 /// Pause before a first restart; twice as long each time, up to the longest.
 const PAUSE: Duration = Duration::from_millis(100);
 /// Longest pause before a restart.
@@ -150,6 +152,8 @@ struct Place {
     results: u64,
     /// Ends without a result between them.
     restarts: u32,
+    /// It ended because it was refused.
+    refused: bool,
     /// Pause before the next restart.
     pause: Duration,
     again_at: Option<Instant>,
@@ -170,6 +174,7 @@ impl Place {
             begun: Instant::now(),
             results: 0,
             restarts: 0,
+            refused: false,
             pause: PAUSE,
             again_at: None,
         })
@@ -179,7 +184,10 @@ impl Place {
     fn ended(&mut self) -> Option<String> {
         let how = match self.child.as_mut()?.try_wait() {
             Ok(None) => return None,
-            Ok(Some(status)) => words(status),
+            Ok(Some(status)) => {
+                self.refused = status.code() == Some(REFUSED);
+                words(status)
+            }
             Err(error) => format!("is out of sight: {error}"),
         };
         self.child = None;
@@ -194,7 +202,7 @@ impl Place {
         if results > self.results {
             (self.results, self.restarts) = (results, 0);
         }
-        if self.restarts == RESTARTS {
+        if self.refused || self.restarts == RESTARTS {
             return LocalEvent::GivenUp { how };
         }
         self.restarts += 1;

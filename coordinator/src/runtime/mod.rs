@@ -3,6 +3,8 @@
 //! [`Dispatch`] is opened on a run folder, given jobs and asked for results. What it does in
 //! between runs on a task of its own, so that a caller that computes for a while holds up nobody.
 mod bench;
+pub mod control;
+mod crew;
 mod dispatch;
 mod engine;
 mod error;

@@ -13,6 +13,7 @@
 //! router's access control still goes by certificate, and the gate knows nothing of the bus but
 //! how many streams there are.
 mod inner;
+mod listed;
 mod passing;
 mod refusal;
 pub(crate) mod terms;
@@ -24,6 +25,7 @@ use crate::{
     keys::{Keys, certificate_name, provider},
     locator::Locator,
 };
+use listed::Listed;
 use passing::join;
 use quinn::{
     Connection, ConnectionError, Endpoint, Incoming, TransportConfig, VarInt,
@@ -32,13 +34,16 @@ use quinn::{
 use refusal::Refusals;
 use rustls::{ServerConfig, pki_types::CertificateDer, server::WebPkiClientVerifier};
 use std::{
-    collections::BTreeMap,
     net::{SocketAddr, ToSocketAddrs},
     sync::Arc,
     time::Duration,
 };
-use terms::{BUS, CONNECTIONS, CROWDED, HANDSHAKE, KNOCK, UNLISTED, WELCOME};
-use tokio::{sync::Semaphore, task::JoinHandle, time::timeout};
+use terms::{BUS, CROWDED, HANDSHAKE, KNOCK, UNLISTED, WELCOME};
+use tokio::{
+    sync::{Semaphore, watch},
+    task::JoinHandle,
+    time::timeout,
+};
 
 /// Streams of the bus in one direction: one for each priority but the highest.
 const STREAMS: u32 = 7;
@@ -54,12 +59,14 @@ const FAREWELL: Duration = Duration::from_millis(200);
 pub(crate) struct Gate {
     endpoint: Endpoint,
     task: JoinHandle<()>,
+    /// Reads the list of names again.
+    reading: JoinHandle<()>,
 }
 
 /// What is needed to let somebody in.
 struct House {
-    /// By name, how many more connections each may have.
-    workers: BTreeMap<String, Arc<Semaphore>>,
+    /// Who may come in by now.
+    listed: watch::Receiver<Listed>,
     inner: Arc<Inner>,
     refusals: Refusals,
 }
@@ -82,17 +89,19 @@ impl Gate {
             .ok_or_else(|| failed("the host has no address".to_owned()))?;
         let endpoint =
             Endpoint::server(config, address).map_err(|error| failed(error.to_string()))?;
+        let (say, listed) = watch::channel(Listed::new(keys.workers()));
+        let reading = tokio::spawn(listed::read_again(keys.clone(), Arc::clone(&inner), say));
         let house = House {
-            workers: keys
-                .workers()
-                .iter()
-                .map(|name| (name.clone(), Arc::new(Semaphore::new(CONNECTIONS))))
-                .collect(),
+            listed,
             inner,
             refusals: Refusals::default(),
         };
         let task = tokio::spawn(admit(endpoint.clone(), Arc::new(house)));
-        Ok(Self { endpoint, task })
+        Ok(Self {
+            endpoint,
+            task,
+            reading,
+        })
     }
 
     /// Closes the gate and the connections through it.
@@ -105,6 +114,7 @@ impl Gate {
 
     fn shut(&self) {
         self.task.abort();
+        self.reading.abort();
         self.endpoint.close(VarInt::from_u32(WELCOME), b"closed");
     }
 }
@@ -181,7 +191,7 @@ async fn shake(incoming: Incoming) -> Result<Connection, ConnectionError> {
 /// Lets a peer in whose certificate was accepted, if its name is on the list.
 async fn enter(house: &House, connection: Connection, from: SocketAddr) {
     let owner = owner(&connection).unwrap_or_default();
-    let Some(places) = house.workers.get(&owner) else {
+    let Some(places) = listed::places(house.listed.clone(), &owner).await else {
         house.refusals.unlisted(from, &owner);
         connection.close(VarInt::from_u32(UNLISTED), b"not on the list of workers");
         return;
@@ -196,7 +206,13 @@ async fn enter(house: &House, connection: Connection, from: SocketAddr) {
         return;
     };
     match house.inner.connect(&owner, streams()).await {
-        Ok(inner) => join(&connection, &inner).await,
+        Ok(inner) => tokio::select! {
+            () = join(&connection, &inner) => {}
+            () = listed::struck(house.listed.clone(), &owner) => {
+                tracing::warn!(%from, "\"{owner}\" was taken off the list of workers: it is out");
+                connection.close(VarInt::from_u32(UNLISTED), b"taken off the list of workers");
+            }
+        },
         Err(error) => {
             tracing::warn!(%from, %error, "a worker cannot be connected to the bus");
             connection.close(VarInt::from_u32(WELCOME), b"try again");

@@ -164,7 +164,7 @@ fn explain(error: &ConnectionError, to: &Locator, keys: &Keys) -> Result<(), Lin
         if answer.error_code == VarInt::from_u32(UNLISTED) {
             return Err(refused(
                 "its list of workers does not hold that name: `horsehead keys add` puts it \
-                 there, and a new start of the coordinator reads it",
+                 there, where a running coordinator looks every second",
             ));
         }
     }

@@ -16,7 +16,7 @@ mod error;
 mod material;
 
 pub use error::KeyError;
-pub use material::{CA, CA_KEY, COORDINATOR, Role, WORKER, WORKERS};
+pub use material::{CA, CA_KEY, COORDINATOR, Role, WORKER, WORKERS, pool};
 
 pub(crate) use certificate::{certificate_name, provider};
 
@@ -79,6 +79,11 @@ impl Keys {
     /// The names that may join, of a coordinator; empty for a worker.
     pub const fn workers(&self) -> &BTreeSet<String> {
         &self.workers
+    }
+
+    /// The names that may join by now: the list is a file that people edit while a run goes on.
+    pub(crate) fn workers_now(&self) -> Result<BTreeSet<String>, KeyError> {
+        read_workers(&self.folder.join(WORKERS))
     }
 
     /// Path of the authority's certificate.

@@ -5,6 +5,7 @@ pub(super) mod door;
 pub(super) mod factor;
 pub(crate) mod individual;
 pub(super) mod individuals;
+pub(crate) mod nodes;
 pub(crate) mod output;
 pub(super) mod settings;
 pub(super) mod workers;

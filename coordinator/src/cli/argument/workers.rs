@@ -1,5 +1,5 @@
 //! Who works on a run: worker processes on this machine, and others through the door.
-use super::door::Door;
+use super::{door::Door, nodes::HostsChoice};
 use clap::{
     Args,
     builder::{RangedU64ValueParser, TypedValueParser},
@@ -13,12 +13,23 @@ pub(crate) struct WorkersChoice {
     /// Worker processes to start on this machine; 0 for none [default: one per core].
     #[arg(long, value_name = "N", env = "HORSEHEAD_WORKERS", value_parser = worker_count())]
     workers: Option<usize>,
+    #[command(flatten)]
+    pub(crate) hosts: HostsChoice,
+    /// Name or address under which those hosts reach this machine [default: the one from which the first
+    /// of them says that we come].
+    #[arg(long, value_name = "ADDRESS", env = "HORSEHEAD_ADVERTISE")]
+    pub(crate) advertise: Option<String>,
 }
 
 impl WorkersChoice {
     /// Worker processes to start on this machine.
     pub(crate) fn local(&self) -> usize {
         self.workers.unwrap_or_else(cores)
+    }
+
+    /// Whether workers of other machines take part.
+    pub(crate) const fn has_others(&self) -> bool {
+        self.door.listen.is_some() || !self.hosts.is_empty()
     }
 }
 

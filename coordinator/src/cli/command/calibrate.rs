@@ -74,7 +74,7 @@ pub(super) struct Arguments {
     settings: SettingsChoice,
     /// Of the preset `window`, short for --set window=L: an individual is bred from results that are
     /// this many behind, part of what decides the result [default: that of the run, or 3 times the
-    /// workers planned: those started here, 40 at least with --listen].
+    /// workers planned: those started here, 40 at least with --listen or --ssh].
     #[arg(long, value_name = "L", env = "HORSEHEAD_WINDOW", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     window: Option<u32>,
     #[command(flatten)]
@@ -93,6 +93,7 @@ Examples:
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --seed 7 --listen tcp/127.0.0.1:7447
   horsehead calibrate cases/cyjs10-5-37hb --preset paper --set encoding=gray --set population=40
   horsehead calibrate cases/cyjs10-5-37hb --listen quic/0.0.0.0:7447 --tls keys
+  horsehead calibrate cases/cyjs10-5-37hb --ssh node1,node2
   horsehead calibrate cases/cyjs10-5-37hb --genes runs/cyjs10-5-37hb-diagnose-seed1/calibrated.toml
   horsehead calibrate cases/cyjs10-5-37hb --preset l-shade --start individuals.csv
 
@@ -108,9 +109,10 @@ const LISTENING: usize = 40;
 
 /// How many workers the run is planned for.
 fn planned_workers(workers: &WorkersChoice) -> usize {
-    match workers.door.listen {
-        Some(_) => workers.local().max(LISTENING),
-        None => workers.local(),
+    if workers.has_others() {
+        workers.local().max(LISTENING)
+    } else {
+        workers.local()
     }
 }
 

@@ -8,7 +8,7 @@ use crate::cli::{
 };
 use clap::{Args, Subcommand};
 use link::keys::{
-    CA_KEY, KeyError, Keys, Role, WORKER, WORKERS,
+    CA_KEY, KeyError, Keys, Role, WORKER,
     authority::{Authority, Validity},
 };
 use std::path::{Path, PathBuf};
@@ -56,8 +56,9 @@ keys/worker-01 has been copied to its machine. One folder may serve any number o
 Example:
   horsehead keys add keys rack2-node7
 
-Its name joins the file `workers`, which a coordinator reads when it starts; taking a line out of
-that file locks a worker out.
+Its name joins the file `workers`, which a running coordinator reads again every second; taking a
+line out of that file throws a worker out. While it runs, a coordinator has room for new names of the
+form worker-01, worker-02; others may join when it is started again.
 
 {EXIT_CODES}"))]
     Add {
@@ -129,10 +130,6 @@ fn add(folder: &Path, names: &[String], valid: Validity) -> Result<(), KeyError>
         let made = authority.issue_worker(name, valid)?;
         terminal::tell(&format!("made {}", made.display()));
     }
-    terminal::tell(&format!(
-        "a coordinator reads {} when it starts",
-        folder.join(WORKERS).display()
-    ));
     Ok(())
 }
 

@@ -24,6 +24,7 @@ mod sweep;
 #[cfg(test)]
 mod tests;
 mod verify;
+mod workers;
 
 use super::output::{problem, terminal};
 use crate::pumping_unit::command as head;
@@ -54,7 +55,7 @@ macro_rules! commands {
     ($($name:ident: $file:ident $([$more:expr])?,)*) => {
         #[derive(Debug, Subcommand)]
         enum Command {
-            $($name($file::Arguments),)*
+            $($name(Box<$file::Arguments>),)*
         }
 
         impl Command {
@@ -84,6 +85,7 @@ commands! {
     Allow: allow,
     Keys: keys,
     Doctor: doctor,
+    Workers: workers,
     Bench: bench,
     Completions: completions [&mut Cli::command()],
 }

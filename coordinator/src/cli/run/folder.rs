@@ -34,6 +34,9 @@ pub(crate) const SEEN: &str = "seen.json";
 /// The parameters that a run found, as a gene file.
 pub(crate) const GENES: &str = "calibrated.toml";
 
+/// Folder of the keys of workers that the run brings up itself.
+pub(crate) const KEYS: &str = "keys";
+
 /// Longest list of settings that is written out in the name of a folder.
 const LONGEST_SET: usize = 60;
 
@@ -133,10 +136,10 @@ impl RunFolder {
     pub(crate) fn check_vacant(&self) -> Result<(), Usage> {
         let path = self.path.display();
         let help = "choose an empty or new folder with --run DIR".to_owned();
-        // the lock alone is left where a run could not begin
+        // the lock and keys alone are left where a run could not begin
         let vacant = fs::read_dir(&self.path).map(|entries| {
             let mut names = entries.flatten().map(|entry| entry.file_name());
-            names.all(|name| name == journal::LOCK)
+            names.all(|name| name == journal::LOCK || name == KEYS)
         });
         match vacant {
             Ok(false) if !self.file(journal::FILE).exists() => Err(Usage {

@@ -8,6 +8,7 @@ pub(super) mod folder;
 pub(super) mod identification;
 pub(super) mod interrupt;
 pub(super) mod kind;
+pub(super) mod launch;
 pub(super) mod manifest;
 pub(crate) mod once;
 pub(super) mod orthogonal;

@@ -3,23 +3,19 @@ use super::{
     begun::Run,
     bus::{self, Bus},
     interrupt,
+    launch::Launch,
     manifest::Decides,
 };
 use crate::{
-    cli::{
-        argument::{door::Door, workers::WorkersChoice},
-        output::terminal,
-    },
+    cli::{argument::workers::WorkersChoice, output::terminal},
     study::{Stop, StudyError},
 };
 use std::time::Instant;
 
 /// Who works on a run, and since when.
 pub(crate) struct Session {
-    /// How other machines may join.
-    door: Door,
-    /// Worker processes to start here.
-    local_workers: usize,
+    /// Who works.
+    workers: WorkersChoice,
     /// When the command began.
     started: Instant,
 }
@@ -28,8 +24,7 @@ impl Session {
     /// Of a command that begins now.
     pub(crate) fn begin(workers: &WorkersChoice) -> Self {
         Self {
-            door: workers.door.clone(),
-            local_workers: workers.local(),
+            workers: workers.clone(),
             started: Instant::now(),
         }
     }
@@ -46,12 +41,16 @@ impl Session {
         run: &Run<S>,
         work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> anyhow::Result<T>,
     ) -> anyhow::Result<T> {
+        let launch = Launch::prepare(&self.workers, run.folder.path())?;
+        let door = launch
+            .as_ref()
+            .map_or(&self.workers.door, |launch| &launch.door);
         let done = bus::block_on(async {
             let mut stop = interrupt::listen();
             let options = bus::Options {
                 run_dir: run.folder.path().to_owned(),
-                door: self.door.clone(),
-                local_workers: self.local_workers,
+                door: door.clone(),
+                local_workers: self.workers.local(),
                 kind: S::KIND.to_owned(),
                 settings: run.manifest.settings_json()?,
             };
@@ -67,6 +66,7 @@ impl Session {
                     format!("going on with {path}: its journal holds {recorded} results")
                 }
             });
+            launch.as_ref().map_or(Ok(()), Launch::up)?;
             let done = work(&mut bus, &mut stop).await;
             // while the run is still locked
             let remembered = run.remember(self.wall_s(run));
@@ -76,6 +76,9 @@ impl Session {
             closed?;
             Ok(done)
         });
+        if let Some(launch) = launch {
+            launch.down();
+        }
         done.inspect_err(|error| {
             if can_go_on(error) {
                 terminal::tell(&format!(

@@ -16,6 +16,7 @@ use std::{
 
 mod accounting;
 mod admission;
+mod drain;
 mod failure;
 mod lease;
 mod loss;

@@ -5,6 +5,7 @@ mod gap;
 mod single;
 mod worker;
 
+pub(crate) use super::document::Row;
 pub use super::document::{Table, set_table as text};
 pub use compare::{table_3, table_4};
 pub use derivative::derivatives;

@@ -79,6 +79,11 @@ impl Inner {
         })
     }
 
+    /// Whether a name has a certificate here, and so rules of access.
+    pub(super) fn knows(&self, owner: &str) -> bool {
+        self.configs.contains_key(owner)
+    }
+
     /// The router's section on certificates. Holds a private key.
     pub(crate) const fn listening(&self) -> &Value {
         &self.section

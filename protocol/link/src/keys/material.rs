@@ -26,6 +26,12 @@ pub enum Role {
     Worker,
 }
 
+/// Names that a coordinator makes room for before they are on the list, since its rules of access are
+/// fixed while it runs: `worker-01`, `worker-02` and so on.
+pub fn pool() -> impl Iterator<Item = String> {
+    (1..=512).map(|number| format!("worker-{number:02}"))
+}
+
 impl Role {
     pub(super) const fn files(self) -> [&'static str; 2] {
         match self {

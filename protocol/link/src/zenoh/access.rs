@@ -1,7 +1,7 @@
 //! Access control: what the workers of each certificate may do; everything else is refused.
 //!
 //! The transport knows a peer by the common name of its certificate. Rules are fixed when a
-//! coordinator starts. A refused action gives the peer no error, which is why names that are not
+//! coordinator starts, for a pool of further names too; who may come in is for the gate to say. A refused action gives the peer no error, which is why names that are not
 //! on the list are turned away at the gate.
 use protocol::{key::Grant, name::ANYONE};
 use serde_json::{Value, json};

@@ -4,7 +4,7 @@ use super::{access, names::Names, sender::Sender};
 use crate::{
     Blob, CoordinatorEnd, Heard, LinkError,
     gate::{Gate, Inner},
-    keys::Keys,
+    keys::{Keys, pool},
     locator::{Locator, Protocol},
 };
 use protocol::{
@@ -141,6 +141,11 @@ impl CoordinatorEnd for ZenohCoordinator {
         }
     }
 
+    fn owner(&self, worker: WorkerId) -> Option<String> {
+        let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
+        names.of(worker).map(|name| name.owner().to_owned())
+    }
+
     async fn receive(&mut self) -> Option<Heard> {
         self.heard.recv().await
     }
@@ -166,7 +171,9 @@ fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>),
     }
     .with_free_port()?;
     let router = (Ipv4Addr::LOCALHOST, inside.port).into();
-    let inner = Arc::new(Inner::make(router, keys.workers())?);
+    let mut owners = keys.workers().clone();
+    owners.extend(pool());
+    let inner = Arc::new(Inner::make(router, &owners)?);
     let (mut endpoints, mut gates) = (vec![inside.to_string()], Vec::new());
     for at in locators {
         if at.protocol == Protocol::Tcp {
@@ -177,7 +184,7 @@ fn behind_gates(locators: &[Locator], keys: &Keys) -> Result<(Value, Vec<Gate>),
     }
     let references: Vec<&Locator> = locators.iter().collect();
     let mut config = common(&references, inner.listening());
-    config["access_control"] = access::control(keys.workers(), endpoints.len() > 1);
+    config["access_control"] = access::control(&owners, endpoints.len() > 1);
     config["listen"]["endpoints"] = json!(endpoints);
     Ok((config, gates))
 }

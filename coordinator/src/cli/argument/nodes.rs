@@ -1,0 +1,40 @@
+//! Hosts that are reached by ssh, as they are typed.
+use crate::nodes::{Host, NodeError, read_hosts};
+use clap::Args;
+use std::path::PathBuf;
+
+/// Hosts, one by one or from a file.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct HostsChoice {
+    /// Hosts that your ssh reaches, as HOST or USER@HOST:PORT.
+    #[arg(
+        long,
+        value_name = "HOSTS",
+        env = "HORSEHEAD_SSH",
+        value_delimiter = ','
+    )]
+    ssh: Vec<String>,
+    /// File of such hosts, one a line, with `slots=N` behind those that differ.
+    #[arg(
+        long,
+        value_name = "FILE",
+        env = "HORSEHEAD_HOSTS",
+        conflicts_with = "ssh"
+    )]
+    hosts: Option<PathBuf>,
+}
+
+impl HostsChoice {
+    /// Whether none was named.
+    pub(crate) const fn is_empty(&self) -> bool {
+        self.ssh.is_empty() && self.hosts.is_none()
+    }
+
+    /// The hosts.
+    pub(crate) fn read(&self) -> Result<Vec<Host>, NodeError> {
+        match &self.hosts {
+            Some(file) => read_hosts(file),
+            None => self.ssh.iter().map(|host| host.parse()).collect(),
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! `workers list`, `drain` and `down`: asking the process that works on a run.
+use crate::{
+    cli::{
+        argument::{nodes::HostsChoice, output::OutputChoice},
+        output::{problem::Usage, terminal},
+        run::launch::{carry, refuse},
+    },
+    nodes::ssh,
+    report::table::{Row, Table, text},
+    runtime::control::{
+        self, SOCKET,
+        words::{Question, State, Worker},
+    },
+};
+use clap::Args;
+use serde::Serialize;
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+pub(super) const LIST: &str = "\
+Examples:
+  horsehead workers list
+  horsehead workers list --run runs/cyjs10-5-37hb-quick-seed1 --output json";
+
+pub(super) const DRAIN: &str = "\
+Examples:
+  horsehead workers drain worker-03
+  horsehead workers drain node7 --now --run runs/cyjs10-5-37hb-quick-seed1
+
+A worker is named by its keys, its host or its id. It stays, idle, until the run ends or
+`horsehead workers down` ends it.";
+
+pub(super) const DOWN: &str = "\
+Examples:
+  horsehead workers down worker-03
+  horsehead workers down --now
+  horsehead workers down --ssh node1,node2
+
+Through the run, workers finish their jobs and end, all of them if none is named. With --ssh or --hosts
+their processes are ended at once, whether a run goes on or not; what they hold is given to others.";
+
+/// Which run.
+#[derive(Debug, Args)]
+pub(super) struct RunChoice {
+    /// Run folder [default: the only one below runs/ on which a process works].
+    #[arg(long, value_name = "RUN", env = "HORSEHEAD_RUN")]
+    run: Option<PathBuf>,
+}
+
+/// What to list.
+#[derive(Debug, Args)]
+pub(super) struct ListArguments {
+    #[command(flatten)]
+    run: RunChoice,
+    #[command(flatten)]
+    output: OutputChoice,
+}
+
+/// Whom to take out of the work.
+#[derive(Debug, Args)]
+pub(super) struct DrainArguments {
+    /// Workers, by name, host or id.
+    #[arg(required = true, value_name = "NAME")]
+    names: Vec<String>,
+    /// Hand back at once what they hold.
+    #[arg(long, env = "HORSEHEAD_NOW")]
+    now: bool,
+    #[command(flatten)]
+    run: RunChoice,
+}
+
+/// Whom to end.
+#[derive(Debug, Args)]
+pub(super) struct DownArguments {
+    /// Workers, by name, host or id [default: all].
+    #[arg(value_name = "NAME", conflicts_with_all = ["ssh", "hosts"])]
+    names: Vec<String>,
+    /// Hand back at once what they hold.
+    #[arg(long, env = "HORSEHEAD_NOW")]
+    now: bool,
+    #[command(flatten)]
+    run: RunChoice,
+    #[command(flatten)]
+    hosts: HostsChoice,
+}
+
+/// What programs read; a key is never taken away, nor given another meaning.
+#[derive(Debug, Serialize)]
+struct ListOutput<'a> {
+    /// The run's folder.
+    run: String,
+    /// Everybody that takes part.
+    workers: &'a [Worker],
+}
+
+/// Shows who works.
+pub(super) fn list(arguments: &ListArguments) -> anyhow::Result<()> {
+    let folder = arguments.run.folder()?;
+    let workers = ask(&folder, &Question::List)?;
+    let object = ListOutput {
+        run: folder.display().to_string(),
+        workers: &workers,
+    };
+    terminal::print(arguments.output.output, || table(&workers), &object)
+}
+
+/// Takes workers out of the work.
+pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
+    let question = Question::Drain {
+        names: arguments.names.clone(),
+        now: arguments.now,
+        end: false,
+    };
+    let workers = ask(&arguments.run.folder()?, &question)?;
+    tell(&workers, arguments.now, "gets no more jobs");
+    Ok(())
+}
+
+/// Ends workers.
+pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
+    let hosts = arguments.hosts.read().map_err(refuse)?;
+    if !hosts.is_empty() {
+        return carry(&ssh::down(&hosts, ""));
+    }
+    let question = Question::Drain {
+        names: arguments.names.clone(),
+        now: arguments.now,
+        end: true,
+    };
+    let workers = ask(&arguments.run.folder()?, &question)?;
+    tell(&workers, arguments.now, "ends");
+    Ok(())
+}
+
+/// Says what becomes of each.
+fn tell(workers: &[Worker], now: bool, what: &str) {
+    for Worker {
+        name, host, jobs, ..
+    } in workers
+    {
+        let held = match (jobs.len(), now) {
+            (0, _) => String::new(),
+            (held, true) => format!(", and hands back {held} jobs"),
+            (held, false) => format!(" after the {held} jobs that it holds"),
+        };
+        terminal::tell(&format!("{name} on {host} {what}{held}"));
+    }
+    if workers.is_empty() {
+        terminal::tell("no worker takes part");
+    }
+}
+
+fn ask(folder: &Path, question: &Question) -> anyhow::Result<Vec<Worker>> {
+    Ok(control::ask(folder, question).map_err(|error| Usage {
+        message: error.to_string(),
+        help: "`horsehead workers list --run RUN` with the folder of a run that goes on shows its \
+               workers"
+            .to_owned(),
+    })?)
+}
+
+impl RunChoice {
+    /// The folder that was named, or the only one below `runs/` that answers.
+    fn folder(&self) -> anyhow::Result<PathBuf> {
+        if let Some(folder) = &self.run {
+            return Ok(folder.clone());
+        }
+        let entries = fs::read_dir("runs").into_iter().flatten().flatten();
+        let with_socket = entries.map(|entry| entry.path());
+        let with_socket = with_socket.filter(|folder| folder.join(SOCKET).exists());
+        let answers = |folder: &PathBuf| control::ask(folder, &Question::List).is_ok();
+        let mut found: Vec<PathBuf> = with_socket.filter(answers).collect();
+        match (found.pop(), found.len()) {
+            (Some(folder), 0) => Ok(folder),
+            (None, _) => Err(Usage {
+                message: "nobody works on any run below runs/ now".to_owned(),
+                help: "name the folder of one elsewhere with --run RUN".to_owned(),
+            }
+            .into()),
+            (Some(folder), more) => Err(Usage {
+                message: format!("{} runs go on", more + 1),
+                help: format!("name one of them, as --run {}", folder.display()),
+            }
+            .into()),
+        }
+    }
+}
+
+/// The table for people.
+fn table(workers: &[Worker]) -> String {
+    let row = |worker: &Worker| {
+        let state = match worker.state {
+            State::Joining => "joining",
+            State::Working => "working",
+            State::Draining => "draining",
+            State::Drained => "drained",
+        };
+        let jobs = worker.jobs.iter().take(worker.slots as usize);
+        let jobs: Vec<String> = jobs
+            .map(|job| format!("{} ({:.0} s)", job.job, job.for_s))
+            .collect();
+        Row::new(
+            format!("{} {}", worker.name, worker.id),
+            [
+                worker.host.clone(),
+                worker.slots.to_string(),
+                worker.version.clone(),
+                state.to_owned(),
+                if jobs.is_empty() {
+                    "-".to_owned()
+                } else {
+                    jobs.join(", ")
+                },
+                worker.done.to_string(),
+                format!("{:.1}", worker.per_minute),
+                format!("{:.0} s", worker.last_seen_s),
+            ],
+        )
+    };
+    let head = [
+        "worker",
+        "host",
+        "slots",
+        "version",
+        "state",
+        "jobs in hand",
+        "done",
+        "a minute",
+        "last seen",
+    ];
+    let rows: Vec<Row> = workers.iter().map(row).collect();
+    if rows.is_empty() {
+        return "no worker takes part\n".to_owned();
+    }
+    text(&Table::new("Workers", head, rows), terminal::styled())
+}

@@ -1,0 +1,209 @@
+//! `workers up` and `workers logs`: from what was typed to a plan, printed or carried out.
+use crate::{
+    cli::{
+        argument::nodes::HostsChoice,
+        output::terminal,
+        run::launch::{carry, programs, refuse},
+    },
+    nodes::{NodeError, Order, Plan, k8s, keys, slurm, ssh, systemd},
+};
+use clap::{ArgGroup, Args};
+use link::{
+    keys::{Keys, Role},
+    locator::{Locator, Protocol},
+};
+use std::{
+    env, fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  horsehead workers up --connect quic/head:7447 --tls keys --ssh node1,node2,me@node3:2222
+  horsehead workers up --connect quic/head:7447 --tls keys --hosts hosts.txt --dry-run
+  horsehead workers up --connect quic/head:7447 --tls keys --slurm nodes=4,time=02:00:00
+  horsehead workers up --connect quic/10.0.0.1:7447 --tls keys --k8s replicas=4
+  horsehead workers up --connect quic/head:7447 --tls keys --systemd slots=2
+
+--dry-run prints all of it as a script of the shell, contacts nobody and writes nothing. Keys are read
+from their folder and shown nowhere. A line of a file of hosts is `USER@HOST:PORT slots=N`.";
+
+pub(super) const LOGS: &str = "\
+Examples:
+  horsehead workers logs --ssh node1
+  horsehead workers logs worker-03 --tls keys";
+
+/// What to bring up, and where.
+#[derive(Debug, Args)]
+#[command(group = ArgGroup::new("place").required(true).args(["ssh", "hosts", "slurm", "k8s", "systemd"]))]
+pub(super) struct Arguments {
+    /// Where workers dial, as the coordinator's `--listen` is reached from there.
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_CONNECT", value_parser = Locator::parse)]
+    connect: Locator,
+    /// Folder that `horsehead keys new` made, for quic/ addresses.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
+    #[command(flatten)]
+    hosts: HostsChoice,
+    /// A Slurm job: options of sbatch as KEY=VALUE, such as nodes=4,time=02:00:00.
+    #[arg(long, value_name = "OPTIONS", env = "HORSEHEAD_SLURM")]
+    slurm: Option<String>,
+    /// A Kubernetes deployment: replicas=N, image=NAME, namespace=NAME, cpu=N, memory=SIZE.
+    #[arg(long, value_name = "OPTIONS", env = "HORSEHEAD_K8S")]
+    k8s: Option<String>,
+    /// A unit of your systemd on this machine: slots=N.
+    #[arg(long, value_name = "OPTIONS", env = "HORSEHEAD_SYSTEMD", num_args = 0..=1, default_missing_value = "")]
+    systemd: Option<String>,
+    /// Print what would be done, as a script, and do nothing.
+    #[arg(long, env = "HORSEHEAD_DRY_RUN")]
+    dry_run: bool,
+    /// Simulations at a time on each [default: one per hardware thread, or `cpu` of a pod].
+    #[arg(long, value_name = "N", env = "HORSEHEAD_SLOTS", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    slots: Option<u16>,
+    /// Workers end after so long without work; 0 for never.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        env = "HORSEHEAD_IDLE_TIMEOUT",
+        default_value_t = 3600
+    )]
+    idle_timeout: u64,
+    /// How long each host's worker may take to be seen in a run; 0 to start it and not look.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        env = "HORSEHEAD_WAIT",
+        default_value_t = 20
+    )]
+    wait: u64,
+    /// Worker program for hosts of another kind, with ARCH as `uname -m` says; may be repeated.
+    #[arg(
+        long,
+        value_name = "ARCH=PATH",
+        env = "HORSEHEAD_WORKER_PROGRAM",
+        value_delimiter = ','
+    )]
+    worker_program: Vec<String>,
+    /// File of shell lines to run before the worker, as `module load gcc`.
+    #[arg(long, value_name = "FILE", env = "HORSEHEAD_PROLOGUE")]
+    prologue: Option<PathBuf>,
+    /// Further argument of sbatch, as `--sbatch-arg=--account=physics`; may be repeated.
+    #[arg(long, value_name = "ARG", env = "HORSEHEAD_SBATCH_ARG")]
+    sbatch_arg: Vec<String>,
+}
+
+/// Whose log to show.
+#[derive(Debug, Args)]
+pub(super) struct LogsArguments {
+    /// Worker, by the name of its keys.
+    #[arg(required_unless_present_any = ["ssh", "hosts"], requires = "tls")]
+    name: Option<String>,
+    /// Folder of keys, which knows the worker's host.
+    #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
+    tls: Option<PathBuf>,
+    #[command(flatten)]
+    hosts: HostsChoice,
+}
+
+/// Plans, and prints the plan or carries it out.
+pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    let plan = plan(arguments).map_err(refuse)?;
+    if arguments.dry_run {
+        return terminal::write(&plan.to_string());
+    }
+    carry(&plan)
+}
+
+fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
+    let tls = match (arguments.connect.protocol, &arguments.tls) {
+        (Protocol::Tcp, _) => None,
+        (Protocol::Quic, Some(folder)) => Some(absolute(folder)),
+        (Protocol::Quic, None) => {
+            return Err(NodeError {
+                message: format!("{} needs certificates: give --tls DIR", arguments.connect),
+                help: "`horsehead keys new DIR --host NAME` makes them".to_owned(),
+            });
+        }
+    };
+    let order = Order {
+        connect: arguments.connect.clone(),
+        tls,
+        idle_timeout: Some(arguments.idle_timeout).filter(|seconds| *seconds > 0),
+        slots: arguments.slots,
+        prologue: match &arguments.prologue {
+            Some(file) => fs::read_to_string(file).map_err(|error| NodeError {
+                message: format!("--prologue {}: {error}", file.display()),
+                help: "name a file of shell lines".to_owned(),
+            })?,
+            None => String::new(),
+        },
+    };
+    if let Some(options) = &arguments.k8s {
+        return k8s::up(&order, options, one_for_all(&order)?.as_deref());
+    }
+    let programs = programs(&arguments.worker_program)?;
+    let own = programs.first().ok_or_else(|| NodeError {
+        message: "there is no worker program".to_owned(),
+        help: "name one with --worker-program ARCH=PATH".to_owned(),
+    })?;
+    if let Some(options) = &arguments.slurm {
+        let name = one_for_all(&order)?;
+        return slurm::up(&order, options, &arguments.sbatch_arg, own, name.as_deref());
+    }
+    if let Some(options) = &arguments.systemd {
+        let home = env::var_os("HOME").map_or_else(PathBuf::new, PathBuf::from);
+        let usual = home.join(".config");
+        let configuration = env::var_os("XDG_CONFIG_HOME").map_or(usual, PathBuf::from);
+        let name = one_for_all(&order)?;
+        return systemd::up(&order, options, own, name.as_deref(), &configuration);
+    }
+    ssh::up(&order, &arguments.hosts.read()?, &programs, arguments.wait)
+}
+
+/// The folder of keys that all workers of a launch share, where they share a file system or a secret.
+fn one_for_all(order: &Order) -> Result<Option<String>, NodeError> {
+    let Some(folder) = &order.tls else {
+        return Ok(None);
+    };
+    let read = Keys::read(folder, Role::Coordinator);
+    let name = read.map(|keys| {
+        keys.workers()
+            .iter()
+            .find(|name| folder.join(name).is_dir())
+            .cloned()
+    });
+    match name {
+        Ok(Some(name)) => Ok(Some(name)),
+        Ok(None) => Err(NodeError {
+            message: format!("{} has no folder of a worker", folder.display()),
+            help: "`horsehead keys add DIR worker-01` makes one".to_owned(),
+        }),
+        Err(error) => Err(NodeError {
+            message: error.to_string(),
+            help: "--tls takes the folder that `horsehead keys new DIR --host NAME` made"
+                .to_owned(),
+        }),
+    }
+}
+
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Shows the end of the logs of some hosts.
+pub(super) fn logs(arguments: &LogsArguments) -> anyhow::Result<()> {
+    let hosts = match (&arguments.name, &arguments.tls) {
+        (Some(name), Some(folder)) => vec![keys::host_of(folder, name).map_err(refuse)?],
+        _ => arguments.hosts.read().map_err(refuse)?,
+    };
+    for host in hosts {
+        let command = ssh::logs(&host);
+        let words = command.iter().skip(1);
+        let status = Command::new("ssh").args(words).status();
+        if !status.is_ok_and(|status| status.success()) {
+            anyhow::bail!("{host}: its log cannot be shown");
+        }
+    }
+    Ok(())
+}

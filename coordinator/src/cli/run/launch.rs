@@ -1,0 +1,180 @@
+//! Workers on other nodes that come with a run and go with it; and carrying out any plan of workers.
+//!
+//! Where nothing else is said, the run listens on port 7447, for the address from which a host says that we
+//! come, with keys in the run folder: started again, it is the same to its workers.
+use super::folder::KEYS;
+use crate::{
+    cli::{
+        argument::{door::Door, workers::WorkersChoice},
+        output::{problem::Usage, terminal},
+    },
+    nodes::{
+        Host, NodeError, Order, Plan, Program,
+        launch::{LaunchError, carry_out},
+        ssh,
+    },
+    runtime::locate::worker_program,
+};
+use link::{
+    keys::authority::{Authority, Validity},
+    locator::{Locator, Protocol},
+};
+use std::{
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering},
+    thread,
+};
+
+/// Where a run listens for workers that it brings up itself.
+const LISTEN: &str = "quic/0.0.0.0:7447";
+/// Days for which the keys of a run are valid.
+const DAYS: u32 = 365;
+/// Seconds that a host's worker may take to be seen in the run.
+const WAIT_S: u64 = 30;
+/// Seconds after which a worker ends that nobody told of the end of its run, as when this process is killed.
+const IDLE_S: u64 = 600;
+
+/// Workers that were brought up with a run.
+#[derive(Debug)]
+pub(crate) struct Launch {
+    hosts: Vec<Host>,
+    order: Order,
+    /// How the run listens for them.
+    pub(crate) door: Door,
+}
+
+impl Launch {
+    /// What is needed before the run listens: an address and keys; none where no host is named.
+    pub(crate) fn prepare(workers: &WorkersChoice, run: &Path) -> anyhow::Result<Option<Self>> {
+        let hosts = workers.hosts.read().map_err(refuse)?;
+        let Some(first) = hosts.first() else {
+            return Ok(None);
+        };
+        let mut door = workers.door.clone();
+        let listen = door.listen.get_or_insert_with(|| LISTEN.to_owned());
+        let mut connect = Locator::parse(listen)?;
+        connect.host = match &workers.advertise {
+            Some(address) => address.clone(),
+            None => ssh::our_address(first).map_err(|error| remedied(&error))?,
+        };
+        if connect.protocol == Protocol::Quic && door.tls.is_none() {
+            let folder = run.join(KEYS);
+            let authority = if folder.exists() {
+                Authority::open(&folder)?
+            } else {
+                Authority::create(&folder)?
+            };
+            let own = [connect.bare_host(), "localhost", "127.0.0.1"].map(str::to_owned);
+            authority.issue_coordinator(&own, Validity::days(DAYS))?;
+            if !folder.join(link::keys::WORKERS).exists() {
+                authority.issue_worker("worker-01", Validity::days(DAYS))?;
+            }
+            door.tls = Some(folder);
+        }
+        let order = Order {
+            tls: door.tls.as_deref().map(std::path::absolute).transpose()?,
+            connect,
+            idle_timeout: Some(IDLE_S),
+            slots: None,
+            prologue: String::new(),
+        };
+        Ok(Some(Self { hosts, order, door }))
+    }
+
+    /// Brings the workers up, beside the run; a host that fails is told of and not waited for.
+    pub(crate) fn up(&self) -> anyhow::Result<()> {
+        let plan = ssh::up(
+            &self.order,
+            &self.hosts,
+            &programs(&[]).map_err(refuse)?,
+            WAIT_S,
+        );
+        let plan = plan.map_err(refuse)?;
+        thread::Builder::new()
+            .name("launch".to_owned())
+            .spawn(move || {
+                if let Err(error) = carry(&plan) {
+                    tracing::warn!("workers of other nodes: {error}");
+                }
+            })?;
+        Ok(())
+    }
+
+    /// Ends them.
+    pub(crate) fn down(&self) {
+        if let Err(error) = carry(&ssh::down(&self.hosts, &ssh::mark(&self.order))) {
+            tracing::warn!("workers of other nodes may go on for {IDLE_S} s: {error}");
+        }
+    }
+}
+
+/// Carries a plan out and tells how it ended at each place.
+pub(crate) fn carry(plan: &Plan) -> anyhow::Result<()> {
+    let failed = AtomicUsize::new(0);
+    carry_out(plan, &|part, ended| match ended {
+        Ok(()) => terminal::tell(&format!("{}: {}", part.place, part.then)),
+        Err(error) => {
+            failed.fetch_add(1, Ordering::Relaxed);
+            terminal::tell(&format!("error: {error}; {}", error.remedy));
+        }
+    })
+    .map_err(|error| remedied(&error))?;
+    match failed.into_inner() {
+        0 => Ok(()),
+        failed => anyhow::bail!("{failed} of {} places failed", plan.parts.len()),
+    }
+}
+
+/// What failed, with its remedy.
+fn remedied(error: &LaunchError) -> Usage {
+    Usage {
+        message: error.to_string(),
+        help: error.remedy.clone(),
+    }
+}
+
+/// What cannot be planned, as an error of what was typed.
+pub(crate) fn refuse(error: NodeError) -> anyhow::Error {
+    Usage {
+        message: error.message,
+        help: error.help,
+    }
+    .into()
+}
+
+/// The worker that `horsehead` would start here, then those that were named for other machines, which
+/// come before it where they are for the same.
+pub(crate) fn programs(named: &[String]) -> Result<Vec<Program>, NodeError> {
+    let mut programs = Vec::new();
+    for text in named {
+        let wrong = |why: &str| NodeError {
+            message: format!("--worker-program {text}: {why}"),
+            help: "write ARCH=PATH with ARCH as `uname -m` says on the host".to_owned(),
+        };
+        let (machine, path) = text.split_once('=').ok_or_else(|| wrong("it has no ="))?;
+        let program = Program::read(Path::new(path))?;
+        if program.machine != machine {
+            return Err(wrong(&format!("it is a program for {}", program.machine)));
+        }
+        programs.push(program);
+    }
+    match worker_program() {
+        Ok(path) => {
+            let own = Program::read(&path)?;
+            if programs
+                .iter()
+                .all(|program| program.machine != own.machine)
+            {
+                programs.insert(0, own);
+            }
+        }
+        Err(error) if programs.is_empty() => {
+            return Err(NodeError {
+                message: error.to_string(),
+                help: "or name one with --worker-program ARCH=PATH".to_owned(),
+            });
+        }
+        Err(_) => {}
+    }
+    Ok(programs)
+}

@@ -1,0 +1,59 @@
+//! Workers that somebody takes out of the work: they get no new jobs, finish or hand back what they
+//! hold, and stay idle or end.
+use super::{
+    input::Drain, lease::release, member::Member, notice::Notice, roster::dismiss, slot_time::Use,
+    state::Core,
+};
+use protocol::{
+    id::WorkerId,
+    message::{Attempt, ToWorker},
+};
+use std::time::Duration;
+
+/// Takes a worker out of the work.
+pub(super) fn drain(core: &mut Core, worker: WorkerId, how: Drain, now: Duration) {
+    let Some(member) = core.members.get_mut(&worker) else {
+        return;
+    };
+    member.drained = true;
+    core.drained.insert(worker, how);
+    if how.now {
+        let held: Vec<Attempt> = member.leases.iter().map(|lease| lease.attempt).collect();
+        member
+            .taken
+            .extend(held.iter().map(|attempt| (*attempt, now)));
+        for attempt in held {
+            core.send(worker, ToWorker::Cancel(attempt));
+            release(core, worker, attempt.job, Use::Lost);
+        }
+    }
+}
+
+/// Ends those that were asked to and hold nothing any more.
+pub(super) fn end_drained(core: &mut Core, now: Duration) {
+    let ends = |(worker, how): (&WorkerId, &Drain)| how.end.then_some(*worker);
+    let ending: Vec<WorkerId> = core.drained.iter().filter_map(ends).collect();
+    for worker in ending {
+        let holds = |member: &Member| !member.leases.is_empty();
+        if core.members.get(&worker).is_none_or(holds) {
+            continue;
+        }
+        let reason = "it was asked to end";
+        if dismiss(core, worker, reason, now).is_some() {
+            turn_away(core, worker);
+            let reason = reason.to_owned();
+            core.notice(Notice::Left { worker, reason });
+        }
+    }
+}
+
+/// Tells a worker that was asked to end to do so; whether it is one. What tells it may be lost, and then
+/// it announces itself again.
+pub(super) fn turn_away(core: &mut Core, worker: WorkerId) -> bool {
+    let ends = core.drained.get(&worker).is_some_and(|how| how.end);
+    if ends {
+        let reason = "it was asked to end by `horsehead workers down`".to_owned();
+        core.send(worker, ToWorker::Refused { reason });
+    }
+    ends
+}

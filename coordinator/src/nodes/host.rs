@@ -1,0 +1,88 @@
+//! Hosts as people write them.
+use super::error::NodeError;
+use std::{fmt, fs, path::Path, str::FromStr};
+
+/// One host: what the user's ssh is told, and what is known of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Host {
+    /// `HOST` or `USER@HOST`, an alias of the user's configuration too.
+    pub target: String,
+    /// Port, if not that of the configuration.
+    pub port: Option<u16>,
+    /// Simulations at a time, if not as on all others.
+    pub slots: Option<u16>,
+}
+
+/// As [`FromStr`] reads it.
+impl fmt::Display for Host {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.port {
+            Some(port) if self.target.contains(':') => write!(to, "[{}]:{port}", self.target),
+            Some(port) => write!(to, "{}:{port}", self.target),
+            None => write!(to, "{}", self.target),
+        }
+    }
+}
+
+/// `user@host:port`, as one word of `--ssh` or the first of a line of `--hosts`.
+impl FromStr for Host {
+    type Err = NodeError;
+
+    fn from_str(text: &str) -> Result<Self, NodeError> {
+        let wrong = |why: &str| {
+            NodeError::new(
+                format!("\"{text}\" is no host: {why}"),
+                "write HOST, USER@HOST or USER@HOST:PORT; IPv6 addresses as [fe80::1]:22",
+            )
+        };
+        let (target, port) = match text.rsplit_once(':') {
+            // an IPv6 address without brackets has more colons
+            Some((target, port)) if !target.contains(':') || target.ends_with(']') => {
+                let port = port.parse().map_err(|_| wrong("its port is no number"))?;
+                (target, Some(port))
+            }
+            _ => (text, None),
+        };
+        let target = target.replace(['[', ']'], "");
+        let strange = |c: char| c.is_whitespace() || c.is_control();
+        if target.is_empty() || target.starts_with('-') || target.contains(strange) {
+            return Err(wrong("it is empty, begins with a dash or holds a space"));
+        }
+        Ok(Self {
+            target,
+            port,
+            slots: None,
+        })
+    }
+}
+
+/// The hosts of a file: one a line, with `slots=N` behind it where it differs; `#` begins a comment.
+///
+/// # Errors
+/// [`NodeError`], naming the file, the line and what is wrong with it.
+pub fn read_hosts(file: &Path) -> Result<Vec<Host>, NodeError> {
+    let help = "one host a line, as `user@node7:22 slots=8`";
+    let text = fs::read_to_string(file)
+        .map_err(|error| NodeError::new(format!("{}: {error}", file.display()), help))?;
+    let mut hosts = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let at = format!("{}:{}", file.display(), number + 1);
+        let mut words = line
+            .split('#')
+            .next()
+            .unwrap_or_default()
+            .split_whitespace();
+        let Some(first) = words.next() else { continue };
+        let mut host: Host = first
+            .parse()
+            .map_err(|error: NodeError| NodeError::new(format!("{at}: {error}"), error.help))?;
+        for word in words {
+            let slots = word.strip_prefix("slots=").and_then(|n| n.parse().ok());
+            host.slots = Some(slots.filter(|n| (1..=4096).contains(n)).ok_or_else(|| {
+                NodeError::new(format!("{at}: \"{word}\" is not understood"), help)
+            })?);
+        }
+        hosts.push(host);
+    }
+    Ok(hosts)
+}

@@ -1,0 +1,110 @@
+//! Which worker's folder of key material goes to which host.
+//!
+//! A folder that was given to a host says so in a file of its own, so that the same host gets it again.
+//! Hosts beyond the folders that are there get new ones from `horsehead keys add`, whose names a
+//! running coordinator has made room for.
+use super::{
+    error::NodeError,
+    host::Host,
+    plan::{Input, Step},
+};
+use link::keys::{CA_KEY, Keys, Role, pool};
+use std::{
+    collections::BTreeSet,
+    fs,
+    path::{Path, PathBuf},
+};
+
+/// File in a worker's folder: the host that has a copy of it.
+const HOST: &str = "host";
+
+/// The names of the hosts' key folders in order, and the steps that make those that are missing.
+///
+/// # Errors
+/// If the folder cannot be used by a coordinator, or new names are needed and it cannot sign.
+pub fn assign(folder: &Path, hosts: &[Host]) -> Result<(Vec<String>, Vec<Step>), NodeError> {
+    let keys = Keys::read(folder, Role::Coordinator).map_err(|error| {
+        let help = "--tls takes the folder that `horsehead keys new DIR --host NAME` made";
+        NodeError::new(error.to_string(), help)
+    })?;
+    let mut free: BTreeSet<&String> = keys.workers().iter().collect();
+    // folders that were taken away, or given to somebody by hand, are no use
+    free.retain(|name| folder.join(name).is_dir());
+    let given = |name: &String| fs::read_to_string(folder.join(name).join(HOST)).ok();
+    let mut names: Vec<Option<String>> = Vec::new();
+    for host in hosts {
+        let same = |name: &&String| given(name).is_some_and(|at| at.trim() == host.to_string());
+        let name = free.iter().copied().find(same);
+        names.extend([name.cloned()]);
+        name.map(|name| free.remove(name));
+    }
+    free.retain(|name| given(name).is_none());
+    let mut unused = pool();
+    let (mut all, mut made, mut steps) = (Vec::new(), Vec::new(), Vec::new());
+    for (host, name) in hosts.iter().zip(names) {
+        let is_new = name.is_none();
+        let known = name.or_else(|| free.pop_first().cloned());
+        let vacant = |name: &String| !keys.workers().contains(name) && !folder.join(name).exists();
+        let name = if let Some(name) = known {
+            name
+        } else {
+            let name = unused.find(vacant).ok_or_else(|| {
+                NodeError::new(
+                    format!("{} has all the names that it may have", folder.display()),
+                    "remove folders of nodes that are gone, and their lines in `workers`",
+                )
+            })?;
+            made.push(name.clone());
+            name
+        };
+        if is_new {
+            steps.push(Step::Write {
+                path: folder.join(&name).join(HOST),
+                content: format!("{host}\n"),
+            });
+        }
+        all.push(name);
+    }
+    if !made.is_empty() {
+        if !folder.join(CA_KEY).exists() {
+            return Err(NodeError::new(
+                format!(
+                    "{} has no folder for {} of the hosts, and cannot sign new ones without {CA_KEY}",
+                    folder.display(),
+                    made.len()
+                ),
+                "name the folder that `horsehead keys new` made, with its authority's key",
+            ));
+        }
+        let this = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("horsehead"));
+        let words = [this.display().to_string(), "keys".into(), "add".into()];
+        let words = words.into_iter().chain([folder.display().to_string()]);
+        steps.insert(
+            0,
+            Step::Run {
+                what: "make keys for further workers".to_owned(),
+                command: words.chain(made).collect(),
+                input: Input::Nothing,
+                only_if: None,
+                asks: false,
+                remedy: "see what `horsehead keys check DIR` says of the folder".to_owned(),
+            },
+        );
+    }
+    Ok((all, steps))
+}
+
+/// The host that a worker's folder was given to.
+///
+/// # Errors
+/// If there is no such folder, or nobody was given it.
+pub fn host_of(folder: &Path, name: &str) -> Result<Host, NodeError> {
+    let file = folder.join(name).join(HOST);
+    let text = fs::read_to_string(&file).map_err(|error| {
+        NodeError::new(
+            format!("{}: {error}", file.display()),
+            "launching by ssh with this folder as --tls gives hosts their keys and writes this file",
+        )
+    })?;
+    text.trim().parse()
+}

@@ -1,0 +1,215 @@
+//! Carries a plan out: many places at a time, each step with what it reads; a failure names the place,
+//! the step, the last words and the remedy.
+use super::plan::{Input, Part, Plan, Step};
+use std::{
+    fs::{self, File},
+    io::{self, Write as _},
+    path::Path,
+    process::{Child, Command, Output, Stdio},
+    sync::Mutex,
+    thread,
+};
+
+/// Places at a time: more would only wait for each other on the way out of this machine.
+const AT_A_TIME: usize = 32;
+
+/// Why a plan failed at a place.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{place}: cannot {step}: {why}")]
+pub struct LaunchError {
+    /// The host, or "this machine".
+    pub place: String,
+    /// The step.
+    pub step: String,
+    /// What was said last.
+    pub why: String,
+    /// What to do.
+    pub remedy: String,
+}
+
+/// Does what the plan says, and tells as it comes how it ended at each place, by its number in the plan.
+///
+/// # Errors
+/// If a first step fails: then nothing was done at any place.
+pub fn carry_out(
+    plan: &Plan,
+    tell: &(impl Fn(&Part, Result<(), LaunchError>) + Sync),
+) -> Result<(), LaunchError> {
+    run("this machine", &plan.first)?;
+    let waiting = Mutex::new(plan.parts.iter());
+    let next = || {
+        let mut waiting = waiting
+            .lock()
+            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        waiting.next()
+    };
+    thread::scope(|scope| {
+        for _ in 0..plan.parts.len().min(AT_A_TIME) {
+            scope.spawn(|| {
+                while let Some(part) = next() {
+                    tell(part, run(&part.place, &part.steps).map(drop));
+                }
+            });
+        }
+    });
+    Ok(())
+}
+
+/// The steps of one place, in order; what the last that asks was answered.
+pub(super) fn run(place: &str, steps: &[Step]) -> Result<String, LaunchError> {
+    let mut answer = String::new();
+    for step in steps {
+        match step {
+            Step::Write { path, content } => {
+                write(path, content).map_err(|error| LaunchError {
+                    place: place.to_owned(),
+                    step: format!("write {}", path.display()),
+                    why: error.to_string(),
+                    remedy: "make the folder one that you may write to".to_owned(),
+                })?;
+            }
+            Step::Run { only_if, .. } if only_if.as_ref().is_some_and(|it| *it != answer) => {}
+            Step::Run {
+                what,
+                command,
+                input,
+                asks,
+                remedy,
+                ..
+            } => {
+                let failed = |why: String, remedy: String| LaunchError {
+                    place: place.to_owned(),
+                    step: what.clone(),
+                    why,
+                    remedy,
+                };
+                let program = command.first().map_or("", String::as_str);
+                let output = call(command, input).map_err(|error| {
+                    if error.kind() != io::ErrorKind::NotFound {
+                        return failed(error.to_string(), remedy.clone());
+                    }
+                    failed(
+                        format!("there is no {program} on this machine"),
+                        format!(
+                            "install {program}, or carry out what --dry-run prints where there is one"
+                        ),
+                    )
+                })?;
+                if !output.status.success() {
+                    let said = String::from_utf8_lossy(&output.stderr);
+                    let why = last_line(&said, output.status.code());
+                    let remedy = refusal(program, &said).map_or(remedy.clone(), str::to_owned);
+                    return Err(failed(why, remedy));
+                }
+                if *asks {
+                    String::from_utf8_lossy(&output.stdout)
+                        .trim()
+                        .clone_into(&mut answer);
+                }
+            }
+        }
+    }
+    Ok(answer)
+}
+
+fn write(path: &Path, content: &str) -> io::Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
+    fs::write(path, content)
+}
+
+/// Runs a command with what it reads, to its end.
+fn call(command: &[String], input: &Input) -> io::Result<Output> {
+    let mut from = None;
+    let stdin = match input {
+        Input::Nothing => Stdio::null(),
+        Input::Text(_) => Stdio::piped(),
+        Input::File(path) => File::open(path)?.into(),
+        Input::Command(words) => {
+            let mut source = words_of(words)
+                .stdin(Stdio::null())
+                .stdout(Stdio::piped())
+                .spawn()?;
+            let output = source.stdout.take();
+            from = Some(source);
+            output.map_or_else(Stdio::null, Stdio::from)
+        }
+    };
+    let mut child = words_of(command)
+        .stdin(stdin)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()?;
+    let writer = child.stdin.take().map(|mut to| {
+        let text = match input {
+            Input::Text(text) => text.clone(),
+            Input::Nothing | Input::File(_) | Input::Command(_) => String::new(),
+        };
+        // a command that ends before it has read all says why itself
+        thread::spawn(move || drop(to.write_all(text.as_bytes())))
+    });
+    let output = child.wait_with_output();
+    drop(writer.map(thread::JoinHandle::join));
+    let source = from.as_mut().map(Child::wait).transpose()?;
+    if source.is_some_and(|status| !status.success())
+        && output.as_ref().is_ok_and(|o| o.status.success())
+    {
+        return Err(io::Error::other("what it was to read could not be read"));
+    }
+    output
+}
+
+fn words_of(words: &[String]) -> Command {
+    let mut words = words.iter();
+    let mut command = Command::new(words.next().map_or("", String::as_str));
+    command.args(words);
+    command
+}
+
+/// The last thing that was said, in one line.
+fn last_line(said: &str, code: Option<i32>) -> String {
+    let line = said.lines().map(str::trim).rfind(|line| !line.is_empty());
+    line.map_or_else(
+        || match code {
+            Some(code) => format!("it ended with status {code}"),
+            None => "it was killed".to_owned(),
+        },
+        str::to_owned,
+    )
+}
+
+/// What to do about the refusals of ssh that its last line does not explain to everybody.
+fn refusal(program: &str, said: &str) -> Option<&'static str> {
+    let has = |words: &str| said.contains(words);
+    if has("No space left on device") || has("Disk quota exceeded") {
+        return Some("make room in its ~/.cache/horsehead");
+    }
+    if program != "ssh" {
+        return None;
+    }
+    if has("REMOTE HOST IDENTIFICATION HAS CHANGED") {
+        return Some(
+            "its key is not the one that was known: ask who runs it; if it was set up anew, \
+             `ssh-keygen -R HOST` and log in once by hand",
+        );
+    }
+    if has("Host key verification failed") {
+        return Some(
+            "its key is not known here: log in once by hand with `ssh HOST` and compare it",
+        );
+    }
+    if has("Permission denied") {
+        return Some(
+            "it wants a password, which nobody is asked for here: `ssh-copy-id HOST`, or start \
+             ssh-agent and `ssh-add`",
+        );
+    }
+    if has("Could not resolve hostname") {
+        return Some("see the name, or give it an entry in ~/.ssh/config");
+    }
+    if has("Connection refused") || has("timed out") || has("No route to host") {
+        return Some("see with `ssh HOST true` whether it is on, and its port and firewall");
+    }
+    None
+}

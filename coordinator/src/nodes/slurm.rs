@@ -1,0 +1,87 @@
+//! Workers by Slurm: one per node of an allocation, from one batch script that `sbatch` reads.
+use super::{
+    error::NodeError,
+    order::Order,
+    plan::{Input, Part, Plan, Step},
+    program::Program,
+    words::{line, lines, settings},
+};
+
+/// Options of sbatch that `--slurm` may set besides the number of nodes are all that it has.
+///
+/// `options` is `nodes=4,time=02:00:00`, `arguments` what `sbatch` is given as it is. The program and
+/// the folder of keys must lie where all nodes see them; one worker's folder, `name`, serves them all.
+///
+/// # Errors
+/// If the options are not `KEY=VALUE`.
+pub fn up(
+    order: &Order,
+    options: &str,
+    arguments: &[String],
+    program: &Program,
+    name: Option<&str>,
+) -> Result<Plan, NodeError> {
+    let mut command = vec!["sbatch".to_owned()];
+    for (key, value) in settings("--slurm", options, &[])? {
+        command.push(format!("--{key}={value}"));
+    }
+    command.extend(arguments.iter().cloned());
+    let nodes = command
+        .iter()
+        .find_map(|word| word.strip_prefix("--nodes="));
+    Ok(Plan {
+        first: Vec::new(),
+        parts: vec![Part {
+            place: "Slurm".to_owned(),
+            then: format!(
+                "a job with workers on {} was handed in; `squeue --me` shows it, `scancel` ends it",
+                nodes.map_or("one node".to_owned(), |nodes| format!("{nodes} nodes"))
+            ),
+            steps: vec![Step::Run {
+                what: "hand in a job".to_owned(),
+                command: command.clone(),
+                input: Input::Text(script(order, program, name)),
+                only_if: None,
+                asks: false,
+                remedy: format!(
+                    "see what `sinfo` offers; more options with --sbatch-arg (typed was {})",
+                    line(&command)
+                ),
+            }],
+        }],
+    })
+}
+
+/// The batch script: it is given back to the queue where a node fails, and workers are told half a minute
+/// before the time is up.
+fn script(order: &Order, program: &Program, name: Option<&str>) -> String {
+    let path = program.path.display().to_string();
+    let mut worker = vec!["srun".to_owned(), path.clone()];
+    worker.extend(order.arguments());
+    let (mut keys, mut see) = (String::new(), format!("test -x {}", line(&[path])));
+    if let (Some(folder), Some(name)) = (&order.tls, name) {
+        let folder = std::path::absolute(folder).unwrap_or_else(|_| folder.clone());
+        let folder = line(&[folder.join(name).display().to_string()]);
+        see = format!("{see}\ntest -r {folder}/worker.key");
+        keys = format!(" --tls {folder}");
+    }
+    let slots = if order.slots.is_some() {
+        ""
+    } else {
+        " --slots \"${SLURM_CPUS_ON_NODE:-1}\""
+    };
+    format!(
+        "#!/bin/bash -l\n\
+         #SBATCH --job-name=horsehead-workers\n\
+         #SBATCH --ntasks-per-node=1\n\
+         #SBATCH --exclusive\n\
+         #SBATCH --requeue\n\
+         #SBATCH --signal=TERM@30\n\
+         {}set -eu\n\
+         # both must lie where this node sees them\n\
+         {see}\n\
+         exec {}{slots}{keys}\n",
+        lines(&order.prologue),
+        line(&worker),
+    )
+}

@@ -1,0 +1,231 @@
+//! Workers on hosts that `ssh` reaches: through the user's own `ssh`, with his configuration.
+//!
+//! On a host everything lies below `~/.cache/horsehead` (or `$XDG_CACHE_HOME`), for its owner alone:
+//! programs by the hash of their content, copied once, and a folder per worker with its keys, log,
+//! process and command line.
+mod script;
+
+use super::{
+    error::NodeError,
+    host::Host,
+    keys,
+    launch::{self, LaunchError},
+    order::Order,
+    plan::{Input, Part, Plan, Step},
+    program::Program,
+    words::line,
+};
+use link::keys::{CA, WORKER};
+
+/// Options of every call: nothing is ever asked at the terminal, and a host that does not answer, or no
+/// longer, ends the call.
+const OPTIONS: [&str; 4] = [
+    "BatchMode=yes",
+    "ConnectTimeout=15",
+    "ServerAliveInterval=5",
+    "ServerAliveCountMax=3",
+];
+
+/// Brings up one worker per host, each with the program of its machine and keys of its own, and watches
+/// for `wait_s` seconds that it takes part (0: not at all).
+///
+/// # Errors
+/// [`NodeError`] if there are no keys for a host, or a host is named twice.
+pub fn up(
+    order: &Order,
+    hosts: &[Host],
+    programs: &[Program],
+    wait_s: u64,
+) -> Result<Plan, NodeError> {
+    for (at, host) in hosts.iter().enumerate() {
+        if hosts
+            .iter()
+            .take(at)
+            .any(|other| other.to_string() == host.to_string())
+        {
+            return Err(NodeError::new(
+                format!("{host} is named twice"),
+                "a host has one worker with a slot for each of its cores",
+            ));
+        }
+    }
+    let (names, first) = if let Some(folder) = &order.tls {
+        keys::assign(folder, hosts)?
+    } else {
+        let names = (1..=hosts.len()).map(|number| format!("worker-{number:02}"));
+        (names.collect(), Vec::new())
+    };
+    let parts = hosts.iter().zip(names).map(|(host, name)| {
+        let order = Order {
+            slots: host.slots.or(order.slots),
+            ..order.clone()
+        };
+        part(&order, host, &name, programs, wait_s)
+    });
+    Ok(Plan {
+        first,
+        parts: parts.collect(),
+    })
+}
+
+fn part(order: &Order, host: &Host, name: &str, programs: &[Program], wait_s: u64) -> Part {
+    let folder = &format!("{name}{}", mark(order));
+    let mut steps = vec![Step::Run {
+        what: "see whether a worker can run there".to_owned(),
+        command: shell(host, "sh -s"),
+        input: Input::Text(script::probe(programs)),
+        only_if: None,
+        asks: true,
+        remedy: "name a program for it with --worker-program ARCH=PATH; deploy/portable.sh builds \
+                 one for older systems"
+            .to_owned(),
+    }];
+    steps.extend(programs.iter().map(|program| Step::Run {
+        what: "copy the worker there".to_owned(),
+        command: shell(host, &given(&script::copy(program))),
+        input: Input::File(program.path.clone()),
+        only_if: Some(format!("need {}", program.machine)),
+        asks: false,
+        remedy: "make room in its ~/.cache/horsehead, or set XDG_CACHE_HOME there".to_owned(),
+    }));
+    if let Some(keys) = &order.tls {
+        let from = keys.join(name).display().to_string();
+        let tar = ["tar", "-C", &from, "-cf", "-", CA, WORKER[0], WORKER[1]];
+        steps.push(Step::Run {
+            what: format!("give it the keys of {name}"),
+            command: shell(host, &given(&script::take_keys(folder))),
+            input: Input::Command(tar.map(str::to_owned).to_vec()),
+            only_if: None,
+            asks: false,
+            remedy: format!("see what `horsehead keys check {from}` says; the host needs tar"),
+        });
+    }
+    // what loads modules is written for bash and for logins
+    let reader = if order.prologue.is_empty() {
+        "sh -s"
+    } else {
+        "bash -l -s"
+    };
+    steps.push(Step::Run {
+        what: "start the worker".to_owned(),
+        command: shell(host, reader),
+        input: Input::Text(script::start(order, folder, programs)),
+        only_if: None,
+        asks: false,
+        remedy: format!("see {}", log_command(host)),
+    });
+    if wait_s > 0 {
+        steps.push(Step::Run {
+            what: "see that it takes part in a run".to_owned(),
+            command: shell(host, "sh -s"),
+            input: Input::Text(script::watch(folder, wait_s)),
+            only_if: None,
+            asks: false,
+            remedy: format!(
+                "it was started; its coordinator must run and be reached at {} from there. See {}",
+                order.connect,
+                log_command(host)
+            ),
+        });
+    }
+    Part {
+        place: host.to_string(),
+        then: if wait_s > 0 {
+            format!("takes part as {name}")
+        } else {
+            format!("started as {name}")
+        },
+        steps,
+    }
+}
+
+/// What tells the folders on a host of one coordinator's workers from those of another: two runs may use
+/// the same names.
+pub fn mark(order: &Order) -> String {
+    let authority = order.tls.as_ref().map(|keys| std::fs::read(keys.join(CA)));
+    let whose = match authority {
+        Some(Ok(certificate)) => certificate,
+        Some(Err(_)) | None => order.connect.to_string().into_bytes(),
+    };
+    let hash = blake3::hash(&whose).to_hex();
+    format!("-{}", hash.chars().take(8).collect::<String>())
+}
+
+/// Ends the workers of hosts: those with a [`mark`], or all of them if it is empty.
+pub fn down(hosts: &[Host], mark: &str) -> Plan {
+    let parts = hosts.iter().map(|host| Part {
+        place: host.to_string(),
+        then: "its workers have ended".to_owned(),
+        steps: vec![Step::Run {
+            what: "end its workers".to_owned(),
+            command: shell(host, "sh -s"),
+            input: Input::Text(script::end(mark)),
+            only_if: None,
+            asks: false,
+            remedy: "its workers end by themselves only with --idle-timeout".to_owned(),
+        }],
+    });
+    Plan {
+        first: Vec::new(),
+        parts: parts.collect(),
+    }
+}
+
+/// The address from which a host sees us come.
+///
+/// # Errors
+/// If it cannot be reached, or its ssh does not say.
+pub fn our_address(host: &Host) -> Result<String, LaunchError> {
+    let step = Step::Run {
+        what: "ask from which address we come".to_owned(),
+        command: shell(host, "sh -s"),
+        input: Input::Text("echo \"${SSH_CONNECTION%% *}\"\n".to_owned()),
+        only_if: None,
+        asks: true,
+        remedy: "name the address with --advertise".to_owned(),
+    };
+    launch::run(&host.to_string(), &[step]).and_then(|address| {
+        if address.is_empty() {
+            return Err(LaunchError {
+                place: host.to_string(),
+                step: "ask from which address we come".to_owned(),
+                why: "its ssh does not say".to_owned(),
+                remedy: "name the address with --advertise".to_owned(),
+            });
+        }
+        let is_long = address.contains(':');
+        Ok(if is_long {
+            format!("[{address}]")
+        } else {
+            address
+        })
+    })
+}
+
+/// The command that shows the end of what a host's workers said.
+pub fn logs(host: &Host) -> Vec<String> {
+    shell(host, &given(&script::tail()))
+}
+
+/// What a person types to see it.
+fn log_command(host: &Host) -> String {
+    format!("`horsehead workers logs --ssh {host}`")
+}
+
+/// A call of ssh with a command for the host's login shell.
+fn shell(host: &Host, command: &str) -> Vec<String> {
+    let mut words = vec!["ssh".to_owned()];
+    for option in OPTIONS {
+        words.extend(["-o".to_owned(), option.to_owned()]);
+    }
+    if let Some(port) = host.port {
+        words.extend(["-p".to_owned(), port.to_string()]);
+    }
+    words.extend([host.target.clone(), command.to_owned()]);
+    words
+}
+
+/// A script as a command, for calls whose input is something else.
+fn given(script: &str) -> String {
+    line(&["sh".to_owned(), "-c".to_owned(), script.to_owned()])
+}

@@ -1,0 +1,123 @@
+//! The names that may join, read again while the coordinator runs: who is added comes in, who is taken
+//! out goes.
+use super::{inner::Inner, terms::CONNECTIONS};
+use crate::keys::Keys;
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    sync::Arc,
+    time::Duration,
+};
+use tokio::{
+    sync::{Semaphore, watch},
+    time::{MissedTickBehavior, interval, timeout},
+};
+
+/// How often the file is read: whoever is taken out is gone well within five seconds.
+const AGAIN: Duration = Duration::from_secs(1);
+/// How long a name may take to be read that was written just now, by whoever launched its worker.
+const FRESH: Duration = Duration::from_millis(1200);
+
+/// By name, how many more connections each may have.
+#[derive(Clone, Debug)]
+pub(super) struct Listed(BTreeMap<String, Arc<Semaphore>>);
+
+impl Listed {
+    /// Nobody of them is connected.
+    pub(super) fn new(names: &BTreeSet<String>) -> Self {
+        let places = |name: &String| (name.clone(), Arc::new(Semaphore::new(CONNECTIONS)));
+        Self(names.iter().map(places).collect())
+    }
+
+    /// The places of a name that is on the list.
+    pub(super) fn places(&self, name: &str) -> Option<Arc<Semaphore>> {
+        self.0.get(name).cloned()
+    }
+
+    /// The list is another one now; whoever stays keeps its connections. Whether that changes anything.
+    fn change(&mut self, names: &BTreeSet<String>) -> bool {
+        if self.0.keys().eq(names) {
+            return false;
+        }
+        let Self(mut stays) = Self::new(names);
+        for (name, places) in &mut stays {
+            if let Some(old) = self.0.remove(name) {
+                *places = old;
+            }
+        }
+        self.0 = stays;
+        true
+    }
+}
+
+/// Reads the list again and again. A list that cannot be read changes nothing and is spoken of once, and
+/// so is a name for which no room was made when the coordinator started.
+pub(super) async fn read_again(keys: Keys, inner: Arc<Inner>, say: watch::Sender<Listed>) {
+    let mut ticks = interval(AGAIN);
+    ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
+    let mut told = BTreeSet::new();
+    loop {
+        ticks.tick().await;
+        let reading = keys.clone();
+        let Ok(read) = tokio::task::spawn_blocking(move || reading.workers_now()).await else {
+            return;
+        };
+        let (names, without): (BTreeSet<_>, BTreeSet<_>) = match read {
+            Ok(names) => names.into_iter().partition(|name| inner.knows(name)),
+            Err(error) => {
+                if told.insert(error.to_string()) {
+                    tracing::warn!("the list of workers stays as it was: {error}");
+                }
+                continue;
+            }
+        };
+        for name in without {
+            if told.insert(name.clone()) {
+                tracing::warn!(
+                    "\"{name}\" may join once this command is started again: while it runs, \
+                     there is room for further names only of the form worker-01, worker-02"
+                );
+            }
+        }
+        say.send_if_modified(|listed| listed.change(&names));
+    }
+}
+
+/// The places of a name that is on the list or about to be read.
+pub(super) async fn places(
+    mut listed: watch::Receiver<Listed>,
+    name: &str,
+) -> Option<Arc<Semaphore>> {
+    let there = listed.wait_for(|listed| listed.places(name).is_some());
+    let listed = timeout(FRESH, there).await.ok()?.ok()?;
+    listed.places(name)
+}
+
+/// Completes once a name is no longer on the list.
+pub(super) async fn struck(mut listed: watch::Receiver<Listed>, name: &str) {
+    // without the one who reads the list nobody is taken off it
+    if listed
+        .wait_for(|listed| listed.places(name).is_none())
+        .await
+        .is_err()
+    {
+        std::future::pending::<()>().await;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whoever_stays_on_the_list_keeps_its_connections() {
+        let names = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+        let mut listed = Listed::new(&names(&["a", "b"]));
+        let places = listed.places("a").unwrap();
+        let _taken = places.try_acquire().unwrap();
+        assert!(!listed.change(&names(&["b", "a"])));
+        assert!(listed.change(&names(&["a", "c"])));
+        let left = |name: &str| listed.places(name).map(|places| places.available_permits());
+        assert_eq!(left("a"), Some(CONNECTIONS - 1));
+        assert_eq!((left("b"), left("c")), (None, Some(CONNECTIONS)));
+    }
+}

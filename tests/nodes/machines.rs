@@ -1,0 +1,226 @@
+//! Four hosts with a real sshd each, in namespaces of this machine: behind a cable, with their own
+//! processes, host name and an empty home.
+//!
+//! Needs Linux, root, iproute2 and openssh-server; says so and passes where they are missing.
+use super::*;
+use std::{
+    io::{BufRead, BufReader},
+    process::Stdio,
+    thread,
+    time::{Duration, Instant},
+};
+use tests::{
+    namespace::{HEAD, NODE, Namespaces},
+    process::Process,
+};
+
+const LIMIT: Duration = Duration::from_mins(1);
+const SSHD: &str = "/usr/sbin/sshd";
+/// The coordinator's port, and those of the hosts.
+const PORT: u16 = 7447;
+const HOSTS: [u16; 4] = [2201, 2202, 2203, 2204];
+/// Jobs, and how long each takes \[ms\]: some 25 s for eight slots.
+const JOBS: &str = "1000";
+const DELAY_MS: &str = "200";
+
+/// Keys and configuration of the servers and of their client.
+fn configure(site: &Site) {
+    let path = |name: &str| site.path(name).display().to_string();
+    for key in ["host_key", "user_key"] {
+        let words = ["-q", "-t", "ed25519", "-N", "", "-f", &path(key)];
+        let made = Command::new("ssh-keygen").args(words).status();
+        assert!(made.unwrap().success());
+    }
+    let server = format!(
+        "HostKey {}\nAuthorizedKeysFile {}\nStrictModes no\nUsePAM no\nPermitRootLogin yes\n\
+         PidFile none\n",
+        path("host_key"),
+        path("user_key.pub")
+    );
+    fs::write(site.path("sshd_config"), server).unwrap();
+    let client = format!(
+        "IdentityFile {}\nUserKnownHostsFile {}\nStrictHostKeyChecking accept-new\n",
+        path("user_key"),
+        path("known_hosts")
+    );
+    fs::write(site.path("ssh_config"), client).unwrap();
+    // the user's ssh, with a configuration that is the test's
+    let ssh = format!(
+        "#!/bin/sh\nexec /usr/bin/ssh -F {} \"$@\"\n",
+        path("ssh_config")
+    );
+    fs::write(site.path("bin/ssh"), ssh).unwrap();
+    // where sshd wants an empty folder
+    fs::create_dir_all("/run/sshd").unwrap();
+}
+
+/// A host: sshd in namespaces of its own.
+fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
+    let script = format!(
+        "hostname node{port} && mount -t tmpfs -o size=200m none /root && \
+         exec {SSHD} -D -e -f {} -p {port}",
+        site.path("sshd_config").display()
+    );
+    let mut command = namespaces.on_node(Path::new("unshare"));
+    // the process namespace ends with the one that made it
+    command.args([
+        "-u",
+        "-m",
+        "-p",
+        "-f",
+        "--kill-child",
+        "--mount-proc",
+        "sh",
+        "-c",
+    ]);
+    command.arg(script);
+    Process::logged(command, &site.path(&format!("sshd{port}.log")))
+}
+
+/// A command of horsehead on the head.
+fn on_head(site: &Site, namespaces: &Namespaces, words: &[&str]) -> Output {
+    let mut command = namespaces.on_head(&coordinator_program());
+    let path = std::env::var("PATH").unwrap();
+    command
+        .args(words)
+        .current_dir(site.folder.path())
+        .env("PATH", format!("{}:{path}", site.path("bin").display()));
+    command.output().unwrap()
+}
+
+fn workers(site: &Site, namespaces: &Namespaces) -> Vec<Value> {
+    let words = ["workers", "list", "--run", "run", "--output", "json"];
+    let listed = on_head(site, namespaces, &words);
+    let object: Value = serde_json::from_slice(&listed.stdout).unwrap_or_default();
+    object["workers"].as_array().cloned().unwrap_or_default()
+}
+
+/// Looks until the workers are as wanted.
+fn until(site: &Site, namespaces: &Namespaces, what: &str, is: impl Fn(&[Value]) -> bool) {
+    let begun = Instant::now();
+    loop {
+        let workers = workers(site, namespaces);
+        if is(&workers) {
+            return;
+        }
+        assert!(begun.elapsed() < LIMIT, "{what}: {workers:?}");
+        thread::sleep(Duration::from_millis(100));
+    }
+}
+
+#[test]
+fn four_hosts_come_up_by_ssh_and_a_run_outlives_what_happens_to_them() {
+    if !Path::new(SSHD).exists() {
+        eprintln!("skipped: openssh-server is not installed");
+        return;
+    }
+    let Some(namespaces) = Namespaces::make() else {
+        return;
+    };
+    let site = Site::with_host(1, HEAD);
+    configure(&site);
+    let servers = HOSTS.map(|port| host(&site, &namespaces, port));
+    let at = format!("quic/{HEAD}:{PORT}");
+    let mut command = namespaces.on_head(Path::new(env!("CARGO_BIN_EXE_test-network-coordinator")));
+    command
+        .arg(site.path("run"))
+        .arg(&at)
+        .arg(site.path("keys"));
+    command.args([JOBS, DELAY_MS]).stderr(Stdio::null());
+    let mut coordinator = Process::start(command);
+    let mut lines = BufReader::new(coordinator.output()).lines();
+
+    let hosts = HOSTS.map(|port| format!("root@{NODE}:{port}"));
+    let begun = Instant::now();
+    let up = on_head(
+        &site,
+        &namespaces,
+        &[
+            "workers",
+            "up",
+            "--connect",
+            &at,
+            "--tls",
+            "keys",
+            "--slots",
+            "2",
+            "--wait",
+            "40",
+            "--ssh",
+            &hosts.join(","),
+        ],
+    );
+    assert!(up.status.success(), "{}", errors(&up));
+    eprintln!("four hosts up after {:?}", begun.elapsed());
+    until(&site, &namespaces, "all four work", |workers| {
+        let mut hosts: Vec<&str> = workers.iter().filter_map(|w| w["host"].as_str()).collect();
+        hosts.sort_unstable();
+        hosts == ["node2201", "node2202", "node2203", "node2204"]
+            && workers.iter().all(|worker| worker["state"] == "working")
+    });
+
+    // one finishes and gets no more, one is killed, and the cable is pulled and put back
+    let drain = ["workers", "drain", "node2201", "--run", "run"];
+    let drained = on_head(&site, &namespaces, &drain);
+    assert!(drained.status.success(), "{}", errors(&drained));
+    let killed = namespaces
+        .on_head(&site.path("bin/ssh"))
+        .args(["-p", "2202", &format!("root@{NODE}")])
+        .arg("kill -9 $(cat .cache/horsehead/worker-*/process)")
+        .output()
+        .unwrap();
+    assert!(killed.status.success(), "{}", errors(&killed));
+    until(
+        &site,
+        &namespaces,
+        "it is lost, the other drained",
+        |workers| {
+            let is = |worker: &Value| worker["host"] == "node2201" && worker["state"] == "drained";
+            workers.len() == 3 && workers.iter().any(is)
+        },
+    );
+    namespaces.plug(false);
+    thread::sleep(Duration::from_secs(6));
+    assert!(workers(&site, &namespaces).is_empty(), "the cable is out");
+    namespaces.plug(true);
+    until(&site, &namespaces, "they are back", |workers| {
+        workers.len() == 3
+    });
+    // the one that was killed comes back by the same command, which leaves the others alone
+    let again = on_head(
+        &site,
+        &namespaces,
+        &[
+            "workers",
+            "up",
+            "--connect",
+            &at,
+            "--tls",
+            "keys",
+            "--slots",
+            "2",
+            "--wait",
+            "40",
+            "--ssh",
+            &hosts.join(","),
+        ],
+    );
+    assert!(again.status.success(), "{}", errors(&again));
+
+    // the coordinator has compared every result with the one that its job must have
+    let end = lines
+        .by_ref()
+        .map_while(Result::ok)
+        .find(|line| line.starts_with("end "));
+    let end = end.unwrap();
+    assert!(end.contains(&format!("done {JOBS} ")), "{end}");
+    assert_eq!(coordinator.wait(LIMIT), Some(0));
+    eprintln!("{end}");
+    let down = on_head(
+        &site,
+        &namespaces,
+        &["workers", "down", "--ssh", &hosts.join(",")],
+    );
+    assert!(down.status.success(), "{}", errors(&down));
+    drop(servers);
+}

@@ -1,0 +1,199 @@
+//! Plans as they are printed: complete, made without asking anybody, and right in the eyes of those who
+//! check such things, where they are installed.
+use super::*;
+use coordinator::nodes::Program;
+use std::process::Stdio;
+
+/// All files of a folder, with their contents.
+fn contents(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut all = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            all.extend(contents(&path));
+        } else {
+            let content = fs::read(&path).unwrap();
+            all.push((path, content));
+        }
+    }
+    all.sort();
+    all
+}
+
+/// What a plan prints, with no other program in reach.
+fn printed(site: &Site, words: &[&str]) -> String {
+    let common = [
+        "workers",
+        "up",
+        "--connect",
+        &site.locator,
+        "--tls",
+        "keys",
+        "--dry-run",
+    ];
+    let mut command = site.command(&[&common, words].concat());
+    let output = command
+        .env("PATH", "")
+        .env("HOME", site.folder.path())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", errors(&output));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The text between the first line that ends with `from` and the mark behind it.
+fn read_by<'a>(script: &'a str, from: &str) -> &'a str {
+    let (_, text) = script.split_once(from).unwrap();
+    text.split("HORSEHEAD_END\n").next().unwrap()
+}
+
+/// Has a program check a file; says so where it is missing.
+fn checked(program: &str, words: &[&str], file: &Path) {
+    let output = Command::new(program)
+        .args(words)
+        .arg(file)
+        // what systemd-analyze looks into, though nothing of it matters here
+        .env("XDG_RUNTIME_DIR", std::env::temp_dir())
+        .stdin(Stdio::null())
+        .output();
+    let Ok(output) = output else {
+        eprintln!("skipped: {program} is not installed");
+        return;
+    };
+    let said = String::from_utf8_lossy(&output.stdout).into_owned() + &errors(&output);
+    let text = fs::read_to_string(file).unwrap();
+    assert!(output.status.success(), "{program}: {said}\n{text}");
+}
+
+#[test]
+fn plans_are_printed_without_anybody_in_reach_and_nothing_is_written() {
+    let site = Site::new(1);
+    let prologue = site.path("prologue");
+    fs::write(&prologue, "module load gcc\n").unwrap();
+    let hosts = site.path("hosts");
+    fs::write(&hosts, "# spare ones\nme@one:2222 slots=3\ntwo\n").unwrap();
+    let before = contents(site.folder.path());
+    let prologue = prologue.to_str().unwrap();
+    let ssh = printed(
+        &site,
+        &["--hosts", hosts.to_str().unwrap(), "--prologue", prologue],
+    );
+    let slurm = printed(
+        &site,
+        &[
+            "--slurm",
+            "nodes=4,time=02:00:00",
+            "--sbatch-arg=--account=x y",
+            "--prologue",
+            prologue,
+        ],
+    );
+    let k8s = printed(&site, &["--k8s", "replicas=4,namespace=spare"]);
+    let systemd = printed(&site, &["--systemd", "slots=2"]);
+    assert_eq!(
+        contents(site.folder.path()),
+        before,
+        "something was written"
+    );
+    let key = fs::read_to_string(site.path("keys/worker-01/worker.key")).unwrap();
+    let secret = key.lines().nth(1).unwrap();
+    for plan in [&ssh, &slurm, &k8s, &systemd] {
+        assert!(
+            !plan.contains(secret) && !plan.contains("PRIVATE KEY"),
+            "{plan}"
+        );
+        let file = site.path("plan.sh");
+        fs::write(&file, plan).unwrap();
+        checked("sh", &["-n"], &file);
+        checked("shellcheck", &[], &file);
+    }
+
+    assert!(
+        ssh.contains("-p 2222 me@one") && ssh.contains("--slots 3"),
+        "{ssh}"
+    );
+    assert!(ssh.contains("module load gcc"), "{ssh}");
+    let batch = site.path("batch.sh");
+    assert!(
+        slurm.contains("sbatch --nodes=4 --time=02:00:00 '--account=x y'"),
+        "{slurm}"
+    );
+    fs::write(&batch, read_by(&slurm, " <<'HORSEHEAD_END'\n")).unwrap();
+    checked("shellcheck", &[], &batch);
+    let unit = site.path("horsehead-worker.service");
+    fs::write(&unit, read_by(&systemd, " <<'HORSEHEAD_END'\n")).unwrap();
+    checked("systemd-analyze", &["verify", "--user"], &unit);
+    let manifests = site.path("manifests.yaml");
+    fs::write(&manifests, read_by(&k8s, "-f - <<'HORSEHEAD_END'\n")).unwrap();
+    checked("kubernetes-validate", &["--strict"], &manifests);
+    let objects: Vec<Value> = fs::read_to_string(&manifests)
+        .unwrap()
+        .split("---\n")
+        .filter(|part| !part.is_empty())
+        .map(|part| serde_json::from_str(part).unwrap())
+        .collect();
+    assert_eq!(objects[0]["spec"]["replicas"], 4);
+    let port: u16 = site.locator.rsplit(':').next().unwrap().parse().unwrap();
+    let coordinator = &objects[1]["spec"]["egress"][0];
+    assert_eq!(coordinator["ports"][0]["port"], port);
+    assert_eq!(coordinator["to"][0]["ipBlock"]["cidr"], "127.0.0.1/32");
+}
+
+/// What is printed is what is done.
+#[test]
+fn a_printed_plan_does_what_a_launch_does() {
+    let site = Site::new(1);
+    let plan = site.path("plan.sh");
+    fs::write(
+        &plan,
+        site.up(&["--ssh", "a", "--wait", "0", "--dry-run"]).stdout,
+    )
+    .unwrap();
+    let done = site.program("sh").arg(&plan).output().unwrap();
+    assert!(done.status.success(), "{}", errors(&done));
+    let process = site.process("a", "worker-01");
+    assert!(runs(&process));
+    // the launch finds everything as it wants it
+    let again = site.up(&["--ssh", "a", "--wait", "0"]);
+    assert!(again.status.success(), "{}", errors(&again));
+    assert_eq!(site.process("a", "worker-01"), process);
+}
+
+/// What `deploy/` has for those who launch by hand.
+#[test]
+fn the_files_of_deploy_pass_those_who_check_such_things() {
+    let deploy = Path::new(env!("CARGO_MANIFEST_DIR")).join("../deploy");
+    for script in ["portable.sh", "slurm/workers.sbatch", "pbs/workers.pbs"] {
+        checked("bash", &["-n"], &deploy.join(script));
+        checked("shellcheck", &[], &deploy.join(script));
+    }
+    for manifest in ["deployment", "job", "network-policy"] {
+        let file = deploy.join(format!("k8s/{manifest}.yaml"));
+        checked("kubernetes-validate", &["--strict"], &file);
+    }
+    // a unit names a program that must be there
+    let scratch = tempfile::tempdir().unwrap();
+    let unit = scratch.path().join("horsehead-worker.service");
+    let text = fs::read_to_string(deploy.join("systemd/horsehead-worker.service")).unwrap();
+    let worker = tests::process::worker_program();
+    let text = text.replace("/usr/local/bin/horsehead-worker", worker.to_str().unwrap());
+    fs::write(&unit, text).unwrap();
+    checked("systemd-analyze", &["verify", "--man=no"], &unit);
+}
+
+/// `deploy/portable.sh` keeps its word, where it has been run.
+#[test]
+fn a_portable_worker_needs_no_newer_library_than_it_says() {
+    let made = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/portable");
+    let machines = ["x86_64", "aarch64"].map(|machine| (machine, made.join(machine)));
+    let mut found = 0;
+    for (machine, folder) in machines.into_iter().filter(|(_, folder)| folder.exists()) {
+        let program = Program::read(&folder.join("horsehead-worker")).unwrap();
+        assert_eq!(program.machine, machine);
+        assert!(program.glibc <= vec![2, 28], "{program:?}");
+        found += 1;
+    }
+    if found == 0 {
+        eprintln!("skipped: deploy/portable.sh has not been run");
+    }
+}
