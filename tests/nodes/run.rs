@@ -38,6 +38,10 @@ fn named<'a>(workers: &'a [Value], name: &str) -> Option<&'a Value> {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+#[expect(
+    clippy::too_many_lines,
+    reason = "one story: what happens first matters to what happens then"
+)]
 async fn workers_come_up_are_listed_drained_thrown_out_and_ended_without_a_restart() {
     let site = Site::new(1);
     let jobs = 400;
