@@ -108,7 +108,7 @@ impl Rig {
         let entries = fs::read_dir(self.0.path()).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
         names
-            .filter(|name| name.starts_with("horsehead-") && !name.ends_with(".lock"))
+            .filter(|name| name.starts_with("horsehead-") && !name.contains(".lock"))
             .collect()
     }
 }
