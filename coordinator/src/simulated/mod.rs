@@ -18,7 +18,7 @@ use protocol::{
     event::Event,
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
-    message::{Done, FromWorker, ToWorker},
+    message::{Attempt, Done, FromWorker, ToWorker},
     wire,
 };
 use search::random::{Phase, Streams};
@@ -105,6 +105,8 @@ pub struct Cluster {
     setting: Setting,
     /// How long jobs take by their number, in place of the setting's spread.
     pub takes: Option<Box<dyn Fn(u64) -> Duration>>,
+    /// Attempts whose results the coordinator has taken time over.
+    charged: BTreeSet<Attempt>,
     /// Why the run cannot go on.
     stopped: Option<Stop>,
     /// When the coordinator is through with the results that have arrived.
@@ -146,6 +148,7 @@ impl Cluster {
             now: Duration::ZERO,
             setting,
             takes: None,
+            charged: BTreeSet::new(),
             stopped: None,
             free_at: Duration::ZERO,
             events: BTreeMap::new(),
@@ -256,7 +259,13 @@ impl Cluster {
 
     fn happen(&mut self, what: What) {
         match what {
-            What::Up(from, message @ FromWorker::Done(_)) => {
+            What::Up(from, FromWorker::Done(done)) => {
+                // what is said again while it waits costs next to nothing
+                let busy = !self.setting.handling.is_zero();
+                if busy && !self.charged.insert(done.attempt) {
+                    return;
+                }
+                let message = FromWorker::Done(done);
                 self.free_at = self.free_at.max(self.now) + self.setting.handling;
                 let wait = self.free_at.saturating_sub(self.now);
                 self.at(wait, What::Heard(from, message));
