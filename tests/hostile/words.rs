@@ -141,10 +141,10 @@ async fn whoever_does_not_fit_is_refused_by_the_field_that_is_wrong() {
         refusal_of("model digest is another model"),
     );
     let old = Announcement {
-        protocol: 9,
+        protocol: 99,
         ..announcement("x")
     };
-    peer.announce_until(&old, refusal_of("protocol is 9"));
+    peer.announce_until(&old, refusal_of("protocol is 99"));
     for slots in [0, u32::MAX] {
         let absurd = Announcement {
             slots,
