@@ -168,7 +168,8 @@ fn calm() -> RwLockReadGuard<'static, ()> {
 #[test]
 fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
     let _calm = calm();
-    let Some(mut stage) = Stage::set(600, 5) else {
+    // so many that the second comes in before they are done: it may shake hands for ten seconds
+    let Some(mut stage) = Stage::set(1500, 5) else {
         return;
     };
     let mut command = stage
@@ -185,7 +186,7 @@ fn a_network_that_loses_doubles_and_reorders_changes_nothing() {
     drop((workers, relay));
     let told = std::iter::from_fn(|| told.next()?.ok()).last();
     eprintln!("both joined at {} ms, {end:?}; datagrams {told:?}", both.ms);
-    assert_eq!(end.done, 600);
+    assert_eq!(end.done, 1500);
     let told = told.unwrap();
     let counts: Vec<u64> = told
         .split(' ')
