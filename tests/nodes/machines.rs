@@ -136,10 +136,9 @@ fn four_hosts_come_up_by_ssh_and_a_run_outlives_what_happens_to_them() {
 
     let hosts = HOSTS.map(|port| format!("root@{NODE}:{port}"));
     let begun = Instant::now();
-    let up = on_head(
-        &site,
-        &namespaces,
-        &[
+    let bring = || {
+        let hosts = hosts.join(",");
+        let words = [
             "workers",
             "up",
             "--connect",
@@ -151,9 +150,11 @@ fn four_hosts_come_up_by_ssh_and_a_run_outlives_what_happens_to_them() {
             "--wait",
             "40",
             "--ssh",
-            &hosts.join(","),
-        ],
-    );
+            &hosts,
+        ];
+        on_head(&site, &namespaces, &words)
+    };
+    let up = bring();
     assert!(up.status.success(), "{}", errors(&up));
     eprintln!("four hosts up after {:?}", begun.elapsed());
     until(&site, &namespaces, "all four work", |workers| {
@@ -191,24 +192,7 @@ fn four_hosts_come_up_by_ssh_and_a_run_outlives_what_happens_to_them() {
         workers.len() == 3
     });
     // the one that was killed comes back by the same command, which leaves the others alone
-    let again = on_head(
-        &site,
-        &namespaces,
-        &[
-            "workers",
-            "up",
-            "--connect",
-            &at,
-            "--tls",
-            "keys",
-            "--slots",
-            "2",
-            "--wait",
-            "40",
-            "--ssh",
-            &hosts.join(","),
-        ],
-    );
+    let again = bring();
     assert!(again.status.success(), "{}", errors(&again));
 
     // the coordinator has compared every result with the one that its job must have

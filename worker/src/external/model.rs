@@ -154,18 +154,15 @@ impl Prepared {
 
     /// Starts the program in a folder that is ready, and reads what it leaves.
     fn ran(&self, spec: &SimulateSpec, scratch: &Scratch) -> Result<Observation, Failure> {
-        let ended = run::run(&self.entry, scratch, self.deadline())?;
+        let status = run::run(&self.entry, scratch, self.deadline())?;
         let shown = self.entry.program.display();
-        if !ended.status.success() {
-            let code = ended.status.code();
-            let verdict = self
-                .verdicts
-                .iter()
-                .find(|(status, _)| Some(*status) == code);
+        if !status.success() {
+            let code = status.code();
+            let verdict = self.verdicts.iter().find(|(own, _)| Some(*own) == code);
             return match verdict {
                 Some((_, word)) => Ok(failed(*word)),
                 None => Err(Failure::Crashed {
-                    how: format!("{shown} {}", run::words(ended.status, scratch)),
+                    how: format!("{shown} {}", run::words(status, scratch)),
                 }),
             };
         }

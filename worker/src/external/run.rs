@@ -24,16 +24,15 @@ const LINES: usize = 8;
 /// Variables of this process that every program gets.
 const PASSED: [&str; 6] = ["PATH", "HOME", "LANG", "LC_ALL", "TZ", "TMPDIR"];
 
-/// How a program ended in time.
-pub(super) struct Ended {
-    pub(super) status: ExitStatus,
-}
-
 /// Starts the program of an entry in a folder and waits for its end, at most until the deadline.
 ///
 /// # Errors
 /// [`Failure::Crashed`] if it cannot be started or writes too much, [`Failure::Deadline`] if it does not end.
-pub(super) fn run(entry: &Entry, scratch: &Scratch, deadline: Duration) -> Result<Ended, Failure> {
+pub(super) fn run(
+    entry: &Entry,
+    scratch: &Scratch,
+    deadline: Duration,
+) -> Result<ExitStatus, Failure> {
     let crashed = |how: String| Failure::Crashed { how };
     let failed = |what: &str, error: &io::Error| crashed(format!("{what}: {error}"));
     // whatever the program leaves without a parent becomes ours, and is ended
@@ -49,7 +48,7 @@ pub(super) fn run(entry: &Entry, scratch: &Scratch, deadline: Duration) -> Resul
     process_tree::end_below(getpid());
     while let Ok(Some(_)) = wait(WaitOptions::NOHANG) {}
     match ended {
-        Ok(status) => Ok(Ended { status }),
+        Ok(status) => Ok(status),
         Err(Stopped::Late) => Err(Failure::Deadline {
             limit_ms: u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX),
         }),

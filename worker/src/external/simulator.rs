@@ -9,7 +9,10 @@ use protocol::{
     id::ContentHash,
     job::Failure,
 };
-use std::process::{Command, Stdio};
+use std::{
+    process::{Command, Stdio},
+    sync::OnceLock,
+};
 
 /// All that this machine allows to be started.
 #[derive(Clone, Copy, Debug)]
@@ -29,21 +32,8 @@ impl Simulator for Externals {
     }
 
     fn described(&self) -> Vec<ModelDescriptor> {
-        let allowed = match allow::read(&allow::path()) {
-            Ok(allowed) => allowed,
-            Err(problem) => {
-                tracing::warn!("no program of the list is started here: {problem}");
-                Allowed::default()
-            }
-        };
-        let entries = allowed.entry.iter();
-        entries
-            .map(|(name, entry)| ModelDescriptor {
-                kind: kind_of(name),
-                digest: digest(entry),
-                effects: Vec::new(),
-            })
-            .collect()
+        static DESCRIBED: OnceLock<Vec<ModelDescriptor>> = OnceLock::new();
+        DESCRIBED.get_or_init(described).clone()
     }
 
     fn simulates(&self, kind: &str) -> bool {
@@ -84,6 +74,21 @@ impl Simulator for Externals {
             reason: format!("a program of somebody's own knows no job `{name}`"),
         })
     }
+}
+
+/// The entries of this machine's list, as they are announced; their version commands may take their time.
+fn described() -> Vec<ModelDescriptor> {
+    let allowed = allow::read(&allow::path()).unwrap_or_else(|problem| {
+        tracing::warn!("no program of the list is started here: {problem}");
+        Allowed::default()
+    });
+    let entries = allowed.entry.iter();
+    let described = entries.map(|(name, entry)| ModelDescriptor {
+        kind: kind_of(name),
+        digest: digest(entry),
+        effects: Vec::new(),
+    });
+    described.collect()
 }
 
 /// Names what the entry's version command says, where it has one: machines that say other things have other

@@ -5,6 +5,7 @@
 use super::{
     archive::{Archive, Evaluated, Residual, key},
     ask_tell::Strategy,
+    intake::Intake,
     outcome::{Best, Finish, Progress},
     piece::{Batch, Draft, Piece},
     proposal::Proposal,
@@ -17,13 +18,10 @@ pub struct Conductor {
     pieces: VecDeque<Box<dyn Piece>>,
     /// Whether an individual met before takes its known result instead of being evaluated again.
     reuse_clones: bool,
-    archive: Archive,
+    intake: Intake,
     /// One id per draft of the running batch; clones share an id.
     slots: Vec<u64>,
-    /// Genes of the proposals that have not been consumed, by id.
-    open: BTreeMap<u64, Vec<f64>>,
     outbox: Vec<Proposal>,
-    early: BTreeMap<u64, Told>,
     /// Residual vectors of proposals that wanted one.
     residuals: BTreeMap<u64, Residual>,
     next_id: u64,
@@ -40,11 +38,9 @@ impl Conductor {
         let mut conductor = Self {
             pieces: pieces.into(),
             reuse_clones,
-            archive: Archive::default(),
+            intake: Intake::default(),
             slots: Vec::new(),
-            open: BTreeMap::new(),
             outbox: Vec::new(),
-            early: BTreeMap::new(),
             residuals: BTreeMap::new(),
             next_id: 0,
             generation: 0,
@@ -57,7 +53,7 @@ impl Conductor {
 
     /// Plans batches until one needs an evaluation or nothing is left.
     fn advance(&mut self) {
-        while self.finish.is_none() && self.open.is_empty() {
+        while self.finish.is_none() && self.intake.awaited() == 0 {
             self.close_batch();
             let Some(piece) = self.pieces.front_mut() else {
                 self.finish = Some(Finish::Planned);
@@ -65,7 +61,7 @@ impl Conductor {
             };
             if piece.reached_threshold() {
                 self.finish = Some(Finish::Threshold);
-            } else if let Some(batch) = piece.plan(&self.archive) {
+            } else if let Some(batch) = piece.plan(self.intake.archive()) {
                 self.open_batch(batch);
             } else {
                 self.generations_done += piece.generations();
@@ -79,7 +75,7 @@ impl Conductor {
         if self.slots.is_empty() {
             return;
         }
-        let entries = self.archive.entries();
+        let entries = self.intake.archive().entries();
         let results: Vec<Evaluated> = std::mem::take(&mut self.slots)
             .into_iter()
             .filter_map(|id| {
@@ -106,7 +102,7 @@ impl Conductor {
                     !purpose.wants_residual()
                         || known.is_some_and(|it| !purpose.wants_derivatives() || !it.by.is_empty())
                 };
-                let met = self.archive.find(&genes).map(|entry| entry.id);
+                let met = self.intake.archive().find(&genes).map(|entry| entry.id);
                 met.filter(serves)
                     .or_else(|| fresh.get(&key(&genes)).copied())
             } else {
@@ -116,7 +112,7 @@ impl Conductor {
                 let id = self.next_id;
                 self.next_id += 1;
                 fresh.insert(key(&genes), id);
-                self.open.insert(id, genes.clone());
+                self.intake.expect(id, genes.clone());
                 self.outbox.push(Proposal {
                     id,
                     genes,
@@ -136,29 +132,14 @@ impl Strategy for Conductor {
     }
 
     fn tell(&mut self, id: u64, result: Told) {
-        if self.open.contains_key(&id) {
-            self.early.entry(id).or_insert(result);
-        }
-        while let Some((first, told)) = self.early.first_key_value().map(|(id, told)| (*id, *told))
-        {
-            if first != self.archive.entries().len() as u64 {
-                break;
-            }
-            self.early.pop_first();
-            if let Some(genes) = self.open.remove(&first) {
-                self.archive.push(Evaluated {
-                    id: first,
-                    genes,
-                    told,
-                    residual: None,
-                });
-            }
+        self.intake.keep(id, result);
+        while self.intake.take().is_some() {
             self.advance();
         }
     }
 
     fn tell_residual(&mut self, id: u64, residual: Residual) {
-        if self.open.contains_key(&id) {
+        if self.intake.awaits(id) {
             self.residuals.entry(id).or_insert(residual);
         }
     }
@@ -168,15 +149,15 @@ impl Strategy for Conductor {
     }
 
     fn progress(&self) -> Progress {
-        let evaluations = self.archive.entries().len() as u64;
+        let evaluations = self.intake.archive().entries().len() as u64;
         let remaining: u64 = self.pieces.iter().map(|piece| piece.remaining()).sum();
-        let consumed = self.next_id - self.open.len() as u64;
+        let consumed = self.next_id - self.intake.awaited();
         let batch_done = self.slots.iter().filter(|id| **id < consumed).count() as u64;
         let ahead = match self.finish {
             Some(_) => 0,
             None => remaining
                 .saturating_sub(batch_done)
-                .max(self.open.len() as u64),
+                .max(self.intake.awaited()),
         };
         Progress {
             generation: self.generation,
@@ -189,7 +170,8 @@ impl Strategy for Conductor {
             evaluations,
             expected_evaluations: evaluations + ahead,
             best_fitness: self
-                .archive
+                .intake
+                .archive()
                 .best()
                 .filter(|best| best.told.survived())
                 .map(|best| best.told.fitness),
@@ -197,10 +179,10 @@ impl Strategy for Conductor {
     }
 
     fn best(&self) -> Option<Best> {
-        self.archive.best().map(Best::from)
+        self.intake.archive().best().map(Best::from)
     }
 
     fn archive(&self) -> &Archive {
-        &self.archive
+        self.intake.archive()
     }
 }

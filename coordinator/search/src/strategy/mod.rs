@@ -24,6 +24,7 @@ pub mod cma_es;
 mod conductor;
 mod covariance;
 mod design;
+mod intake;
 pub mod l_shade;
 pub mod levenberg;
 pub mod memetic;

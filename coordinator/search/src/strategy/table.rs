@@ -8,6 +8,7 @@ use super::{
     archive::{Archive, Evaluated, Residual},
     ask_tell::Strategy,
     catalogue::build,
+    intake::Intake,
     outcome::{Best, Finish, Progress},
     proposal::{Proposal, Purpose},
     setting::{SettingsError, require},
@@ -55,14 +56,13 @@ pub fn build_after(
         purpose: Purpose::Initial,
     };
     let outbox: Vec<Proposal> = (0..).zip(individuals).map(proposal).collect();
+    let mut intake = Intake::default();
+    for one in &outbox {
+        intake.expect(one.id, one.genes.clone());
+    }
     Ok(Box::new(AfterTable {
-        open: outbox
-            .iter()
-            .map(|one| (one.id, one.genes.clone()))
-            .collect(),
         outbox,
-        early: BTreeMap::new(),
-        archive: Archive::default(),
+        intake,
         table: count,
         inner: alone,
         own_ids: BTreeMap::new(),
@@ -84,28 +84,25 @@ struct AfterTable {
     /// How many of its individuals the table has answered.
     known: u64,
     outbox: Vec<Proposal>,
-    /// Genes of the proposals that have not been consumed, by id.
-    open: BTreeMap<u64, Vec<f64>>,
-    early: BTreeMap<u64, Told>,
-    archive: Archive,
+    intake: Intake,
 }
 
 impl AfterTable {
     /// The next id: one more than all that were asked for.
     fn next_id(&self) -> u64 {
-        (self.archive.entries().len() + self.open.len()) as u64
+        self.intake.archive().entries().len() as u64 + self.intake.awaited()
     }
 
     /// Whether every individual of the table has its result.
     fn is_through(&self) -> bool {
-        self.archive.entries().len() >= self.table
+        self.intake.archive().entries().len() >= self.table
     }
 
     /// Makes the search of what the table has found.
     fn begin(&mut self) {
         let (settings, space, seed) = &self.recipe;
         let survived: Vec<Vec<f64>> = {
-            let ranked = self.archive.ranked().into_iter();
+            let ranked = self.intake.archive().ranked().into_iter();
             ranked.map(|one| one.genes.clone()).collect()
         };
         let space = space.clone().beginning_at(&survived);
@@ -118,7 +115,7 @@ impl AfterTable {
 
     /// What the table says of genes, if it holds them.
     fn answered(&self, genes: &[f64]) -> Option<Told> {
-        let table = self.archive.entries().iter().take(self.table);
+        let table = self.intake.archive().entries().iter().take(self.table);
         let same = |entry: &&Evaluated| {
             let mut pairs = entry.genes.iter().zip(genes);
             pairs.all(|(a, b)| (a - b).abs() <= SAME * a.abs().max(b.abs()))
@@ -142,7 +139,7 @@ impl AfterTable {
                 }
                 let id = self.next_id();
                 self.own_ids.insert(id, proposal.id);
-                self.open.insert(id, proposal.genes.clone());
+                self.intake.expect(id, proposal.genes.clone());
                 self.outbox.push(Proposal { id, ..proposal });
             }
         }
@@ -155,22 +152,8 @@ impl Strategy for AfterTable {
     }
 
     fn tell(&mut self, id: u64, result: Told) {
-        if self.open.contains_key(&id) {
-            self.early.entry(id).or_insert(result);
-        }
-        while let Some((first, told)) = self.early.first_key_value().map(|(id, told)| (*id, *told))
-        {
-            if first != self.archive.entries().len() as u64 {
-                break;
-            }
-            self.early.pop_first();
-            let genes = self.open.remove(&first).unwrap_or_default();
-            self.archive.push(Evaluated {
-                id: first,
-                genes,
-                told,
-                residual: None,
-            });
+        self.intake.keep(id, result);
+        while let Some((first, told)) = self.intake.take() {
             if let Some(own) = self.own_ids.remove(&first) {
                 self.inner.tell(own, told);
                 self.pass_on();
@@ -192,9 +175,9 @@ impl Strategy for AfterTable {
 
     fn progress(&self) -> Progress {
         let inner = self.inner.progress();
-        let best = self.archive.best();
+        let best = self.intake.archive().best();
         Progress {
-            evaluations: self.archive.entries().len() as u64,
+            evaluations: self.intake.archive().entries().len() as u64,
             expected_evaluations: (self.table as u64 + inner.expected_evaluations)
                 .saturating_sub(self.known),
             best_fitness: best
@@ -205,11 +188,11 @@ impl Strategy for AfterTable {
     }
 
     fn best(&self) -> Option<Best> {
-        self.archive.best().map(Best::from)
+        self.intake.archive().best().map(Best::from)
     }
 
     fn archive(&self) -> &Archive {
-        &self.archive
+        self.intake.archive()
     }
 }
 

@@ -5,6 +5,7 @@
 mod control;
 mod digits;
 mod instruction;
+mod mark;
 mod report;
 mod template;
 

@@ -1,9 +1,18 @@
 //! Templates: a text with fields that take the values of parameters.
+use super::mark::Marked;
 use crate::{Problem, problem::clip};
 use std::collections::BTreeMap;
 
 /// Longest template (bytes).
 const MOST: usize = 64 << 20;
+
+/// Its first line.
+const FIRST: Marked = Marked {
+    word: "ptf",
+    barred: "",
+    allowed: "`ptf` and one delimiter that is neither letter nor digit",
+    remedy: "write it as the first line of the template",
+};
 
 /// A template, read once.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -32,27 +41,18 @@ impl Template {
     /// # Errors
     /// Another first line, a delimiter without its like, a field without a name.
     pub fn parse(file: &str, text: &str) -> Result<Self, Problem> {
-        let (first, body) = text.split_once('\n').unwrap_or((text, ""));
-        let mut words = first.split_whitespace();
-        let is_marked = words
-            .next()
-            .is_some_and(|word| word.eq_ignore_ascii_case("ptf"));
-        let mark = words.next().and_then(|word| {
-            let mut letters = word.chars();
-            let mark = letters.next()?;
-            (letters.next().is_none() && !mark.is_alphanumeric()).then_some(mark)
-        });
-        let (true, Some(mark), true) = (is_marked, mark, text.len() <= MOST) else {
-            let found = format!("`{}`", clip(first));
-            let allowed = "`ptf` and one delimiter that is neither letter nor digit";
+        let (mark, body) = FIRST.read(file, text)?;
+        if text.len() > MOST {
+            let found = format!("{} bytes", text.len());
+            let allowed = format!("at most {MOST}");
             return Err(Problem::at(
                 file,
                 1,
                 found,
                 allowed,
-                "write it as the first line of the template",
+                "fill in a smaller file",
             ));
-        };
+        }
         let mut parts = Vec::new();
         for (number, line) in body.split_inclusive('\n').enumerate() {
             let number = number + 2;

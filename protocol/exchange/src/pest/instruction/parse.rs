@@ -1,13 +1,22 @@
 //! From the text of an instruction file to instructions.
+use super::super::mark::Marked;
 use super::list::{Instruction, Instructions, Line, NOBODY};
 use crate::{Problem, problem::clip};
 use std::collections::BTreeSet;
+
+/// The file's first line.
+const FIRST: Marked = Marked {
+    word: "pif",
+    barred: "!:&[](),",
+    allowed: "`pif` and one delimiter that is no letter, no digit and none of ! : & [ ] ( ) ,",
+    remedy: "write it as the first line of the instructions",
+};
 
 /// Farthest column, and most lines of one step.
 const FARTHEST: usize = 100_000_000;
 
 pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
-    let (mark, body) = head(file, text)?;
+    let (mark, body) = FIRST.read(file, text)?;
     let mut lines: Vec<Line> = Vec::new();
     let mut names = BTreeSet::new();
     for (at, text) in body.lines().enumerate() {
@@ -67,34 +76,6 @@ pub(super) fn parse(file: &str, text: &str) -> Result<Instructions, Problem> {
         file: file.to_owned(),
         lines,
     })
-}
-
-/// The delimiter that the first line states, and the lines behind it.
-fn head<'a>(file: &str, text: &'a str) -> Result<(char, &'a str), Problem> {
-    let (first, body) = text.split_once('\n').unwrap_or((text, ""));
-    let mut words = first.split_whitespace();
-    let is_marked = words
-        .next()
-        .is_some_and(|word| word.eq_ignore_ascii_case("pif"));
-    let mark = words.next().and_then(|word| {
-        let mut letters = word.chars();
-        let mark = letters.next()?;
-        let is_free = !mark.is_alphanumeric() && !"!:&[](),".contains(mark);
-        (letters.next().is_none() && is_free).then_some(mark)
-    });
-    let (true, Some(mark)) = (is_marked, mark) else {
-        let found = format!("`{}`", clip(first));
-        let allowed =
-            "`pif` and one delimiter that is no letter, no digit and none of ! : & [ ] ( ) ,";
-        return Err(Problem::at(
-            file,
-            1,
-            found,
-            allowed,
-            "write it as the first line of the instructions",
-        ));
-    };
-    Ok((mark, body))
 }
 
 /// `&`: the line goes on with the one before.
