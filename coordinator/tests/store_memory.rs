@@ -91,6 +91,7 @@ fn fifty_thousand_evaluations_need_the_memory_of_five_thousand() {
                 let individual = Individual::new(0, case.start());
                 let reply = Reply::Score {
                     with_residual: true,
+                    whole: true,
                 };
                 let label = Label {
                     generation: Some(0),

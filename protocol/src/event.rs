@@ -3,6 +3,7 @@ use crate::{
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
     message::{Attempt, Cost},
+    proof::Proof,
 };
 use serde::{Deserialize, Serialize};
 
@@ -57,10 +58,10 @@ pub enum Event {
     /// The coordinator ended the run by itself.
     Closed,
     /// What the case's reference individual came to on the run's first worker: every other one
-    /// must come to the same bits.
+    /// must come to the same.
     Proved {
-        /// Hash of the result's bits.
-        proof: ContentHash,
+        /// The bits, or some of the values.
+        proof: Proof,
     },
     /// How slots spent their time until now; written now and then, when workers go, and at the
     /// end. The last one of a worker counts.

@@ -4,6 +4,7 @@
 //! What is started stands in the worker's own list, under the name of an *entry*; a case names it and says no
 //! more. Nothing here knows how files are written or read, nor what their numbers mean.
 use crate::case::ModelSettings;
+use crate::file::File;
 use crate::id::ContentHash;
 use crate::wire::{self, WireError};
 use serde::{Deserialize, Serialize};
@@ -44,18 +45,6 @@ pub struct External {
     pub curves: Vec<Source>,
     /// Exit statuses that are verdicts of the program about the individual, with the word for each.
     pub verdicts: Vec<(i32, String)>,
-}
-
-/// A file of a case.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct File {
-    /// Where it lies below the program's folder, with `/` between folders.
-    pub path: String,
-    /// Its bytes.
-    #[serde(with = "serde_bytes")]
-    pub content: Vec<u8>,
-    /// Whether it may be executed.
-    pub executable: bool,
 }
 
 /// A file that is written for every individual.

@@ -3,6 +3,7 @@ use crate::{
     announce::Announcement,
     id::{AttemptId, ContentHash, JobId},
     job::{Job, Outcome},
+    proof::Proof,
 };
 use serde::{Deserialize, Serialize};
 
@@ -72,14 +73,14 @@ pub enum FromWorker {
 }
 
 /// Proof of life, each second; also the truth about what a worker holds.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Beat {
     /// Counts up from 0.
     pub number: u64,
     /// The case it has fetched and checked; without it no job but [`Job::Nothing`] can be done.
     pub case: Option<ContentHash>,
     /// What the reference individual of that case came to here; without it no job is given.
-    pub proof: Option<ContentHash>,
+    pub proof: Option<Proof>,
     /// Attempts in a slot.
     pub running: Vec<Attempt>,
     /// Attempts that wait for a slot.

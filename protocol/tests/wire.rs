@@ -8,9 +8,14 @@ use proptest::{collection::vec, option, prelude::*};
 use protocol::{
     case::EffectSetting,
     event::{Event, Finished},
+    file::File,
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
-    job::{Answer, Column, Failure, Individual, Job, Numerics, Outcome, Reply, SimulateSpec},
+    job::{
+        Answer, Column, Failure, Individual, Job, Left, Numerics, Outcome, Reply, Shortened,
+        SimulateSpec,
+    },
     message::{Attempt, Beat, Cost, Done, FromSlot, FromWorker, Order, ToSlot, ToWorker},
+    proof::{Proof, Sample},
     wire::{self, Kind, WireError},
 };
 
@@ -43,9 +48,10 @@ fn job() -> impl Strategy<Value = Job> {
             0..9_usize,
             vec(-1e9..1e9, 0..12),
             vec(effect(), 0..3),
+            any::<bool>(),
             any::<bool>()
         )
-            .prop_map(|(condition, genes, effects, with_residual)| {
+            .prop_map(|(condition, genes, effects, with_residual, whole)| {
                 let individual = Individual {
                     condition,
                     genes,
@@ -53,7 +59,10 @@ fn job() -> impl Strategy<Value = Job> {
                 };
                 Job::Simulate(SimulateSpec::new(
                     individual,
-                    Reply::Score { with_residual },
+                    Reply::Score {
+                        with_residual,
+                        whole,
+                    },
                 ))
             }),
         (vec(effect(), 0..3), vec(any::<u8>(), 0..9)).prop_map(|(effects, numerics)| {
@@ -73,8 +82,32 @@ fn job() -> impl Strategy<Value = Job> {
 fn outcome() -> impl Strategy<Value = Outcome> {
     prop_oneof![
         bytes().prop_map(|bytes| Outcome::Done(Answer::Nothing(bytes))),
-        ".{0,40}".prop_map(|how| Outcome::Failed(Failure::Crashed { how })),
-        any::<u64>().prop_map(|limit_ms| Outcome::Failed(Failure::Deadline { limit_ms })),
+        (".{0,40}", left())
+            .prop_map(|(how, left)| { Outcome::Failed(Failure::Crashed { how, left }) }),
+        any::<u64>().prop_map(|limit_ms| Outcome::Failed(Failure::deadline(limit_ms))),
+    ]
+}
+
+fn left() -> impl Strategy<Value = Left> {
+    let file = (".{0,20}", bytes(), any::<bool>()).prop_map(|(path, content, executable)| File {
+        path,
+        content,
+        executable,
+    });
+    let short = (".{0,20}", any::<u64>(), any::<u64>()).prop_map(|(path, bytes, kept)| Shortened {
+        path,
+        bytes,
+        kept,
+    });
+    (vec(file, 0..4), vec(short, 0..4)).prop_map(|(files, shortened)| Left { files, shortened })
+}
+
+fn proof() -> impl Strategy<Value = Proof> {
+    let sample = (-1e9..1e9, 0.0..1e9).prop_map(|(value, scale)| Sample { value, scale });
+    prop_oneof![
+        Just(Proof::Failed),
+        any::<[u8; 32]>().prop_map(|hash| Proof::Bits(ContentHash(hash))),
+        vec(sample, 0..9).prop_map(Proof::Values),
     ]
 }
 
@@ -106,14 +139,15 @@ fn from_worker() -> impl Strategy<Value = FromWorker> {
         (
             any::<u64>(),
             option::of(any::<[u8; 32]>()),
+            proof(),
             vec(attempt(), 0..9),
             vec(attempt(), 0..9)
         )
-            .prop_map(|(number, case, running, waiting)| {
+            .prop_map(|(number, case, proof, running, waiting)| {
                 FromWorker::Beat(Beat {
                     number,
                     case: case.map(ContentHash),
-                    proof: case.map(ContentHash),
+                    proof: Some(proof),
                     finished: running.iter().rev().copied().collect(),
                     running,
                     waiting,

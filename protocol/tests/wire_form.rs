@@ -5,11 +5,12 @@
 //! belongs to the present version, as read from the types.
 use protocol::{
     announce::{Place, Role, Sign},
-    case::{Case, Offset, Scale},
+    case::{Case, Offset, Repeats, Scale},
     event::Event,
     id::{AttemptId, ContentHash, JobId, RunId},
     job::{Answer, Derivative, Failure, Job, Outcome, Per, Reached, Reply, Verdict},
     message::{Attempt, Beat, FromSlot, FromWorker, ToSlot, ToWorker},
+    proof::Proof,
     pumping_unit::{
         Discretisation, ElementKind, Integrator, Machine, ModeFamily, ReduceHeadSpec, ReducedHead,
         RopeEnds, Simulation, Smoothing, StressRecovery, TurnSense,
@@ -33,7 +34,7 @@ fn form() -> String {
     trace!(Simulation Discretisation ReduceHeadSpec ReducedHead);
     trace!(Job Reply Answer Outcome Failure Verdict Reached Derivative Per ModeFamily ElementKind);
     trace!(Place Role Sign Scale Integrator Offset RopeEnds Smoothing StressRecovery);
-    trace!(TurnSense);
+    trace!(TurnSense Repeats Proof);
     let registry = tracer.registry().expect("every variant was seen");
     let mut text = format!("wire version {}\n", wire::VERSION);
     for (name, form) in registry {
@@ -78,7 +79,7 @@ fn a_frame_is_laid_out_as_it_was() {
     let beat = Beat {
         number: 5,
         case: None,
-        proof: Some(ContentHash([6; 32])),
+        proof: Some(Proof::Bits(ContentHash([6; 32]))),
         running: vec![attempt],
         waiting: Vec::new(),
         finished: Vec::new(),
@@ -86,13 +87,13 @@ fn a_frame_is_laid_out_as_it_was() {
     let message = FromWorker::Beat(beat);
     let frame = wire::seal(Kind::FromWorker, RunId(0x1122_3344_5566_7788), &message).unwrap();
     let body: String = [
-        "01000000 0500000000000000 00 01",
+        "01000000 0500000000000000 00 01 00000000",
         &"06".repeat(32),
         "0100000000000000 0201000000000000 04000300",
         "0000000000000000 0000000000000000",
     ]
     .concat();
-    let header = format!("4848 {:02x} 02 8877665544332211 52000000", wire::VERSION);
+    let header = format!("4848 {:02x} 02 8877665544332211 56000000", wire::VERSION);
     let expected = bytes(&header);
     assert_eq!(frame[..expected.len()], expected);
     assert_eq!(frame[16..20], crc32fast::hash(&frame[20..]).to_le_bytes());

@@ -48,7 +48,7 @@ const RULES: &[Rule] = &[
             "coordinator/src/pumping_unit",
             // tests that take the shipped case or its effects for an example
             "coordinator/src/case/effect_text.rs",
-            "coordinator/src/cli/command/export_tests.rs",
+            "coordinator/src/cli/command/export/tests.rs",
             "coordinator/src/cli/command/tests.rs",
             "coordinator/src/cli/output/object/diagnosis/tests.rs",
             "coordinator/src/cli/output/object/identification/tests.rs",

@@ -6,6 +6,7 @@ use protocol::{
     id::{ContentHash, RunId, WorkerId},
     key::Lane,
     message::{Beat, FromWorker},
+    proof::Proof,
     wire::{self, Kind},
 };
 use std::{
@@ -67,7 +68,7 @@ fn beat(number: u64) -> FromWorker {
     FromWorker::Beat(Beat {
         number,
         case: Some(ContentHash::of(&wire::encode(&empty_case()).unwrap())),
-        proof: Some(ContentHash::of(b"proof")),
+        proof: Some(Proof::Bits(ContentHash::of(b"proof"))),
         ..Beat::default()
     })
 }

@@ -137,10 +137,7 @@ fn a_job_that_never_returns_leaves_no_descendant() {
         }
         let outcome = freed.blocking_recv().unwrap().outcome;
         let ended = begun.elapsed();
-        assert_eq!(
-            outcome,
-            Some(Outcome::Failed(Failure::Deadline { limit_ms: 1500 }))
-        );
+        assert_eq!(outcome, Some(Outcome::Failed(Failure::deadline(1500))));
         eprintln!("job {n} was ended after {ended:?}");
         // one that computes is given the time that others had its processor
         assert!(n == 3 || ended < deadline + LIMIT, "{ended:?}");

@@ -81,7 +81,7 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
         slots().difference(&before).count() == 1
     });
     let ended = failure(freed.blocking_recv().unwrap());
-    assert_eq!(ended, Failure::Deadline { limit_ms: 400 });
+    assert_eq!(ended, Failure::deadline(400));
     assert!(begun.elapsed() < LIMIT, "{:?}", begun.elapsed());
     wait_until("it is gone", LIMIT, || {
         slots().difference(&before).count() == 0
@@ -96,7 +96,7 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
     kill_process(pid, Signal::KILL).unwrap();
     let crashed = failure(freed.blocking_recv().unwrap());
     assert!(
-        matches!(&crashed, Failure::Crashed { how } if how.contains("ended by signal 9")),
+        matches!(&crashed, Failure::Crashed { how, .. } if how.contains("ended by signal 9")),
         "{crashed:?}"
     );
 

@@ -69,6 +69,16 @@ fn what_a_case_has_wrong_is_said_by_file_and_field() {
         ("name = \"x\"", "name = \"z\"", "\"x\" is not allowed"),
         (
             "[model]\n",
+            "[model]\nreference_tolerance = -1.0\n",
+            "model.reference_tolerance",
+        ),
+        (
+            "[model]\n",
+            "[model]\nrepeatable = true\nreference_tolerance = 0.1\n",
+            "beside `repeatable = true`",
+        ),
+        (
+            "[model]\n",
             "[model]\nverdicts = { 0 = \"fine\" }\n",
             "verdicts",
         ),
@@ -82,6 +92,36 @@ fn what_a_case_has_wrong_is_said_by_file_and_field() {
         assert!(
             said.contains(words) && said.contains("case.toml"),
             "{words}: {said}"
+        );
+    }
+}
+
+/// A machine whose program gives other numbers for the same values does not work on the run; one that differs by
+/// no more than the case allows does.
+#[test]
+fn machines_are_compared_by_a_reference_run_within_the_case_s_tolerance() {
+    // whoever is not the first gives a hundredth more
+    let program = "ln -s $PPID ../../first 2>/dev/null\n[ $(readlink ../../first) = $PPID ] && v=4.00 || v=4.04\n\
+                   printf \"y\\n1\\n2\\n$v\\n\" > out.csv\n";
+    let told = |tolerance: &str| {
+        let rig = Rig::shell(program, tolerance);
+        let words = "calibrate case --preset random --set points=20 --run run";
+        let words: Vec<&str> = words.split(' ').collect();
+        let output = rig.run(&words);
+        let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(output.status.success(), "{errors}");
+        errors
+    };
+    let refused = told("reference_tolerance = 0.001");
+    assert!(
+        refused.contains("where this run's is 4") && refused.contains("reference_tolerance"),
+        "{refused}"
+    );
+    for accepted in ["reference_tolerance = 0.05", ""] {
+        let said = told(accepted);
+        assert!(
+            !said.contains("refused") && !said.contains("proof"),
+            "{said}"
         );
     }
 }

@@ -8,5 +8,6 @@
 mod allowed;
 mod bad;
 mod bench;
+mod joint;
 mod pest;
 mod rig;

@@ -161,6 +161,7 @@ fn what_the_model_does_not_have_is_refused_by_field() {
     };
     let score = Reply::Score {
         with_residual: false,
+        whole: false,
     };
     for reply in [Reply::Channels, score, CURVES] {
         let (field, problem) = refused(SimulateSpec::new(misstated.clone(), reply));

@@ -97,6 +97,7 @@ fn a_gene_of_an_effect_is_that_value_in_the_case() {
     let jobs = |genes: Vec<f64>| {
         let score = Reply::Score {
             with_residual: true,
+            whole: true,
         };
         let curves = Reply::Curves { pictures: 0 };
         [score, curves].map(|reply| {
@@ -171,6 +172,7 @@ fn a_gene_that_the_model_cannot_take_is_refused_by_field() {
     ] {
         let reply = Reply::Score {
             with_residual: false,
+            whole: true,
         };
         let job = Job::Simulate(SimulateSpec::new(Individual::new(0, genes), reply));
         let Outcome::Failed(failure) = prepared.evaluate(&job) else {

@@ -79,7 +79,7 @@ fn answer(out: &mut impl io::Write, outcome: Outcome, taken: Duration) -> io::Re
         // nothing has been written of it
         Err(error) if error.kind() == io::ErrorKind::InvalidData => {
             let how = format!("its result cannot be handed in: {error}");
-            say(out, Outcome::Failed(Failure::Crashed { how }))
+            say(out, Outcome::Failed(Failure::crashed(how)))
         }
         said => said,
     }

@@ -78,9 +78,11 @@ pub(crate) fn text(loaded: &Loaded) -> String {
     let terms = case.objective.terms.iter();
     let terms = terms.map(|term| format!("{} (weight {})", term.channel, term.weight));
     let terms: Vec<String> = terms.collect();
-    let condition = case.conditions.get(case.objective.condition);
-    let condition = condition.map_or("", |condition| &condition.name);
-    let _infallible = write!(text, "objective   {condition}: {}", terms.join(", "));
+    let conditions = case.objective.conditions();
+    let conditions = conditions.filter_map(|at| case.conditions.get(at));
+    let conditions: Vec<&str> = conditions.map(|condition| &*condition.name).collect();
+    let conditions = conditions.join(" + ");
+    let _infallible = write!(text, "objective   {conditions}: {}", terms.join(", "));
     for note in &loaded.notes {
         let _infallible = write!(text, "\nnote: {note}");
     }

@@ -2,7 +2,7 @@
 //!
 //! Numerics are compared twice: by the digest of a fixed model when a worker announces itself, and
 //! by the case's own reference individual, which each worker computes once it holds the case. The
-//! first worker of a run sets what the others must come to, to the last bit.
+//! first worker of a run sets what the others must come to: to the last bit, or within what the case says.
 use super::{
     drain::turn_away,
     member::Member,
@@ -13,9 +13,11 @@ use super::{
 };
 use protocol::{
     announce::Announcement,
+    case::Repeats,
     event::Event,
     id::WorkerId,
     message::{Beat, ToWorker},
+    proof::{MOST_SAMPLES, Proof},
 };
 use std::time::Duration;
 
@@ -107,23 +109,51 @@ pub(super) fn is_ready(core: &mut Core, from: WorkerId, beat: &Beat) -> Option<b
         }
         Some(_) => {}
     }
-    let Some(proof) = beat.proof else {
+    let Some(proof) = &beat.proof else {
         return Some(false);
     };
-    let Some(expected) = core.options.proof else {
-        core.options.proof = Some(proof);
-        core.record(Event::Proved { proof });
-        return Some(true);
-    };
-    if expected == proof {
-        return Some(true);
+    match agreement(core, proof) {
+        Ok(()) => Some(true),
+        Err(reason) => expel(core, from, reason),
     }
-    let reason = format!(
-        "proof is {proof}, this run's is {expected}: the reference individual of the case comes \
-         out differently on this machine; use the same build of horsehead-worker, or leave this \
-         machine out"
-    );
-    expel(core, from, reason)
+}
+
+/// Whether a machine computes what the others compute; the first one says what that is.
+fn agreement(core: &mut Core, proof: &Proof) -> Result<(), String> {
+    let tolerance = match core.options.repeats {
+        Repeats::Within(tolerance) => tolerance,
+        Repeats::Bits | Repeats::Unknown => 0.0,
+    };
+    if let Proof::Values(values) = proof
+        && values.len() > MOST_SAMPLES
+    {
+        let count = values.len();
+        return Err(format!(
+            "proof has {count} values, allowed are {MOST_SAMPLES}: use the same build of horsehead-worker"
+        ));
+    }
+    let Some(expected) = &core.options.proof else {
+        // where every machine fails at it, the run's own jobs say so
+        if *proof != Proof::Failed {
+            core.options.proof = Some(proof.clone());
+            let proof = proof.clone();
+            core.record(Event::Proved { proof });
+        }
+        return Ok(());
+    };
+    expected.agrees(proof, tolerance).map_err(|differs| {
+        let remedy = match core.options.repeats {
+            Repeats::Bits => "use the same build of horsehead-worker",
+            Repeats::Within(_) | Repeats::Unknown => {
+                "use the same program and files on every machine (`reference_tolerance` of the case says how \
+                 much results may differ)"
+            }
+        };
+        format!(
+            "proof is {differs}: the reference individual of the case comes out differently on this \
+             machine; {remedy}, or leave this machine out"
+        )
+    })
 }
 
 /// Refuses a worker that takes part already.

@@ -11,7 +11,7 @@
 //!
 //! What is recorded is part of the run and never computed again; another build or another case may
 //! do better with the last two. If the first 8 jobs all fail, the run stops.
-use protocol::case::ModelSettings;
+use protocol::case::{Case, Repeats};
 use std::time::Duration;
 
 /// Times and limits; the defaults are measured to give no false loss on a machine with thirty
@@ -90,16 +90,17 @@ pub struct Policy {
 impl Policy {
     /// For a case's model. One that ends its own runs is left to do so, and is given up only long after; one
     /// that does not repeat its bits is not copied, for the first result counts.
-    pub fn of(model: &ModelSettings) -> Self {
+    pub fn of(case: &Case) -> Self {
         /// Runs that may stand before one on a machine with fewer places than slots.
         const BEFORE: f64 = 64.0;
-        let mut policy = Self::default();
+        let (model, mut policy) = (&case.model, Self::default());
         if let Some(own) = model.deadline_s {
-            let guard = Duration::try_from_secs_f64(BEFORE * own).unwrap_or(Duration::MAX);
+            let runs = BEFORE * case.objective.conditions().count() as f64;
+            let guard = Duration::try_from_secs_f64(runs * own).unwrap_or(Duration::MAX);
             policy.first_deadline = guard.saturating_add(Duration::from_mins(10));
             policy.least_deadline = policy.first_deadline;
         }
-        if !model.repeats {
+        if model.repeats != Repeats::Bits {
             policy.deadline_samples = usize::MAX;
         }
         policy

@@ -177,7 +177,7 @@ pub(super) fn check_overdue(core: &mut Core, now: Duration) {
         core.send(worker, ToWorker::Cancel(attempt));
         release(core, worker, attempt.job, Use::Overdue);
         let limit_ms = millis(deadline);
-        let failure = Failure::Deadline { limit_ms };
+        let failure = Failure::deadline(limit_ms);
         failed(core, worker, attempt.job, failure, now);
     }
 }

@@ -11,10 +11,12 @@ use super::{
     times::Times,
 };
 use protocol::{
+    case::Repeats,
     event::{Account, Event, Spent, WorkerAccount},
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Job,
     message::{Attempt, ToWorker},
+    proof::Proof,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -37,8 +39,10 @@ pub struct CoreOptions {
     pub model: String,
     /// Numerics of it that all workers of this run must have; none before the first.
     pub model_digest: Option<String>,
+    /// How equal results of equal jobs are on all machines.
+    pub repeats: Repeats,
     /// What the case's reference individual must come to; none before the first worker.
-    pub proof: Option<ContentHash>,
+    pub proof: Option<Proof>,
     /// Jobs whose results are in the journal.
     pub finished: JobSet,
     /// Workers that outlived the last process and may hold jobs and results of it.

@@ -26,6 +26,7 @@ pub(super) struct ModelEntry {
     pub(super) deadline_s: f64,
     #[serde(default)]
     pub(super) repeatable: bool,
+    pub(super) reference_tolerance: Option<f64>,
     #[serde(default)]
     pub(super) verdicts: BTreeMap<String, String>,
     #[serde(default)]

@@ -3,11 +3,14 @@ use crate::case::{
     document::{Document, Step},
     error::CaseError,
 };
-use protocol::external::{File, MOST_BYTES};
+use protocol::{
+    external::MOST_BYTES,
+    file::{File, is_below},
+};
 use std::{
     fs, io,
     os::unix::fs::PermissionsExt,
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
 };
 
 /// Most files of a case.
@@ -31,10 +34,7 @@ pub(super) fn read(
             let value = format!("\"{}\"", path.display());
             document.field(&way, value, problem, help)
         };
-        let inside = path
-            .components()
-            .all(|part| matches!(part, Component::Normal(_)));
-        if path.as_os_str().is_empty() || !inside {
+        if !is_below(path) {
             return Err(refused(
                 "a file or folder below the case's own",
                 "copy it there, or leave it on the workers and name it in their entry",

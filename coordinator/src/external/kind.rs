@@ -1,22 +1,30 @@
 //! Programs of somebody's own as the coordinator's general parts ask for them.
 use super::{
     assemble::assemble,
-    file::OwnFile,
+    file::{ModelEntry, OwnFile},
     report::{Files, parameters},
 };
 use crate::{
-    case::{CaseError, Loaded, document::Step, general, source::Source},
+    case::{
+        CaseError, Loaded,
+        document::{Document, Step},
+        general,
+        source::Source,
+    },
     kind::Kind,
     report::Drawing,
 };
 use protocol::{
-    case::{Case, ModelSettings},
+    case::{Case, ModelSettings, Repeats},
     external::{External, KIND, entry_of, kind_of},
     wire,
 };
 
 /// Longest deadline of one run (s): a week.
 const LONGEST_S: f64 = 604_800.0;
+
+/// Largest difference between machines that is one at all: a share of a channel's size.
+const MOST_TOLERANCE: f64 = 1.0;
 
 /// Models that are programs of somebody's own.
 pub(crate) struct Externals;
@@ -47,6 +55,7 @@ impl Kind for Externals {
             1e-3..=LONGEST_S,
             "s",
         )?;
+        let repeats = repeats(document, &own.model)?;
         let mut loaded = general::read(source)?;
         let external = assemble(source, &own, &loaded.case)?;
         let settings = wire::encode(&external).map_err(|error| {
@@ -60,7 +69,7 @@ impl Kind for Externals {
         loaded.case.model = ModelSettings {
             kind: kind_of(entry),
             settings,
-            repeats: own.model.repeatable,
+            repeats,
             deadline_s: Some(own.model.deadline_s),
         };
         Ok(loaded)
@@ -102,4 +111,31 @@ impl Kind for Externals {
             (message, remedy.to_owned())
         })
     }
+}
+
+/// How equal results are, as the case says.
+fn repeats(document: &Document, model: &ModelEntry) -> Result<Repeats, CaseError> {
+    let Some(tolerance) = model.reference_tolerance else {
+        return Ok(if model.repeatable {
+            Repeats::Bits
+        } else {
+            Repeats::Unknown
+        });
+    };
+    let way = [Step::Key("model"), Step::Key("reference_tolerance")];
+    if model.repeatable {
+        return Err(document.field(
+            &way,
+            tolerance,
+            "absent beside `repeatable = true`",
+            "equal bits leave no tolerance: keep the one that is true",
+        ));
+    }
+    document.within(
+        "model.reference_tolerance",
+        tolerance,
+        f64::MIN_POSITIVE..=MOST_TOLERANCE,
+        "",
+    )?;
+    Ok(Repeats::Within(tolerance))
 }

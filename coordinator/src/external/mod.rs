@@ -11,6 +11,8 @@
 //! files = ["model.py", "tables"]          # optional: files and folders beside this one that travel with the case
 //! deadline_s = 60.0                       # how long one run may take
 //! repeatable = false                      # optional: whether equal inputs give equal bits everywhere
+//! reference_tolerance = 1e-3              # optional, where they do not: how far each machine's run of the start
+//!                                         # may lie from the first one's, as a share of each channel's size
 //! verdicts = { 3 = "diverged" }           # optional: exit statuses that say something of the individual, and
 //!                                         # are not tried again
 //! inputs = [

@@ -10,7 +10,8 @@ use super::{
 };
 use protocol::{
     event::{Event, Finished, RunHeader},
-    id::{ContentHash, JobId, RunId, WorkerId},
+    id::{JobId, RunId, WorkerId},
+    proof::Proof,
 };
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -49,7 +50,7 @@ pub struct Begun {
     /// Numerics of the run's first worker.
     pub model_digest: Option<String>,
     /// What the case's reference individual came to on the run's first worker.
-    pub proof: Option<ContentHash>,
+    pub proof: Option<Proof>,
     /// Workers that were there when the last process ended without closing the run: they may hold
     /// jobs and results of it.
     pub present: BTreeSet<WorkerId>,
@@ -66,7 +67,7 @@ pub struct Journal {
     writer: Option<thread::JoinHandle<()>>,
     closing: Arc<AtomicBool>,
     /// Held until the process ends.
-    _lock: File,
+    _lock: Held,
 }
 
 impl Journal {
@@ -222,7 +223,7 @@ struct Past {
     begun: Option<(RunId, RunHeader)>,
     epoch: u32,
     model_digest: Option<String>,
-    proof: Option<ContentHash>,
+    proof: Option<Proof>,
     /// Workers that joined and were not seen to leave, with the epoch in which they joined.
     present: BTreeMap<WorkerId, u32>,
     results: Vec<(JobId, u64)>,
@@ -292,7 +293,19 @@ fn identify(
     }
 }
 
-fn lock(folder: &Path) -> Result<File, JournalError> {
+/// A run's lock. It is given back by word: a program that is being started by another thread holds
+/// every open file for a moment, and would hold the lock with it.
+#[derive(Debug)]
+struct Held(File);
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        // closing the file gives it back as well
+        drop(self.0.unlock());
+    }
+}
+
+fn lock(folder: &Path) -> Result<Held, JournalError> {
     let path = folder.join(LOCK);
     let failed = |source: io::Error| JournalError::Io {
         doing: "lock",
@@ -306,7 +319,7 @@ fn lock(folder: &Path) -> Result<File, JournalError> {
         .open(&path);
     let lock = lock.map_err(failed)?;
     match lock.try_lock() {
-        Ok(()) => Ok(lock),
+        Ok(()) => Ok(Held(lock)),
         Err(TryLockError::WouldBlock) => Err(JournalError::Locked {
             folder: folder.to_owned(),
         }),

@@ -5,7 +5,7 @@ use crate::account::JobCost;
 use discrepancy::identify::UnknownEstimate;
 use protocol::case::{Case, Channel};
 use protocol::event::Spent;
-use protocol::job::{Curves, Evaluation};
+use protocol::job::{Curves, Evaluation, Verdict};
 
 /// One parameter set of a calibration.
 #[derive(Clone, Debug, PartialEq)]
@@ -188,7 +188,23 @@ impl Calibration {
         both.collect()
     }
 
-    /// The result under the condition that was calibrated.
+    /// How a parameter set ended under the conditions that were calibrated, and the sum of what it came to there;
+    /// none where one of them has no result.
+    pub fn objective(&self, of: impl Fn(&ConditionResult) -> &Run) -> Option<(Verdict, f64)> {
+        let mut whole = (Verdict::Complete, 0.0);
+        for condition in self.case.objective.conditions() {
+            let mut results = self.conditions.iter();
+            let result = results.find(|result| result.condition == condition)?;
+            let evaluation = &of(result).evaluation;
+            if evaluation.verdict != Verdict::Complete {
+                return Some((evaluation.verdict, evaluation.fitness));
+            }
+            whole.1 += evaluation.fitness;
+        }
+        Some(whole)
+    }
+
+    /// The result under the condition that was calibrated, the first one of several.
     pub fn calibrated(&self) -> Option<&ConditionResult> {
         self.conditions
             .iter()

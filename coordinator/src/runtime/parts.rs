@@ -56,6 +56,7 @@ impl Parts {
             case_bytes: blob.bytes.len() as u64,
             model: options.case.model.kind.clone(),
             model_digest: begun.model_digest,
+            repeats: options.case.model.repeats,
             proof: begun.proof,
             finished: journal.finished().collect(),
             // local workers end with their coordinator
@@ -64,7 +65,7 @@ impl Parts {
             } else {
                 BTreeSet::new()
             },
-            policy: Policy::of(&options.case.model),
+            policy: Policy::of(&options.case),
         });
         Ok(Self {
             run: begun.run,

@@ -15,10 +15,12 @@ use crate::core::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Sto
 use happening::What;
 use protocol::{
     announce::{Announcement, ModelDescriptor},
+    case::Repeats,
     event::Event,
     id::{ContentHash, JobId, RunId, WorkerId},
     job::Outcome,
     message::{Attempt, Done, FromWorker, ToWorker},
+    proof::Proof,
     wire,
 };
 use search::random::{Phase, Streams};
@@ -33,7 +35,7 @@ pub const MODEL: &str = "model";
 /// The case that every worker has.
 pub const CASE: ContentHash = ContentHash([7; 32]);
 /// What every worker computes of the proof.
-pub const PROOF: ContentHash = ContentHash([8; 32]);
+pub const PROOF: Proof = Proof::Bits(ContentHash([8; 32]));
 
 /// What a worker says of itself.
 pub fn announcement(digest: &str) -> Announcement {
@@ -138,6 +140,7 @@ impl Cluster {
             case_bytes: 1,
             model: MODEL.to_owned(),
             model_digest: None,
+            repeats: Repeats::Bits,
             proof: None,
             finished: JobSet::default(),
             expected: BTreeSet::new(),

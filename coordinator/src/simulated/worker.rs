@@ -4,6 +4,7 @@ use protocol::{
     id::ContentHash,
     job::{Answer, Failure, Job, Outcome},
     message::{Attempt, Beat, Cost, Done, Order},
+    proof::Proof,
 };
 use std::{
     collections::{BTreeMap, BTreeSet, VecDeque},
@@ -140,7 +141,7 @@ impl Worker {
     }
 
     /// What it says of itself, with the case that it has and what it computed of the proof.
-    pub fn beat(&self, case: Option<ContentHash>, proof: ContentHash) -> Beat {
+    pub fn beat(&self, case: Option<ContentHash>, proof: Proof) -> Beat {
         Beat {
             number: 0,
             case,

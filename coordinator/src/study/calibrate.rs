@@ -79,6 +79,7 @@ pub(super) fn score(case: &Case, proposal: &Proposal) -> Job {
     let individual = Individual::new(case.objective.condition, proposal.genes.clone());
     let reply = Reply::Score {
         with_residual: proposal.purpose.wants_residual(),
+        whole: true,
     };
     Job::Simulate(SimulateSpec {
         columns: derived(case, proposal),

@@ -80,6 +80,7 @@ pub async fn compare<E: Evaluator>(
                 let individual = Individual::new(one.condition, genes.clone());
                 let reply = Reply::Score {
                     with_residual: false,
+                    whole: false,
                 };
                 let spec = SimulateSpec::new(individual, reply);
                 evaluator.submit(JobId(first), Job::Simulate(spec))?;

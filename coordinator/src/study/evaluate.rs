@@ -94,7 +94,10 @@ pub(super) fn job<T>(case: &Case, request: &Request<T>) -> Job {
     let with_residual = request.with_residual;
     Job::Simulate(SimulateSpec::new(
         individual,
-        Reply::Score { with_residual },
+        Reply::Score {
+            with_residual,
+            whole: true,
+        },
     ))
 }
 

@@ -391,8 +391,7 @@ async fn comparison_fails(answer: fn(&Space, u64, &Individual) -> Outcome) -> St
 
 #[tokio::test]
 async fn a_comparison_that_cannot_be_made_names_the_individual() {
-    let error =
-        comparison_fails(|_, _, _| Outcome::Failed(Failure::Deadline { limit_ms: 1500 })).await;
+    let error = comparison_fails(|_, _, _| Outcome::Failed(Failure::deadline(1500))).await;
     assert_eq!(
         error.to_string(),
         "the recommended individual at 5rpm could not be evaluated: it ran longer than 1.5 s"

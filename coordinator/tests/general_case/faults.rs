@@ -235,6 +235,13 @@ pub(super) const FAULTS: &[Fault] = &[
         &["`objective.condition` = \"sluw\"", "did you mean `slow`?"],
     ),
     (
+        "an objective over a condition that is held out",
+        CASE,
+        "[objective]\ncondition = \"slow\"\nterms = [{ channel = \"force\"",
+        "[objective]\ncondition = [\"slow\", \"fast\"]\nterms = [{ channel = \"force\"",
+        &["`objective.condition` = \"fast\"", "held_out"],
+    ),
+    (
         "cycles that fall",
         SLOW,
         "\n2,0,1",

@@ -6,7 +6,7 @@
 mod faults;
 
 use coordinator::case::{self, Loaded, Overrides};
-use protocol::case::{Offset, Scale};
+use protocol::case::{Channel, Offset, Scale};
 use std::{fs, path::PathBuf};
 use tempfile::TempDir;
 
@@ -89,6 +89,36 @@ fn a_case_of_an_unknown_model_is_read_without_knowing_it() {
     );
 }
 
+/// Several conditions in one objective, and a zero for some channels only.
+#[test]
+fn an_objective_is_over_the_conditions_that_it_names() {
+    let case = Case::new();
+    let from = "condition = \"slow\"\nterms";
+    case.replace("case.toml", from, "condition = [\"fast\", \"slow\"]\nterms");
+    case.replace(
+        "case.toml",
+        "unit = \"N\"\n",
+        "unit = \"N\"\noffset = \"fixed\"\n",
+    );
+    case.replace("case.toml", "held_out = true\n", "");
+    let loaded = case.load().unwrap().case;
+    let objective = &loaded.objective;
+    assert_eq!(objective.conditions().collect::<Vec<_>>(), [1, 0]);
+    assert!(objective.holds(0) && objective.holds(1) && !objective.holds(2));
+    let fixed: Vec<bool> = loaded.channels.iter().map(Channel::is_absolute).collect();
+    assert_eq!(fixed, [true, false, false]);
+    // the second condition measures something else
+    let of_fast = "name = \"force\"\nunit = \"N\"\ncondition = \"fast\"";
+    case.replace("case.toml", of_fast, &of_fast.replace("force", "thrust"));
+    let error = case.load().unwrap_err().to_string();
+    for part in [
+        "`objective.condition[0]` = \"fast\"",
+        "a record of one of the terms",
+    ] {
+        assert!(error.contains(part), "{error}");
+    }
+}
+
 #[test]
 fn records_are_averaged_and_channels_say_where_they_stand() {
     let loaded = Case::new().load().unwrap();
@@ -116,7 +146,8 @@ fn records_are_averaged_and_channels_say_where_they_stand() {
     assert_eq!((speed.record.as_ref(), speed.step), (None, None));
     assert_eq!(fast.record.as_ref().unwrap().spread, [0.0; 3]);
     let objective = &loaded.case.objective;
-    assert_eq!((objective.condition, objective.offset), (0, Offset::Free));
+    assert_eq!((objective.condition, &*objective.others), (0, &[][..]));
+    assert_eq!((slow.offset, fast.offset), (Offset::Free, Offset::Free));
     assert_eq!(
         (
             objective.terms[0].channel.as_str(),

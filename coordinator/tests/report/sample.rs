@@ -6,7 +6,7 @@ use coordinator::report::{
 };
 use protocol::pumping_unit::failure;
 use protocol::{
-    case::{Case, Channel, ChannelRecord, Condition, Objective, Offset, Term, Unknown},
+    case::{Case, Channel, ChannelRecord, Condition, Objective, Term, Unknown},
     event::Spent,
     job::{ChannelScore, Counters, Curves, Evaluation, Reached, Verdict},
     pumping_unit::{
@@ -189,8 +189,8 @@ pub(crate) fn case() -> Case {
             .collect(),
         objective: Objective {
             condition: 0,
+            others: Vec::new(),
             terms: [1, 3].map(term).into(),
-            offset: Offset::Free,
         },
     }
 }

@@ -1,5 +1,6 @@
 //! What a simulation shows and a record measures: curves, each with a name, a unit and the places
 //! where its values stand. It knows nothing of the machine that they belong to.
+use super::objective::Offset;
 use serde::{Deserialize, Serialize};
 
 /// One curve of a simulation under one condition, and what was measured of it.
@@ -24,13 +25,18 @@ pub struct Channel {
     /// times, and its noise is half of [`Self::noise`]. Positive; empty where all count alike.
     #[serde(with = "crate::curve")]
     pub weights: Vec<f64>,
-    /// Whether its values have a zero, so that the constant of a difference counts; else only how it moves.
-    pub absolute: bool,
+    /// Whether its values have a zero.
+    pub offset: Offset,
     /// What was measured, as scores compare it; none where nothing is compared.
     pub record: Option<ChannelRecord>,
 }
 
 impl Channel {
+    /// Whether its values have a zero, so that the constant of a difference counts.
+    pub fn is_absolute(&self) -> bool {
+        self.offset == Offset::Fixed
+    }
+
     /// Multiplies a curve's differences by the weights of their values.
     pub fn weigh(&self, differences: &mut [f64]) {
         for (difference, weight) in differences.iter_mut().zip(&self.weights) {

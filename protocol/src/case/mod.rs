@@ -15,7 +15,7 @@ pub use bad_unknown::{BadUnknown, check_unknowns};
 pub use channel::{Abscissa, Channel, ChannelRecord};
 pub use condition::Condition;
 pub use effect::{EffectSetting, merged};
-pub use model::ModelSettings;
+pub use model::{ModelSettings, Repeats};
 pub use objective::{Objective, Offset, Term};
 pub use unknown::{Prior, Scale, Shares, Shift, Tie, Unknown, Valley};
 

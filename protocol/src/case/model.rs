@@ -9,12 +9,25 @@ pub struct ModelSettings {
     /// What the model alone understands; hexadecimal digits in files of text.
     #[serde(serialize_with = "write", deserialize_with = "read")]
     pub settings: Vec<u8>,
-    /// Whether equal jobs give equal bits everywhere. Where they do not, the first result counts, nobody is
-    /// asked for the same thing twice, and workers are not compared by their bits.
-    pub repeats: bool,
+    /// How equal the results of equal jobs are.
+    pub repeats: Repeats,
     /// How long one simulation may take (s), where the model itself ends it; none where that follows from how long
     /// others took.
     pub deadline_s: Option<f64>,
+}
+
+/// How equal the results of equal jobs are on all machines. Where their bits are not, the first result counts and
+/// nobody is asked for the same thing twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Repeats {
+    /// Every bit of them.
+    #[default]
+    Bits,
+    /// Values differ by no more than this share of their channel's root mean square.
+    Within(f64),
+    /// Nobody says.
+    Unknown,
 }
 
 impl ModelSettings {
@@ -23,7 +36,7 @@ impl ModelSettings {
         Self {
             kind,
             settings,
-            repeats: true,
+            repeats: Repeats::Bits,
             deadline_s: None,
         }
     }

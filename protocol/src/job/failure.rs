@@ -1,4 +1,5 @@
 //! What else than its answer can come of a job.
+use super::left::Left;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -9,11 +10,15 @@ pub enum Failure {
     Deadline {
         /// The deadline \[ms\].
         limit_ms: u64,
+        /// What it left until then.
+        left: Left,
     },
     /// The process that computed it ended by itself.
     Crashed {
         /// Exit status or signal, in words.
         how: String,
+        /// What it left behind.
+        left: Left,
     },
     /// The worker that computed it was lost, as often as the retry limit allows.
     Lost {
@@ -43,6 +48,26 @@ impl Failure {
         }
     }
 
+    /// A process that ended by itself and left nothing.
+    pub const fn crashed(how: String) -> Self {
+        let left = Left::NONE;
+        Self::Crashed { how, left }
+    }
+
+    /// A run that was ended at its deadline \[ms\] and left nothing.
+    pub const fn deadline(limit_ms: u64) -> Self {
+        let left = Left::NONE;
+        Self::Deadline { limit_ms, left }
+    }
+
+    /// What the run left in its folder, as far as it travelled.
+    pub const fn left(&self) -> Option<&Left> {
+        match self {
+            Self::Deadline { left, .. } | Self::Crashed { left, .. } => Some(left),
+            Self::Lost { .. } | Self::Refused { .. } | Self::Misconfigured { .. } => None,
+        }
+    }
+
     /// Name of the kind, as written in tables.
     pub const fn kind(&self) -> &'static str {
         match self {
@@ -58,10 +83,10 @@ impl Failure {
 impl fmt::Display for Failure {
     fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Deadline { limit_ms } => {
+            Self::Deadline { limit_ms, .. } => {
                 write!(to, "it ran longer than {:.1} s", *limit_ms as f64 / 1000.0)
             }
-            Self::Crashed { how } => write!(to, "the process that computed it ended: {how}"),
+            Self::Crashed { how, .. } => write!(to, "the process that computed it ended: {how}"),
             Self::Lost { workers } => write!(to, "{workers} workers were lost over it"),
             Self::Refused { reason } => write!(to, "the worker refused it: {reason}"),
             Self::Misconfigured { field, problem } => write!(to, "{field}: {problem}"),

@@ -68,6 +68,9 @@ pub enum Reply {
     Score {
         /// Whether the residual vector is wanted too.
         with_residual: bool,
+        /// Whether it is simulated under every condition of the objective, of which its own is the first, and
+        /// their scores are joined; else under its own alone.
+        whole: bool,
     },
     /// The measured channels alone: an [`super::Observation`].
     Channels,

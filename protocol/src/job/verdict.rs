@@ -74,6 +74,17 @@ pub struct Counters {
 }
 
 impl Counters {
+    /// Adds the work of another simulation.
+    pub const fn add(&mut self, other: &Self) {
+        self.steps = self.steps.saturating_add(other.steps);
+        self.rejected_steps = self.rejected_steps.saturating_add(other.rejected_steps);
+        self.newton_iterations = self
+            .newton_iterations
+            .saturating_add(other.newton_iterations);
+        self.jacobians = self.jacobians.saturating_add(other.jacobians);
+        self.factorizations = self.factorizations.saturating_add(other.factorizations);
+    }
+
     /// Each with the name that tables and files give it and with what it counts, in one order for
     /// all of them.
     pub const fn named(&self) -> [(&'static str, &'static str, u64); 5] {

@@ -1,6 +1,6 @@
 //! The channels of a pumping unit: strain gauges on its back head, the height of its polished rod and
 //! the torque at its crank.
-use crate::case::{Abscissa, Channel};
+use crate::case::{Abscissa, Channel, Offset};
 
 /// What one channel is a curve of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +47,7 @@ impl Sensor {
             noise: None,
             step: Some(step),
             weights: Vec::new(),
-            absolute: false,
+            offset: Offset::Free,
             record: None,
         }
     }

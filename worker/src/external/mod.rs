@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! values -> templates (fill) -> folder (scratch) -> process (run) -> readings -> curves (gather)
+//!                                                              \-> what a failure leaves (left)
 //! ```
 //!
 //! What may be started is this machine's own decision: a list that a case can only choose an entry of
 //! (`exchange::allow`). Nothing here knows what the numbers mean.
 mod fill;
 mod gather;
+mod left;
 mod model;
 mod run;
 mod scratch;

@@ -2,6 +2,7 @@
 use super::{
     fill::Templates,
     gather::{Readings, equated},
+    left,
     run::{self, Turn},
     scratch::{self, Scratch},
 };
@@ -22,6 +23,9 @@ use std::{
 /// What a program is said to have ended with that called an individual a failure itself.
 const FAIL: Word = Word::new("fail");
 
+/// How many failures of one slot take their folders along: a program that always fails says all in these.
+const MOST_SENT: u64 = 16;
+
 /// A program with a case.
 #[derive(Debug)]
 pub(super) struct Prepared {
@@ -38,6 +42,8 @@ pub(super) struct Prepared {
     verdicts: Vec<(i32, Word)>,
     /// Counts evaluations.
     evaluations: AtomicU64,
+    /// Counts folders that went with failures.
+    sent: AtomicU64,
 }
 
 impl Prepared {
@@ -88,6 +94,7 @@ impl Prepared {
             name: name.to_owned(),
             place,
             evaluations: AtomicU64::new(0),
+            sent: AtomicU64::new(0),
         })
     }
 
@@ -123,7 +130,7 @@ impl Prepared {
     }
 
     fn evaluate(&self, spec: &SimulateSpec) -> Result<Observation, Failure> {
-        let crashed = |how: String| Failure::Crashed { how };
+        let crashed = Failure::crashed;
         let values = self.values(spec)?;
         let number = self.evaluations.fetch_add(1, Ordering::Relaxed) + 1;
         let functions = self.readings.functions();
@@ -161,16 +168,17 @@ impl Prepared {
             let verdict = self.verdicts.iter().find(|(own, _)| Some(*own) == code);
             return match verdict {
                 Some((_, word)) => Ok(failed(*word)),
-                None => Err(Failure::Crashed {
-                    how: format!("{shown} {}", run::words(status, scratch)),
-                }),
+                None => Err(Failure::crashed(format!(
+                    "{shown} {}",
+                    run::words(status, scratch)
+                ))),
             };
         }
-        let unusable = |what: String| Failure::Crashed {
-            how: format!(
+        let unusable = |what: String| {
+            Failure::crashed(format!(
                 "{shown} ended in good order, but {what}{}",
                 run::last_words(scratch)
-            ),
+            ))
         };
         let left = |file: &str| run::left(scratch, file, &self.entry);
         let mut left = self.readings.read(left).map_err(unusable)?;
@@ -198,13 +206,20 @@ impl Prepared {
         })
     }
 
-    /// A failure that leaves its folder behind, where the entry wants that.
-    fn noted(&self, failure: Failure, scratch: &mut Scratch) -> Failure {
-        if let (Failure::Crashed { how }, true) = (&failure, self.entry.keep_failed) {
+    /// A failure with what the program left, and with its folder where the entry keeps that.
+    fn noted(&self, mut failure: Failure, scratch: &mut Scratch) -> Failure {
+        if let Failure::Crashed { left, .. } | Failure::Deadline { left, .. } = &mut failure
+            && self.sent.fetch_add(1, Ordering::Relaxed) < MOST_SENT
+        {
+            *left = left::left(scratch.root(), &self.external.files);
+        }
+        if self.entry.keep_failed {
             let kept = scratch.keep().display();
-            return Failure::Crashed {
-                how: format!("{how}\n  its folder is kept: {kept}"),
-            };
+            if let Failure::Crashed { how, .. } = &mut failure {
+                *how = format!("{how}\n  its folder is kept: {kept}");
+            } else {
+                tracing::info!("{failure}; its folder is kept: {kept}");
+            }
         }
         failure
     }

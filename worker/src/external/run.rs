@@ -33,7 +33,7 @@ pub(super) fn run(
     scratch: &Scratch,
     deadline: Duration,
 ) -> Result<ExitStatus, Failure> {
-    let crashed = |how: String| Failure::Crashed { how };
+    let crashed = Failure::crashed;
     let failed = |what: &str, error: &io::Error| crashed(format!("{what}: {error}"));
     // whatever the program leaves without a parent becomes ours, and is ended
     set_child_subreaper(Some(getpid())).map_err(|error| failed("subreaper", &error.into()))?;
@@ -49,9 +49,9 @@ pub(super) fn run(
     while let Ok(Some(_)) = wait(WaitOptions::NOHANG) {}
     match ended {
         Ok(status) => Ok(status),
-        Err(Stopped::Late) => Err(Failure::Deadline {
-            limit_ms: u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX),
-        }),
+        Err(Stopped::Late) => Err(Failure::deadline(
+            u64::try_from(deadline.as_millis()).unwrap_or(u64::MAX),
+        )),
         Err(Stopped::TooMuch) => Err(crashed(format!(
             "it wrote more than the {} MiB that its entry allows (output_mib){}",
             entry.output_mib,

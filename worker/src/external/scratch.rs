@@ -3,12 +3,12 @@
 //! A file in it is locked as long as its process lives, so that what a killed one leaves is known as such, in
 //! whatever namespace it ran, and removed by the next.
 use exchange::allow::Entry;
-use protocol::external::File;
+use protocol::file::{File, is_below};
 use std::{
     fs::{self, OpenOptions},
     io,
     os::unix::fs::{DirBuilderExt, OpenOptionsExt},
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
     process,
     sync::atomic::{AtomicU64, Ordering},
     time::Duration,
@@ -18,8 +18,10 @@ use std::{
 const PREFIX: &str = "horsehead-";
 
 /// The file that is locked, and the one that says that the folder is to stay.
-const LOCK: &str = "lock";
+pub(super) const LOCK: &str = "lock";
 const KEPT: &str = "kept";
+/// Where in it the program works.
+pub(super) const WORK: &str = "work";
 /// A folder without a lock is one that is being made, unless it is older than this.
 const NEW: Duration = Duration::from_mins(1);
 
@@ -67,7 +69,7 @@ impl Scratch {
 
     /// Where the program works.
     pub(super) fn work(&self) -> PathBuf {
-        self.root.join("work")
+        self.root.join(WORK)
     }
 
     /// What it says on its outputs.
@@ -103,15 +105,17 @@ impl Scratch {
 
     /// A path below the folder.
     pub(super) fn inside(&self, path: &str) -> io::Result<PathBuf> {
-        let plain = Path::new(path)
-            .components()
-            .all(|part| matches!(part, Component::Normal(_)));
-        if path.is_empty() || !plain {
+        if !is_below(Path::new(path)) {
             return Err(io::Error::other(format!(
                 "`{path}` does not lie below the program's folder"
             )));
         }
         Ok(self.work().join(path))
+    }
+
+    /// Where everything of it lies.
+    pub(super) fn root(&self) -> &Path {
+        &self.root
     }
 
     /// How much is in it (bytes).

@@ -1,6 +1,7 @@
 //! From a job to its outcome, the same for every kind of model: replies and scores.
 //!
 //! A pure function of the case and the job, which knows nothing of slots or links.
+mod joint;
 mod nothing;
 mod score;
 
@@ -47,9 +48,19 @@ impl Prepared {
     fn simulate(&self, spec: &SimulateSpec) -> Result<Answer, Failure> {
         let (case, condition) = (&self.case, spec.individual.condition);
         Ok(match spec.reply {
-            Reply::Score { with_residual } => {
-                let seen = self.model.observe(spec, true)?;
-                Answer::Scored(score::evaluation((case, condition), &seen, with_residual)?)
+            Reply::Score {
+                with_residual,
+                whole,
+            } => {
+                let score = |spec: &SimulateSpec| {
+                    let seen = self.model.observe(spec, true)?;
+                    score::evaluation((case, spec.individual.condition), &seen, with_residual)
+                };
+                Answer::Scored(if whole && case.objective.condition == condition {
+                    joint::scored(&case.objective, spec, score)?
+                } else {
+                    score(spec)?
+                })
             }
             Reply::Channels => {
                 let seen = self.model.observe(spec, false)?;

@@ -16,7 +16,7 @@ const FAILED_UNDER_LOAD: f64 = 1e7;
 /// channels without a record are not looked at.
 ///
 /// # Errors
-/// [`Failure::Misconfigured`] if nothing was measured under the condition, or not what the objective
+/// [`Failure::Misconfigured`] if nothing was measured under the condition, or nothing that the objective
 /// asks for.
 pub(super) fn evaluation(
     (case, condition): (&Case, usize),
@@ -38,7 +38,7 @@ pub(super) fn evaluation(
     let compared: Vec<Compared<'_>> = curves
         .filter_map(|((at, channel), simulated)| {
             let record = channel.record.as_ref()?;
-            let (score, residual) = compared(at, channel, record, simulated, case.objective.offset);
+            let (score, residual) = compared(at, channel, record, simulated);
             Some(Compared {
                 name: &channel.name,
                 score,
@@ -95,7 +95,6 @@ fn compared(
     channel: &Channel,
     record: &ChannelRecord,
     simulated: &[f64],
-    treatment: Offset,
 ) -> (ChannelScore, Vec<f64>) {
     let measured = &record.mean;
     let n = measured.len() as f64;
@@ -104,7 +103,7 @@ fn compared(
         .map(|(measured, simulated)| measured - simulated)
         .collect();
     let offset = weighted_mean(channel, &difference);
-    let removed = match treatment {
+    let removed = match channel.offset {
         Offset::Free => offset,
         Offset::Fixed => 0.0,
     };
@@ -154,16 +153,17 @@ fn peak_to_peak(values: &[f64]) -> f64 {
 }
 
 fn weighted(objective: &Objective, compared: &[Compared<'_>]) -> Result<f64, Failure> {
-    let mut sum = 0.0;
-    for term in &objective.terms {
-        let found = compared.iter().find(|c| c.name == term.channel);
-        let found = found.ok_or_else(|| {
-            let problem = format!("channel `{}` has no record", term.channel);
-            Failure::misconfigured("objective.terms", problem)
-        })?;
-        sum += term.weight * found.score.mse;
+    let term = |term: &Term| {
+        let found = compared.iter().find(|c| c.name == term.channel)?;
+        Some(term.weight * found.score.mse)
+    };
+    let terms: Vec<f64> = objective.terms.iter().filter_map(term).collect();
+    if terms.is_empty() {
+        let names: Vec<&str> = objective.terms.iter().map(|term| &*term.channel).collect();
+        let problem = format!("no record of {} under this condition", names.join(", "));
+        return Err(Failure::misconfigured("objective.terms", problem));
     }
-    Ok(sum)
+    Ok(terms.iter().sum())
 }
 
 /// Residuals of the objective's channels, one after the other, scaled such that the squared length of
@@ -186,15 +186,20 @@ fn residual_by(objective: &Objective, channels: &[&Channel], by: &Derivative) ->
     let mut all = Vec::new();
     for term in &objective.terms {
         let mut found = channels.iter().zip(curves);
-        let found = found.find(|(channel, _)| channel.name == term.channel);
-        let Some((channel, curve)) = found.filter(|(_, curve)| !curve.is_empty()) else {
+        let found =
+            found.find(|(channel, _)| channel.name == term.channel && channel.record.is_some());
+        let Some((channel, curve)) = found else {
+            // not measured under this condition
+            continue;
+        };
+        if curve.is_empty() {
             return Derivative::Missing {
                 reason: format!("`{}` is not differentiated", term.channel),
             };
-        };
+        }
         let n = curve.len() as f64;
         let mut curve: Vec<f64> = curve.iter().map(|x| f64::from(*x)).collect();
-        let removed = match objective.offset {
+        let removed = match channel.offset {
             Offset::Free => weighted_mean(channel, &curve),
             Offset::Fixed => 0.0,
         };
@@ -217,7 +222,7 @@ mod tests {
     use super::*;
     use protocol::{case::Abscissa, job::Per};
 
-    fn channel(name: &str, weights: &[f64]) -> Channel {
+    fn channel(name: &str, weights: &[f64], offset: Offset) -> Channel {
         Channel {
             name: name.to_owned(),
             title: name.to_owned(),
@@ -232,7 +237,7 @@ mod tests {
             noise: None,
             step: None,
             weights: weights.to_vec(),
-            absolute: false,
+            offset,
             record: None,
         }
     }
@@ -245,7 +250,8 @@ mod tests {
             spread: vec![0.0; 4],
         };
         let simulated = [0.0, 1.0, 6.0, 1.0];
-        let (free, residual) = compared(2, &channel("a", &[]), &record, &simulated, Offset::Free);
+        let free = channel("a", &[], Offset::Free);
+        let (free, residual) = compared(2, &free, &record, &simulated);
         // differences 1, 2, -1, 2: mean 1
         assert_eq!((free.channel, residual), (2, vec![0.0, 1.0, -2.0, 1.0]));
         assert!((free.offset - 1.0).abs() < 1e-15);
@@ -255,13 +261,14 @@ mod tests {
         assert!((free.relative_error - 1.0).abs() < 1e-15);
         assert!((free.peak_to_peak_error - 0.5).abs() < 1e-15);
         // a value of weight 2 counts four times, for the offset as well
-        let weighted = channel("a", &[1.0, 1.0, 2.0, 1.0]);
-        let (score, residual) = compared(2, &weighted, &record, &simulated, Offset::Free);
+        let weighted = channel("a", &[1.0, 1.0, 2.0, 1.0], Offset::Free);
+        let (score, residual) = compared(2, &weighted, &record, &simulated);
         assert!((score.offset - 1.0 / 7.0).abs() < 1e-15);
         let square: f64 = residual.iter().map(|x| x * x).sum();
         assert!((score.mse - square / 4.0).abs() < 1e-15);
         assert!((residual[2] + 2.0 * 8.0 / 7.0).abs() < 1e-15);
-        let (fixed, _) = compared(2, &channel("a", &[]), &record, &simulated, Offset::Fixed);
+        let fixed = channel("a", &[], Offset::Fixed);
+        let (fixed, _) = compared(2, &fixed, &record, &simulated);
         assert!((fixed.mse - 2.5).abs() < 1e-15);
     }
 
@@ -274,12 +281,6 @@ mod tests {
             spread: vec![0.0; 4],
         };
         let records = [record([1.0, 3.0, 5.0, 3.0]), record([2.0, 0.0, 1.0, 4.0])];
-        let own = [
-            channel("b", &[1.0, 2.0, 0.5, 1.0]),
-            channel("unscored", &[]),
-            channel("a", &[]),
-        ];
-        let channels: Vec<&Channel> = own.iter().collect();
         let curves = [
             [0.5, 1.0, -2.0, 0.25],
             [9.0, 9.0, 9.0, 9.0],
@@ -293,17 +294,30 @@ mod tests {
             per: Per::Decade,
             curves: curves.map(single).to_vec(),
         };
-        for offset in [Offset::Free, Offset::Fixed] {
+        // each channel by its own treatment
+        for offsets in [[Offset::Free, Offset::Fixed], [Offset::Fixed, Offset::Free]] {
+            let mut own = [
+                channel("b", &[1.0, 2.0, 0.5, 1.0], offsets[0]),
+                channel("unscored", &[], Offset::Free),
+                channel("a", &[], offsets[1]),
+            ];
+            own[0].record = Some(records[1].clone());
+            own[2].record = Some(records[0].clone());
+            let channels: Vec<&Channel> = own.iter().collect();
             let objective = Objective {
                 condition: 0,
-                terms: vec![term("a", 0.7), term("b", 2.0)],
-                offset,
+                others: Vec::new(),
+                terms: vec![
+                    term("a", 0.7),
+                    term("b", 2.0),
+                    term("of another condition", 1.0),
+                ],
             };
             let at = |by: f64| {
                 let all = [(0, 2), (1, 0)].map(|(at, own)| {
                     let simulated = curves[own].map(|x| 1.0 + by * x);
                     let channel = channels[own];
-                    let (score, residual) = compared(at, channel, &records[at], &simulated, offset);
+                    let (score, residual) = compared(at, channel, &records[at], &simulated);
                     Compared {
                         name: &channel.name,
                         score,
@@ -324,7 +338,11 @@ mod tests {
             for (found, expected) in curves[0].iter().zip(expected) {
                 assert!((f64::from(*found) - expected).abs() < 1e-6);
             }
-            let none = residual_by(&objective, &channels[..1], &derivative);
+            let gap = Derivative::Curves {
+                per: Per::Decade,
+                curves: vec![Vec::new(); 3],
+            };
+            let none = residual_by(&objective, &channels, &gap);
             assert!(matches!(none, Derivative::Missing { .. }));
         }
     }

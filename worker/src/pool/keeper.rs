@@ -136,7 +136,7 @@ impl Keeper {
         if let Err(error) = given {
             let end = self.child.take().map_or_else(String::new, Child::ended);
             let how = format!("the slot's process takes no job: {error} {end}");
-            self.finish(Some(Outcome::Failed(Failure::Crashed { how })), 0);
+            self.finish(Some(Outcome::Failed(Failure::crashed(how))), 0);
         }
     }
 
@@ -169,7 +169,7 @@ impl Keeper {
             Some(FromSlot::Done { outcome, cpu_us }) => self.finish(Some(*outcome), cpu_us),
             None => {
                 let how = self.child.take().map_or_else(String::new, Child::ended);
-                self.finish(Some(Outcome::Failed(Failure::Crashed { how })), 0);
+                self.finish(Some(Outcome::Failed(Failure::crashed(how))), 0);
             }
         }
     }
@@ -179,7 +179,7 @@ impl Keeper {
         if let Some(current) = overdue {
             self.child = None;
             let limit_ms = u64::try_from(current.deadline.as_millis()).unwrap_or(u64::MAX);
-            self.finish(Some(Outcome::Failed(Failure::Deadline { limit_ms })), 0);
+            self.finish(Some(Outcome::Failed(Failure::deadline(limit_ms))), 0);
         }
     }
 

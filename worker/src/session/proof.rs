@@ -1,15 +1,16 @@
 //! Proof that this worker computes what the others compute: the case's reference individual.
 //!
 //! It is an ordinary job in an ordinary slot: the recommended parameters under the condition of
-//! the objective. The name of its outcome's bits is what the coordinator compares. A case that
-//! cannot be built gives a proof too: that of what is wrong with it, which must be the same
-//! everywhere.
+//! the objective. The name of its outcome's bits is what the coordinator compares, or some of its values
+//! where bits do not repeat. A case that cannot be built gives a proof too: that of what is wrong with it,
+//! which must be the same everywhere.
 use crate::pool::{CaseBytes, Task};
 use protocol::{
-    case::Case,
+    case::{Case, Repeats},
     id::{AttemptId, ContentHash, JobId},
-    job::{Failure, Individual, Job, Outcome, Reply, SimulateSpec},
+    job::{Answer, Failure, Individual, Job, Observation, Outcome, Reply, SimulateSpec},
     message::Attempt,
+    proof::{MOST_SAMPLES, Proof, Sample},
     wire,
 };
 use std::time::Duration;
@@ -24,61 +25,97 @@ pub(super) const ATTEMPT: Attempt = Attempt {
 const DEADLINE: Duration = Duration::from_mins(10);
 
 /// How far the proof has come.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Proof {
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Progress {
     /// It is still to be computed.
     Missing,
     /// A slot computes it.
     Running,
-    /// The name of its bits.
-    Known(ContentHash),
+    /// What came out.
+    Known(Proof),
 }
 
-impl Proof {
+impl Progress {
     /// What came out; why this worker cannot work if nothing did.
     ///
-    /// Where a model does not repeat its bits there is nothing to compare; that its program fails at the reference
-    /// individual is for the run's own jobs to say.
-    pub(super) fn of(outcome: Option<Outcome>, repeats: bool) -> Result<Self, String> {
-        match outcome {
-            None => Ok(Self::Missing),
-            Some(
+    /// Where nobody says how equal results are there is nothing to compare; that its program fails at the reference
+    /// individual is for the coordinator to judge, and for the run's own jobs.
+    pub(super) fn of(outcome: Option<Outcome>, repeats: Repeats) -> Result<Self, String> {
+        let Some(outcome) = outcome else {
+            return Ok(Self::Missing);
+        };
+        let proof = match (repeats, outcome) {
+            (
+                Repeats::Unknown,
                 Outcome::Done(_)
                 | Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
-            ) if !repeats => Ok(Self::Known(ContentHash::of(b"not compared"))),
-            Some(Outcome::Failed(
-                failure @ (Failure::Crashed { .. }
-                | Failure::Deadline { .. }
-                | Failure::Lost { .. }
-                | Failure::Refused { .. }),
-            )) => Err(format!(
-                "the reference individual of the case cannot be computed here: {failure}"
-            )),
-            Some(outcome) => match wire::encode(&outcome) {
-                Ok(bytes) => Ok(Self::Known(ContentHash::of(&bytes))),
-                Err(error) => Err(format!("the reference individual has no name: {error}")),
+            ) => Proof::Bits(ContentHash::of(b"not compared")),
+            (
+                Repeats::Within(_),
+                Outcome::Failed(Failure::Crashed { .. } | Failure::Deadline { .. }),
+            ) => Proof::Failed,
+            (Repeats::Within(_), Outcome::Done(Answer::Channels(seen))) => {
+                Proof::Values(samples(&seen))
+            }
+            (
+                _,
+                Outcome::Failed(
+                    failure @ (Failure::Crashed { .. }
+                    | Failure::Deadline { .. }
+                    | Failure::Lost { .. }
+                    | Failure::Refused { .. }),
+                ),
+            ) => {
+                return Err(format!(
+                    "the reference individual of the case cannot be computed here: {failure}"
+                ));
+            }
+            (_, outcome) => match wire::encode(&outcome) {
+                Ok(bytes) => Proof::Bits(ContentHash::of(&bytes)),
+                Err(error) => return Err(format!("the reference individual has no name: {error}")),
             },
-        }
+        };
+        Ok(Self::Known(proof))
     }
 
-    /// The name of its bits, if it is known.
-    pub(super) const fn known(&self) -> Option<ContentHash> {
+    /// What came out, if that is known.
+    pub(super) fn known(&self) -> Option<Proof> {
         match self {
-            Self::Known(proof) => Some(*proof),
+            Self::Known(proof) => Some(proof.clone()),
             Self::Missing | Self::Running => None,
         }
     }
 }
 
-/// The reference individual of a case, as a task, and whether its bits are the same everywhere; why there is none
+/// Values that stand for the curves of a run, as many of each curve as there is room for, evenly over it.
+fn samples(seen: &Observation) -> Vec<Sample> {
+    let curves = seen.curves.iter().filter(|curve| !curve.is_empty());
+    let share = (MOST_SAMPLES / curves.clone().count().max(1)).max(1);
+    let of = |curve: &Vec<f64>| {
+        let count = curve.len();
+        let scale = (curve.iter().map(|x| x * x).sum::<f64>() / count as f64).sqrt();
+        let taken = share.min(count);
+        let value = move |at: usize| curve.get(at * count / taken).copied();
+        let values: Vec<Sample> = (0..taken)
+            .filter_map(value)
+            .map(|value| Sample { value, scale })
+            .collect();
+        values
+    };
+    curves.flat_map(of).take(MOST_SAMPLES).collect()
+}
+
+/// The reference individual of a case, as a task, and how equal its results are everywhere; why there is none
 /// if there is none.
-pub(super) fn task(case: &CaseBytes) -> Result<(Task, bool), String> {
+pub(super) fn task(case: &CaseBytes) -> Result<(Task, Repeats), String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
     let condition = decoded.objective.condition;
-    let reply = if decoded.is_measured(condition) {
+    let compares_values = matches!(decoded.model.repeats, Repeats::Within(_));
+    let reply = if decoded.is_measured(condition) && !compares_values {
         Reply::Score {
             with_residual: true,
+            whole: false,
         }
     } else {
         Reply::Channels
@@ -101,25 +138,59 @@ pub(super) fn task(case: &CaseBytes) -> Result<(Task, bool), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use protocol::job::Answer;
+    use protocol::job::{Counters, Verdict};
+
+    fn crashed() -> Outcome {
+        Outcome::Failed(Failure::crashed("ended by signal 6".to_owned()))
+    }
 
     #[test]
     fn a_proof_names_every_bit_and_only_a_case_may_be_at_fault() {
-        let of = |outcome| Proof::of(Some(outcome), true).map(|proof| proof.known());
+        let of = |outcome| Progress::of(Some(outcome), Repeats::Bits).map(|proof| proof.known());
         let one = of(Outcome::Done(Answer::Nothing(vec![1]))).unwrap();
         assert!(one.is_some());
         assert_ne!(one, of(Outcome::Done(Answer::Nothing(vec![2]))).unwrap());
         let case_at_fault = Failure::misconfigured("beam", "no mass");
         assert!(of(Outcome::Failed(case_at_fault)).unwrap().is_some());
-        let how = "ended by signal 6".to_owned();
-        let refused = of(Outcome::Failed(Failure::Crashed { how })).unwrap_err();
+        let refused = of(crashed()).unwrap_err();
         assert!(refused.contains("cannot be computed here"), "{refused}");
         assert_eq!(
-            Proof::of(None, true),
-            Ok(Proof::Missing),
+            Progress::of(None, Repeats::Bits),
+            Ok(Progress::Missing),
             "cancelled: again"
         );
-        let inexact = |byte| Proof::of(Some(Outcome::Done(Answer::Nothing(vec![byte]))), false);
-        assert_eq!(inexact(1), inexact(2));
+        let unknown = |outcome| Progress::of(Some(outcome), Repeats::Unknown);
+        let answer = |byte| Outcome::Done(Answer::Nothing(vec![byte]));
+        assert_eq!(unknown(answer(1)), unknown(answer(2)));
+        assert_eq!(unknown(answer(1)), unknown(crashed()));
+    }
+
+    #[test]
+    fn where_bits_do_not_repeat_values_stand_for_them() {
+        let seen = Observation {
+            verdict: Verdict::Complete,
+            counters: Counters::default(),
+            curves: vec![
+                (0..1000).map(f64::from).collect(),
+                Vec::new(),
+                vec![3.0, 4.0],
+            ],
+            columns: Vec::new(),
+        };
+        let outcome = Outcome::Done(Answer::Channels(seen));
+        let known = Progress::of(Some(outcome), Repeats::Within(1e-3));
+        let Ok(Progress::Known(Proof::Values(samples))) = known else {
+            panic!("{known:?}")
+        };
+        assert_eq!(
+            samples.len(),
+            34,
+            "half of the room each, as far as they go"
+        );
+        assert_eq!(samples.iter().filter(|one| one.scale < 4.0).count(), 2);
+        assert!((samples[31].value - 968.0).abs() < 1e-12);
+        assert!((samples[33].scale - 12.5_f64.sqrt()).abs() < 1e-12);
+        let failed = Progress::of(Some(crashed()), Repeats::Within(1e-3));
+        assert_eq!(failed, Ok(Progress::Known(Proof::Failed)));
     }
 }

@@ -2,7 +2,7 @@
 use super::{
     case::Incoming,
     options::{Ending, SessionOptions},
-    proof::{self, Proof},
+    proof::{self, Progress},
 };
 use crate::{
     outbox::Outbox,
@@ -11,6 +11,7 @@ use crate::{
 use link::{LinkError, WorkerEnd};
 use protocol::{
     announce::Announcement,
+    case::Repeats,
     id::{ContentHash, RunId},
     key::Lane,
     message::{Attempt, Beat, Done, FromWorker, Order, ToWorker},
@@ -41,9 +42,9 @@ pub(super) struct State {
     run: RunId,
     admitted: bool,
     case: Option<CaseBytes>,
-    proof: Proof,
+    proof: Progress,
     /// Whether the case's model computes the same bits everywhere.
-    repeats: bool,
+    repeats: Repeats,
     incoming: Option<Incoming>,
     pub(super) fetching: JoinSet<Result<Vec<u8>, LinkError>>,
     waiting: VecDeque<Order>,
@@ -64,8 +65,8 @@ impl State {
             run: RunId::default(),
             admitted: false,
             case: None,
-            proof: Proof::Missing,
-            repeats: true,
+            proof: Progress::Missing,
+            repeats: Repeats::Bits,
             incoming: None,
             fetching: JoinSet::new(),
             waiting: VecDeque::new(),
@@ -168,7 +169,7 @@ impl State {
                 if let Some(case) = incoming.take(&piece) {
                     tracing::debug!(hash = %case.hash, bytes = case.bytes.len(), "the case is here");
                     self.case = Some(case);
-                    self.proof = Proof::Missing;
+                    self.proof = Progress::Missing;
                     self.incoming = None;
                     if let Some(refused) = self.prove() {
                         return refused;
@@ -186,12 +187,12 @@ impl State {
     /// Begins to compute the reference individual of the case, if that is still to be done and a
     /// slot is free.
     fn prove(&mut self) -> Option<Step> {
-        let missing = self.proof == Proof::Missing;
+        let missing = self.proof == Progress::Missing;
         let case = self.case.as_ref().filter(|_| missing)?;
         let slot = (0..self.pool.len()).find(|slot| !self.running.contains_key(slot))?;
         match proof::task(case) {
             Ok((task, repeats)) => {
-                self.proof = Proof::Running;
+                self.proof = Progress::Running;
                 self.repeats = repeats;
                 self.running.insert(slot, (task.attempt, case.hash));
                 self.pool.run(slot, task);
@@ -273,7 +274,7 @@ impl State {
                 self.fill();
                 return Step::Go;
             }
-            match Proof::of(freed.outcome, self.repeats) {
+            match Progress::of(freed.outcome, self.repeats) {
                 Ok(proof) => self.proof = proof,
                 Err(reason) => return Step::End(Ending::Refused(reason)),
             }

@@ -121,7 +121,7 @@ impl Ruler {
         let absolute: Vec<bool> = record
             .channels
             .iter()
-            .map(|own| own.channel.absolute)
+            .map(|own| own.channel.is_absolute())
             .collect();
         let channel = |c: usize| (c, power(&mean[c], absolute[c]).max(f64::MIN_POSITIVE));
         let mut ruler = Self {

@@ -116,7 +116,7 @@ impl Group {
             let alike = |other: &Channel| {
                 other.abscissa == own.abscissa
                     && is_turn(other) == is_turn(own)
-                    && other.absolute == own.absolute
+                    && other.offset == own.offset
             };
             match groups.iter_mut().find(|(_, other)| alike(other)) {
                 Some((channels, _)) => channels.push(c),
@@ -181,7 +181,7 @@ impl Group {
 /// a constant does not.
 fn is_turn(channel: &Channel) -> bool {
     let abscissa = &channel.abscissa;
-    if channel.absolute || !channel.weights.is_empty() {
+    if channel.is_absolute() || !channel.weights.is_empty() {
         return false;
     }
     let (Some(period), Some(first)) = (abscissa.period, abscissa.points.first()) else {

@@ -271,7 +271,7 @@ pub fn mean_of(cycles: &[&Curves]) -> Curves {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use protocol::case::Abscissa;
+    use protocol::case::{Abscissa, Offset};
 
     /// A channel on which the gap is counted, by its place among the curves of an observation.
     pub(crate) fn recorded(curve: usize) -> Recorded {
@@ -289,7 +289,7 @@ pub(crate) mod tests {
             noise: None,
             step: None,
             weights: Vec::new(),
-            absolute: false,
+            offset: Offset::Free,
             record: None,
         };
         Recorded {

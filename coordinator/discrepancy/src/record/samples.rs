@@ -28,7 +28,7 @@ impl Samples {
     /// its own.
     pub fn of(channel: &Channel, length: f64) -> Self {
         let points = &channel.abscissa.points;
-        Self::new(points, &channel.weights, channel.absolute, length)
+        Self::new(points, &channel.weights, channel.is_absolute(), length)
     }
 
     /// On a grid, ascending; of at least two points where the constant does not count.
@@ -175,7 +175,7 @@ fn length_of(x: &[f64]) -> f64 {
 mod tests {
     use super::*;
     use crate::record::measured::tests::recorded;
-    use protocol::case::Abscissa;
+    use protocol::case::{Abscissa, Offset};
     use search::random::{Phase, Streams};
 
     /// A channel on a grid, with weights where there are some.
@@ -188,7 +188,11 @@ mod tests {
                 period: None,
             },
             weights: weights.to_vec(),
-            absolute,
+            offset: if absolute {
+                Offset::Fixed
+            } else {
+                Offset::Free
+            },
             ..recorded(0).channel
         }
     }

@@ -17,7 +17,7 @@ use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
 use protocol::announce::{EffectDescriptor, Place, Sign};
-use protocol::case::{Abscissa, Channel, Scale, Unknown};
+use protocol::case::{Abscissa, Channel, Offset, Scale, Unknown};
 use protocol::job::Numerics;
 use protocol::job::{Counters, Individual, Observation, SimulateSpec, Verdict as Ended};
 use search::least_squares::Linearized;
@@ -62,7 +62,7 @@ fn channel(curve: usize, noise: Option<f64>) -> Recorded {
             noise,
             step: None,
             weights: Vec::new(),
-            absolute: false,
+            offset: Offset::Free,
             record: None,
         },
     }

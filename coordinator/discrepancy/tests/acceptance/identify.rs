@@ -7,7 +7,7 @@ use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::thresholds::Thresholds;
 use nalgebra::{DMatrix, DVector};
-use protocol::case::{Abscissa, Channel, Scale, Unknown};
+use protocol::case::{Abscissa, Channel, Offset, Scale, Unknown};
 use protocol::job::{Counters, Numerics, Observation, SimulateSpec, Verdict};
 use search::random::{Phase, Streams};
 use search::space::Space;
@@ -78,7 +78,7 @@ fn channel(name: &str, condition: usize) -> Channel {
         noise: None,
         step: None,
         weights: Vec::new(),
-        absolute: false,
+        offset: Offset::Free,
         record: None,
     }
 }

@@ -2,7 +2,7 @@
 //! sensors that read it. Shares the data sheet with the tool's machine and not one line of code.
 use crate::case::{RECOMMENDED, SAMPLES, SPEED, card};
 use discrepancy::record::{Curves, InputScatter, Record, Recorded, Stated};
-use protocol::case::{Abscissa, Channel};
+use protocol::case::{Abscissa, Channel, Offset};
 use search::random::{Phase, Stream, Streams};
 use std::f64::consts::TAU;
 
@@ -380,7 +380,7 @@ pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Reco
         noise,
         step: None,
         weights: Vec::new(),
-        absolute: false,
+        offset: Offset::Free,
         record: None,
     };
     Recorded {

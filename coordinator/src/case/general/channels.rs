@@ -9,7 +9,7 @@ use super::{
     file::{AbscissaEntry, ChannelEntry, ConditionEntry, PointsEntry},
     record,
 };
-use protocol::case::{Abscissa, Channel, ChannelRecord};
+use protocol::case::{Abscissa, Channel, ChannelRecord, Offset};
 use std::path::{Path, PathBuf};
 
 /// Most places of a curve.
@@ -36,10 +36,10 @@ pub(super) struct Place<'a> {
     pub(super) folder: &'a Path,
     /// Folder that replaces the records' own.
     pub(super) measured: Option<&'a Path>,
-    /// The condition whose records must be there.
-    pub(super) calibrated: Option<&'a str>,
-    /// Whether channels have a zero.
-    pub(super) absolute: bool,
+    /// The conditions whose records must be there.
+    pub(super) calibrated: &'a [String],
+    /// Whether values have a zero where their channel does not say.
+    pub(super) offset: Offset,
 }
 
 impl Place<'_> {
@@ -53,7 +53,7 @@ impl Place<'_> {
 
     /// Whether the replacing folder may do without this record, and does.
     fn lacks(&self, named: &Path, condition: &str) -> bool {
-        let needed = self.calibrated == Some(condition);
+        let needed = self.calibrated.iter().any(|name| name == condition);
         self.measured.is_some() && !needed && !self.of(named).exists()
     }
 }
@@ -160,7 +160,7 @@ impl Source<'_> {
                 noise: entry.noise,
                 step: entry.noise.map(|noise| step(noise, &weights)),
                 weights,
-                absolute: place.absolute,
+                offset: entry.offset.unwrap_or(place.offset),
                 record,
             },
             cycles,
@@ -210,13 +210,16 @@ impl Source<'_> {
             }
         };
         self.check_period(&read.places)?;
-        let least = if place.absolute { 1 } else { 2 };
+        let least = match self.entry.offset.unwrap_or(place.offset) {
+            Offset::Fixed => 1,
+            Offset::Free => 2,
+        };
         if read.places.len() < least {
             return Err(self.refused(
                 &["abscissa"],
                 format!("{} value", read.places.len()),
                 "two or more: without a zero only what changes is compared",
-                "say offset = \"fixed\" in [objective] if its values have a zero",
+                "say offset = \"fixed\" if its values have a zero",
             ));
         }
         Ok(read)

@@ -74,6 +74,8 @@ pub(super) struct ChannelEntry {
     pub(super) condition: String,
     pub(super) abscissa: AbscissaEntry,
     pub(super) noise: Option<f64>,
+    /// Whether its values have a zero; as the objective says unless stated.
+    pub(super) offset: Option<Offset>,
     /// Whether its record takes no part in any fit.
     #[serde(default)]
     pub(super) held_out: bool,
@@ -132,9 +134,26 @@ pub(super) struct RowsEntry {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ObjectiveEntry {
-    pub(super) condition: String,
+    pub(super) condition: Names,
     pub(super) terms: Vec<TermEntry>,
     pub(super) offset: Offset,
+}
+
+/// One name, or several.
+#[derive(Debug, Deserialize)]
+#[serde(untagged, expecting = "a name, or a list of names")]
+pub(super) enum Names {
+    One(String),
+    Several(Vec<String>),
+}
+
+impl Names {
+    pub(super) fn all(&self) -> &[String] {
+        match self {
+            Self::One(name) => std::slice::from_ref(name),
+            Self::Several(names) => names,
+        }
+    }
 }
 
 /// A channel of the objective.

@@ -43,6 +43,7 @@
 //! condition = "5hz"
 //! abscissa = { name = "phase", unit = "deg", period = 360.0 }   # period: only where the curve begins anew
 //! held_out = false                  # optional: as for a condition
+//! offset = "fixed"                  # optional: in place of the objective's, for this channel
 //! noise = 0.05                      # standard deviation of one value; needed where nothing was repeated
 //! record = { file = "measured/5hz.csv", at = "phase_deg", column = "force_n", cycle = "cycle" }
 //!                                   # weight = "COLUMN": factor of each value's difference; its noise is `noise`
@@ -55,10 +56,12 @@
 //! abscissa = { name = "phase", unit = "deg", period = 360.0, points = { first = 0.0, step = 3.0, count = 120 } }
 //!
 //! [objective]                       # what a calibration minimises: weighted mean squared errors
-//! condition = "5hz"
-//! terms = [{ channel = "force", weight = 1.0 }]
-//! offset = "free"                   # sensors without an absolute zero; or "fixed": then constants count
-//!                                   # everywhere, and a channel may be a single number
+//! condition = "5hz"                 # or ["5hz", "9hz"]: every individual is simulated under each, and their
+//!                                   # sums are added up; `identify` and `diagnose` fit the first of them, and
+//!                                   # the others judge
+//! terms = [{ channel = "force", weight = 1.0 }]   # of every condition that has such a channel
+//! offset = "free"                   # sensors without an absolute zero; or "fixed": then constants count,
+//!                                   # and a channel may be a single number
 //! ```
 //!
 //! `[[effects]]` are those of every case. A record is a table in CSV, gzipped if it ends in `.gz`: one

@@ -1,4 +1,4 @@
-//! What a calibration minimises: channels of one condition, with weights.
+//! What a calibration minimises: channels of one condition or of several, with weights.
 use super::{
     super::{
         document::{Document, Step, nearest},
@@ -7,7 +7,7 @@ use super::{
     channels::Read,
     file::{ConditionEntry, ObjectiveEntry, TermEntry},
 };
-use protocol::case::{Objective, Offset, Term};
+use protocol::case::{Objective, Term};
 
 /// The objective; a case that measures nothing needs none.
 ///
@@ -24,8 +24,8 @@ pub(super) fn read(
         return match channels.iter().find(measured) {
             None => Ok(Objective {
                 condition: 0,
+                others: Vec::new(),
                 terms: Vec::new(),
-                offset: Offset::Free,
             }),
             Some(read) => Err(document.field(
                 &[Step::Key("objective")],
@@ -39,11 +39,15 @@ pub(super) fn read(
         };
     };
     let names: Vec<&str> = conditions.iter().map(|it| it.name.as_str()).collect();
-    let condition = names.iter().position(|name| *name == entry.condition);
-    let condition = condition.ok_or_else(|| {
-        let way = [Step::Key("objective"), Step::Key("condition")];
-        unknown(document, &way, &entry.condition, "condition", &names)
-    })?;
+    let fitted = conditions_of(document, entry.condition.all(), conditions, &names)?;
+    let Some((&condition, others)) = fitted.split_first() else {
+        return Err(document.field(
+            &[Step::Key("objective"), Step::Key("condition")],
+            "[]",
+            "at least one condition",
+            "write condition = \"NAME\", or a list of names",
+        ));
+    };
     if entry.terms.is_empty() {
         return Err(document.field(
             &[Step::Key("objective"), Step::Key("terms")],
@@ -54,23 +58,86 @@ pub(super) fn read(
     }
     let own: Vec<&Read> = channels
         .iter()
-        .filter(|read| read.channel.condition == condition)
+        .filter(|read| fitted.contains(&read.channel.condition))
         .collect();
     for index in 0..entry.terms.len() {
         check_term(document, &entry.terms, index, &own)?;
     }
+    check_measured(document, &entry.terms, (&fitted, &names), &own)?;
     let terms = entry.terms.iter().map(|term| Term {
         channel: term.channel.clone(),
         weight: term.weight,
     });
     Ok(Objective {
         condition,
+        others: others.to_vec(),
         terms: terms.collect(),
-        offset: entry.offset,
     })
 }
 
-/// A term names a measured channel of the condition, once, with a weight.
+/// The conditions of these names, each once, none held out.
+fn conditions_of(
+    document: &Document,
+    wanted: &[String],
+    conditions: &[ConditionEntry],
+    names: &[&str],
+) -> Result<Vec<usize>, CaseError> {
+    let way = [Step::Key("objective"), Step::Key("condition")];
+    let mut found = Vec::new();
+    for name in wanted {
+        let at = names.iter().position(|own| own == name);
+        let at = at.ok_or_else(|| unknown(document, &way, name, "condition", names))?;
+        if found.contains(&at) {
+            let once = "each condition once";
+            let help = "weights of channels say how much each counts";
+            return Err(document.field(&way, format!("\"{name}\""), once, help));
+        }
+        if conditions[at].held_out {
+            return Err(document.field(
+                &way,
+                format!("\"{name}\""),
+                "conditions that take part in fits",
+                "remove held_out from that condition, or the condition from the objective",
+            ));
+        }
+        found.push(at);
+    }
+    Ok(found)
+}
+
+/// Every condition measures one of the terms.
+fn check_measured(
+    document: &Document,
+    terms: &[TermEntry],
+    (fitted, names): (&[usize], &[&str]),
+    own: &[&Read],
+) -> Result<(), CaseError> {
+    let summed = |read: &&&Read| {
+        let is_named = |term: &TermEntry| term.channel == read.channel.name;
+        read.channel.record.is_some() && terms.iter().any(is_named)
+    };
+    for (at, condition) in fitted.iter().enumerate() {
+        let there = own.iter().filter(summed);
+        if !there
+            .map(|read| read.channel.condition)
+            .any(|it| it == *condition)
+        {
+            return Err(document.field(
+                &[
+                    Step::Key("objective"),
+                    Step::Key("condition"),
+                    Step::Index(at),
+                ],
+                format!("\"{}\"", names[*condition]),
+                "conditions with a record of one of the terms",
+                "leave it out, or name one of its measured channels as a term",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// A term names a measured channel of the conditions, once, with a weight.
 fn check_term(
     document: &Document,
     terms: &[TermEntry],
@@ -83,9 +150,11 @@ fn check_term(
         [list[0], list[1], Step::Index(index), Step::Key(key)]
     };
     let quoted = format!("\"{}\"", term.channel);
-    let found = own.iter().find(|read| read.channel.name == term.channel);
-    let Some(found) = found else {
-        let names: Vec<&str> = own.iter().map(|it| it.channel.name.as_str()).collect();
+    let called = |read: &&&Read| read.channel.name == term.channel;
+    if !own.iter().any(|read| called(&read)) {
+        let mut names: Vec<&str> = own.iter().map(|it| it.channel.name.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
         return Err(unknown(
             document,
             &way("channel"),
@@ -93,8 +162,9 @@ fn check_term(
             "channel",
             &names,
         ));
-    };
-    if found.channel.record.is_none() {
+    }
+    let mut named = own.iter().filter(called);
+    if named.all(|read| read.channel.record.is_none()) {
         return Err(document.field(
             &way("channel"),
             quoted,

@@ -32,20 +32,15 @@ pub(crate) fn read(source: &Source<'_>) -> Result<Loaded, CaseError> {
     let mut unknowns = unknowns::read(document, &file.unknowns)?;
     effect::check(document, &file.effects, &[])?;
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
+    let objective = file.objective.as_ref();
     let place = Place {
         folder,
         measured,
-        calibrated: file
-            .objective
-            .as_ref()
-            .map(|entry| entry.condition.as_str()),
-        absolute: file
-            .objective
-            .as_ref()
-            .is_some_and(|entry| entry.offset == Offset::Fixed),
+        calibrated: objective.map_or(&[], |entry| entry.condition.all()),
+        offset: objective.map_or(Offset::Free, |entry| entry.offset),
     };
     let read = channels::read(document, &file.channels, &file.conditions, &place)?;
-    let objective = objective::read(document, file.objective.as_ref(), &file.conditions, &read)?;
+    let objective = objective::read(document, objective, &file.conditions, &read)?;
     let cycles = (0..conditions.len()).map(|at| cycles(document, &file.conditions, at, &read));
     let cycles: Vec<Option<Record>> = cycles.collect::<Result<_, _>>()?;
     let notes = not_repeated(measured, &read);

@@ -22,7 +22,7 @@ use crate::{
 };
 use protocol::{
     event::WorkerAccount,
-    job::{Counters, Evaluation},
+    job::{Counters, Evaluation, Verdict},
 };
 use search::strategy::Finish;
 use std::collections::BTreeMap;
@@ -109,6 +109,9 @@ fn result_object<'a>(
             other_conditions.insert(case.conditions[compared.condition].name.clone(), scores);
         }
     }
+    if !case.objective.others.is_empty() {
+        calibrated.objective = summed(run, found);
+    }
     CalibrateOutput {
         run: run.folder.path().display().to_string(),
         case: &case.name,
@@ -123,6 +126,24 @@ fn result_object<'a>(
         other_conditions,
         log_digest: log.digest(),
         files,
+    }
+}
+
+/// The sum over the conditions that are calibrated; null where one of them failed.
+fn summed(run: &Run, found: &Found) -> Both<Option<f64>> {
+    let objective = &run.case.objective;
+    let of = |which: usize| -> Option<f64> {
+        let fitness = |condition: usize| {
+            let mut compared = found.compared.iter();
+            let own = compared.find(|own| own.condition == condition)?;
+            let evaluation = own.individuals.get(which)?.evaluation.as_ref()?;
+            (evaluation.verdict == Verdict::Complete).then_some(evaluation.fitness)
+        };
+        objective.conditions().map(fitness).sum()
+    };
+    Both {
+        recommended: of(0),
+        optimised: of(1),
     }
 }
 

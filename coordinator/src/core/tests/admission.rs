@@ -1,5 +1,9 @@
 //! Who may take part.
 use super::*;
+use protocol::{
+    case::Repeats,
+    proof::{MOST_SAMPLES, Proof, Sample},
+};
 
 #[test]
 fn a_worker_without_the_case_gets_nothing() {
@@ -160,12 +164,16 @@ fn whoever_differs_is_refused_by_the_name_of_the_field() {
     assert_eq!(refusal(&scene, 99), None);
 }
 
-fn prove(scene: &mut Scene, id: u64, proof: [u8; 32]) {
+fn bits(byte: u8) -> Proof {
+    Proof::Bits(ContentHash([byte; 32]))
+}
+
+fn prove(scene: &mut Scene, id: u64, proof: Proof) {
     scene.hear(
         id,
         FromWorker::Beat(Beat {
             case: Some(CASE),
-            proof: Some(ContentHash(proof)),
+            proof: Some(proof),
             ..Beat::default()
         }),
     );
@@ -186,19 +194,55 @@ fn another_result_of_the_reference_individual_is_refused() {
         }),
     );
     assert_eq!(scene.given(), [], "nothing before the proof");
-    prove(&mut scene, 1, [1; 32]);
+    prove(&mut scene, 1, bits(1));
     assert_eq!(scene.given().len(), 2);
-    let proved = Event::Proved {
-        proof: ContentHash([1; 32]),
-    };
+    let proved = Event::Proved { proof: bits(1) };
     assert!(scene.other.contains(&Command::Record(proved)));
     scene.announce(2, 1, "m");
-    prove(&mut scene, 2, [2; 32]);
+    prove(&mut scene, 2, bits(2));
     let told = refusal(&scene, 2).unwrap();
     assert!(told.starts_with("proof is 0202"), "{told}");
     assert_eq!(scene.given(), []);
     scene.announce(3, 1, "m");
-    prove(&mut scene, 3, [1; 32]);
+    prove(&mut scene, 3, bits(1));
+    assert_eq!(scene.given().len(), 1);
+}
+
+/// Where bits do not repeat, values decide, within what the case allows; a machine on which the program fails is
+/// left out once another one has shown that it need not.
+#[test]
+fn values_of_the_reference_individual_may_differ_by_what_the_case_allows() {
+    let values = |value: f64| Proof::Values(vec![Sample { value, scale: 2.0 }]);
+    let mut scene = Scene::new();
+    scene.core.options.repeats = Repeats::Within(0.01);
+    for id in 1..5 {
+        scene.announce(id, 1, "m");
+    }
+    prove(&mut scene, 1, Proof::Failed);
+    assert_eq!(refusal(&scene, 1), None, "nobody has done better");
+    prove(&mut scene, 2, values(1.0));
+    prove(&mut scene, 3, values(1.019));
+    assert_eq!((refusal(&scene, 2), refusal(&scene, 3)), (None, None));
+    prove(&mut scene, 4, values(1.021));
+    let told = refusal(&scene, 4).unwrap();
+    assert!(
+        told.starts_with("proof is 1.021 where this run's is 1"),
+        "{told}"
+    );
+    assert!(told.contains("reference_tolerance"), "{told}");
+    prove(&mut scene, 1, Proof::Failed);
+    let told = refusal(&scene, 1).unwrap();
+    assert!(told.starts_with("proof is a failure"), "{told}");
+    let many = vec![
+        Sample {
+            value: 1.0,
+            scale: 1.0
+        };
+        MOST_SAMPLES + 1
+    ];
+    prove(&mut scene, 3, Proof::Values(many));
+    assert!(refusal(&scene, 3).unwrap().contains("65 values"));
+    scene.submit(0..1);
     assert_eq!(scene.given().len(), 1);
 }
 
@@ -207,15 +251,15 @@ fn another_result_of_the_reference_individual_is_refused() {
 fn a_worker_that_changes_its_proof_loses_its_jobs() {
     let mut scene = Scene::new();
     scene.announce(1, 1, "m");
-    prove(&mut scene, 1, [1; 32]);
+    prove(&mut scene, 1, bits(1));
     scene.submit(0..1);
     assert_eq!(scene.given().len(), 1);
-    prove(&mut scene, 1, [2; 32]);
+    prove(&mut scene, 1, bits(2));
     assert!(refusal(&scene, 1).is_some());
     assert_eq!(scene.core.snapshot(scene.now).workers.len(), 0);
     assert_eq!(scene.core.jobs[&JobId(0)].failures.losses, 0);
     scene.announce(3, 1, "m");
-    prove(&mut scene, 3, [1; 32]);
+    prove(&mut scene, 3, bits(1));
     assert_eq!(scene.given().len(), 1);
 }
 
@@ -246,14 +290,14 @@ fn another_case_is_refused_at_once_and_by_name() {
 fn results_of_the_refused_are_not_accepted() {
     let mut scene = Scene::new();
     scene.announce(1, 1, "m");
-    prove(&mut scene, 1, [1; 32]);
+    prove(&mut scene, 1, bits(1));
     scene.submit(0..1);
     let (_, attempt) = scene.given()[0];
-    prove(&mut scene, 1, [2; 32]);
+    prove(&mut scene, 1, bits(2));
     scene.finish(1, attempt);
     assert_eq!(scene.delivered, []);
     scene.announce(2, 1, "m");
-    prove(&mut scene, 2, [1; 32]);
+    prove(&mut scene, 2, bits(1));
     let (_, attempt) = scene.given()[0];
     scene.finish(2, attempt);
     assert_eq!(scene.delivered.len(), 1);

@@ -73,7 +73,7 @@ fn an_overdue_job_gets_a_second_longer_try() {
     scene.submit(0..1);
     let first = scene.orders[0].1.deadline_ms;
     let (_, attempt) = scene.given()[0];
-    let overdue = || Failure::Deadline { limit_ms: 120_000 };
+    let overdue = || Failure::deadline(120_000);
     scene.fail(1, attempt, overdue());
     assert_eq!(scene.orders[0].1.deadline_ms, 2 * first);
     let (_, attempt) = scene.given()[0];

@@ -3,6 +3,7 @@ use super::*;
 use crate::simulated::{self, CASE, MODEL, PROOF, announcement, cost, job};
 use protocol::{
     announce::Announcement,
+    case::Repeats,
     event::{Event, Spent},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},
     job::{Answer, Failure, Outcome},
@@ -50,6 +51,7 @@ impl Scene {
             case_bytes: 10,
             model: MODEL.to_owned(),
             model_digest: None,
+            repeats: Repeats::Bits,
             proof: None,
             finished,
             expected: BTreeSet::new(),
@@ -229,7 +231,5 @@ impl Scene {
 }
 
 fn crash() -> Failure {
-    Failure::Crashed {
-        how: "signal 11".to_owned(),
-    }
+    Failure::crashed("signal 11".to_owned())
 }

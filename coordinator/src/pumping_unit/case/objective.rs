@@ -4,7 +4,7 @@ use crate::case::{
     document::{Document, Step, nearest},
     error::CaseError,
 };
-use protocol::case::{Channel, Objective, Offset, Term};
+use protocol::case::{Channel, Objective, Term};
 use protocol::pumping_unit::Sensor;
 
 /// The objective, with its condition by index. A case without gauge records needs none: it has nothing
@@ -22,8 +22,8 @@ pub(super) fn read(
         return match recorded {
             None => Ok(Objective {
                 condition: 0,
+                others: Vec::new(),
                 terms: (1..=4).map(|gauge| term(gauge, 1.0)).collect(),
-                offset: Offset::Free,
             }),
             Some(recorded) => Err(document.field(
                 &[Step::Key("objective")],
@@ -62,13 +62,24 @@ pub(super) fn read(
     check_gauges(document, &entry.gauges)?;
     Ok(Objective {
         condition,
+        others: Vec::new(),
         terms: entry
             .gauges
             .iter()
             .map(|part| term(part.gauge, part.weight))
             .collect(),
-        offset: entry.offset,
     })
+}
+
+/// Channels with the zero that the objective says they have.
+pub(super) fn with_offset(
+    entry: Option<&ObjectiveEntry>,
+    channels: Vec<Channel>,
+) -> impl Iterator<Item = Channel> {
+    let offset = entry.map(|entry| entry.offset).unwrap_or_default();
+    channels
+        .into_iter()
+        .map(move |own| Channel { offset, ..own })
 }
 
 /// Takes the objective over those of its gauges that its condition's record has; over all that were
@@ -178,8 +189,8 @@ mod tests {
             };
             let mut objective = Objective {
                 condition: 0,
+                others: Vec::new(),
                 terms: vec![term(1, 1.0), term(3, 2.0)],
-                offset: Offset::Free,
             };
             let said = over_recorded(&mut objective, &Sensor::ALL.map(channel));
             let terms = objective.terms.iter();

@@ -72,7 +72,8 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
     for read in condition::read_all(source, &file)? {
         conditions.push(read.condition);
         working.push(read.working);
-        channels.extend(read.channels);
+        let stated = file.objective.as_ref();
+        channels.extend(objective::with_offset(stated, read.channels));
         facts.push(read.facts);
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);

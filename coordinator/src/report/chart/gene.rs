@@ -131,8 +131,8 @@ fn small(
     }
     let best = calibration.optimised.genes.get(index).copied();
     let fitness = calibration
-        .calibrated()
-        .map(|result| result.optimised.evaluation.fitness);
+        .objective(|result| &result.optimised)
+        .map(|(_, fitness)| fitness);
     if let (Some(value), Some(fitness)) = (best, fitness) {
         let at = panel.at((value, fitness));
         if at.0.is_finite() && at.1.is_finite() {

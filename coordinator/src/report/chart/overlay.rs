@@ -40,7 +40,6 @@ const fn shift(offset: Offset, score: Option<&ChannelScore>) -> f64 {
 impl Side {
     fn new(
         heading: &'static str,
-        offset: Offset,
         (run, values): (&Run, &[f64]),
         (at, channel): (usize, &Channel),
         record: &ChannelRecord,
@@ -48,7 +47,7 @@ impl Side {
         let grid = &channel.abscissa.points;
         let mut scores = run.evaluation.channels.iter();
         let score = scores.find(|score| score.channel == at);
-        let shift = shift(offset, score);
+        let shift = shift(channel.offset, score);
         let simulated = points(grid, values)
             .into_iter()
             .map(|(x, y)| (x, y + shift))
@@ -88,14 +87,13 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
     let condition = case.conditions.get(result.condition)?;
     let channel = case.channels.get(at)?;
     let record = channel.record.as_ref()?;
-    let offset = case.objective.offset;
     let sides = [
         ("Recommended parameters", &result.recommended),
         ("Optimised parameters", &result.optimised),
     ]
     .map(|(heading, run)| {
         let values = run.shown(case, result.condition).channel(channel);
-        Side::new(heading, offset, (run, values), (at, channel), record)
+        Side::new(heading, (run, values), (at, channel), record)
     });
     let cycles = record.cycles;
     let grid = &channel.abscissa.points;
@@ -129,7 +127,7 @@ pub fn overlay(case: &Case, result: &ConditionResult, at: usize) -> Option<Figur
         column(canvas, &measured, recommended, true);
         column(canvas, &measured, optimised, false);
     });
-    let free = match offset {
+    let free = match channel.offset {
         Offset::Free => {
             " Complete simulated curves are shifted to the measured mean, because the sensor has no \
              absolute zero."

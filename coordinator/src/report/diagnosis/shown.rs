@@ -4,7 +4,6 @@ use crate::report::chart::{Axis, Closing};
 use crate::report::kind;
 use crate::report::words::condition_name;
 use discrepancy::record::{Curves, Record};
-use protocol::case::Offset;
 
 /// Everything about one condition, on its record's grid.
 #[derive(Clone, Debug)]
@@ -25,8 +24,6 @@ pub(super) struct Shown<'a> {
     pub after: Option<&'a Curves>,
     /// The best rejected rival and the curves with it.
     pub rival: Option<(&'a str, &'a Curves)>,
-    /// Whether a constant counts for nothing.
-    pub free_offset: bool,
 }
 
 impl Shown<'_> {
@@ -47,7 +44,7 @@ impl Shown<'_> {
             rival: self
                 .rival
                 .and_then(|(id, rival)| Some((id, rival.get(c)?.as_slice()))),
-            free_offset: self.free_offset,
+            free_offset: !channel.is_absolute(),
         })
     }
 
@@ -105,7 +102,6 @@ fn before<'a>(subject: &Subject<'a>, condition: usize, curves: &'a Curves) -> Op
         before: curves,
         after: None,
         rival: None,
-        free_offset: subject.case.objective.offset == Offset::Free,
     })
 }
 

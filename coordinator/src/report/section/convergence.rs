@@ -4,7 +4,7 @@ use crate::report::document::{Section, figures};
 use crate::report::{chart, words};
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
-    let recommended = calibration.calibrated().and_then(words::complete_objective);
+    let recommended = words::complete_objective(calibration);
     let searched = !calibration.history.is_empty();
     let drawn = searched.then(|| chart::convergence(calibration, recommended));
     Section {

@@ -2,8 +2,8 @@
 use crate::report::data::{Calibration, Origin, SingleRun};
 use crate::report::document::{Block, Fact, Section};
 use crate::report::number::{NONE, count, duration};
-use crate::report::words::listed;
-use protocol::case::{Case, Offset};
+use crate::report::words::{calibrated, listed};
+use protocol::case::{Case, Channel};
 use protocol::job::Curves;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
@@ -62,11 +62,28 @@ fn objective(case: &Case) -> String {
     let terms: Vec<_> = terms
         .map(|term| format!("{} × MSE of {}", term.weight, term.channel))
         .collect();
-    let offset = match case.objective.offset {
-        Offset::Free => "free: the mean difference of each channel is removed first",
-        Offset::Fixed => "fixed: absolute values are compared",
+    let is_summed = |channel: &&Channel| case.objective.names(&channel.name);
+    let summed = case.channels.iter().filter(is_summed);
+    let mut fixed: Vec<String> = summed
+        .clone()
+        .filter(|channel| channel.is_absolute())
+        .map(|channel| channel.name.clone())
+        .collect();
+    fixed.sort_unstable();
+    fixed.dedup();
+    let offset = if fixed.is_empty() {
+        "free: the mean difference of each channel is removed first".to_owned()
+    } else if summed.clone().all(Channel::is_absolute) {
+        "fixed: absolute values are compared".to_owned()
+    } else {
+        let fixed = listed(&fixed, "and");
+        format!("fixed for {fixed}, free for the others: their mean difference is removed first")
     };
-    format!("{}; offset {offset}", terms.join(" + "))
+    let conditions = match case.objective.others.len() {
+        0 => String::new(),
+        _ => format!(", summed over {}", calibrated(case)),
+    };
+    format!("{}{conditions}; offset {offset}", terms.join(" + "))
 }
 
 /// What one simulation took of the integrator.

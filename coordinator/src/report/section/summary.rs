@@ -32,7 +32,7 @@ fn conditions(calibration: &Calibration) -> Vec<Block> {
     let mut blocks = Vec::new();
     for result in &calibration.conditions {
         let name = words::condition_name(case, result.condition);
-        let role = if result.condition == case.objective.condition {
+        let role = if case.objective.holds(result.condition) {
             "calibrated"
         } else {
             "took no part in the fit"

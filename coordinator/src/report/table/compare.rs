@@ -91,7 +91,7 @@ impl Measure {
             _ => NONE.to_owned(),
         };
         let write = |value: Option<f64>| value.map_or_else(|| NONE.to_owned(), self.write);
-        let calibrated = result.condition == case.objective.condition;
+        let calibrated = case.objective.holds(result.condition);
         let role = if words::is_fitted(case, channel) || !calibrated {
             ""
         } else {
@@ -124,8 +124,15 @@ fn agreement(case: &Case, result: &ConditionResult) -> Vec<Row> {
         write(after),
         share.unwrap_or_else(|| NONE.to_owned()),
     ];
+    let objective = match case.objective.others.len() {
+        0 => "Objective".to_owned(),
+        _ => format!(
+            "Objective, condition {} alone",
+            condition_name(case, result.condition)
+        ),
+    };
     let mut rows = vec![
-        Row::group("Objective"),
+        Row::group(objective),
         Row::new("weighted sum of mean squared errors", cells),
     ];
     for measure in MEASURES {
@@ -183,8 +190,8 @@ fn gene_rows(calibration: &Calibration) -> Vec<Row> {
 pub fn table_3(calibration: &Calibration) -> Table {
     let case = &calibration.case;
     let title = format!(
-        "Recommended and optimised parameters, calibrated condition {}",
-        condition_name(case, case.objective.condition)
+        "Recommended and optimised parameters, calibrated {}",
+        words::calibrated(case)
     );
     let genes = case.unknowns.iter().zip(&calibration.optimised.genes);
     let bounds: Vec<String> = genes
@@ -198,9 +205,17 @@ pub fn table_3(calibration: &Calibration) -> Table {
     let mut table = Table::new(title, HEAD, gene_rows(calibration)).noted(marked);
     if !calibration.seen.is_empty() {
         table.head.push("what the record says, 95 %".to_owned());
-        let note = "What the record says: to first order at the optimum, under its own noise, widened by what \
-                    is left; `horsehead identify RUN` says it with profiles.";
-        table = table.noted([note]);
+        let of = match case.objective.others.len() {
+            0 => "the record".to_owned(),
+            _ => format!(
+                "the record of condition {}",
+                condition_name(case, case.objective.condition)
+            ),
+        };
+        table = table.noted([format!(
+            "What the record says: what {of} does, to first order at the optimum, under its own noise, widened \
+             by what is left; `horsehead identify RUN` says it with profiles."
+        )]);
     }
     table = table.noted(DEFINITIONS);
     if let Some(result) = calibration.calibrated() {
@@ -212,10 +227,12 @@ pub fn table_3(calibration: &Calibration) -> Table {
 
 /// The paper's Table 4: agreement under one condition, with the same parameters.
 pub fn table_4(case: &Case, result: &ConditionResult) -> Table {
-    let role = if result.condition == case.objective.condition {
+    let role = if !case.objective.holds(result.condition) {
+        "which took no part in the fit"
+    } else if case.objective.others.is_empty() {
         "the calibrated condition"
     } else {
-        "which took no part in the fit"
+        "one of the calibrated conditions"
     };
     let name = condition_name(case, result.condition);
     let title = format!("The same parameters under condition {name}, {role}");

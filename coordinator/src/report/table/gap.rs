@@ -81,7 +81,7 @@ fn band(along: &Abscissa, gap: &Gap) -> String {
 fn gaps<'a>(case: &'a Case, condition: usize, run: &Run) -> Vec<(&'a Channel, Gap)> {
     let shown = run.shown(case, condition);
     let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
-        let gap = Gap::between(record, shown.channel(channel), channel.absolute)?;
+        let gap = Gap::between(record, shown.channel(channel), channel.is_absolute())?;
         Some((channel, gap))
     };
     case.measured(condition).filter_map(gap).collect()

@@ -2,47 +2,48 @@
 use super::change::change;
 use super::ending::verdict;
 use super::gene::{at_bound, bound};
-use super::name::{capitalised, channel_title, condition_name, is_fitted};
+use super::name::{calibrated, capitalised, channel_title, condition_name, is_fitted};
 use crate::report::data::{Calibration, ConditionResult};
 use crate::report::number::{figure, percent, quantity, squared};
 use protocol::case::{Case, Term};
 use protocol::job::{ChannelScore, Verdict};
 
-/// The objective with the recommended parameters, if their run was complete.
-pub(in crate::report) fn complete_objective(result: &ConditionResult) -> Option<f64> {
-    let evaluation = &result.recommended.evaluation;
-    matches!(evaluation.verdict, Verdict::Complete).then_some(evaluation.fitness)
+/// The objective with the recommended parameters, if their runs were complete.
+pub(in crate::report) fn complete_objective(calibration: &Calibration) -> Option<f64> {
+    let (verdict, fitness) = calibration.objective(|result| &result.recommended)?;
+    matches!(verdict, Verdict::Complete).then_some(fitness)
 }
 
 /// Headline of a calibration: whether the error fell, and by how much.
 pub(in crate::report) fn headline(calibration: &Calibration) -> String {
-    let Some(result) = calibration.calibrated() else {
+    let before = calibration.objective(|result| &result.recommended);
+    let after = calibration.objective(|result| &result.optimised);
+    let (Some((ended, before)), Some((finished, after))) = (before, after) else {
         return "The calibrated condition has no result.".to_owned();
     };
-    let name = condition_name(&calibration.case, result.condition);
-    let (before, after) = (&result.recommended.evaluation, &result.optimised.evaluation);
+    let name = calibrated(&calibration.case);
     let what = objective(&calibration.case);
     let unit = square_after(calibration.case.objective_unit());
-    match (before.verdict, after.verdict) {
+    match (ended, finished) {
         (_, failed @ Verdict::Failed { .. }) => format!(
-            "No usable parameters were found: under condition {name} the best individual {}.",
+            "No usable parameters were found: under {name} the best individual {}.",
             verdict(&failed)
         ),
         (failed @ Verdict::Failed { .. }, Verdict::Complete) => format!(
-            "With the optimised parameters, {what} is {}{unit} under condition {name}. With the \
+            "With the optimised parameters, {what} is {}{unit} under {name}. With the \
              recommended ones the simulation {}, so there is no error to compare with.",
-            figure(after.fitness),
+            figure(after),
             verdict(&failed)
         ),
-        (Verdict::Complete, Verdict::Complete) if after.fitness < before.fitness => format!(
-            "{} {} under condition {name}.",
+        (Verdict::Complete, Verdict::Complete) if after < before => format!(
+            "{} {} under {name}.",
             capitalised(&what),
-            change(before.fitness, after.fitness, &unit)
+            change(before, after, &unit)
         ),
         (Verdict::Complete, Verdict::Complete) => format!(
             "The search found nothing better than the recommended parameters: {what} {} under \
-             condition {name}.",
-            change(before.fitness, after.fitness, &unit)
+             {name}.",
+            change(before, after, &unit)
         ),
     }
 }
@@ -88,7 +89,7 @@ fn objective(case: &Case) -> String {
 pub(in crate::report) fn channels(case: &Case, result: &ConditionResult) -> Vec<String> {
     let before = &result.recommended.evaluation.channels;
     let after = &result.optimised.evaluation.channels;
-    let calibrated = result.condition == case.objective.condition;
+    let calibrated = case.objective.holds(result.condition);
     let sentence = |new: &ChannelScore| {
         let role = if calibrated && !is_fitted(case, new.channel) {
             " (took no part in the fit)"

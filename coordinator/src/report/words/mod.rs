@@ -15,7 +15,8 @@ pub use ending::{failure, verdict};
 pub(super) use gene::{at_bound, bound, seen};
 pub(crate) use name::condition_name;
 pub(super) use name::{
-    capitalised, channel_title, counted, headed, is_fitted, listed, lower, objective_heading,
+    calibrated, capitalised, channel_title, counted, headed, is_fitted, listed, lower,
+    objective_heading,
 };
 
 /// What to know of records that come from no test.

@@ -9,6 +9,18 @@ pub(crate) fn condition_name(case: &Case, condition: usize) -> String {
         .map_or_else(|| format!("#{condition}"), |found| found.name.clone())
 }
 
+/// The conditions that are calibrated, as `condition 5rpm` or `conditions 5rpm and 4rpm`.
+pub(in crate::report) fn calibrated(case: &Case) -> String {
+    let conditions = case.objective.conditions();
+    let names: Vec<String> = conditions.map(|at| condition_name(case, at)).collect();
+    let noun = if names.len() == 1 {
+        "condition"
+    } else {
+        "conditions"
+    };
+    format!("{noun} {}", listed(&names, "and"))
+}
+
 /// Title of a channel; its number where the case does not have it.
 pub(crate) fn channel_title(case: &Case, channel: usize) -> String {
     case.channels

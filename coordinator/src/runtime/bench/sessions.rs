@@ -19,6 +19,7 @@ use protocol::{
     job::{Job, kind},
     key::Lane,
     message::{Attempt, Beat, Cost, Done, FromWorker, Order, ToWorker},
+    proof::Proof,
     wire::{self, Kind},
 };
 use std::{
@@ -235,7 +236,7 @@ fn announce(id: WorkerId) -> FromWorker {
 /// Jobs that are answered at once are never seen to run.
 fn beat(number: &mut u64, case: Option<ContentHash>, sleeper: &Worker) -> FromWorker {
     *number += 1;
-    let proof = ContentHash::of(b"sessions compute nothing");
+    let proof = Proof::Bits(ContentHash::of(b"sessions compute nothing"));
     FromWorker::Beat(Beat {
         number: *number,
         ..sleeper.beat(case, proof)

@@ -23,11 +23,12 @@ pub(crate) struct CalibrateOutput<'a> {
     /// The identified parameters by name.
     #[serde(flatten)]
     pub(crate) unknowns: Unknowns,
-    /// Objective of both parameter sets, in the square of the unit that its channels share.
+    /// Objective of both parameter sets, in the square of the unit that its channels share; the sum over the
+    /// calibrated conditions.
     pub(crate) objective: Both<Option<f64>>,
-    /// Agreement by channel, of both parameter sets, at the calibrated condition.
+    /// Agreement by channel, of both parameter sets, at the calibrated condition, the first one of several.
     pub(crate) channels: BTreeMap<String, Both<Option<ScoreOutput>>>,
-    /// Other conditions with a record, by name.
+    /// Other conditions with a record, by name, those that are calibrated as well among them.
     pub(crate) other_conditions: BTreeMap<String, ConditionOutput>,
     /// Hash of the evaluation log in index order.
     pub(crate) log_digest: String,

@@ -1,4 +1,6 @@
-//! `horsehead export`: a run as tables for queries, from its journal.
+//! `horsehead export`: a run as tables for queries, and the folders of its failed runs, from its journal.
+mod failed;
+
 use crate::{
     cli::{
         argument::output::OutputChoice,
@@ -17,20 +19,29 @@ use protocol::case::Case;
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};
 
-/// Turn a run into tables: a SQLite database, or a folder of CSV or Parquet files.
+/// Turn a run into tables (a SQLite database, or a folder of CSV or Parquet files), or fetch failed runs.
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
   horsehead export runs/cyjs10-5-37hb-quick-seed1
   horsehead export runs/cyjs10-5-37hb-quick-seed1 --format parquet --to tables
 
+  horsehead export runs/tank --failed
+
 Works while the run goes on, and with a damaged journal, as far as that goes; the journal is not
 changed. The table `dictionary` says what every column means.
+
+With --failed, what somebody's own program left where it failed: a folder for each individual, with
+what was filled in, what the program wrote and said, and `why.txt`. Of long files the end travels;
+a worker sends the folders of the first failures of every slot.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Run folder of a calibration or diagnosis.
     #[arg(value_name = "RUN", env = "HORSEHEAD_RUN")]
     run: PathBuf,
+    /// Fetch what failed runs of somebody's own program left, in place of tables [default folder: failed in RUN].
+    #[arg(long, conflicts_with = "format", env = "HORSEHEAD_FAILED")]
+    failed: bool,
     /// In which form.
     #[arg(long, value_enum, default_value = "sqlite", env = "HORSEHEAD_FORMAT")]
     format: Form,
@@ -84,6 +95,15 @@ struct ExportOutput {
 
 /// Exports and says what there is.
 pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
+    if arguments.failed {
+        let to = arguments.to.as_deref();
+        let object = failed::fetch(&arguments.run, to, arguments.force)?;
+        for note in &object.notes {
+            terminal::tell(&format!("note: {note}"));
+        }
+        let text = || failed::text(&object);
+        return terminal::print(arguments.output.output, text, &object);
+    }
     let object = export(arguments)?;
     for note in &object.notes {
         terminal::tell(&format!("note: {note}"));
@@ -132,5 +152,4 @@ fn text(object: &ExportOutput) -> String {
 }
 
 #[cfg(test)]
-#[path = "export_tests.rs"]
 mod tests;

@@ -131,6 +131,7 @@ fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
 fn arguments(run: &Path, format: Form, to: Option<&Path>) -> Arguments {
     Arguments {
         run: run.to_owned(),
+        failed: false,
         format,
         to: to.map(Path::to_owned),
         force: false,
@@ -255,7 +256,7 @@ fn the_query_of_the_readme_finds_the_best_individuals() {
     let folder = scratch.path().join("run");
     let (_, log) = run_with(&folder, usize::MAX);
     export(&arguments(&folder, Form::Sqlite, None)).unwrap();
-    let readme = include_str!("../../../../README.md");
+    let readme = include_str!("../../../../../README.md");
     let (_, behind) = readme.split_once("run.sqlite \"").unwrap();
     let (query, _) = behind.split_once('"').unwrap();
     let database = rusqlite::Connection::open(folder.join("run.sqlite")).unwrap();

@@ -1,0 +1,208 @@
+//! `horsehead export --failed RUN`: what programs left where they failed, as folders to look into.
+use crate::{
+    cli::{output::problem::Usage, run::folder::RunFolder},
+    journal::{self, Recording},
+};
+use protocol::{
+    event::{Event, Finished},
+    file::is_below,
+    job::{Failure, Left, Outcome},
+};
+use serde::Serialize;
+use std::{
+    fmt::Write as _,
+    fs, io,
+    os::unix::fs::PermissionsExt,
+    path::{Path, PathBuf},
+};
+
+/// Name of the folder in the run's own.
+const FOLDER: &str = "failed";
+/// What says why, beside what was left.
+const WHY: &str = "why.txt";
+
+/// What programs read.
+#[derive(Debug, Serialize)]
+pub(super) struct FailedOutput {
+    /// The run's folder.
+    run: String,
+    /// Where the folders are; null where there are none.
+    folder: Option<String>,
+    /// Every job that was given up.
+    failed: Vec<OneFailed>,
+    /// What is missing, and why.
+    pub(super) notes: Vec<String>,
+}
+
+/// A job that was given up.
+#[derive(Debug, Serialize)]
+struct OneFailed {
+    /// Its number, as in the table `results`.
+    job: u64,
+    /// In which way.
+    kind: &'static str,
+    /// Why, in words.
+    why: String,
+    /// Its folder; null where nothing travelled.
+    folder: Option<String>,
+    /// What is in it, as it lay in the run's own.
+    files: Vec<String>,
+    /// Of which the end alone is here, or nothing.
+    shortened: Vec<String>,
+}
+
+/// Writes the folders, into a place of the caller's or the run's own, and says which there are.
+pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Result<FailedOutput> {
+    let folder = RunFolder::at(run)?;
+    let journal = folder.file(journal::FILE);
+    if !journal.exists() {
+        return Err(Usage {
+            message: format!("{} has no journal yet", folder.path().display()),
+            help: "the command that began the run makes it".to_owned(),
+        }
+        .into());
+    }
+    let mut failures: Vec<(u64, Failure)> = Vec::new();
+    let recording = Recording::read(&journal, |_, event| {
+        if let Event::Finished(finished) = event
+            && let Finished {
+                attempt,
+                outcome: Outcome::Failed(failure),
+                ..
+            } = *finished
+        {
+            failures.push((attempt.job.0, failure));
+        }
+    })?;
+    failures.sort_by_key(|(job, _)| *job);
+    let any = failures
+        .iter()
+        .any(|(_, failure)| failure.left().is_some_and(|left| !left.is_empty()));
+    let place = to.map_or_else(|| folder.file(FOLDER), Path::to_path_buf);
+    if any {
+        prepare(&place, to.is_none(), force)?;
+    }
+    let one = |(job, failure): (u64, Failure)| -> anyhow::Result<OneFailed> {
+        let left = failure.left().filter(|left| !left.is_empty());
+        let folder = place.join(job.to_string());
+        let why = failure.to_string();
+        if let Some(left) = left {
+            unpack(&folder, &why, left)
+                .map_err(|error| anyhow::anyhow!("{}: {error}", folder.display()))?;
+        }
+        Ok(OneFailed {
+            job,
+            kind: failure.kind(),
+            folder: left.map(|_| folder.display().to_string()),
+            files: left.map_or_else(Vec::new, |left| {
+                left.files.iter().map(|file| file.path.clone()).collect()
+            }),
+            shortened: left.map_or_else(Vec::new, |left| {
+                left.shortened.iter().map(|one| one.path.clone()).collect()
+            }),
+            why,
+        })
+    };
+    Ok(FailedOutput {
+        run: run.display().to_string(),
+        folder: any.then(|| place.display().to_string()),
+        failed: failures.into_iter().map(one).collect::<Result<_, _>>()?,
+        notes: journal::words(&recording.report().damage),
+    })
+}
+
+/// An empty folder: the run's own is made anew, another one must be.
+fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
+    let is_empty = fs::read_dir(place).map_or(true, |mut entries| entries.next().is_none());
+    if !is_empty {
+        if !is_own && !force {
+            return Err(Usage {
+                message: format!("{} is not empty", place.display()),
+                help: "choose another place with --to, or write into it with --force".to_owned(),
+            }
+            .into());
+        }
+        if is_own {
+            fs::remove_dir_all(place)?;
+        }
+    }
+    Ok(fs::create_dir_all(place)?)
+}
+
+/// Writes what a run left, below its folder and nowhere else.
+fn unpack(folder: &Path, why: &str, left: &Left) -> io::Result<()> {
+    fs::create_dir_all(folder)?;
+    for file in &left.files {
+        // a worker says what it likes
+        if !is_below(Path::new(&file.path)) {
+            continue;
+        }
+        let path: PathBuf = folder.join(&file.path);
+        if let Some(parent) = path.parent() {
+            fs::create_dir_all(parent)?;
+        }
+        fs::write(&path, &file.content)?;
+        let mode = if file.executable { 0o700 } else { 0o600 };
+        fs::set_permissions(&path, fs::Permissions::from_mode(mode))?;
+    }
+    let mut text = format!("{why}\n");
+    for one in &left.shortened {
+        let kept = match one.kept {
+            0 => "did not travel".to_owned(),
+            kept => format!("its last {kept} are here"),
+        };
+        // writing to a string does not fail
+        let _written = writeln!(text, "{}: of {} bytes {kept}", one.path, one.bytes);
+    }
+    fs::write(folder.join(WHY), text)
+}
+
+/// What people read.
+pub(super) fn text(object: &FailedOutput) -> String {
+    if object.failed.is_empty() {
+        return "no run was given up\n".to_owned();
+    }
+    let one = |failed: &OneFailed| {
+        let first = failed.why.lines().next().unwrap_or_default();
+        let place = failed.folder.as_deref().unwrap_or("nothing travelled");
+        format!("{:>9}  {place}: {first}\n", failed.job)
+    };
+    object.failed.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use protocol::{file::File, job::Shortened};
+
+    #[test]
+    fn what_was_left_is_written_below_its_folder_and_nowhere_else() {
+        let place = tempfile::tempdir().unwrap();
+        let folder = place.path().join("7");
+        let file = |path: &str| File {
+            path: path.to_owned(),
+            content: b"x".to_vec(),
+            executable: false,
+        };
+        let left = Left {
+            files: vec![
+                file("work/deep/log"),
+                file("../outside"),
+                file("/tmp/absolute"),
+            ],
+            shortened: vec![Shortened {
+                path: "work/long".to_owned(),
+                bytes: 100,
+                kept: 10,
+            }],
+        };
+        unpack(&folder, "it ended with status 1", &left).unwrap();
+        assert_eq!(fs::read(folder.join("work/deep/log")).unwrap(), b"x");
+        assert!(!place.path().join("outside").exists());
+        let why = fs::read_to_string(folder.join(WHY)).unwrap();
+        assert_eq!(
+            why,
+            "it ended with status 1\nwork/long: of 100 bytes its last 10 are here\n"
+        );
+    }
+}

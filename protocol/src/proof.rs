@@ -1,0 +1,96 @@
+//! What the reference individual of a case came to on a worker, and whether two machines agree on it.
+use crate::id::ContentHash;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Most values that stand for a result.
+pub const MOST_SAMPLES: usize = 64;
+
+/// What the case's reference individual came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Proof {
+    /// The name of every bit of it.
+    Bits(ContentHash),
+    /// Some of its values, of a model that does not repeat its bits; at most [`MOST_SAMPLES`].
+    Values(Vec<Sample>),
+    /// Nothing: a model that does not repeat its bits fails at it.
+    Failed,
+}
+
+/// A value of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Sample {
+    /// The value, in its channel's unit.
+    pub value: f64,
+    /// How large values of its channel are: their root mean square, in the same unit.
+    pub scale: f64,
+}
+
+impl Proof {
+    /// Whether another machine's result is the same: bits are equal, values lie no further apart than a share of
+    /// their channel's size.
+    ///
+    /// # Errors
+    /// In words, what differs.
+    pub fn agrees(&self, other: &Self, tolerance: f64) -> Result<(), String> {
+        match (self, other) {
+            (Self::Bits(own), Self::Bits(others)) if own == others => Ok(()),
+            (Self::Values(own), Self::Values(others)) if own.len() == others.len() => {
+                let mut pairs = own.iter().zip(others);
+                match pairs.find(|(a, b)| !a.is_near(b, tolerance)) {
+                    None => Ok(()),
+                    Some((a, b)) => Err(format!(
+                        "{} where this run's is {}, further apart than {tolerance} of its channel's size",
+                        b.value, a.value
+                    )),
+                }
+            }
+            _ => Err(format!("{other}, this run's is {self}")),
+        }
+    }
+}
+
+impl Sample {
+    fn is_near(&self, other: &Self, tolerance: f64) -> bool {
+        // what is no number is near to nothing
+        (self.value - other.value).abs() <= tolerance * self.scale.max(other.scale)
+    }
+}
+
+impl fmt::Display for Proof {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bits(hash) => write!(to, "{hash}"),
+            Self::Values(samples) => write!(to, "{} values", samples.len()),
+            Self::Failed => write!(to, "a failure"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_may_differ_by_a_share_of_their_channel_s_size() {
+        let values = |values: [f64; 2]| {
+            let sample = |value| Sample { value, scale: 10.0 };
+            Proof::Values(values.map(sample).to_vec())
+        };
+        let own = values([1.0, -9.0]);
+        assert_eq!(own.agrees(&values([1.0005, -9.0005]), 1e-4), Ok(()));
+        let told = own.agrees(&values([1.0, -9.002]), 1e-4).unwrap_err();
+        assert!(told.contains("-9.002 where this run's is -9"), "{told}");
+        for other in [
+            values([f64::NAN, -9.0]),
+            Proof::Values(Vec::new()),
+            Proof::Failed,
+            Proof::Bits(ContentHash([1; 32])),
+        ] {
+            assert!(own.agrees(&other, 1.0).is_err(), "{other:?}");
+        }
+        let bits = |byte| Proof::Bits(ContentHash([byte; 32]));
+        assert_eq!(bits(1).agrees(&bits(1), 0.0), Ok(()));
+        assert!(bits(1).agrees(&bits(2), 1.0).is_err());
+    }
+}

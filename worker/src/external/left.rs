@@ -1,0 +1,195 @@
+//! What a failed run leaves in its folder, made small enough to travel with its failure.
+//!
+//! The case's own files are left out where the program did not change them: whoever has the case has those. Small
+//! files go first, as they are; of longer ones the end.
+use protocol::{
+    file::File,
+    job::{Left, Shortened},
+};
+use std::{
+    fs,
+    io::{self, Read, Seek, SeekFrom},
+    os::unix::fs::PermissionsExt,
+    path::Path,
+};
+
+/// Most bytes of whole files, and of the ends of longer ones, together.
+const MOST_WHOLE: u64 = 256 << 10;
+const MOST_ENDS: u64 = 64 << 10;
+/// How much of the end of a longer file is kept (bytes).
+const END: u64 = 16 << 10;
+/// Most files that are spoken of.
+const MOST_FILES: usize = 1000;
+
+/// Something in the folder.
+struct Found {
+    path: String,
+    bytes: u64,
+    is_file: bool,
+}
+
+/// What lies in a run's folder; `own` are the case's files, below `work/`.
+pub(super) fn left(root: &Path, own: &[File]) -> Left {
+    let mut found = Vec::new();
+    // what cannot be listed is not there for anybody
+    drop(list(root, "", &mut found));
+    found.retain(|one| !(one.is_file && is_unchanged(root, one, own)));
+    found.sort_by(|a, b| (a.bytes, &a.path).cmp(&(b.bytes, &b.path)));
+    let (mut whole, mut ends) = (MOST_WHOLE, MOST_ENDS);
+    let mut left = Left::default();
+    for one in found {
+        let room = if one.bytes <= whole {
+            one.bytes
+        } else {
+            END.min(one.bytes).min(ends)
+        };
+        let read = if one.is_file && (room > 0 || one.bytes == 0) {
+            end(&root.join(&one.path), room)
+        } else {
+            None
+        };
+        let Some((content, executable)) = read else {
+            left.shortened.push(Shortened {
+                path: one.path,
+                bytes: one.bytes,
+                kept: 0,
+            });
+            continue;
+        };
+        let kept = content.len() as u64;
+        if kept < one.bytes {
+            ends = ends.saturating_sub(kept);
+            left.shortened.push(Shortened {
+                path: one.path.clone(),
+                bytes: one.bytes,
+                kept,
+            });
+        } else {
+            whole = whole.saturating_sub(kept);
+        }
+        left.files.push(File {
+            path: one.path,
+            content,
+            executable,
+        });
+    }
+    left
+}
+
+/// Everything below a folder that is none itself; links are not followed.
+fn list(root: &Path, below: &str, found: &mut Vec<Found>) -> io::Result<()> {
+    for entry in fs::read_dir(root.join(below))? {
+        let entry = entry?;
+        // a name that is no text cannot travel
+        let Ok(name) = entry.file_name().into_string() else {
+            continue;
+        };
+        let path = if below.is_empty() {
+            name
+        } else {
+            format!("{below}/{name}")
+        };
+        let Ok(metadata) = entry.metadata() else {
+            continue;
+        };
+        if metadata.is_dir() {
+            drop(list(root, &path, found));
+        } else if found.len() < MOST_FILES {
+            found.push(Found {
+                path,
+                bytes: metadata.len(),
+                is_file: metadata.is_file(),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// Whether a file is the case's, as it was.
+fn is_unchanged(root: &Path, one: &Found, own: &[File]) -> bool {
+    let name = one.path.strip_prefix(super::scratch::WORK);
+    let name = name.and_then(|rest| rest.strip_prefix('/'));
+    let Some(name) = name else {
+        // the lock of the folder
+        return one.path == super::scratch::LOCK;
+    };
+    let same = own.iter().find(|file| file.path == name);
+    same.is_some_and(|file| {
+        file.content.len() as u64 == one.bytes
+            && fs::read(root.join(&one.path)).is_ok_and(|bytes| bytes == file.content)
+    })
+}
+
+/// The last bytes of a file, and whether it may be executed.
+fn end(path: &Path, bytes: u64) -> Option<(Vec<u8>, bool)> {
+    let read = || -> io::Result<(Vec<u8>, bool)> {
+        let mut file = fs::File::open(path)?;
+        let metadata = file.metadata()?;
+        file.seek(SeekFrom::Start(metadata.len().saturating_sub(bytes)))?;
+        let mut content = Vec::new();
+        file.take(bytes).read_to_end(&mut content)?;
+        Ok((content, metadata.permissions().mode() & 0o100 != 0))
+    };
+    read().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_files_travel_whole_long_ones_with_their_end_and_the_case_s_own_stay() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        fs::create_dir_all(root.join("work/deep")).unwrap();
+        fs::write(root.join("work/mesh.dat"), "as it came").unwrap();
+        fs::write(root.join("work/changed.dat"), "changed").unwrap();
+        fs::write(root.join("work/deep/log"), "short").unwrap();
+        fs::write(root.join("work/long"), vec![b'x'; 1 << 20]).unwrap();
+        fs::write(root.join("output"), "last words").unwrap();
+        std::os::unix::fs::symlink("/etc/passwd", root.join("work/link")).unwrap();
+        let own = ["mesh.dat", "changed.dat"].map(|path| File {
+            path: path.to_owned(),
+            content: b"as it came".to_vec(),
+            executable: false,
+        });
+        let left = left(root, &own);
+        let names: Vec<(&str, usize)> = left
+            .files
+            .iter()
+            .map(|file| (file.path.as_str(), file.content.len()))
+            .collect();
+        let expected = [
+            ("work/deep/log", 5),
+            ("work/changed.dat", 7),
+            ("output", 10),
+            ("work/long", 16 << 10),
+        ];
+        assert_eq!(names, expected);
+        let short: Vec<(&str, u64)> = left
+            .shortened
+            .iter()
+            .map(|one| (one.path.as_str(), one.kept))
+            .collect();
+        assert_eq!(short, [("work/link", 0), ("work/long", 16 << 10)]);
+    }
+
+    #[test]
+    fn however_much_there_is_little_of_it_travels() {
+        let folder = tempfile::tempdir().unwrap();
+        for number in 0..40 {
+            fs::write(
+                folder.path().join(format!("{number}")),
+                vec![b'x'; 30 << 10],
+            )
+            .unwrap();
+        }
+        let left = left(folder.path(), &[]);
+        let all: usize = left.files.iter().map(|file| file.content.len()).sum();
+        assert!(all as u64 <= MOST_WHOLE + MOST_ENDS, "{all}");
+        assert_eq!(
+            left.files.len() - 8,
+            left.shortened.iter().filter(|one| one.kept > 0).count()
+        );
+    }
+}
