@@ -1,5 +1,5 @@
 #!/bin/sh
-# Digests of the reference run and of a head's reduction in several builds: optimisation levels of the
+# Digests of the reference run, of its derivatives and of a head's reduction in several builds: optimisation levels of the
 # dynamics and instruction sets. Every build must reproduce those in
 # worker/simulation/tests/numerics/determinism.rs.
 # Builds go to target/determinism and take some minutes the first time. Run from anywhere:

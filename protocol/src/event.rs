@@ -53,6 +53,13 @@ pub enum Event {
         /// Why, in words.
         reason: String,
     },
+    /// A job was asked for.
+    Asked {
+        /// The job.
+        job: JobId,
+        /// Hash of the encoded job: a number stands for one content in all processes of a run.
+        work: ContentHash,
+    },
     /// A job has its one accepted result.
     Finished(Box<Finished>),
     /// The coordinator ended the run by itself.

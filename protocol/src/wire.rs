@@ -14,7 +14,7 @@ use serde::{Serialize, de::DeserializeOwned};
 
 /// Version of the frame and of everything in it; both ends must have the same. A test holds the form
 /// of every message to it: whoever changes one raises this number.
-pub const VERSION: u8 = 11;
+pub const VERSION: u8 = 12;
 /// The most a body may hold (bytes): a long simulation with its pictures fits.
 pub const BODY_LIMIT: usize = 16 << 20;
 /// What an outcome may gain at each of its stations: from its slot to its worker, to the coordinator,

@@ -4,6 +4,7 @@
     clippy::panic,
     reason = "helpers of a test suite: to panic is to fail the test"
 )]
+mod columns;
 mod commands;
 mod disk;
 mod faults;

@@ -5,7 +5,7 @@
 use protocol::{
     announce::{EffectDescriptor, ModelDescriptor},
     case::Case,
-    job::{Curves, Failure, Observation, SimulateSpec},
+    job::{Column, Curves, Failure, Observation, SimulateSpec},
 };
 use std::{fmt, time::Instant};
 
@@ -36,6 +36,12 @@ pub trait Simulator: fmt::Debug + Sync {
     /// Whether it simulates cases of a kind, as they name it on the wire.
     fn simulates(&self, kind: &str) -> bool {
         kind == self.kind()
+    }
+
+    /// Derivatives that every worker of a run computes of the case's reference individual when it joins, beside the
+    /// curves: one of each way in which this kind of model comes by them. None where it gives none.
+    fn reference_columns(&self, _case: &Case) -> Vec<Column> {
+        Vec::new()
     }
 
     /// Builds the model of a case.

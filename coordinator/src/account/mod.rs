@@ -112,7 +112,11 @@ impl Folding {
                     self.rows.insert((row.worker, said.epoch), row.clone());
                 }
             }
-            Event::Begun { .. } | Event::Joined { .. } | Event::Closed | Event::Proved { .. } => {}
+            Event::Begun { .. }
+            | Event::Joined { .. }
+            | Event::Closed
+            | Event::Proved { .. }
+            | Event::Asked { .. } => {}
         }
     }
 

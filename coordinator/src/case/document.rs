@@ -191,21 +191,18 @@ pub(crate) fn short(value: f64) -> String {
     }
 }
 
+/// Stands in the `expecting` text of a type of case files, between what is expected and an example of it.
+const WRITE: &str = "; write ";
+
 /// The first line of a library's message, without its list of alternatives.
 fn first_line(message: &str) -> String {
     let line = message.lines().next().unwrap_or_default();
+    let line = line.split_once(WRITE).map_or(line, |(line, _)| line);
     match line.split_once(", expected ") {
         Some((head, _)) if line.starts_with("unknown ") => head.to_owned(),
+        // types of the source are nothing to people who write files
+        Some((head, kind)) if kind.starts_with("struct ") => format!("{head}, expected a table"),
         _ => line
-            .replace(
-                "expected struct GeneValue",
-                "expected a value with its unit",
-            )
-            .replace(
-                "expected struct GeneEntry",
-                "expected a table with bounds and unit",
-            )
-            .replace("expected struct ", "expected a table, ")
             .replace("expected f64", "expected a number")
             .replace("expected u8", "expected a whole number from 0 to 255"),
     }
@@ -232,16 +229,9 @@ fn advice(message: &str) -> String {
             _ => format!("add `{what}`; `horsehead case new` prints a commented template"),
         };
     }
-    if message.starts_with("invalid type") && message.contains("struct GeneValue") {
-        return format!(
-            "write the value with its unit, as `{{ value = 3.14e8, unit = \"N/m\" }}`; units: {}",
-            units()
-        );
-    }
-    if message.starts_with("invalid type") && message.contains("struct GeneEntry") {
-        return "write a table, as `{ recommended = 1e8, lower = 1e6, upper = 1e10, unit = \
-                \"N/m\" }`"
-            .to_owned();
+    if let Some((_, example)) = message.split_once(WRITE) {
+        let example = example.lines().next().unwrap_or_default();
+        return format!("write {example}; units: {}", units());
     }
     if message.starts_with("invalid type") {
         return "correct the value's type: numbers without quotes, names with quotes".to_owned();
@@ -305,9 +295,12 @@ mod tests {
 
     #[test]
     fn the_words_of_the_library_become_what_to_write() {
-        let gene = "invalid type: floating point `3.14e8`, expected struct GeneValue";
-        assert!(first_line(gene).ends_with("expected a value with its unit"));
-        assert!(advice(gene).contains("{ value = 3.14e8, unit = \"N/m\" }"));
+        let table = "invalid type: floating point `3.14e8`, expected struct Beam with 2 elements";
+        assert!(first_line(table).ends_with("`3.14e8`, expected a table"));
+        let gene =
+            "invalid type: floating point `3.14e8`, expected a value; write `{ value = 1.0 }`";
+        assert!(first_line(gene).ends_with("expected a value"));
+        assert!(advice(gene).starts_with("write `{ value = 1.0 }`; units: "));
         let number = "invalid type: string \"4\", expected f64";
         assert!(first_line(number).ends_with("expected a number"));
         let choice = "unknown variant `sideways`, expected `free` or `fixed`";

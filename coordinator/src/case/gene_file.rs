@@ -15,7 +15,10 @@ use std::{collections::BTreeMap, path::Path};
 
 /// One line of a gene file.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a value with its unit; write `{ value = 3.14e8, unit = \"N/m\" }`"
+)]
 struct GeneValue {
     value: f64,
     unit: String,

@@ -1,5 +1,9 @@
 //! Who gets which job.
-use super::{lease::lease, member::Member, state::Core};
+use super::{
+    lease::lease,
+    member::Member,
+    state::{Core, Pending},
+};
 use protocol::id::{JobId, WorkerId};
 use std::time::Duration;
 
@@ -14,7 +18,9 @@ pub(super) fn assign(core: &mut Core, now: Duration) {
                 continue;
             };
             // a job that only some workers may have must not hold up the others
-            let special = !pending.refused_by.is_empty() || core.must_run_alone(pending);
+            let special = !pending.refused_by.is_empty()
+                || !pending.failed_at.is_empty()
+                || core.must_run_alone(pending);
             passed_over.push(job);
             if !special {
                 break;
@@ -43,11 +49,22 @@ fn pick(core: &Core, job: JobId) -> Option<WorkerId> {
             member.takes_jobs()
                 && member.leases.len() < room(member)
                 && reserved != Some(**id)
-                && !pending.refused_by.contains(id)
+                && may_have(core, pending, **id)
                 && (!alone || member.taken.is_empty())
         })
         .min_by_key(|(_, member)| member.leases.len() * 4096 / member.slots())
         .map(|(id, _)| *id)
+}
+
+/// Whether a worker may be given a job: one that refused it never, one at which it crashed or ran past its
+/// deadline only while no other worker is left to try.
+pub(super) fn may_have(core: &Core, pending: &Pending, worker: WorkerId) -> bool {
+    let refused = |id: &WorkerId| pending.refused_by.contains(id);
+    let failed = |id: &WorkerId| pending.failed_at.contains(id);
+    let mut others = core.members.iter();
+    !refused(&worker)
+        && (!failed(&worker)
+            || !others.any(|(id, member)| member.takes_jobs() && !refused(id) && !failed(id)))
 }
 
 /// While a job waits to run alone, the least loaded worker that may have it gets nothing new.
@@ -57,7 +74,7 @@ fn reserved(core: &Core) -> Option<WorkerId> {
     let ready = core
         .members
         .iter()
-        .filter(|(id, member)| member.takes_jobs() && !waiting.refused_by.contains(id));
+        .filter(|(id, member)| member.takes_jobs() && may_have(core, waiting, **id));
     ready
         .min_by_key(|(_, member)| member.leases.len())
         .map(|(id, _)| *id)

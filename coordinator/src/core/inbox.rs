@@ -8,6 +8,7 @@ use super::{
     tail,
 };
 use protocol::{
+    event::Event,
     id::{JobId, WorkerId},
     job::Job,
     message::{Beat, FromWorker, ToWorker},
@@ -53,7 +54,12 @@ fn submit(core: &mut Core, id: JobId, job: Job, now: Duration) {
     if core.has_finished(id) || core.jobs.contains_key(&id) {
         return;
     }
-    core.jobs.insert(id, Pending::new(job));
+    let pending = Pending::new(job);
+    core.record(Event::Asked {
+        job: id,
+        work: pending.work,
+    });
+    core.jobs.insert(id, pending);
     core.queue.insert(id);
     lease::adopt(core, id, now);
     if let Some((from, done)) = core.early.take(id) {

@@ -194,11 +194,17 @@ pub(super) fn failed(
         return;
     };
     let mut again = pending.failures.count(&failure, &core.options.policy);
-    if let Failure::Refused { .. } = failure {
-        pending.refused_by.insert(worker);
-        let refused_by = &pending.refused_by;
-        let mut members = core.members.keys();
-        again = members.any(|member| !refused_by.contains(member));
+    match failure {
+        Failure::Refused { .. } => {
+            pending.refused_by.insert(worker);
+            let refused_by = &pending.refused_by;
+            let mut members = core.members.keys();
+            again = members.any(|member| !refused_by.contains(member));
+        }
+        Failure::Crashed { .. } | Failure::Deadline { .. } => {
+            pending.failed_at.insert(worker);
+        }
+        Failure::Lost { .. } | Failure::Misconfigured { .. } => {}
     }
     if !again {
         give_up(core, job, failure);

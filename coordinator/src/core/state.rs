@@ -126,6 +126,8 @@ pub(super) struct Pending {
     /// Workers that hold it now.
     pub(super) holders: Vec<WorkerId>,
     pub(super) refused_by: BTreeSet<WorkerId>,
+    /// Workers at which an attempt crashed or ran past its deadline.
+    pub(super) failed_at: BTreeSet<WorkerId>,
     pub(super) failures: Failures,
 }
 
@@ -138,6 +140,7 @@ impl Pending {
             next: 0,
             holders: Vec::new(),
             refused_by: BTreeSet::new(),
+            failed_at: BTreeSet::new(),
             failures: Failures::default(),
         }
     }

@@ -5,6 +5,7 @@
 //! result counts, and whoever is late is told to stop. A job is copied once at a time, and never if
 //! workers were lost over it.
 use super::{
+    assign::may_have,
     lease::{lease, release},
     slot_time::Use,
     state::Core,
@@ -49,27 +50,31 @@ fn waiting(core: &Core, idle: WorkerId, now: Duration) -> Option<(WorkerId, Atte
     others.find_map(|(id, member)| {
         let lease = member.leases.get(member.slots()..)?.last()?;
         let long = now.saturating_sub(lease.sent) > after && lease.running.is_none();
-        let refused_by = &core.jobs.get(&lease.attempt.job)?.refused_by;
-        (long && !refused_by.contains(&idle)).then_some((*id, lease.attempt))
+        let pending = core.jobs.get(&lease.attempt.job)?;
+        (long && may_have(core, pending, idle)).then_some((*id, lease.attempt))
     })
 }
 
 /// Gives idle slots copies of jobs that take suspiciously long, the slowest first.
 pub(super) fn copy_slow(core: &mut Core, now: Duration) {
-    if !core.waits_for_others() || most_idle(core, None).is_none() {
+    if !core.waits_for_others() || most_idle(core, |_| true).is_none() {
         return;
     }
     for (holder, job) in slow(core) {
-        if let Some(worker) = most_idle(core, Some(holder)) {
+        let pending = core.jobs.get(&job);
+        let suits = |id: WorkerId| {
+            id != holder && pending.is_some_and(|pending| may_have(core, pending, id))
+        };
+        if let Some(worker) = most_idle(core, suits) {
             lease(core, worker, job, now);
         }
     }
 }
 
-/// The worker with the largest share of idle slots, another one than the job's holder.
-fn most_idle(core: &Core, holder: Option<WorkerId>) -> Option<WorkerId> {
-    let others = core.members.iter().filter(|(id, _)| Some(**id) != holder);
-    let free = others.filter(|(_, member)| member.takes_jobs());
+/// The worker with the largest share of idle slots among those that suit.
+fn most_idle(core: &Core, suits: impl Fn(WorkerId) -> bool) -> Option<WorkerId> {
+    let all = core.members.iter().filter(|(id, _)| suits(**id));
+    let free = all.filter(|(_, member)| member.takes_jobs());
     let most = free.max_by_key(|(_, member)| member.idle() * 4096 / member.slots());
     most.filter(|(_, member)| member.idle() > 0)
         .map(|(id, _)| *id)

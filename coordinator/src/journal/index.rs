@@ -68,6 +68,7 @@ impl Results {
             | Event::Joined { .. }
             | Event::Left { .. }
             | Event::Closed
+            | Event::Asked { .. }
             | Event::Proved { .. }
             | Event::Accounted(_) => Ok(None),
         }

@@ -29,5 +29,5 @@ pub use error::JournalError;
 pub use open::{Begun, Journal};
 pub use read::{Damage, Entry, ReadReport, fold, words};
 pub use record::{FILE, HEAD, LOCK, MARK};
-pub use recording::Recording;
+pub use recording::{Recording, numbers};
 pub use write::Appended;

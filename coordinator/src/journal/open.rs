@@ -253,7 +253,7 @@ impl Past {
                 self.proof.get_or_insert(proof);
             }
             Event::Finished(finished) => self.results.push((finished.job(), entry.at)),
-            Event::Accounted(_) => {}
+            Event::Asked { .. } | Event::Accounted(_) => {}
         }
     }
 

@@ -6,7 +6,7 @@ use super::{
 };
 use protocol::{
     event::{Event, Finished},
-    id::JobId,
+    id::{ContentHash, JobId},
 };
 use std::path::Path;
 
@@ -58,4 +58,25 @@ impl Recording {
     pub const fn report(&self) -> &ReadReport {
         &self.report
     }
+}
+
+/// Reads the numbers of jobs and the hashes of their contents from a journal; each is given as often as the job was
+/// asked for or answered.
+///
+/// # Errors
+/// As [`fold`].
+pub fn numbers(path: &Path, mut given: impl FnMut(JobId, ContentHash)) -> Result<(), JournalError> {
+    let report = fold(path, |_, event| match event {
+        Event::Asked { job, work } => given(job, work),
+        // of a job whose question was lost to damage the answer is left
+        Event::Finished(finished) => given(finished.job(), finished.work),
+        Event::Begun { .. }
+        | Event::Opened { .. }
+        | Event::Joined { .. }
+        | Event::Left { .. }
+        | Event::Closed
+        | Event::Proved { .. }
+        | Event::Accounted(_) => {}
+    });
+    report.map(drop)
 }

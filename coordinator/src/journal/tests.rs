@@ -46,6 +46,7 @@ fn read(path: &Path) -> (BTreeMap<u64, Event>, Option<RunId>, Vec<Damage>) {
         | Event::Joined { .. }
         | Event::Left { .. }
         | Event::Closed
+        | Event::Asked { .. }
         | Event::Proved { .. }
         | Event::Accounted(_) => {}
     });

@@ -92,10 +92,12 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
 
     /// Writes until the sender is gone.
     pub(super) fn run(&mut self, events: &mpsc::Receiver<Event>) {
+        let mut batch = Vec::new();
         while let Ok(first) = events.recv() {
-            let mut batch = Vec::new();
             let mut jobs = Vec::new();
+            let mut is_due = false;
             for event in std::iter::once(first).chain(events.try_iter()) {
+                is_due |= !matches!(event, Event::Asked { .. });
                 match record(&event) {
                     Ok(record) => {
                         batch.extend_from_slice(&record);
@@ -107,7 +109,12 @@ impl<M: Medium, F: FnMut(Appended)> Writer<M, F> {
                     Err(error) => tracing::error!(%error, "an event cannot be recorded"),
                 }
             }
+            // what was asked for is written with the next event: alone it is not worth a flush
+            if !is_due {
+                continue;
+            }
             let written = self.insist(&batch);
+            batch.clear();
             if !self.medium.is_there() {
                 (self.said)(Appended::Deleted);
                 return;

@@ -6,7 +6,10 @@ use std::{
     io::{self, Write as _},
     path::Path,
     process::{Child, Command, Output, Stdio},
-    sync::Mutex,
+    sync::{
+        Mutex,
+        atomic::{AtomicBool, Ordering},
+    },
     thread,
 };
 
@@ -27,15 +30,17 @@ pub struct LaunchError {
     pub remedy: String,
 }
 
-/// Does what the plan says, and tells as it comes how it ended at each place, by its number in the plan.
+/// Does what the plan says, and tells as it comes how it ended at each place. Once it is `cancelled`, no further step
+/// begins, and places that are left are not told of.
 ///
 /// # Errors
 /// If a first step fails: then nothing was done at any place.
 pub fn carry_out(
     plan: &Plan,
+    cancelled: &AtomicBool,
     tell: &(impl Fn(&Part, Result<(), LaunchError>) + Sync),
 ) -> Result<(), LaunchError> {
-    run("this machine", &plan.first)?;
+    run("this machine", &plan.first, cancelled)?;
     let waiting = Mutex::new(plan.parts.iter());
     let next = || {
         let mut waiting = waiting
@@ -47,7 +52,10 @@ pub fn carry_out(
         for _ in 0..plan.parts.len().min(AT_A_TIME) {
             scope.spawn(|| {
                 while let Some(part) = next() {
-                    tell(part, run(&part.place, &part.steps).map(drop));
+                    let ended = run(&part.place, &part.steps, cancelled);
+                    if !cancelled.load(Ordering::Relaxed) {
+                        tell(part, ended.map(drop));
+                    }
                 }
             });
         }
@@ -56,9 +64,16 @@ pub fn carry_out(
 }
 
 /// The steps of one place, in order; what the last that asks was answered.
-pub(super) fn run(place: &str, steps: &[Step]) -> Result<String, LaunchError> {
+pub(super) fn run(
+    place: &str,
+    steps: &[Step],
+    cancelled: &AtomicBool,
+) -> Result<String, LaunchError> {
     let mut answer = String::new();
     for step in steps {
+        if cancelled.load(Ordering::Relaxed) {
+            break;
+        }
         match step {
             Step::Write { path, content } => {
                 write(path, content).map_err(|error| LaunchError {

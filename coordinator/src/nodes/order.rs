@@ -15,6 +15,8 @@ pub struct Order {
     pub slots: Option<u16>,
     /// Lines of shell that come before it, as `module load`.
     pub prologue: String,
+    /// Name of the run that launches it and ends it; empty where a person does.
+    pub owner: String,
 }
 
 impl Order {

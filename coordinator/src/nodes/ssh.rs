@@ -16,6 +16,7 @@ use super::{
     words::line,
 };
 use link::keys::{CA, WORKER};
+use std::sync::atomic::AtomicBool;
 
 /// Options of every call: nothing is ever asked at the terminal, and a host that does not answer, or no
 /// longer, ends the call.
@@ -141,7 +142,7 @@ fn part(order: &Order, host: &Host, name: &str, programs: &[Program], wait_s: u6
 
 /// What tells the folders on a host of one coordinator's workers from those of another: two runs may use
 /// the same names.
-pub fn mark(order: &Order) -> String {
+fn mark(order: &Order) -> String {
     let authority = order.tls.as_ref().map(|keys| std::fs::read(keys.join(CA)));
     let whose = match authority {
         Some(Ok(certificate)) => certificate,
@@ -151,15 +152,17 @@ pub fn mark(order: &Order) -> String {
     format!("-{}", hash.chars().take(8).collect::<String>())
 }
 
-/// Ends the workers of hosts: those with a [`mark`], or all of them if it is empty.
-pub fn down(hosts: &[Host], mark: &str) -> Plan {
+/// Ends the workers of hosts: those that an order's [`Order::owner`] has launched for its coordinator, or all.
+pub fn down(hosts: &[Host], order: Option<&Order>) -> Plan {
+    let owner = order.map_or("", |order| order.owner.as_str());
+    let mark = order.map(mark).unwrap_or_default();
     let parts = hosts.iter().map(|host| Part {
         place: host.to_string(),
         then: "its workers have ended".to_owned(),
         steps: vec![Step::Run {
             what: "end its workers".to_owned(),
             command: shell(host, "sh -s"),
-            input: Input::Text(script::end(mark)),
+            input: Input::Text(script::end(&mark, owner)),
             only_if: None,
             asks: false,
             remedy: "its workers end by themselves only with --idle-timeout".to_owned(),
@@ -184,7 +187,7 @@ pub fn our_address(host: &Host) -> Result<String, LaunchError> {
         asks: true,
         remedy: "name the address with --advertise".to_owned(),
     };
-    launch::run(&host.to_string(), &[step]).and_then(|address| {
+    launch::run(&host.to_string(), &[step], &AtomicBool::new(false)).and_then(|address| {
         if address.is_empty() {
             return Err(LaunchError {
                 place: host.to_string(),

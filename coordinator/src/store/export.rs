@@ -130,7 +130,7 @@ impl<'a> Store<'a> {
         let happened = match event {
             Event::Finished(finished) => return self.result(&finished),
             // repeated at each opening, and told by the account
-            Event::Begun { .. } | Event::Accounted(_) => return Ok(()),
+            Event::Begun { .. } | Event::Asked { .. } | Event::Accounted(_) => return Ok(()),
             Event::Opened { at_unix_ms, .. } => Happened {
                 event: "opened",
                 at_unix_ms: Some(at_unix_ms),

@@ -1,7 +1,7 @@
 //! Individuals that somebody else asks for, scored as they come: results in the order in which they are done.
 //!
-//! It knows requests and results, not who asks nor how. A job is numbered by its content, so a run that is
-//! opened again finds in its journal whatever is asked a second time, in any order.
+//! It knows requests and results, not who asks nor how. A job is numbered by its content ([`super::job_number`]), so
+//! a run that is opened again finds in its journal whatever is asked a second time, in any order.
 use super::{
     error::StudyError,
     evaluator::Evaluator,
@@ -11,7 +11,6 @@ use protocol::{
     case::Case,
     id::JobId,
     job::{Answer, Evaluation, Failure, Individual, Job, Outcome, Reply, SimulateSpec},
-    wire,
 };
 use std::collections::BTreeMap;
 use tokio::sync::mpsc;
@@ -45,6 +44,7 @@ pub async fn evaluate<E: Evaluator, T>(
 ) -> anyhow::Result<()> {
     let mut open: BTreeMap<JobId, Vec<T>> = BTreeMap::new();
     let mut known: BTreeMap<JobId, Scored> = BTreeMap::new();
+    let mut numbers = evaluator.numbers()?;
     let mut asking = true;
     while asking || !open.is_empty() {
         let event = async {
@@ -58,7 +58,7 @@ pub async fn evaluate<E: Evaluator, T>(
             Event::Request(None) => asking = false,
             Event::Request(Some(request)) => {
                 let job = job(case, &request);
-                let id = number(&job)?;
+                let id = numbers.number(&job);
                 if let Some(scored) = known.get(&id) {
                     answer(request.tag, scored)?;
                 } else if let Some(tags) = open.get_mut(&id) {
@@ -99,13 +99,6 @@ pub(super) fn job<T>(case: &Case, request: &Request<T>) -> Job {
             whole: true,
         },
     ))
-}
-
-/// The start of the hash of its content, no larger than any table holds exactly.
-pub(super) fn number(job: &Job) -> anyhow::Result<JobId> {
-    let hash = blake3::hash(&wire::encode(job)?);
-    let [a, b, c, d, e, f, ..] = *hash.as_bytes();
-    Ok(JobId(u64::from_le_bytes([a, b, c, d, e, f, 0, 0])))
 }
 
 pub(super) fn scored(id: JobId, outcome: Outcome) -> Result<Scored, StudyError> {

@@ -1,5 +1,6 @@
 //! What a study needs of whoever evaluates: take jobs, give results, say who is at work.
 use super::error::{EvaluatorError, StudyError};
+use super::job_number::JobNumbers;
 use crate::core::Completed;
 use protocol::{
     event::Spent,
@@ -22,6 +23,14 @@ pub trait Evaluator {
     /// # Errors
     /// If no further result can come.
     fn next(&mut self) -> impl Future<Output = Result<Completed, EvaluatorError>>;
+
+    /// Numbers that jobs of earlier sessions have, for studies that number jobs by their content.
+    ///
+    /// # Errors
+    /// If what earlier sessions left cannot be read.
+    fn numbers(&self) -> Result<JobNumbers, EvaluatorError> {
+        Ok(JobNumbers::default())
+    }
 
     /// Who is at work, now.
     fn crew(&self) -> Crew;

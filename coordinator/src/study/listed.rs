@@ -1,6 +1,6 @@
 //! A list of individuals, all scored: results in the order of the list.
 use super::{
-    evaluate::{Request, Scored, job, number, scored},
+    evaluate::{Request, Scored, job, scored},
     evaluator::Evaluator,
     progress::ProgressView,
     stop::{Stop, or_stop},
@@ -26,6 +26,7 @@ pub async fn score_all<E: Evaluator>(
     stop: &mut Stop,
 ) -> anyhow::Result<Vec<Scored>> {
     let mut open: BTreeMap<JobId, Vec<usize>> = BTreeMap::new();
+    let mut numbers = evaluator.numbers()?;
     for (index, genes) in individuals.iter().enumerate() {
         let request = Request {
             tag: (),
@@ -33,7 +34,7 @@ pub async fn score_all<E: Evaluator>(
             with_residual: false,
         };
         let job = job(case, &request);
-        let id = number(&job)?;
+        let id = numbers.number(&job);
         if let Some(same) = open.get_mut(&id) {
             same.push(index);
         } else {

@@ -32,6 +32,8 @@ pub(crate) struct Oracle {
     known: BTreeMap<JobId, Outcome>,
     answered: BTreeMap<JobId, Outcome>,
     computed: usize,
+    /// Numbers for studies that number jobs by content.
+    numbers: JobNumbers,
 }
 
 impl Oracle {
@@ -48,6 +50,15 @@ impl Oracle {
             known: BTreeMap::new(),
             answered: BTreeMap::new(),
             computed: 0,
+            numbers: JobNumbers::default(),
+        }
+    }
+
+    /// The same with so few numbers for jobs that the hashes of many begin alike.
+    pub(crate) fn with_number_bits(self, bits: u32) -> Self {
+        Self {
+            numbers: JobNumbers::with_bits(bits),
+            ..self
         }
     }
 
@@ -96,6 +107,10 @@ impl Evaluator for Oracle {
             outcome,
             replayed,
         })
+    }
+
+    fn numbers(&self) -> Result<JobNumbers, EvaluatorError> {
+        Ok(self.numbers.clone())
     }
 
     fn crew(&self) -> Crew {
@@ -508,4 +523,54 @@ async fn a_search_that_begins_with_failures_goes_on_until_there_are_too_many() {
         error.unwrap_err().to_string(),
         "all of the first 8 individuals failed: 8 x load not lifted"
     );
+}
+
+/// Individuals whose hashes begin alike: each has the score of its own values, whether it is asked for one by one, in
+/// a list or by a search.
+#[tokio::test]
+async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
+    let case = case();
+    let first = |_: &Space, _: u64, individual: &Individual| {
+        Outcome::Done(Answer::Scored(evaluation(
+            individual.genes[0],
+            Verdict::Complete,
+        )))
+    };
+    let individuals: Vec<Vec<f64>> = (0..200)
+        .map(|n| {
+            let mut genes = case.start();
+            genes[0] *= 1.0 + f64::from(n % 150) / 1000.0;
+            genes
+        })
+        .collect();
+    let (_sender, mut stop) = watch::channel(false);
+    // 150 jobs in 256 numbers
+    let mut oracle = Oracle::new(&case, 1, first).with_number_bits(8);
+    let mut quiet = Quiet(Vec::new());
+    let scored = score_all(&mut oracle, &case, &individuals, &mut quiet, &mut stop).await;
+    assert_eq!(oracle.computed(), 150);
+    for (genes, scored) in individuals.iter().zip(scored.unwrap()) {
+        assert_eq!(scored.unwrap().fitness, genes[0]);
+    }
+    let mut oracle = Oracle::new(&case, 2, first).with_number_bits(8);
+    let (ask, mut asked) = tokio::sync::mpsc::channel(individuals.len());
+    for genes in individuals {
+        let (tag, with_residual) = (genes[0], false);
+        let request = Request {
+            tag,
+            genes,
+            with_residual,
+        };
+        ask.send(request).await.unwrap();
+    }
+    drop(ask);
+    let mut answers = 0;
+    let mut answer = |tag: f64, scored: &Scored| {
+        answers += 1;
+        assert_eq!(scored.as_ref().unwrap().fitness, tag);
+        Ok(())
+    };
+    let done = evaluate(&mut oracle, &case, &mut asked, &mut answer, &mut stop).await;
+    done.unwrap();
+    assert_eq!(answers, 200);
 }

@@ -21,8 +21,8 @@ pub use unknown::{Prior, Scale, Shares, Shift, Tie, Unknown, Valley};
 
 use serde::{Deserialize, Serialize};
 
-/// A machine, its records and what is asked of them.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A machine, its records and what is asked of them. Its default is empty: enough for jobs that do nothing.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// Name of the machine.
     pub name: String,

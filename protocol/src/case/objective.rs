@@ -2,7 +2,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Weighted sum of mean squared errors.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Objective {
     /// Index of the condition that is calibrated, the first one of several.
     pub condition: usize,

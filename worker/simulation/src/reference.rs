@@ -11,6 +11,7 @@ use crate::model::description::{
 };
 use crate::observe::Recorder;
 use crate::run::{RunSettings, simulate};
+use crate::sensitivity::{self, Coefficient, Column, Derivative, Origin, Plan};
 use crate::statistics::Statistics;
 use std::sync::Arc;
 
@@ -142,18 +143,7 @@ pub fn bits() -> (Vec<u64>, Statistics) {
 /// and every generic force at a tenth of it; with twin ropes it comes as far as 2000 Newton iterations
 /// lead.
 pub fn name() -> [(Vec<u64>, Statistics); 3] {
-    let small = |mut description: Description| {
-        description.crank.speed *= 3.0;
-        description.rope.pitch *= 6.0;
-        description.rope.back /= 6;
-        description.rope.front /= 6;
-        description
-    };
-    let settings = RunSettings {
-        lead_in: 20_f64.to_radians(),
-        ramp: 0.3,
-        ..RunSettings::default()
-    };
+    let settings = quick();
     let short = RunSettings {
         budget: 2000,
         ..settings
@@ -175,6 +165,81 @@ pub fn name() -> [(Vec<u64>, Statistics); 3] {
         run(small(description()), all.effects(), &settings),
         run(small(twins([2e-3, -1e-3])), &[], &short),
     ]
+}
+
+/// Derivatives of the first of these runs, with friction in its bearing, as bits: by the coefficients that move most
+/// (`Kb1`, `Kc`), by a size and a shape of an effect that the machine has, by a size of one that it has not, and by a
+/// generic force.
+///
+/// Empty if one of them does not exist, which a test rules out.
+pub fn columns() -> Vec<u64> {
+    let description = small(description());
+    let friction = Asked {
+        id: "pivot_friction",
+        parameters: vec![("moment", 1500.0), ("creep", 4e-3)],
+    };
+    let effects = [friction];
+    let built = Selection::new(&effects).unwrap_or_default();
+    let Ok(machine) = Machine::with_effects(description.clone(), 2, built.effects()) else {
+        return Vec::new();
+    };
+    let parameter = |effect: &str, parameter: &str| Column::Parameter {
+        effect: effect.to_owned(),
+        parameter: parameter.to_owned(),
+        values: Vec::new(),
+    };
+    let generic = catalogue().iter().find(|one| one.generic);
+    let generic = generic.and_then(|one| Some(parameter(&one.id, one.parameters.first()?.name)));
+    let columns: Vec<Column> = [Coefficient::Kb1, Coefficient::Kc]
+        .map(Column::Coefficient)
+        .into_iter()
+        .chain([
+            parameter("pivot_friction", "moment"),
+            parameter("pivot_friction", "creep"),
+            parameter("head_profile_wear", "depth"),
+        ])
+        .chain(generic)
+        .collect();
+    let origin = Origin {
+        description: &description,
+        modes: 2,
+        effects: &effects,
+    };
+    let Ok(plan) = Plan::new(&origin, &machine, &columns) else {
+        return Vec::new();
+    };
+    let settings = RunSettings {
+        samples: 72,
+        ..quick()
+    };
+    let mut recorder = Recorder::gauges_only();
+    let (_, found) = sensitivity::simulate(&machine, &law(), &settings, &plan, &mut recorder);
+    let mut bits = Vec::new();
+    for column in found.map(|found| found.columns).unwrap_or_default() {
+        let Derivative::Curves(changes) = column else {
+            return Vec::new();
+        };
+        bits.extend(changes.gauge.iter().flatten().map(|x| x.to_bits()));
+    }
+    bits
+}
+
+/// Settings of the runs that name a build: a short way to full speed.
+fn quick() -> RunSettings {
+    RunSettings {
+        lead_in: 20_f64.to_radians(),
+        ramp: 0.3,
+        ..RunSettings::default()
+    }
+}
+
+/// A machine with a sixth of the cylinders that turns thrice as fast.
+fn small(mut description: Description) -> Description {
+    description.crank.speed *= 3.0;
+    description.rope.pitch *= 6.0;
+    description.rope.back /= 6;
+    description.rope.front /= 6;
+    description
 }
 
 fn run(
@@ -206,6 +271,18 @@ mod tests {
         assert!(first.iter().all(|bits| f64::from_bits(*bits).is_finite()));
         assert!(statistics.steps > 100);
         assert_eq!(bits(), (first, statistics));
+    }
+
+    #[test]
+    fn the_columns_that_name_a_build_are_all_there_and_repeat_bit_for_bit() {
+        let first = columns();
+        assert_eq!(first.len(), 6 * 4 * 72);
+        let values: Vec<f64> = first.iter().map(|bits| f64::from_bits(*bits)).collect();
+        assert!(values.iter().all(|x| x.is_finite()));
+        for (at, column) in values.chunks(4 * 72).enumerate() {
+            assert!(column.iter().any(|x| *x != 0.0), "column {at}");
+        }
+        assert_eq!(columns(), first);
     }
 
     #[test]

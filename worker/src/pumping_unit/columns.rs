@@ -15,6 +15,35 @@ use simulation::{
     sensitivity::{self, Coefficient, Column, Origin, Plan, Refused},
 };
 
+/// One column of each kind for the reference individual of a case: a coefficient, a size and a shape of an effect, and
+/// a generic force. An effect that the case has stays at its values there.
+pub(super) fn reference(case: &Case) -> Vec<job::Column> {
+    let present = |effect: &str| case.effects.iter().any(|own| own.id == effect);
+    let mut shape = job::Column::of("pivot_friction.creep");
+    if !present("pivot_friction") {
+        // the shape of an absent size does nothing
+        shape.values = vec![("moment".to_owned(), 1500.0)];
+    }
+    let generic = catalogue()
+        .iter()
+        .find(|one| one.generic && !present(&one.id));
+    let generic = generic.and_then(|one| {
+        let parameter = one.parameters.first()?;
+        Some(job::Column::of(format!("{}.{}", one.id, parameter.name)))
+    });
+    [
+        "kb1",
+        "kc",
+        "stuffing_box_friction.force",
+        "head_profile_wear.depth",
+    ]
+    .map(job::Column::of)
+    .into_iter()
+    .chain([shape])
+    .chain(generic)
+    .collect()
+}
+
 /// The columns of a job, planned on the machine that it simulates.
 pub(super) struct Columns {
     /// As the dynamics take them.
@@ -78,11 +107,7 @@ impl Columns {
 fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> {
     let job::Column { name, values } = column;
     if let Some(own) = pumping_unit::Coefficient::named(name) {
-        let all = pumping_unit::Coefficient::ALL.into_iter();
-        let mut all = all.zip(Coefficient::ALL);
-        if let Some((_, coefficient)) = all.find(|(one, _)| *one == own) {
-            return Ok((Column::Coefficient(coefficient), Per::Decade));
-        }
+        return Ok((Column::Coefficient(coefficient(own)), Per::Decade));
     }
     // a generic force has points in its own name, a parameter has none
     let parts = name.rsplit_once('.');
@@ -111,6 +136,23 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
         values: values.clone(),
     };
     Ok((column, Per::Unit(parameter.unit.symbol().to_owned())))
+}
+
+/// The coefficient of the dynamics that a case names.
+const fn coefficient(named: pumping_unit::Coefficient) -> Coefficient {
+    use pumping_unit::Coefficient as Named;
+    match named {
+        Named::Kb1 => Coefficient::Kb1,
+        Named::Kb23 => Coefficient::Kb23,
+        Named::Kb4 => Coefficient::Kb4,
+        Named::Kb56 => Coefficient::Kb56,
+        Named::Cb1 => Coefficient::Cb1,
+        Named::Cb23 => Coefficient::Cb23,
+        Named::Cb4 => Coefficient::Cb4,
+        Named::Cb56 => Coefficient::Cb56,
+        Named::Kc => Coefficient::Kc,
+        Named::Cc => Coefficient::Cc,
+    }
 }
 
 fn refused(refused: &Refused) -> Failure {

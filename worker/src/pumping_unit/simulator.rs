@@ -1,10 +1,10 @@
 //! The pumping unit as a worker's programs see it: one kind of model among others.
-use super::{curves, digest, effect, machines::Machines, ran::Ran, reduce_head};
+use super::{columns, curves, digest, effect, machines::Machines, ran::Ran, reduce_head};
 use crate::simulator::{Model, Simulator};
 use protocol::{
     announce::EffectDescriptor,
     case::Case,
-    job::{Curves, Failure, Observation, SimulateSpec},
+    job::{Column, Curves, Failure, Observation, SimulateSpec},
     pumping_unit::{Machine, REDUCE_HEAD},
     wire,
 };
@@ -25,6 +25,10 @@ impl Simulator for PumpingUnits {
 
     fn effects(&self) -> Vec<EffectDescriptor> {
         effect::descriptors()
+    }
+
+    fn reference_columns(&self, case: &Case) -> Vec<Column> {
+        columns::reference(case)
     }
 
     fn prepare(&self, case: &Case) -> Result<Box<dyn Model>, Failure> {

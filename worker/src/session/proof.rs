@@ -1,10 +1,13 @@
 //! Proof that this worker computes what the others compute: the case's reference individual.
 //!
 //! It is an ordinary job in an ordinary slot: the recommended parameters under the condition of
-//! the objective. The name of its outcome's bits is what the coordinator compares, or some of its values
+//! the objective, with a derivative of each kind that the model gives. The name of its outcome's bits is what the coordinator compares, or some of its values
 //! where bits do not repeat. A case that cannot be built gives a proof too: that of what is wrong with it,
 //! which must be the same everywhere.
-use crate::pool::{CaseBytes, Task};
+use crate::{
+    pool::{CaseBytes, Task},
+    simulator::{Simulators, simulator_of},
+};
 use protocol::{
     case::{Case, Repeats},
     id::{AttemptId, ContentHash, JobId},
@@ -107,7 +110,7 @@ fn samples(seen: &Observation) -> Vec<Sample> {
 
 /// The reference individual of a case, as a task, and how equal its results are everywhere; why there is none
 /// if there is none.
-pub(super) fn task(case: &CaseBytes) -> Result<(Task, Repeats), String> {
+pub(super) fn task(simulators: Simulators, case: &CaseBytes) -> Result<(Task, Repeats), String> {
     let decoded: Case = wire::decode(&case.bytes)
         .map_err(|error| format!("case {} cannot be read here: {error}", case.hash))?;
     let condition = decoded.objective.condition;
@@ -121,7 +124,14 @@ pub(super) fn task(case: &CaseBytes) -> Result<(Task, Repeats), String> {
         Reply::Channels
     };
     let reference = Individual::new(condition, decoded.start());
-    let job = Job::Simulate(SimulateSpec::new(reference, reply));
+    let mut spec = SimulateSpec::new(reference, reply);
+    // a case of no known kind is refused by the job itself, in its own words
+    if let (Repeats::Bits, Ok(simulator)) =
+        (decoded.model.repeats, simulator_of(simulators, &decoded))
+    {
+        spec.columns = simulator.reference_columns(&decoded);
+    }
+    let job = Job::Simulate(spec);
     let own = decoded.model.deadline_s.map(Duration::try_from_secs_f64);
     let deadline = own
         .and_then(Result::ok)

@@ -190,7 +190,7 @@ impl State {
         let missing = self.proof == Progress::Missing;
         let case = self.case.as_ref().filter(|_| missing)?;
         let slot = (0..self.pool.len()).find(|slot| !self.running.contains_key(slot))?;
-        match proof::task(case) {
+        match proof::task(self.options.simulators, case) {
             Ok((task, repeats)) => {
                 self.proof = Progress::Running;
                 self.repeats = repeats;

@@ -12,6 +12,7 @@ use crate::{
 };
 use clap::{Args, Subcommand};
 use link::locator::Locator;
+use protocol::case::Case;
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -283,7 +284,7 @@ async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchO
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };
-    let options = options.for_dispatch(&bus::empty_case()?)?;
+    let options = options.for_dispatch(&Case::default())?;
     let result = runtime::bench(options, plan)
         .await
         .map_err(|error| bus::explain(&error))?;

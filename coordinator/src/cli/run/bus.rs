@@ -1,10 +1,10 @@
 //! The dispatcher as an evaluator: opening it, and its refusals in words that help.
 use crate::{
     cli::{argument::door::Door, output::problem::Usage},
-    journal::JournalError,
+    journal::{self, JournalError},
     kind,
     runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
-    study::{Completed, Crew, Evaluator, EvaluatorError, WorkerStatus},
+    study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus},
 };
 use link::LinkError;
 use protocol::{
@@ -55,6 +55,7 @@ impl Options {
 /// The dispatcher, as an evaluator.
 pub(crate) struct Bus {
     dispatch: Dispatch,
+    journal: PathBuf,
 }
 
 impl Bus {
@@ -65,10 +66,11 @@ impl Bus {
             return Err(Usage { message, help }.into());
         }
         let options = options.for_dispatch(case)?;
+        let journal = options.run_dir.join(journal::FILE);
         let dispatch = Dispatch::open(options)
             .await
             .map_err(|error| refuse(&error))?;
-        Ok(Self { dispatch })
+        Ok(Self { dispatch, journal })
     }
 
     /// How many results earlier sessions left in the journal.
@@ -95,6 +97,13 @@ impl Evaluator for Bus {
 
     async fn next(&mut self) -> Result<Completed, EvaluatorError> {
         self.dispatch.next().await.map_err(|error| explain(&error))
+    }
+
+    fn numbers(&self) -> Result<JobNumbers, EvaluatorError> {
+        let mut numbers = JobNumbers::default();
+        let read = journal::numbers(&self.journal, |job, work| numbers.note(job, work));
+        read.map(|()| numbers)
+            .map_err(|error| explain(&error.into()))
     }
 
     fn crew(&self) -> Crew {
@@ -191,15 +200,6 @@ pub(crate) fn content_hash(content: &impl Serialize) -> anyhow::Result<ContentHa
 /// The name of a case's content, in hexadecimal digits.
 pub(crate) fn case_hash(case: &Case) -> anyhow::Result<String> {
     Ok(content_hash(case)?.to_string())
-}
-
-/// A case in which everything is zero or empty: jobs that do nothing need no more. Its encoding
-/// is a row of zeros, whose length depends on the version of the case.
-pub(crate) fn empty_case() -> anyhow::Result<Case> {
-    let zeros = [0; 4096];
-    (1..zeros.len())
-        .find_map(|length| wire::decode(&zeros[..length]).ok())
-        .ok_or_else(|| anyhow::anyhow!("this version of the case cannot be all zeros"))
 }
 
 /// Runs a future to its end on a runtime of its own.

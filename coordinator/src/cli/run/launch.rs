@@ -20,9 +20,13 @@ use link::{
     locator::{Locator, Protocol},
 };
 use std::{
+    fs,
     path::Path,
-    sync::atomic::{AtomicUsize, Ordering},
-    thread,
+    sync::{
+        Arc,
+        atomic::{AtomicBool, AtomicUsize, Ordering},
+    },
+    thread::{self, JoinHandle},
 };
 
 /// Where a run listens for workers that it brings up itself.
@@ -41,6 +45,10 @@ pub(crate) struct Launch {
     order: Order,
     /// How the run listens for them.
     pub(crate) door: Door,
+    /// No further step of bringing them up begins.
+    cancelled: Arc<AtomicBool>,
+    /// Brings them up.
+    launching: Option<JoinHandle<()>>,
 }
 
 impl Launch {
@@ -59,16 +67,9 @@ impl Launch {
         };
         if connect.protocol == Protocol::Quic && door.tls.is_none() {
             let folder = run.join(KEYS);
-            let authority = if folder.exists() {
-                Authority::open(&folder)?
-            } else {
-                Authority::create(&folder)?
-            };
+            let authority = authority(&folder)?;
             let own = [connect.bare_host(), "localhost", "127.0.0.1"].map(str::to_owned);
             authority.issue_coordinator(&own, Validity::days(DAYS))?;
-            if !folder.join(link::keys::WORKERS).exists() {
-                authority.issue_worker("worker-01", Validity::days(DAYS))?;
-            }
             door.tls = Some(folder);
         }
         let order = Order {
@@ -77,12 +78,19 @@ impl Launch {
             idle_timeout: Some(IDLE_S),
             slots: None,
             prologue: String::new(),
+            owner: owner(run)?,
         };
-        Ok(Some(Self { hosts, order, door }))
+        Ok(Some(Self {
+            hosts,
+            order,
+            door,
+            cancelled: Arc::default(),
+            launching: None,
+        }))
     }
 
     /// Brings the workers up, beside the run; a host that fails is told of and not waited for.
-    pub(crate) fn up(&self) -> anyhow::Result<()> {
+    pub(crate) fn up(&mut self) -> anyhow::Result<()> {
         let plan = ssh::up(
             &self.order,
             &self.hosts,
@@ -90,28 +98,71 @@ impl Launch {
             WAIT_S,
         );
         let plan = plan.map_err(refuse)?;
-        thread::Builder::new()
+        let cancelled = Arc::clone(&self.cancelled);
+        let launching = thread::Builder::new()
             .name("launch".to_owned())
             .spawn(move || {
-                if let Err(error) = carry(&plan) {
+                if let Err(error) = carry_until(&plan, &cancelled) {
                     tracing::warn!("workers of other nodes: {error}");
                 }
             })?;
+        self.launching = Some(launching);
         Ok(())
     }
 
-    /// Ends them.
-    pub(crate) fn down(&self) {
-        if let Err(error) = carry(&ssh::down(&self.hosts, &ssh::mark(&self.order))) {
+    /// Ends them, those among them that are being started too.
+    pub(crate) fn down(mut self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+        let is_launching = |launching: &JoinHandle<()>| !launching.is_finished();
+        let launching = self.launching.take().filter(is_launching);
+        let down = ssh::down(&self.hosts, Some(&self.order));
+        // whoever waits for a worker to take part goes on once its process has ended
+        let mut ended = carry(&down);
+        if let Some(launching) = launching {
+            // a step that had begun may have started a worker behind that
+            drop(launching.join());
+            ended = carry(&down);
+        }
+        if let Err(error) = ended {
             tracing::warn!("workers of other nodes may go on for {IDLE_S} s: {error}");
         }
     }
 }
 
+/// The authority of a run's own keys: the one that earlier processes of the run had, or a new one with the keys of a
+/// first worker.
+fn authority(folder: &Path) -> anyhow::Result<Authority> {
+    if !folder.exists() {
+        // a process that is killed here leaves no half of a folder under its name
+        let part = folder.with_extension("part");
+        if part.exists() {
+            fs::remove_dir_all(&part)?;
+        }
+        let new = Authority::create(&part)?;
+        new.issue_worker("worker-01", Validity::days(DAYS))?;
+        fs::rename(&part, folder)?;
+    }
+    Ok(Authority::open(folder)?)
+}
+
+/// The name under which a run owns the workers that it launches: the same for every process of the run.
+fn owner(run: &Path) -> std::io::Result<String> {
+    let uname = rustix::system::uname();
+    let host = uname.nodename().to_string_lossy();
+    let place = format!("{host}:{}", std::path::absolute(run)?.display());
+    let hash = blake3::hash(place.as_bytes()).to_hex();
+    Ok(format!("run-{}", hash.chars().take(16).collect::<String>()))
+}
+
 /// Carries a plan out and tells how it ended at each place.
 pub(crate) fn carry(plan: &Plan) -> anyhow::Result<()> {
+    carry_until(plan, &AtomicBool::new(false))
+}
+
+/// The same until it is cancelled.
+fn carry_until(plan: &Plan, cancelled: &AtomicBool) -> anyhow::Result<()> {
     let failed = AtomicUsize::new(0);
-    carry_out(plan, &|part, ended| match ended {
+    carry_out(plan, cancelled, &|part, ended| match ended {
         Ok(()) => terminal::tell(&format!("{}: {}", part.place, part.then)),
         Err(error) => {
             failed.fetch_add(1, Ordering::Relaxed);

@@ -18,7 +18,7 @@ use crate::{
     study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all},
 };
 use anyhow::Context as _;
-use protocol::event::Spent;
+use protocol::{case::Case, event::Spent};
 use search::{
     space::Space,
     strategy::{Plan, Settings, Strategy, build, preset},
@@ -346,7 +346,7 @@ fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOption
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };
-    options.for_dispatch(&bus::empty_case()?)
+    options.for_dispatch(&Case::default())
 }
 
 /// A row of what was measured: times are wall time and the coordinator's processor time.

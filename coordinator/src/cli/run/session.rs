@@ -41,15 +41,16 @@ impl Session {
         run: &Run<S>,
         work: impl AsyncFnOnce(&mut Bus, &mut Stop) -> anyhow::Result<T>,
     ) -> anyhow::Result<T> {
-        let launch = Launch::prepare(&self.workers, run.folder.path())?;
+        let mut launch = Launch::prepare(&self.workers, run.folder.path())?;
         let door = launch
             .as_ref()
-            .map_or(&self.workers.door, |launch| &launch.door);
+            .map_or(&self.workers.door, |launch| &launch.door)
+            .clone();
         let done = bus::block_on(async {
             let mut stop = interrupt::listen();
             let options = bus::Options {
                 run_dir: run.folder.path().to_owned(),
-                door: door.clone(),
+                door,
                 local_workers: self.workers.local(),
                 kind: S::KIND.to_owned(),
                 settings: run.manifest.settings_json()?,
@@ -66,7 +67,7 @@ impl Session {
                     format!("going on with {path}: its journal holds {recorded} results")
                 }
             });
-            launch.as_ref().map_or(Ok(()), Launch::up)?;
+            launch.as_mut().map_or(Ok(()), Launch::up)?;
             let done = work(&mut bus, &mut stop).await;
             // while the run is still locked
             let remembered = run.remember(self.wall_s(run));

@@ -19,6 +19,50 @@ fn a_job_that_crashes_twice_is_given_up_and_recorded() {
     assert_eq!(scene.given(), []);
 }
 
+/// One bad node among three fails whatever it is given, at once, so that it is always the least loaded: each job is
+/// tried once more elsewhere, even where that has to be waited for.
+#[test]
+fn what_fails_at_one_worker_is_tried_again_at_another() {
+    let mut scene = Scene::new();
+    for worker in 1..=3 {
+        scene.join(worker, 1);
+    }
+    scene.submit(0..30);
+    let mut failed = 0;
+    while scene.delivered.len() < 30 {
+        let given = scene.given();
+        let (bad, good): (Vec<_>, Vec<_>) = given.into_iter().partition(|(at, _)| *at == 1);
+        assert!(bad.len() + good.len() > 0, "the run stands still");
+        for (_, attempt) in bad {
+            failed += 1;
+            let failure = if failed % 2 == 0 {
+                crash()
+            } else {
+                Failure::deadline(120_000)
+            };
+            scene.fail(1, attempt, failure);
+        }
+        for (at, attempt) in good {
+            scene.finish(at, attempt);
+        }
+    }
+    assert!(failed > 1, "the bad one was never tried");
+    let done = |(_, outcome): &(u64, Outcome)| matches!(outcome, Outcome::Done(_));
+    assert!(scene.delivered.iter().all(done), "{:?}", scene.delivered);
+    // with the others gone it is the bad one's again, within the limit of tries
+    scene.submit(30..31);
+    let (first, attempt) = scene.given()[0];
+    scene.fail(first, attempt, crash());
+    for other in (1..=3).filter(|other| *other != first) {
+        scene.tell(Input::Gone {
+            worker: WorkerId(other),
+        });
+    }
+    scene.wait(70, &[first]);
+    let given = scene.given();
+    assert_eq!(given.last().map(|(at, _)| *at), Some(first), "{given:?}");
+}
+
 #[test]
 fn a_refusal_goes_to_the_others_and_ends_when_all_have_refused() {
     let refusal = || Failure::Refused {

@@ -94,7 +94,8 @@ mv "$part" "$home/worker-{hash}"
     )
 }
 
-/// Starts the worker in a session of its own; one that runs with the same command line goes on.
+/// Starts the worker in a session of its own; one that runs with the same command line goes on, and so does one that
+/// a run finds and has not launched.
 pub(super) fn start(order: &Order, folder: &str, programs: &[Program]) -> String {
     let mut choice = String::from("case \"$(uname -m)\" in\n");
     for Program { machine, hash, .. } in programs {
@@ -108,16 +109,25 @@ folder=$home/{folder}
 mkdir -p "$folder"
 chmod 700 "$folder"
 set -- "$worker" {arguments}{tls}
-{RUNNING}if [ -n "$process" ] && [ "$(cat "$folder/command")" = "$*" ]; then
-  echo "it runs already, as process $process" >&2
-  exit 0
+{RUNNING}owner={owner}
+if [ -n "$process" ]; then
+  if [ "$(cat "$folder/command")" = "$*" ]; then
+    echo "it runs already, as process $process" >&2
+    exit 0
+  fi
+  if [ -n "$owner" ] && [ "$(cat "$folder/owner" 2>/dev/null || true)" != "$owner" ]; then
+    echo "it runs already, launched by somebody else, as process $process" >&2
+    exit 0
+  fi
 fi
 {END}echo "$*" > "$folder/command"
+echo "$owner" > "$folder/owner"
 cd /
 setsid nohup "$@" > "$folder/log" 2>&1 < /dev/null &
 echo $! > "$folder/process"
 "#,
         prologue = lines(&order.prologue),
+        owner = line(std::slice::from_ref(&order.owner)),
     )
 }
 
@@ -140,9 +150,19 @@ done
     )
 }
 
-/// Ends the workers in the folders of a host whose names end like this; all of them if it is empty.
-pub(super) fn end(mark: &str) -> String {
-    format!("{HOME}for folder in \"$home\"/worker-*{mark}/; do\n{RUNNING}{END}done\n")
+/// Ends the workers in the folders of a host whose names end like `mark`, of those only what `owner` has launched; all
+/// of them if both are empty.
+pub(super) fn end(mark: &str, owner: &str) -> String {
+    let owner = line(&[owner.to_owned()]);
+    format!(
+        r#"{HOME}owner={owner}
+for folder in "$home"/worker-*{mark}/; do
+if [ -n "$owner" ] && [ "$(cat "$folder/owner" 2>/dev/null || true)" != "$owner" ]; then
+  continue
+fi
+{RUNNING}{END}done
+"#
+    )
 }
 
 /// Shows the end of what its workers said.

@@ -140,7 +140,10 @@ const fn steel_poisson() -> f64 {
 
 /// One coefficient of the case.
 #[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(
+    deny_unknown_fields,
+    expecting = "a table with bounds and unit; write `{ recommended = 1e8, lower = 1e6, upper = 1e10, unit = \"N/m\" }`"
+)]
 pub(super) struct GeneEntry {
     /// In `unit`, or the formula that gives it.
     pub(super) recommended: Recommended,

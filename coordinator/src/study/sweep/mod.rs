@@ -7,8 +7,8 @@
 use super::{
     calibrate::{LEAST_TRIED, all_failed, entry, residual, score},
     error::StudyError,
-    evaluate::number,
     evaluator::Evaluator,
+    job_number::JobNumbers,
     log::{Ending, Entry, EvaluationLog},
     progress::ProgressView,
     stop::{Stop, or_stop},
@@ -64,6 +64,8 @@ pub struct Sweep<'a> {
     /// Who waits for a job.
     open: BTreeMap<JobId, Vec<(usize, Proposal)>>,
     known: BTreeMap<JobId, Outcome>,
+    /// Numbers of the run's jobs; none before the first search is asked.
+    numbers: Option<JobNumbers>,
     view: ProgressView,
     /// What has failed, as long as nothing else has happened.
     failed: Option<EvaluationLog>,
@@ -79,6 +81,7 @@ impl<'a> Sweep<'a> {
             found: BTreeMap::new(),
             open: BTreeMap::new(),
             known: BTreeMap::new(),
+            numbers: None,
             view: ProgressView::default(),
             failed: Some(EvaluationLog::default()),
         }
@@ -97,6 +100,9 @@ impl<'a> Sweep<'a> {
         watch: &mut dyn Watch<ProgressView>,
         stop: &mut Stop,
     ) -> anyhow::Result<Vec<Searched>> {
+        if self.numbers.is_none() {
+            self.numbers = Some(evaluator.numbers()?);
+        }
         let first = self.found.len();
         let all = first + searches.len();
         self.view.generations = u32::try_from(all).unwrap_or(u32::MAX);
@@ -151,7 +157,8 @@ impl<'a> Sweep<'a> {
             for proposal in asked.filter(|proposal| proposal.id < limit) {
                 new = true;
                 let job = score(self.case, &proposal);
-                let id = number(&job)?;
+                let numbers = self.numbers.get_or_insert_default();
+                let id = numbers.number(&job);
                 if let Some(outcome) = self.known.get(&id).cloned() {
                     told = true;
                     self.tell(index, proposal, outcome)?;

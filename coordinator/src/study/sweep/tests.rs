@@ -63,6 +63,20 @@ async fn searches_do_not_disturb_each_other() {
     }
 }
 
+/// Jobs of several searches whose hashes begin alike are not taken for each other.
+#[tokio::test]
+async fn searches_find_the_same_where_numbers_of_jobs_are_few() {
+    let case = case();
+    let space = Space::new(&case.unknowns).unwrap();
+    let all = [search(20, 1, Some(60)), search(20, 2, Some(60))];
+    let (expected, _) = swept(&case, 1, &[&all]).await;
+    let mut oracle = Oracle::new(&case, 3, physics).with_number_bits(7);
+    let (_sender, mut stop) = tokio::sync::watch::channel(false);
+    let mut sweep = Sweep::new(&case, &space);
+    let found = sweep.run(&mut oracle, &all, &mut Unseen, &mut stop).await;
+    assert_eq!(found.unwrap(), expected);
+}
+
 /// A budget ends a search in the middle of a batch, with the best of what it was given.
 #[tokio::test]
 async fn a_budget_is_kept_to_the_evaluation() {

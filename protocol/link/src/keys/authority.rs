@@ -122,15 +122,24 @@ impl Authority {
         })
     }
 
-    /// Writes the coordinator's certificate and key; `hosts` are the names and addresses that
-    /// workers dial.
+    /// Writes the coordinator's certificate and key, in place of any that are there; `hosts` are the names and
+    /// addresses that workers dial.
     ///
     /// # Errors
     /// [`KeyError::Make`] if a host is no name, or a file cannot be written.
     pub fn issue_coordinator(&self, hosts: &[String], valid: Validity) -> Result<(), KeyError> {
         let [certificate, key] = COORDINATOR.map(|file| self.folder.join(file));
         let pair = self.pair_for_coordinator(hosts, valid)?;
-        save(&pair, &certificate, &key)
+        let [new_certificate, new_key] =
+            [&certificate, &key].map(|file| file.with_extension("new"));
+        // what a process left that was killed here
+        for file in [&new_certificate, &new_key] {
+            drop(fs::remove_file(file));
+        }
+        write(&new_key, &pair.1, Open::Owner)?;
+        replace(&new_key, &key)?;
+        write(&new_certificate, &pair.0, Open::All)?;
+        replace(&new_certificate, &certificate)
     }
 
     /// Certificate and key of a coordinator, in PEM.
@@ -223,6 +232,13 @@ pub(crate) fn for_memory() -> Result<Authority, KeyError> {
 fn save((certificate, key): &(String, String), to: &Path, key_to: &Path) -> Result<(), KeyError> {
     write(key_to, key, Open::Owner)?;
     write(to, certificate, Open::All)
+}
+
+fn replace(new: &Path, old: &Path) -> Result<(), KeyError> {
+    fs::rename(new, old).map_err(|error| KeyError::Make {
+        path: old.to_owned(),
+        reason: error.to_string(),
+    })
 }
 
 fn authority_params(name: &str) -> CertificateParams {

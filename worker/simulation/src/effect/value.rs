@@ -7,11 +7,21 @@ use crate::model::hook::{Effect, Hooks, Reading, Sampled, Site};
 pub struct Values(pub(super) Vec<(&'static str, f64)>);
 
 impl Values {
-    /// The value of a parameter; not a number where the effect has none of that name, which no run of
-    /// the contract test survives.
+    /// The value of a parameter.
+    ///
+    /// # Panics
+    /// If the effect declares no parameter of that name: an error of the effect's own file.
+    #[expect(
+        clippy::panic,
+        reason = "a misspelt name must not become a number, in any build"
+    )]
     pub fn get(&self, name: &str) -> f64 {
         let value = self.0.iter().find(|(own, _)| *own == name);
-        value.map_or(f64::NAN, |(_, value)| *value)
+        let Some((_, value)) = value else {
+            let declared: Vec<&str> = self.0.iter().map(|(own, _)| *own).collect();
+            panic!("the effect declares no parameter `{name}`, only {declared:?}");
+        };
+        *value
     }
 
     /// The values of several parameters.
@@ -54,5 +64,17 @@ impl Effect for Read {
 impl Reading for Read {
     fn sample(&self, at: &Sampled, stress: &mut [f64; 4]) {
         (self.read)(&self.values, at, stress);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Values;
+
+    #[test]
+    #[should_panic(expected = "no parameter `momnet`, only [\"moment\", \"creep\"]")]
+    fn a_misspelt_parameter_is_no_number() {
+        let values = Values(vec![("moment", 1.0), ("creep", 2.0)]);
+        assert!(values.get("momnet").is_nan());
     }
 }

@@ -122,7 +122,7 @@ pub(super) fn drain(arguments: &DrainArguments) -> anyhow::Result<()> {
 pub(super) fn down(arguments: &DownArguments) -> anyhow::Result<()> {
     let hosts = arguments.hosts.read().map_err(refuse)?;
     if !hosts.is_empty() {
-        return carry(&ssh::down(&hosts, ""));
+        return carry(&ssh::down(&hosts, None));
     }
     let question = Question::Drain {
         names: arguments.names.clone(),

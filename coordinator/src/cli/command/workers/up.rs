@@ -138,6 +138,7 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
             })?,
             None => String::new(),
         },
+        owner: String::new(),
     };
     if let Some(options) = &arguments.k8s {
         return k8s::up(&order, options, one_for_all(&order)?.as_deref());
