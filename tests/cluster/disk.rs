@@ -21,7 +21,7 @@ use std::{
 use tests::process::{Process, free_locator, is_alive, wait_until};
 
 const JOBS: u64 = 400;
-const SKIPPED: &str = "skipped: this machine lets nobody mount a file system in a namespace";
+const NO_MOUNT: &str = "this machine lets nobody mount a file system in a namespace";
 
 /// Mounts 200 KiB at `$0`, fills most of it and runs the program that follows; what it wrote is
 /// copied beside it, since the disk is gone with its processes.
@@ -125,7 +125,7 @@ fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
     let locator = free_locator();
     let _worker = Process::worker(&locator, &["--slots", "2"]);
     let Some(run) = OnSmallDisk::start(folder.path(), &locator, JOBS, 0) else {
-        eprintln!("{SKIPPED}");
+        tests::skip(NO_MOUNT);
         return;
     };
     wait_until("it says that it pauses", LIMIT, || {
@@ -158,7 +158,7 @@ fn a_run_that_ends_on_a_full_disk_waits_for_room() {
     let _worker = Process::worker_with(&locator, &["--slots", &slots], &environment);
     // each slot has one and another waits: all are given out before the first is done
     let Some(run) = OnSmallDisk::start(folder.path(), &locator, 2 * SLOTS, 6000) else {
-        eprintln!("{SKIPPED}");
+        tests::skip(NO_MOUNT);
         return;
     };
     wait_until("the first jobs are begun", LIMIT, || trace.is_file());

@@ -20,8 +20,7 @@ pub struct Namespaces {
 }
 
 impl Namespaces {
-    /// Makes them; `None`, with the reason on standard error, where this machine does not allow it.
-    #[expect(clippy::print_stderr, reason = "a suite that is skipped must say so")]
+    /// Makes them; `None` after [`crate::skip`] where this machine does not allow it.
     pub fn make() -> Option<Self> {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let count = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -33,10 +32,9 @@ impl Namespaces {
         match made.connect() {
             Ok(()) => Some(made),
             Err(reason) => {
-                eprintln!(
-                    "skipped: network namespaces cannot be made here ({reason}); this needs Linux, \
-                     root and iproute2"
-                );
+                crate::skip(&format!(
+                    "network namespaces cannot be made here ({reason}); this needs Linux, root and iproute2"
+                ));
                 None
             }
         }

@@ -15,7 +15,7 @@ use tests::{
 };
 
 const LIMIT: Duration = Duration::from_mins(1);
-const SSHD: &str = "/usr/sbin/sshd";
+pub(super) const SSHD: &str = "/usr/sbin/sshd";
 /// The coordinator's port, and those of the hosts.
 const PORT: u16 = 7447;
 const HOSTS: [u16; 4] = [2201, 2202, 2203, 2204];
@@ -24,7 +24,7 @@ const JOBS: &str = "1000";
 const DELAY_MS: &str = "200";
 
 /// Keys and configuration of the servers and of their client.
-fn configure(site: &Site) {
+pub(super) fn configure(site: &Site) {
     let path = |name: &str| site.path(name).display().to_string();
     for key in ["host_key", "user_key"] {
         let words = ["-q", "-t", "ed25519", "-N", "", "-f", &path(key)];
@@ -55,7 +55,7 @@ fn configure(site: &Site) {
 }
 
 /// A host: sshd in namespaces of its own.
-fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
+pub(super) fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
     let script = format!(
         "hostname node{port} && mount -t tmpfs -o size=200m none /root && \
          exec {SSHD} -D -e -f {} -p {port}",
@@ -78,7 +78,7 @@ fn host(site: &Site, namespaces: &Namespaces, port: u16) -> Process {
 }
 
 /// A command of horsehead on the head.
-fn on_head(site: &Site, namespaces: &Namespaces, words: &[&str]) -> Output {
+pub(super) fn on_head(site: &Site, namespaces: &Namespaces, words: &[&str]) -> Output {
     let mut command = namespaces.on_head(&coordinator_program());
     let path = std::env::var("PATH").unwrap();
     command
@@ -115,7 +115,7 @@ fn until(site: &Site, namespaces: &Namespaces, what: &str, is: impl Fn(&[Value])
 )]
 fn four_hosts_come_up_by_ssh_and_a_run_outlives_what_happens_to_them() {
     if !Path::new(SSHD).exists() {
-        eprintln!("skipped: openssh-server is not installed");
+        tests::skip("openssh-server is not installed");
         return;
     }
     let Some(namespaces) = Namespaces::make() else {

@@ -9,6 +9,7 @@
 mod machines;
 mod plans;
 mod refusals;
+mod resumed;
 mod run;
 
 use serde_json::Value;

@@ -55,7 +55,7 @@ fn every_host_that_fails_is_named_with_its_step_and_its_remedy() {
 #[test]
 fn a_disk_that_is_full_leaves_no_half_of_a_program() {
     if !rustix::process::geteuid().is_root() {
-        eprintln!("skipped: a full disk needs root");
+        tests::skip("a full disk needs root");
         return;
     }
     let site = Site::new(1);
