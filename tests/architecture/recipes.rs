@@ -1,5 +1,4 @@
-//! The recipes of `coordinator/README.md`: every file that they name is there, and none costs more files
-//! than was promised.
+//! The recipes of `coordinator/README.md`: every file that they name is there.
 use std::path::{Path, PathBuf};
 
 /// Files of sources and of their tests below a folder.
@@ -20,7 +19,7 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
 }
 
 #[test]
-fn recipes_name_files_that_exist_and_keep_their_promises() {
+fn recipes_name_files_that_exist() {
     let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let mut known = Vec::new();
     for folder in ["coordinator", "protocol", "worker"] {
@@ -29,21 +28,18 @@ fn recipes_name_files_that_exist_and_keep_their_promises() {
     let text = std::fs::read_to_string(base.join("coordinator/README.md")).expect("the README");
     let (_, recipes) = text.split_once("## What a new one costs").expect("recipes");
     let rows = recipes.lines().filter(|line| line.starts_with("| "));
-    let mut counted = 0;
+    let mut checked = 0;
     // a heading comes first
     for row in rows.skip(1) {
         let cells: Vec<&str> = row.trim_matches('|').split('|').collect();
-        let [what, write, change, example] = cells[..] else {
+        let [what, _, change, example] = cells[..] else {
             panic!("four cells are expected: {row}");
         };
         let named = |name: &str| known.iter().any(|path| path.ends_with(name));
         for name in quoted(change).chain(quoted(example)) {
             assert!(name.ends_with('/') || named(name), "{what}: no {name}");
         }
-        let cost = quoted(write).chain(quoted(change)).count();
-        let most = if what.contains("job kind") { 8 } else { 3 };
-        assert!(cost <= most, "{what}: {cost} files");
-        counted += 1;
+        checked += 1;
     }
-    assert!(counted >= 7, "{counted} recipes");
+    assert!(checked >= 7, "{checked} recipes");
 }

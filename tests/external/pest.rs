@@ -112,6 +112,40 @@ fn uncertainties_are_those_of_pest() {
     }
 }
 
+/// What the control file's own folder lacks, or names otherwise, is found when the case is read: no folder stays
+/// behind that would block the next try.
+#[test]
+fn an_import_that_fails_after_writing_can_be_tried_again() {
+    let rig = Rig::new();
+    let folder = rig.file("model");
+    fs::create_dir(&folder).unwrap();
+    for entry in source("pest/decay").read_dir().unwrap() {
+        let path = entry.unwrap().path();
+        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+    }
+    let template = folder.join("model.tpl");
+    let text = fs::read_to_string(&template).unwrap();
+    let import = ["case", "import", "model/model.pst", "case"];
+    for (broken, said) in [
+        (None, "model.tpl: no such file"),
+        (
+            Some(text.replace("floor  ", "flor   ")),
+            "did you mean `floor`?",
+        ),
+    ] {
+        match broken {
+            None => fs::remove_file(&template).unwrap(),
+            Some(broken) => fs::write(&template, broken).unwrap(),
+        }
+        let errors = rig.refused(&import);
+        assert!(errors.contains(said), "{errors}");
+        assert!(errors.contains("case was removed again"), "{errors}");
+        assert!(!rig.file("case").exists());
+        fs::write(&template, &text).unwrap();
+    }
+    rig.done(&import);
+}
+
 #[test]
 fn what_is_there_is_not_written_over_and_what_cannot_be_read_is_said() {
     let rig = Rig::new();

@@ -550,7 +550,7 @@ async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
     let scored = score_all(&mut oracle, &case, &individuals, &mut quiet, &mut stop).await;
     assert_eq!(oracle.computed(), 150);
     for (genes, scored) in individuals.iter().zip(scored.unwrap()) {
-        assert_eq!(scored.unwrap().fitness, genes[0]);
+        assert_eq!(scored.unwrap().fitness.to_bits(), genes[0].to_bits());
     }
     let mut oracle = Oracle::new(&case, 2, first).with_number_bits(8);
     let (ask, mut asked) = tokio::sync::mpsc::channel(individuals.len());
@@ -567,7 +567,7 @@ async fn jobs_whose_hashes_begin_alike_keep_their_own_results() {
     let mut answers = 0;
     let mut answer = |tag: f64, scored: &Scored| {
         answers += 1;
-        assert_eq!(scored.as_ref().unwrap().fitness, tag);
+        assert_eq!(scored.as_ref().unwrap().fitness.to_bits(), tag.to_bits());
         Ok(())
     };
     let done = evaluate(&mut oracle, &case, &mut asked, &mut answer, &mut stop).await;

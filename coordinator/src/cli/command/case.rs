@@ -121,14 +121,24 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
         case: imported.folder.display().to_string(),
         parameters,
         observations,
-        notes: imported.notes,
+        notes: imported.notes.clone(),
     };
     for note in &object.notes {
         terminal::tell(&format!("note: {note}"));
     }
-    // what was written is read as every command will read it
-    crate::case::check(&imported.folder, &crate::case::Overrides::default())?;
-    let Proposal { name, entry, .. } = external::proposed(&imported.folder)?;
+    // what was written is read as every command will read it; a folder that none can read would block the next try
+    let read = |folder: &Path| -> anyhow::Result<Proposal> {
+        crate::case::check(folder, &crate::case::Overrides::default())?;
+        Ok(external::proposed(folder)?)
+    };
+    let Proposal { name, entry, .. } = read(&imported.folder).inspect_err(|_| {
+        drop(std::fs::remove_dir_all(&imported.folder));
+        terminal::tell(&format!(
+            "note: no case was made, and {} was removed again: correct the files beside {}, then import it again",
+            imported.folder.display(),
+            control.display()
+        ));
+    })?;
     let entry = exchange::allow::Allowed {
         entry: [(name, entry)].into(),
     };

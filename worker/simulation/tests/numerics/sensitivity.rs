@@ -220,7 +220,7 @@ fn usual(column: &Column) -> f64 {
     }
 }
 
-/// How many columns differences could judge, of those above 0.05 `MPa` for a usual change, how far off the
+/// How many curves differences could judge, of those above 0.05 `MPa` for a usual change, how far off the
 /// worst of them is, and which are off by more than they may.
 #[derive(Default)]
 struct Judged {
@@ -242,7 +242,9 @@ impl Judged {
             worst,
             wrong,
         } = self;
-        println!("{columns} columns; differences can judge {able} of {of}; off by {worst:.1e} at most");
+        println!(
+            "{columns} columns; differences can judge {able} of {of}; off by {worst:.1e} at most"
+        );
         assert!(wrong.is_empty(), "{wrong:#?}");
         assert!(20 * able >= 19 * of, "{able}/{of}");
     }
@@ -253,7 +255,10 @@ const READ: [(&str, std::ops::Range<usize>, f64); 3] =
     [("MPa", 0..4, 1e-6), ("m", 4..5, 10.0), ("kN m", 5..6, 1e-3)];
 
 /// Columns that do not exist, by effect, parameter and reason; any other one that is missing is wrong.
-const MISSING: &[(&str, &str, Missing)] = &[];
+const MISSING: &[(&str, &str, Missing)] = &[
+    // a post that does not yield has no displacement
+    ("post_compliance", "compliance", Missing::Coordinates),
+];
 
 /// Whether a column that moves nothing, or does not exist, is right about it: the run on the same steps with the
 /// unknown moved is the same run, or the column is among those that are known to be missing.
@@ -270,8 +275,10 @@ fn check_without_curves(
             let [_, fine] = subject.differenced(column, step(column), steps);
             fine.iter().all(|x| *x == 0.0)
         }
-        Derivative::Missing(missing) => matches!(column, Column::Parameter { effect, parameter, .. }
-            if MISSING.contains(&(effect, parameter, *missing))),
+        Derivative::Missing(missing) => {
+            matches!(column, Column::Parameter { effect, parameter, .. }
+            if MISSING.contains(&(effect, parameter, *missing)))
+        }
     };
     println!("{column:?}: {found:?}");
     if !is_right {
@@ -280,7 +287,8 @@ fn check_without_curves(
 }
 
 /// Compares columns with differences: wherever these agree among themselves to 2e-5, to 1e-4; where they
-/// are rounding alone, extrapolated ones are off by four times as much. Whether there are columns.
+/// are rounding alone, extrapolated ones are off by four times as much; elsewhere to 1e-3, where a usual change moves
+/// the curve by more than 0.05. Columns without curves are held to that, too. Whether there are columns.
 fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
     let Some((found, steps)) = subject.columns(columns) else {
         return false;
@@ -325,7 +333,12 @@ fn compare(subject: &Subject, columns: &[Column], judged: &mut Judged) -> bool {
             if able {
                 judged.worst = judged.worst.max(off);
             }
-            if able && off >= 1e-4 {
+            // where contact makes or breaks within the difference its two step sizes differ: such a column is
+            // listed, and still may not be far off
+            if size > 0.05 && !able {
+                println!("not judged to 1e-4: {column:?} {unit}, off {off:.1e}");
+            }
+            if (able && off >= 1e-4) || (size > 0.05 && off >= 1e-3) {
                 let wrong = format!("{column:?} {unit}: {off:e} {apart:e}");
                 judged.wrong.push(wrong);
             }
@@ -374,7 +387,7 @@ fn present(id: &str) -> (Subject, Vec<Column>) {
     (subject, own)
 }
 
-/// A fifth of the whole proof below.
+/// 39 of the 562 columns of the whole proof below.
 #[test]
 fn columns_agree_with_differences_on_the_same_steps() {
     let mut judged = Judged::default();
