@@ -18,6 +18,10 @@ pub struct Thresholds {
     pub suspects: usize,
     /// Nats, times the squared misfit, that an effect must gain to be believed.
     pub gain: f64,
+    /// Nats of the predictive score (`proof::predictive`) that a name needs on all records together that took no part
+    /// in the fit, and below whose negative none of them may lie. A name that is not there reaches `ln 20` in at most
+    /// one of twenty diagnoses, whatever was searched on the fitted record.
+    pub prediction: f64,
     /// Share of the removable gap that an effect must close to be more than a trace.
     pub practical: f64,
     /// Effects that are added at most.
@@ -52,6 +56,7 @@ impl Default for Thresholds {
             valley: 3.0,
             suspects: 8,
             gain: 3.0,
+            prediction: std::f64::consts::LN_2 + std::f64::consts::LN_10,
             practical: 0.05,
             rounds: 3,
             generic_factor: 1.15,

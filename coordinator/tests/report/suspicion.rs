@@ -17,7 +17,8 @@ use discrepancy::place::wander::{Part, Shift, Wander};
 use discrepancy::place::whereabouts::Where;
 use discrepancy::place::{along, joint, order};
 use discrepancy::proof::closed::closed;
-use discrepancy::proof::compare::{self, Row};
+use discrepancy::proof::compare::{Portion, Row};
+use discrepancy::proof::predictive::Prediction;
 use discrepancy::proof::weighed::Weighed;
 use discrepancy::record::noise::Known;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
@@ -219,11 +220,11 @@ fn record(condition: usize, cycles: usize) -> Record {
 fn rows(records: &[Record], after: f64) -> Vec<Row> {
     let split = records[0].split();
     let mut all = vec![
-        (split.fitted, compare::Portion::Fitted),
-        (split.cycles, compare::Portion::Cycles),
+        (split.fitted, Portion::Fitted),
+        (split.cycles, Portion::Cycles),
     ];
     let others = records[1..].iter().cloned();
-    all.extend(others.map(|record| (record, compare::Portion::Condition)));
+    all.extend(others.map(|record| (record, Portion::Condition)));
     all.retain(|(record, _)| !record.cycles.is_empty());
     all.into_iter()
         .map(|(record, part)| Row {
@@ -436,6 +437,16 @@ fn reads_high() -> NeverExact {
     }
 }
 
+/// Predictive scores of an answer; none where nothing was added.
+fn predicted(added: bool) -> Vec<Prediction> {
+    let one = Prediction {
+        condition: 1,
+        part: Portion::Condition,
+        nats: 61.2,
+    };
+    added.then_some(one).into_iter().collect()
+}
+
 /// A diagnosis that ends in a verdict, with everything that such a verdict has.
 pub(crate) fn diagnosis(verdict: Verdict) -> Made {
     let case = sample::case();
@@ -492,7 +503,6 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
             share: 0.99,
             measurement: "kb1 known from a test of its own, or a sensor at the saddle".to_owned(),
         }],
-        ran_out: Vec::new(),
         look_alikes: vec![LookAlikes {
             effects: ["pin_clearance".to_owned(), "gauge_drift".to_owned()],
             cycles: 2.4,
@@ -503,11 +513,12 @@ pub(crate) fn diagnosis(verdict: Verdict) -> Made {
         before: Some(before),
         after: Some(after),
         rows: rows(&records, if added { 0.1 } else { 1.0 }),
+        prediction: predicted(added),
         rival: added.then(|| ("load_cell_lag".to_owned(), rows(&records, 0.4))),
         generic: (verdict == Verdict::Unlisted).then(|| "probe.back_head.sign".to_owned()),
         force,
         noise: Known::Seen,
-        notes: Vec::new(),
+        ..Diagnosis::unresolved("")
     };
     Made {
         case,

@@ -15,11 +15,13 @@ use crate::model::fit::Fit;
 use crate::place::wander::refit::wander;
 use crate::place::whereabouts;
 use crate::proof::compare::{Shown, compare};
+use crate::proof::predictive::{Scores, scores};
 use crate::record::noise::Known;
 use crate::size::estimate::estimates;
 use crate::size::force::Force;
 use crate::size::never_exact::never_exact;
 use crate::verdict::{Findings, Ground, verdict};
+use search::least_squares::Settings;
 
 /// Estimates, the proof and the verdict; `shown` is what it is proved on.
 pub(crate) async fn conclude<L: Laboratory>(
@@ -41,8 +43,9 @@ pub(crate) async fn conclude<L: Laboratory>(
     diagnosis.effects = estimates(&diagnosis.rounds, &answer);
     prove(session, &answer, shown, diagnosis).await?;
     let firm = matches!(ground, Ground::Firm);
+    let predicted = predict(session, &answer, shown, diagnosis).await?;
     let doubt = if firm {
-        doubt(base, &answer, shown, diagnosis)
+        predicted.or_else(|| doubt(base, &answer, shown, diagnosis))
     } else {
         None
     };
@@ -112,6 +115,60 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> G
     } else {
         Ground::Firm
     }
+}
+
+/// Scores an answer on what took no part in the fit, each of its effects against the model without it; why it is no
+/// name, if it does not predict. The score of the whole answer stays in the diagnosis.
+async fn predict<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    answer: &Fit,
+    shown: &[Shown<'_>],
+    diagnosis: &mut Diagnosis,
+) -> Result<Option<String>, L::Error> {
+    let (base, needed) = (session.base, session.inputs.thresholds.prediction);
+    let added = &answer.model.added;
+    if added.is_empty() {
+        return Ok(None);
+    }
+    let mut experiments = session.experiments(Stage::Show);
+    let whole = scores(&mut experiments, shown, [answer, &base.fit], base.freedom).await?;
+    diagnosis.prediction.clone_from(&whole.records);
+    let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
+    let mut each = vec![(ids.join(" with "), whole)];
+    if added.len() > 1 {
+        let starts = (0..added.len()).map(|k| answer.point().without(k));
+        let mut refits = session.experiments(Stage::Refit);
+        let fits = refits.fits(starts.collect(), Settings::short(6)).await?;
+        let mut experiments = session.experiments(Stage::Show);
+        for (effect, fit) in added.iter().zip(fits) {
+            let Some(without) = fit else { continue };
+            let own = scores(&mut experiments, shown, [answer, &without], base.freedom).await?;
+            each.push((effect.id.clone(), own));
+        }
+    }
+    Ok(each
+        .iter()
+        .find_map(|(id, scores)| unpredicted(id, scores, needed)))
+}
+
+/// Why a score is not enough for a name, if it is not.
+fn unpredicted(id: &str, scores: &Scores, needed: f64) -> Option<String> {
+    let worst = scores.records.iter().find(|one| one.nats < -needed);
+    if let Some(worst) = worst {
+        return Some(format!(
+            "{id} explains the fitted cycles and predicts {} worse: with it they are {:.1} nats less likely",
+            worst.part.words(worst.condition),
+            -worst.nats
+        ));
+    }
+    let together = scores.together?;
+    // no number is no evidence
+    (together.is_nan() || together < needed).then(|| {
+        format!(
+            "{id} explains the fitted cycles and predicts the others no better: with it what was held out is \
+             {together:.1} nats likelier, and {needed:.1} are needed"
+        )
+    })
 }
 
 /// Why an answer is not named, if it is not.

@@ -7,6 +7,7 @@ use crate::model::fit::Fit;
 use crate::place::wander::shifts::Wander;
 use crate::place::whereabouts::Where;
 use crate::proof::compare::Row;
+use crate::proof::predictive::Prediction;
 use crate::record::noise::Known;
 use crate::size::absorbed::Absorbed;
 use crate::size::data_value::LookAlikes;
@@ -53,6 +54,9 @@ pub struct Diagnosis {
     pub wander_after: Vec<Wander>,
     /// The gap of the answer by record.
     pub rows: Vec<Row>,
+    /// Predictive scores of the answer, or of what is withheld as a suspect, by record; empty where nothing was added or
+    /// nothing was held out.
+    pub prediction: Vec<Prediction>,
     /// The best rejected rival and its gap by record.
     pub rival: Option<(String, Vec<Row>)>,
     /// Form and joint of a force that beats every name, where nothing speaks against saying so.
@@ -97,6 +101,7 @@ impl Diagnosis {
             wander: Vec::new(),
             wander_after: Vec::new(),
             rows: Vec::new(),
+            prediction: Vec::new(),
             rival: None,
             generic: None,
             force: None,

@@ -66,7 +66,7 @@ pub(crate) struct Shown<'a> {
     /// Cycles that scatter as its own do, its own among them.
     pub(crate) alike: Vec<Curves>,
     /// Where it counts by its noise.
-    scale: Scale,
+    pub(crate) scale: Scale,
     /// What of the records it is.
     pub(crate) part: Portion,
 }

@@ -3,4 +3,5 @@
 pub mod closed;
 pub mod compare;
 pub mod gap;
+pub mod predictive;
 pub mod weighed;

@@ -57,13 +57,28 @@ impl Scale {
     }
 
     /// What is left of a record by curves.
-    fn left(&self, curves: &Curves) -> DVector<f64> {
-        let mut left = (&self.measured - self.metric.whiten(curves)) * self.unit;
+    pub(crate) fn left(&self, curves: &Curves) -> DVector<f64> {
+        let left = &self.measured - self.metric.whiten(curves);
+        let weighed = self.weigh(DMatrix::from_columns(&[left]));
+        weighed.column(0).into_owned()
+    }
+
+    /// Curves in the metric, before [`Self::weigh`].
+    pub(crate) fn whiten(&self, curves: &Curves) -> DVector<f64> {
+        self.metric.whiten(curves)
+    }
+
+    /// Columns of the metric in standard deviations of this record's mean, shortened where cycles differ.
+    pub(crate) fn weigh(&self, columns: DMatrix<f64>) -> DMatrix<f64> {
+        let mut columns = columns * self.unit;
         if let Some((u, lost)) = &self.shortened {
-            let parts = u.tr_mul(&left).component_mul(lost);
-            left -= u * parts;
+            let mut parts = u.tr_mul(&columns);
+            for mut part in parts.column_iter_mut() {
+                part.component_mul_assign(lost);
+            }
+            columns -= u * parts;
         }
-        left
+        columns
     }
 
     /// How far the gap closes between two models.

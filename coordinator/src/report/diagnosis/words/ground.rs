@@ -44,6 +44,17 @@ pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<Str
             .filter(|row| row.part != Portion::Fitted);
         sentences.extend(unseen.map(|row| closing(subject, row)));
     }
+    if !added.is_empty() {
+        sentences.extend(diagnosis.prediction.iter().map(|one| {
+            let likelier = if one.nats < 0.0 { "less likely" } else { "likelier" };
+            format!(
+                "{}, {}: with what was added it is {} nats {likelier}, what the fit leaves open integrated out.",
+                condition_name(subject.case, one.condition),
+                part(one.part),
+                nats(one.nats.abs()),
+            )
+        }));
+    }
     if !diagnosis.noise.is_seen() {
         sentences.push(
             "The noise was assumed, not seen: with one cycle there is no scatter to take it from, so \
@@ -97,7 +108,11 @@ fn closing(subject: &Subject<'_>, row: &Row) -> String {
 
 /// What a row's cycles were to the fit.
 pub(in crate::report::diagnosis) const fn role(row: &Row) -> &'static str {
-    match row.part {
+    part(row.part)
+}
+
+const fn part(part: Portion) -> &'static str {
+    match part {
         Portion::Fitted => "cycles that were fitted",
         Portion::Cycles => "held-out cycles",
         Portion::Channels => "held-out channels",

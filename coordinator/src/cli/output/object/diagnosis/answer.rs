@@ -1,7 +1,7 @@
 //! The object as a whole.
 use super::{
     effects::{EffectOutput, ForceOutput, RoundOutput, effect, force, rounds},
-    gap::{GapOutput, gap},
+    gap::{GapOutput, PredictionOutput, gap, predictions},
     place::{WhereOutput, whereabouts},
     wander::{WanderedOutput, wandered},
 };
@@ -43,6 +43,9 @@ pub(crate) struct DiagnoseOutput {
     /// What would part those pairs, in their order.
     data_worth: Vec<LookAlikes>,
     gap: GapOutput,
+    /// Predictive scores of the answer, or of what is withheld as a suspect, on everything that took no part in the
+    /// fit.
+    prediction: Vec<PredictionOutput>,
     whiteness: Option<WhitenessOutput>,
     rival: Option<RivalOutput>,
     assumed_noise: bool,
@@ -130,6 +133,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
             .collect(),
         data_worth: diagnosis.look_alikes.clone(),
         gap: gap(&diagnosis.rows),
+        prediction: predictions(subject.case, &diagnosis.prediction),
         whiteness: diagnosis
             .whiteness
             .map(|[p_before, p_after]| WhitenessOutput { p_before, p_after }),

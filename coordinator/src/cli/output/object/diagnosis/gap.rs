@@ -1,8 +1,37 @@
 //! The gap before and after.
 use discrepancy::proof::closed::Closed;
 use discrepancy::proof::compare::{Portion, Row};
+use discrepancy::proof::predictive::Prediction;
 use discrepancy::proof::weighed::Weighed;
+use protocol::case::Case;
 use serde::Serialize;
+
+/// How much likelier a record that took no part in the fit is with the answer than without it.
+#[derive(Debug, Serialize)]
+pub(super) struct PredictionOutput {
+    /// Name of its condition.
+    record: String,
+    nats: f64,
+    /// What of the records it is: `cycles`, `channel` or `condition`.
+    held_out: &'static str,
+}
+
+/// Predictive scores by record.
+pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionOutput> {
+    let one = |score: &Prediction| {
+        Some(PredictionOutput {
+            record: case.conditions.get(score.condition)?.name.clone(),
+            nats: score.nats,
+            held_out: match score.part {
+                Portion::Cycles => "cycles",
+                Portion::Channels => "channel",
+                Portion::Condition => "condition",
+                Portion::Fitted => return None,
+            },
+        })
+    };
+    scores.iter().filter_map(one).collect()
+}
 
 /// The gap of the answer.
 #[derive(Debug, Default, Serialize)]

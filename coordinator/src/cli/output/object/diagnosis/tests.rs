@@ -16,6 +16,7 @@ use discrepancy::{
     proof::{
         closed::Closed,
         compare::{Portion, Row},
+        predictive::Prediction,
         weighed::Weighed,
     },
     record::{Record, Recorded, Stated, noise::Known},
@@ -138,6 +139,13 @@ fn full(verdict: Verdict) -> Diagnosis {
             cycles_with_others: None,
         }],
         rows: rows.clone(),
+        prediction: [(0, Portion::Cycles, 71.5), (1, Portion::Condition, -0.5)]
+            .map(|(condition, part, nats)| Prediction {
+                condition,
+                part,
+                nats,
+            })
+            .to_vec(),
         rival: Some(("rope_toe".to_owned(), rows)),
         noise: Known::Seen,
         ..bare(verdict)
@@ -202,6 +210,7 @@ fn every_verdict_has_its_word_and_every_field_of_the_contract() {
                 "absorbed",
                 "ran_out",
                 "gap",
+                "prediction",
                 "rival",
                 "reason",
                 "generic",
@@ -347,6 +356,13 @@ fn effects_gaps_and_limits_are_as_documented() {
     assert!(gap["calibration"]["ci95"].is_array() && gap["held_out"]["ci95"].is_null());
     assert_eq!(said["rival"]["id"], "rope_toe");
     assert_eq!(said["rival"]["gap"]["held_out"]["closed"], 0.8);
+    let [cycles, condition] = [0, 1].map(|k| &said["prediction"][k]);
+    assert_eq!(cycles["held_out"], "cycles");
+    assert_eq!(
+        (&condition["record"], &condition["held_out"]),
+        (&"4rpm".into(), &"condition".into())
+    );
+    assert_eq!(condition["nats"], -0.5);
     let window = &said["where"]["windows"][0];
     assert_eq!(window["channel"], "gauge 3");
     assert_eq!(window["from_deg"], 345.0);
