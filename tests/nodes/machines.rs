@@ -15,7 +15,7 @@ use tests::{
 };
 
 const LIMIT: Duration = Duration::from_mins(1);
-pub(super) const SSHD: &str = "/usr/sbin/sshd";
+const SSHD: &str = "/usr/sbin/sshd";
 /// The coordinator's port, and those of the hosts.
 const PORT: u16 = 7447;
 const HOSTS: [u16; 4] = [2201, 2202, 2203, 2204];
@@ -23,8 +23,21 @@ const HOSTS: [u16; 4] = [2201, 2202, 2203, 2204];
 const JOBS: &str = "1000";
 const DELAY_MS: &str = "200";
 
+/// A head and a node, and a site whose ssh reaches the hosts on it; none, after [`tests::skip`], where this machine
+/// cannot have them.
+pub(super) fn network() -> Option<(Namespaces, Site)> {
+    if !Path::new(SSHD).exists() {
+        tests::skip("openssh-server is not installed");
+        return None;
+    }
+    let namespaces = Namespaces::make()?;
+    let site = Site::with_host(1, HEAD);
+    configure(&site);
+    Some((namespaces, site))
+}
+
 /// Keys and configuration of the servers and of their client.
-pub(super) fn configure(site: &Site) {
+fn configure(site: &Site) {
     let path = |name: &str| site.path(name).display().to_string();
     for key in ["host_key", "user_key"] {
         let words = ["-q", "-t", "ed25519", "-N", "", "-f", &path(key)];
@@ -114,15 +127,9 @@ fn until(site: &Site, namespaces: &Namespaces, what: &str, is: impl Fn(&[Value])
     reason = "one story: what happens first matters to what happens then"
 )]
 fn four_hosts_come_up_by_ssh_and_a_run_outlives_what_happens_to_them() {
-    if !Path::new(SSHD).exists() {
-        tests::skip("openssh-server is not installed");
-        return;
-    }
-    let Some(namespaces) = Namespaces::make() else {
+    let Some((namespaces, site)) = network() else {
         return;
     };
-    let site = Site::with_host(1, HEAD);
-    configure(&site);
     let servers = HOSTS.map(|port| host(&site, &namespaces, port));
     let at = format!("quic/{HEAD}:{PORT}");
     let mut command = namespaces.on_head(Path::new(env!("CARGO_BIN_EXE_test-network-coordinator")));

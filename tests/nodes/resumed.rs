@@ -1,6 +1,6 @@
 //! A run that launched its own workers, killed and started again by the same command, over a real sshd.
 use super::{
-    machines::{SSHD, configure, host, on_head},
+    machines::{host, network, on_head},
     *,
 };
 use rustix::process::Signal;
@@ -67,15 +67,9 @@ fn processes(site: &Site, namespaces: &Namespaces, port: u16) -> Vec<String> {
     reason = "one story: what happens first matters to what happens then"
 )]
 fn the_same_command_goes_on_and_ends_its_own_workers_alone() {
-    if !Path::new(SSHD).exists() {
-        tests::skip("openssh-server is not installed");
-        return;
-    }
-    let Some(namespaces) = Namespaces::make() else {
+    let Some((namespaces, site)) = network() else {
         return;
     };
-    let site = Site::with_host(1, HEAD);
-    configure(&site);
     make_case(&site);
     let _servers = PORTS.map(|port| host(&site, &namespaces, port));
     let search = "calibrate case --preset random --set points=200 --seed 5 --output json";

@@ -229,3 +229,43 @@ async fn prove<L: Laboratory>(
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::proof::compare::Portion;
+    use crate::proof::predictive::Prediction;
+
+    fn said(cycles: f64, condition: f64, together: Option<f64>) -> Option<String> {
+        let one = |(part, nats): (Portion, f64)| Prediction {
+            condition: usize::from(part == Portion::Condition),
+            part,
+            nats,
+        };
+        let records = [(Portion::Cycles, cycles), (Portion::Condition, condition)].map(one);
+        let scores = Scores {
+            records: records.into(),
+            together,
+        };
+        unpredicted("slip", &scores, 3.0)
+    }
+
+    #[test]
+    fn a_name_must_predict_all_together_and_nothing_clearly_worse() {
+        assert_eq!(said(5.0, -2.9, Some(3.0)), None);
+        let better = said(2.9, 0.0, Some(2.9)).unwrap();
+        assert!(
+            better.contains("no better") && better.contains("2.9 nats"),
+            "{better}"
+        );
+        let worse = said(90.0, -3.1, Some(80.0)).unwrap();
+        assert!(worse.contains("condition 2 of the case worse"), "{worse}");
+        assert!(
+            said(1.0, 1.0, Some(f64::NAN)).is_some(),
+            "no number is no evidence"
+        );
+        // where nothing was held out there is nothing to predict
+        let nothing = Scores::default();
+        assert_eq!(unpredicted("slip", &nothing, 3.0), None);
+    }
+}

@@ -13,10 +13,7 @@ pub fn log_evidence(at: &Linearized, variables: &[Variable]) -> f64 {
     let mut penalty = 0.0;
     let mut prior = 0.0;
     for (k, v) in variables.iter().enumerate() {
-        // without a prior, a uniform one over the box is meant
-        let deviation = v
-            .prior
-            .map_or((v.upper - v.lower) / 12_f64.sqrt(), |p| p.deviation);
+        let deviation = deviation(v);
         let weight = 1.0 / (deviation * deviation);
         curvature[(k, k)] += weight;
         prior += 0.5 * libm::log(weight);
@@ -34,6 +31,14 @@ pub fn log_evidence(at: &Linearized, variables: &[Variable]) -> f64 {
     };
     let log_determinant = log_determinant(&factor);
     -0.5 * (at.residual.norm_squared() + penalty) + prior - 0.5 * log_determinant
+}
+
+/// Standard deviation of a variable before any record: that of its prior; without one, that of a uniform
+/// distribution between its bounds.
+pub(crate) fn deviation(variable: &Variable) -> f64 {
+    let width = variable.upper - variable.lower;
+    let prior = variable.prior.map(|prior| prior.deviation);
+    prior.unwrap_or(width / 12_f64.sqrt())
 }
 
 /// Logarithm of the determinant of a factorised matrix.

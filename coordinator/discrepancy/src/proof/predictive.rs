@@ -14,7 +14,7 @@
 //! wrong by more than the noise predicts no better than that. Entries whose noise was estimated from few cycles are
 //! wider than Gaussian, which widens the scale once more.
 use crate::laboratory::Laboratory;
-use crate::linear::evidence::log_determinant;
+use crate::linear::evidence::{deviation, log_determinant};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::proof::compare::{Portion, Shown};
@@ -179,10 +179,7 @@ fn predictive((at, variables): (&Linearized, &[Variable]), record: &Predicted, s
     let predicted = record.jacobian.select_columns(&free);
     let mut precision = fitted.tr_mul(&fitted) / scale;
     for (i, &k) in free.iter().enumerate() {
-        let v = &variables[k];
-        let deviation = v
-            .prior
-            .map_or((v.upper - v.lower) / 12_f64.sqrt(), |prior| prior.deviation);
+        let deviation = deviation(&variables[k]);
         precision[(i, i)] += 1.0 / (deviation * deviation);
     }
     let with = &precision + predicted.tr_mul(&predicted) / scale;
