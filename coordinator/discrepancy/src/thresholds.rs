@@ -16,19 +16,19 @@ pub struct Thresholds {
     pub valley: f64,
     /// Suspects that are refitted with all unknowns free.
     pub suspects: usize,
-    /// Nats, times the squared misfit, that an effect must gain to be believed.
+    /// Nats of log evidence, over the dispersion, that an effect must gain to be believed: odds of 20 to 1.
     pub gain: f64,
     /// Nats of the predictive score (`proof::predictive`) that a name needs on all records together that took no part
     /// in the fit, and below whose negative none of them may lie. A name that is not there reaches `ln 20` in at most
     /// one of twenty diagnoses, whatever was searched on the fitted record.
     pub prediction: f64,
-    /// Share of the removable gap that an effect must close to be more than a trace.
+    /// Share of what is left above the noise that an effect must remove to be more than a trace.
     pub practical: f64,
     /// Effects that are added at most.
     pub rounds: usize,
     /// Factor by which a form of force without a cause must beat the best name.
     pub generic_factor: f64,
-    /// Units of `chi^2`, times the squared misfit, by which it must beat it besides.
+    /// Units of `chi^2`, over the dispersion, by which it must beat it besides.
     pub generic_gain: f64,
     /// Squared cosine of projected signatures from which a form of force is a name's own.
     pub alike: f64,
@@ -46,6 +46,44 @@ pub struct Thresholds {
     /// Effects that are not considered.
     pub without: Vec<String>,
 }
+
+/// Nats of log evidence, over the dispersion, and of predictive scores together, within which names are not told apart:
+/// odds of 20 to 1, from which on evidence is called strong (Kass & Raftery 1995).
+pub const SET: f64 = 3.0;
+
+/// Names that may be equally likely and still be an answer: beyond, the joint or the order that they have in common is
+/// all that is known.
+pub(crate) const MOST_NAMES: usize = 4;
+
+/// Standard deviations from what an instrument is good to within which it is no discovery: one in 370 lies beyond by
+/// chance, and a machine has a dozen instruments.
+pub const WITHIN: f64 = 3.0;
+
+/// Share of its range within which a size stands at a bound: less than any step of a fit.
+pub(crate) const AT_BOUND: f64 = 1e-3;
+
+/// Tail probability of Bartlett's test below which what is left is coloured, and intervals grow by what that costs: one
+/// white record in a hundred has intervals that are too wide.
+pub(crate) const COLOURED: f64 = 0.01;
+
+/// Share of what is left that one more step of a converged fit may promise to remove. What lies below is taken off by
+/// the tests themselves, which look at the residual after that step.
+pub(crate) const PROMISED: f64 = 0.1;
+
+/// Factor by which the variance of a data sheet may be off, either way: a noise that is stated in one figure is rarely
+/// better known. Beyond, what is left is no noise, or not the noise that was stated.
+pub(crate) const STATED: f64 = 2.0;
+
+/// Squared distance of two effects, over the dispersion, from which they are told apart: the likelihood ratio of 1 in
+/// 250 at even odds (DISCOVERY: isolability).
+pub const APART: f64 = 11.0;
+
+/// Share of false entries that a map of where simulation and measurement part may hold (Benjamini & Hochberg).
+pub(crate) const MAPS: f64 = 0.05;
+
+/// Share of the best joint's log Bayes factor within which joints are not told apart: latent forces along one load path
+/// look nearly alike, and the right joint was within a tenth of the best in all of a simulated set.
+pub(crate) const JOINTS: f64 = 0.1;
 
 impl Default for Thresholds {
     fn default() -> Self {

@@ -22,8 +22,8 @@ pub enum Verdict {
 pub enum Ground {
     /// The fit converged, the model is fine enough, the noise was seen: tests mean what they say.
     Firm,
-    /// The noise is only stated: no name is as sure as its tests say.
-    NoiseAssumed,
+    /// The noise is stated, not seen: tests mean what they say as far as the statement is right.
+    NoiseStated,
     /// The noise was neither seen nor stated.
     NoiseUnknown,
     /// Not one effect of the library was considered: nothing can be named, and nothing is unlisted.
@@ -50,7 +50,7 @@ pub struct Findings {
 /// The verdict of findings. Every combination has one, and a rejection is never "nothing".
 pub const fn verdict(findings: &Findings) -> Verdict {
     let something = findings.rejected || findings.added > 0 || findings.generic;
-    let firm = matches!(findings.ground, Ground::Firm);
+    let firm = matches!(findings.ground, Ground::Firm | Ground::NoiseStated);
     if matches!(findings.ground, Ground::Unsound) || (something && !firm) {
         return Verdict::Unresolved;
     }
@@ -76,7 +76,7 @@ mod tests {
         let flags = [false, true];
         let grounds = [
             Ground::Firm,
-            Ground::NoiseAssumed,
+            Ground::NoiseStated,
             Ground::NoiseUnknown,
             Ground::NothingConsidered,
             Ground::Unsound,
@@ -99,7 +99,7 @@ mod tests {
                             if ground == Ground::Unsound {
                                 assert_eq!(said, Verdict::Unresolved);
                             }
-                            if ground != Ground::Firm {
+                            if !matches!(ground, Ground::Firm | Ground::NoiseStated) {
                                 let quiet = [Verdict::NothingDetected, Verdict::Unresolved];
                                 assert!(quiet.contains(&said), "{ground:?} {said:?}");
                             }

@@ -19,7 +19,6 @@ use discrepancy::place::{along, joint, order};
 use discrepancy::proof::closed::closed;
 use discrepancy::proof::compare::{Portion, Row};
 use discrepancy::proof::predictive::Prediction;
-use discrepancy::proof::weighed::Weighed;
 use discrepancy::record::noise::Known;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::verdict::Verdict;
@@ -206,6 +205,8 @@ fn record(condition: usize, cycles: usize) -> Record {
         curve,
         scored: matches!(sensor, Sensor::Gauge(_)),
         held_out: false,
+        correlation: None,
+        model_error: None,
         channel: sensor.channel(condition, turn_deg.clone()),
     };
     Record {
@@ -230,11 +231,6 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
         .map(|(record, part)| Row {
             condition: record.condition,
             part,
-            weighed: Weighed {
-                closed: 1.0 - after,
-                interval: [0.9 - after, 1.0],
-                shows: true,
-            },
             closed: closed(&record, &record.cycles, &curves(1.0), &curves(after)),
             before: curves(1.0),
             after: curves(after),
@@ -297,7 +293,7 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
             refit(2, 20.0, -700.0),
         ],
         null_evidence: -1250.0,
-        phi: 1.4,
+        dispersion: 1.4,
         p_value: 1e-250,
         set: vec![library[0].id.clone()],
         added: Some(library[0].id.clone()),

@@ -9,7 +9,6 @@ use crate::cause::round::Round;
 use crate::cause::suspect::{Suspect, joined};
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
-use crate::linear::evidence::misfit;
 use crate::linear::isolability::likeness;
 use crate::linear::score::{chi_squared_tail, family_wise, score};
 use crate::linear::tangent::Tangent;
@@ -53,6 +52,7 @@ pub(crate) async fn challenge<L: Laboratory>(
 ) -> Result<Option<Challenger>, L::Error> {
     let (base, thresholds) = (session.base, &session.inputs.thresholds);
     let best = round.refits.first();
+    let best_name = best.map(|best| &best.fit);
     // what the best name leaves, by how much it lowers the misfit, and its evidence; without a name,
     // those of the model without
     let left = best.map_or(f64::INFINITY, |best| best.fit.chi_squared());
@@ -83,8 +83,8 @@ pub(crate) async fn challenge<L: Laboratory>(
         .filter_map(|(form, refit)| Some((form, refit?)));
     let best = refits.min_by(|(_, a), (_, b)| a.chi_squared().total_cmp(&b.chi_squared()));
     Ok(best.and_then(|(form, fit)| {
-        let phi = misfit(fit.chi_squared().min(left), fit.entries());
-        let scale = phi * phi;
+        let named_best = best_name.map_or(f64::INFINITY, Fit::dispersion);
+        let scale = fit.dispersion().min(named_best).min(current.dispersion());
         let removed = current.chi_squared() - fit.chi_squared();
         let log_evidence = fit.log_evidence();
         let margin = thresholds.generic_gain * scale;

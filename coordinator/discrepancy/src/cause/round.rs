@@ -1,7 +1,6 @@
 //! One round of suspicion, and what its tests and refits say together.
 use crate::cause::refit::Refitted;
 use crate::cause::suspect::Suspect;
-use crate::linear::evidence::misfit;
 use crate::linear::score::{chi_squared_tail, family_wise};
 use crate::model::fit::Fit;
 
@@ -16,8 +15,8 @@ pub struct Round {
     pub refits: Vec<Refitted>,
     /// Log evidence without a further effect.
     pub null_evidence: f64,
-    /// Misfit of the best model; variances are inflated by its square.
-    pub phi: f64,
+    /// Dispersion of the best model, by which statistics and differences of log evidences are divided.
+    pub dispersion: f64,
     /// Family-wise p-value of the named effects.
     pub p_value: f64,
     /// Identifiers that the record does not tell apart, the best first; empty if nothing was found.
@@ -41,7 +40,7 @@ impl Round {
             generics,
             refits,
             null_evidence: current.log_evidence(),
-            phi: 1.0,
+            dispersion: 1.0,
             p_value: 1.0,
             set: Vec::new(),
             added: None,
@@ -51,9 +50,9 @@ impl Round {
         round
     }
 
-    /// A log evidence against the model without a further effect, over the squared misfit (nats).
+    /// A log evidence against the model without a further effect, over the dispersion (nats).
     pub fn nats(&self, log_evidence: f64) -> f64 {
-        (log_evidence - self.null_evidence) / (self.phi * self.phi)
+        (log_evidence - self.null_evidence) / self.dispersion
     }
 
     /// Takes back what was added, for a reason.
@@ -63,14 +62,15 @@ impl Round {
         self.reason = Some(reason);
     }
 
-    /// Ranks the refits, and derives the misfit of the best and the family's p-value under it.
+    /// Ranks the refits, and derives the dispersion of the best and the family's p-value under it.
     pub(crate) fn judge(&mut self, current: &Fit) {
         self.refits
             .sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-        let left = current.chi_squared();
-        let best = self.refits.first().map_or(left, |r| r.fit.chi_squared());
-        self.phi = misfit(best.min(left), current.entries());
-        let scale = self.phi * self.phi;
+        let best = self.refits.first().map(|own| own.fit.dispersion());
+        self.dispersion = best
+            .map_or(f64::INFINITY, |own| own)
+            .min(current.dispersion());
+        let scale = self.dispersion;
         let least = self
             .suspects
             .iter()

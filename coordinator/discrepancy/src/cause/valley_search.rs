@@ -22,7 +22,7 @@ const LEADERS: usize = 2;
 const SHARE: f64 = 0.3;
 /// Share of the best refit's gain of evidence from which a suspect is refitted from the deepest valley.
 const HOPEFUL: f64 = 0.1;
-/// Share of the misfit of a lost valley from which the unknowns of rivals are tried, and other stiffness and
+/// Share of the dispersion of a lost valley from which the unknowns of rivals are tried, and other stiffness and
 /// contact: a contact that is too soft leaves as much.
 const LOOSE: f64 = 0.5;
 /// Looks for valleys in one round: each begins where the one before ended.
@@ -69,14 +69,14 @@ pub(crate) async fn search<L: Laboratory>(
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
-    if round.phi > lost && session.lab.may(Stage::Refit) {
+    if round.dispersion > lost && session.lab.may(Stage::Refit) {
         let found = from_low_orders(session, current, round).await?;
         if !found.is_empty() {
             settle(session, current, round, found).await?;
             deeper(session, current, round).await?;
         }
     }
-    Ok(round.phi <= lost)
+    Ok(round.dispersion <= lost)
 }
 
 /// Valleys of the likeliest, each look from where the one before ended.
@@ -137,12 +137,12 @@ async fn from_low_orders<L: Laboratory>(
     Ok(found)
 }
 
-/// Places of the likeliest refits whose misfit exceeds a bound.
+/// Places of the likeliest refits whose dispersion exceeds a bound.
 fn leaders(round: &Round, bound: f64) -> Vec<usize> {
     let gain = |refit: &Refitted| refit.log_evidence - round.null_evidence;
     let best = round.refits.first().map_or(0.0, gain);
     let likely = |refit: &Refitted| gain(refit) > 0.0 && gain(refit) > SHARE * best;
-    let leads = |refit: &Refitted| likely(refit) && refit.fit.misfit() > bound;
+    let leads = |refit: &Refitted| likely(refit) && refit.fit.dispersion() > bound;
     (0..round.refits.len().min(LEADERS))
         .filter(|k| leads(&round.refits[*k]))
         .collect()

@@ -9,6 +9,7 @@ use crate::ground::believed::{Checked, believed};
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::model::fit::Fit;
+use crate::record::metric::Metric;
 use crate::size::force::force;
 use crate::thresholds::Thresholds;
 
@@ -36,12 +37,13 @@ pub(crate) async fn believe<L: Laboratory>(
             round.reason = Some(reason);
         } else {
             let named = base.fit.chi_squared() - current.chi_squared();
-            unlisted(round, challenger, current, named, diagnosis);
+            let at = (current, &base.on.metric);
+            unlisted(round, challenger, at, named, diagnosis);
         }
         return Ok(None);
     }
     if let Some(both) = together
-        && let Some(beside) = decide_together(round, current, &both, (base, thresholds))
+        && let Some(beside) = decide_together(round, &both, thresholds)
     {
         let id = both.members.join(" with ");
         let reason = drowned(session, current, &both.fit, &id, diagnosis).await?;
@@ -97,8 +99,7 @@ async fn likeliest_together<L: Laboratory>(
 
 /// Whether a force explains more than any effects together.
 fn beats(force: &Challenger, together: Option<&Together>, thresholds: &Thresholds) -> bool {
-    let phi = force.fit.misfit();
-    let margin = thresholds.gain * phi * phi;
+    let margin = thresholds.gain * force.fit.dispersion();
     together.is_none_or(|own| own.fit.log_evidence() <= force.log_evidence - margin)
 }
 
@@ -129,7 +130,7 @@ async fn drowned<L: Laboratory>(
 fn unlisted(
     round: &mut Round,
     challenger: Challenger,
-    current: &Fit,
+    (current, metric): (&Fit, &Metric),
     named: f64,
     diagnosis: &mut Diagnosis,
 ) {
@@ -139,7 +140,7 @@ fn unlisted(
     );
     if challenger.removed > named {
         diagnosis.generic = Some(challenger.id.clone());
-        diagnosis.force = Some(force(challenger, current, round));
+        diagnosis.force = Some(force(challenger, (current, metric), round));
     } else {
         diagnosis.notes.push(said.clone());
     }

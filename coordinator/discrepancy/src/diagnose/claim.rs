@@ -1,46 +1,22 @@
-//! What an answer claims, gathered from its fit, its estimates and the gaps that it closes.
+//! What an answer claims, gathered from its fit and its estimates.
 use crate::cause::round::Round;
 use crate::cause::suspect::Suspect;
-use crate::diagnose::carry::{Claim, Elsewhere, Size};
+use crate::diagnose::carry::Size;
 use crate::ground::base::Base;
 use crate::model::fit::Fit;
-use crate::proof::compare::{Portion, Row, Shown};
 use crate::size::estimate::{Estimate, ParameterEstimate};
+use crate::thresholds::MOST_NAMES;
 use nalgebra::{Complex, DVector};
 use protocol::announce::{EffectDescriptor, ParameterDescriptor, Role};
 
-/// The claim of an answer, shown on records with these rows.
-pub(crate) fn claim(
-    (answer, base): (&Fit, &Base),
-    effects: &[Estimate],
-    (shown, rows): (&[Shown<'_>], &[Row]),
-) -> Claim {
-    let row = |part: Portion, condition: usize| {
-        let mut all = rows.iter();
-        all.find(|row| row.part == part && row.condition == condition)
-            .map(|row| row.weighed)
-    };
-    let elsewhere = shown.iter().filter(|one| one.part != Portion::Fitted);
+/// Sizes of all effects of an answer.
+pub(crate) fn claim(answer: &Fit, effects: &[Estimate]) -> Vec<Size> {
     let added = answer.model.added.iter();
     let sizes = added.filter_map(|effect| {
         let own = effects.iter().find(|own| own.id == effect.id)?;
         Some(sizes(answer, effect, own))
     });
-    Claim {
-        sizes: sizes.flatten().collect(),
-        fitted: rows
-            .iter()
-            .find(|row| row.part == Portion::Fitted)
-            .map(|row| row.weighed),
-        elsewhere: elsewhere
-            .map(|one| Elsewhere {
-                record: one.part.words(one.record.condition),
-                claimed: true,
-                closed: row(one.part, one.record.condition),
-            })
-            .collect(),
-        left: answer.chi_squared() / base.noise(),
-    }
+    sizes.flatten().collect()
 }
 
 /// Sizes of an added effect.
@@ -64,16 +40,13 @@ fn sizes(answer: &Fit, effect: &EffectDescriptor, found: &Estimate) -> Vec<Size>
     sizes.map(size).collect()
 }
 
-/// Names that may be equally likely and still be an answer.
-const MOST: usize = 4;
-
 /// Why the set of a round is no answer, if it is none: too many names, or names of which nothing is common.
 pub(crate) fn no_answer(base: &Base, round: &Round) -> Option<String> {
     let of_set = |id: &String| round.suspects.iter().find(|own| own.effect.id == *id);
     let members: Vec<&Suspect> = round.set.iter().filter_map(of_set).collect();
     let traits: Vec<Traits> = members.iter().map(|own| Traits::of(base, own)).collect();
     let common = Common::of(&traits);
-    if round.set.len() > MOST {
+    if round.set.len() > MOST_NAMES {
         return Some(format!(
             "{} names explain it about equally well ({}); {}",
             round.set.len(),

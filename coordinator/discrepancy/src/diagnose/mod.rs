@@ -6,8 +6,8 @@ mod conclude;
 pub(crate) mod diagnosis;
 mod prune;
 mod reason;
+mod rivals;
 mod rounds;
-mod swap;
 
 pub use crate::cause::round::Round;
 pub use crate::inputs::Inputs;
@@ -25,12 +25,9 @@ use crate::ground::session::Session;
 use crate::laboratory::Laboratory;
 use crate::place::whereabouts;
 use crate::proof::compare::shown;
+use crate::thresholds::PROMISED;
 use conclude::conclude;
 use rounds::rounds;
-
-/// A fit that one more step promises to lower by more than this share has not converged. What lies
-/// below is taken off by the tests themselves, which look at the residual after that step.
-const PROMISED: f64 = 0.1;
 
 /// Diagnoses.
 ///

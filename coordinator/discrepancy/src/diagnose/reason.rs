@@ -70,14 +70,10 @@ pub(crate) fn reason(
             .to_owned(),
     };
     Some(match ground {
-        Ground::Firm => what,
+        Ground::Firm | Ground::NoiseStated => what,
         Ground::Unsound => format!(
             "no finer model completes its simulation, so how far the discretisation moves the curves \
              is not known; {what}"
-        ),
-        Ground::NoiseAssumed => format!(
-            "the noise is assumed, for one cycle does not show it, and an assumption carries no name; \
-             {what}; record more cycles"
         ),
         Ground::NoiseUnknown => format!(
             "the noise is not known: there is one cycle, and some channel states no noise; {what}; \

@@ -7,7 +7,7 @@ use crate::cause::{suspect, valley_search};
 use crate::diagnose::belief::believe;
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::diagnose::prune::prune;
-use crate::diagnose::swap::swap;
+use crate::diagnose::rivals::rank;
 use crate::ground::preflight;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
@@ -61,7 +61,7 @@ pub(crate) async fn rounds<L: Laboratory>(
     }
     let added = current.model.added.len();
     let answer = prune(session, current, shown, diagnosis).await?;
-    swap(session, &answer, diagnosis).await?;
+    let answer = rank(session, answer, shown, diagnosis).await?;
     if answer.model.added.len() < added {
         let mut finer = session.experiments(Stage::Preflight);
         diagnosis.preflight_after =

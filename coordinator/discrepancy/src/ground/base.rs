@@ -4,10 +4,7 @@ use crate::linear::score::misfit_tail;
 use crate::model::fit::Fit;
 use crate::record::noise::Known;
 use crate::record::whitened::WhitenedRecord;
-
-/// A data sheet's noise may be off by this factor in its variance, either way; what is left beyond it
-/// is no noise, or not the noise that was assumed.
-const ASSUMED: f64 = 2.0;
+use crate::thresholds::STATED;
 
 /// What every test stands on.
 pub(crate) struct Base {
@@ -19,8 +16,6 @@ pub(crate) struct Base {
     pub(crate) preflight: Option<Preflight>,
     /// How the noise is known.
     pub(crate) known: Known,
-    /// Degrees of freedom behind a variance of the noise.
-    pub(crate) freedom: f64,
     /// What else should be known.
     pub(crate) notes: Vec<String>,
 }
@@ -37,7 +32,7 @@ impl Base {
         let n = self.on.metric.len();
         if !self.known.is_seen() {
             let left = n.saturating_sub(parameters).max(1) as f64;
-            return (1.0 / ASSUMED..=ASSUMED).contains(&(chi_squared / left));
+            return (1.0 / STATED..=STATED).contains(&(chi_squared / left));
         }
         let freedom = n as f64 * (self.on.record.cycles.len() as f64 - 1.0);
         misfit_tail(chi_squared, n, parameters, freedom) >= level

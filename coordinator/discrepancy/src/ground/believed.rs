@@ -3,7 +3,6 @@
 use crate::ground::preflight::{Preflight, check, left};
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
-use crate::linear::evidence::misfit;
 use crate::linear::tangent::Tangent;
 use crate::model::fit::Fit;
 use crate::record::metric::Metric;
@@ -15,7 +14,7 @@ use search::least_squares::{Linearized, Prior, Variable};
 pub(crate) struct Checked {
     /// What the finer model changes.
     pub(crate) preflight: Preflight,
-    /// The nats that the model still gains over the one before it, over the squared misfit, when that
+    /// The nats that the model still gains over the one before it, over the dispersion, when that
     /// change counts as noise.
     pub(crate) gain: f64,
 }
@@ -47,12 +46,13 @@ pub(crate) async fn believed<L: Laboratory>(
     let [null, own] = [before, after].map(|fit| cost(fit, &weights, &error));
     let ones = DVector::from_element(error.len(), 1.0);
     let [usual_null, usual_own] = [before, after].map(|fit| cost(fit, &ones, &nothing));
-    let phi = misfit(own, error.len());
+    // the finer model's change is one more unknown
+    let dispersion = (own / (after.freedom() - 1.0).max(1.0)).max(1.0);
     let nats = after.log_evidence() - before.log_evidence();
     let gain = nats - 0.5 * (usual_null - usual_own) + 0.5 * (null - own);
     Ok(Some(Checked {
         preflight,
-        gain: gain / (phi * phi),
+        gain: gain / dispersion,
     }))
 }
 

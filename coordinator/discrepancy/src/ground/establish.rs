@@ -84,12 +84,11 @@ pub(crate) async fn establish<L: Laboratory>(
         fit,
         preflight,
         known: noise.known,
-        freedom: noise.freedom,
         notes,
     }))
 }
 
-/// Misfit from which a first fit may lie outside the valley: a model that lacks nothing leaves less, and the
+/// Dispersion from which a first fit may lie outside the valley: a model that lacks nothing leaves less, and the
 /// look costs little beside tests at a wrong place.
 const DOUBTFUL: f64 = 1.3;
 
@@ -118,7 +117,7 @@ async fn first_fit<L: Laboratory>(
     let Some(first) = recalibrate::from_starts(&mut recalibration, starts).await? else {
         return Ok(None);
     };
-    if first.misfit() > DOUBTFUL
+    if first.dispersion() > DOUBTFUL
         && experiments.lab.may(Stage::Basin)
         && let Some(other) = valley::enter(experiments, &first).await?
     {

@@ -52,29 +52,41 @@ pub async fn check<L: Laboratory>(
     finer: &[Numerics],
 ) -> Result<Option<Preflight>, L::Error> {
     let on = experiments.on;
+    let changed = changed(experiments, (fit, &fit.curves), finer).await?;
+    Ok(changed.map(|(difference, whole)| preflight(on, absorbing, difference, whole)))
+}
+
+/// What a finer model changes of a fit's curves on a record, and whether it completed as a whole.
+///
+/// # Errors
+/// Those of the laboratory.
+pub(crate) async fn changed<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    (fit, curves): (&Fit, &Curves),
+    finer: &[Numerics],
+) -> Result<Option<(Curves, bool)>, L::Error> {
     if finer.is_empty() {
-        let none = difference(&fit.curves, &fit.curves, 1.0);
-        return Ok(Some(preflight(on, absorbing, none, true)));
+        return Ok(Some((difference(curves, curves, 1.0), true)));
     }
     let (finest, parts) = finer.split_at(finer.len().min(1));
-    let whole = differences(experiments, fit, finest).await?;
+    let whole = differences(experiments, (fit, curves), finest).await?;
     if let Some(difference) = whole.into_iter().flatten().next() {
-        return Ok(Some(preflight(on, absorbing, difference, true)));
+        return Ok(Some((difference, true)));
     }
-    let parts = differences(experiments, fit, parts).await?;
+    let parts = differences(experiments, (fit, curves), parts).await?;
     let sum = parts.into_iter().flatten().reduce(|mut sum, part| {
         for (sum, part) in sum.iter_mut().flatten().zip(part.iter().flatten()) {
             *sum += part;
         }
         sum
     });
-    Ok(sum.map(|difference| preflight(on, absorbing, difference, false)))
+    Ok(sum.map(|difference| (difference, false)))
 }
 
-/// Curves of a fitted point in finer numerics less those of the fit; nothing where one failed.
+/// Curves of a fitted point in finer numerics less those in the usual ones; nothing where one failed.
 async fn differences<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
-    fit: &Fit,
+    (fit, coarse): (&Fit, &Curves),
     finer: &[Numerics],
 ) -> Result<Vec<Option<Curves>>, L::Error> {
     let record = &experiments.on.record;
@@ -84,7 +96,7 @@ async fn differences<L: Laboratory>(
     let seen = curves(experiments.lab, experiments.stage, record, batch).await?;
     let less = |mut fine: Curves| {
         point.read(record, &mut fine);
-        difference(&fine, &fit.curves, 1.0)
+        difference(&fine, coarse, 1.0)
     };
     Ok(seen.into_iter().map(|fine| fine.map(less)).collect())
 }

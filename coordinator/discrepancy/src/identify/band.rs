@@ -4,7 +4,7 @@
 //! A band spans what the record does not refuse: the linear one, each unknown within its own interval, and
 //! the curves of the outermost point of each profile's side. It is one of the simulated curve; noise is not in it.
 use super::answer::{Band, Curve, End, Sight};
-use super::profile::{Mark, NEAR, Next, RISE};
+use super::profile::{Mark, NEAR, Next};
 use super::walk::Walked;
 use crate::laboratory::{Laboratory, channels};
 use crate::model::experiments::Experiments;
@@ -27,7 +27,7 @@ pub(super) async fn sights<L: Laboratory>(
     let least = fit.search.cost();
     let inside = walked.sides.iter().filter_map(|side| {
         let marks = side.marks.iter();
-        let kept = marks.filter(|mark| mark.cost - least <= INSIDE * walked.rise);
+        let kept = marks.filter(|mark| mark.cost - least <= INSIDE * walked.rises[side.unknown]);
         let away = |mark: &&Mark| side.sign * mark.at;
         kept.max_by(|a, b| away(a).total_cmp(&away(b)))
     });
@@ -81,12 +81,13 @@ fn ungained(fit: &Fit, record: &Record, mut curves: Curves) -> Curves {
     curves
 }
 
-/// Covariance of the variables, the misfit counted in; an unknown that the record does not see from both sides
+/// Covariance of the variables, dispersion and colour of the residual counted in; an unknown that the record does not see from both sides
 /// stays within its own interval. Of the others the Jacobian says how far they go.
 pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let fit = &walked.fit;
-    let mut information = super::information::with_priors(jacobian, fit.variables());
-    let misfit = walked.rise / RISE;
+    let spread = &walked.spread;
+    let scaled = jacobian / spread.dispersion.sqrt();
+    let mut information = super::information::with_priors(&scaled, fit.variables());
     for (k, _) in fit.model.space.axes().iter().enumerate() {
         let (mut width, mut seen) = (0.0, true);
         for side in walked.of(k) {
@@ -98,12 +99,17 @@ pub(super) fn covariance(walked: &Walked, jacobian: &DMatrix<f64>) -> Option<DMa
         if seen {
             continue;
         }
-        let deviation = 0.5 * width / RISE.sqrt();
+        let deviation = 0.5 * width / (spread.quantile * spread.growth[k]);
         if deviation > 0.0 {
-            information[(k, k)] += misfit / (deviation * deviation);
+            information[(k, k)] += 1.0 / (deviation * deviation);
         }
     }
-    Some(super::information::inverse(information)? * misfit)
+    let mut covariance = super::information::inverse(information)?;
+    for (k, growth) in spread.growth.iter().enumerate() {
+        covariance.row_mut(k).scale_mut(*growth);
+        covariance.column_mut(k).scale_mut(*growth);
+    }
+    Some(covariance)
 }
 
 /// The bands of a condition.
@@ -128,7 +134,7 @@ pub(super) fn band(walked: &Walked, sight: &Sight) -> Band {
             let variance = covariance
                 .as_ref()
                 .map_or(0.0, |own| columns.dot(&(own * &columns)));
-            (RISE * variance.max(0.0)).sqrt()
+            walked.spread.quantile * variance.max(0.0).sqrt()
         };
         let mut low = likeliest.clone();
         let mut high = likeliest.clone();

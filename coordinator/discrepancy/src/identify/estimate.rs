@@ -44,11 +44,11 @@ fn estimate(walked: &Walked, k: usize) -> UnknownEstimate {
     }
 }
 
-/// Values with the rise of `-2 ln L`, over the squared misfit.
+/// Values with the rise of `-2 ln L`, scaled so that it is 3.84 at the ends of the interval.
 fn profile(walked: &Walked, k: usize) -> Vec<[f64; 2]> {
     let axis = &walked.fit.model.space.axes()[k];
     let cost = walked.fit.search.cost();
-    let scale = super::profile::RISE / walked.rise;
+    let scale = super::profile::RISE / walked.rises[k];
     let mut all: Vec<[f64; 2]> = walked
         .of(k)
         .flat_map(|side| &side.marks)

@@ -4,15 +4,13 @@
 //! error and no refit is in it. What is left widens every interval, as everywhere. It is what a table of a
 //! calibration says beside its numbers; [`super::identify`] says it with profiles.
 use super::answer::{End, Seen, UnknownEstimate};
-use super::information::{inverse, with_priors};
-use super::profile::RISE;
 use super::settings::FREE;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
-use crate::linear::evidence::misfit;
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::{Model, Point, Unstated};
 use crate::record::whitened::WhitenedRecord;
+use crate::size::spread::Spread;
 use search::least_squares::Settings;
 
 /// Looks at the calibrated condition's record from where the inputs start; the unknowns that are searched,
@@ -51,12 +49,10 @@ pub async fn glance<L: Laboratory>(
     let Some(fit) = experiments.fit(point, still).await? else {
         return Ok(None);
     };
-    let phi = misfit(fit.chi_squared(), fit.entries());
-    let covariance = inverse(with_priors(&fit.search.best().jacobian, fit.variables()));
+    let spread = Spread::of(&on.metric, &fit);
     let axes = fit.model.space.axes().iter().enumerate();
     let estimate = axes.map(|(k, axis)| {
-        let variance = covariance.as_ref().map_or(f64::INFINITY, |c| c[(k, k)]);
-        let half = phi * (RISE * variance).sqrt();
+        let half = spread.quantile * spread.variance(k).sqrt();
         let (at, bounds) = (fit.x()[k], axis.interval());
         let ends = [at - half > bounds.from, at + half < bounds.to];
         let [below, above] = ends;

@@ -1,9 +1,10 @@
 //! Fisher's information of a fit: covariances, and the directions in which unknowns are seen.
 //!
 //! Whitened residuals have variance 1, so the information of a record is `J^T J`; what is known beforehand
-//! adds its own. All of it counts a misfit's square less (Cramér and Rao's bound, widened).
+//! adds its own. All of it counts the dispersion less (Cramér and Rao's bound, widened).
 use super::answer::{Direction, Part};
 use crate::model::fit::Fit;
+use crate::size::spread::Spread;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::Scale;
 use search::least_squares::Variable;
@@ -51,8 +52,8 @@ const NAMED: f64 = 0.3;
 /// Standard deviation from which a direction is not seen: a factor of a thousand either way.
 const BLIND: f64 = 1.5;
 
-/// Directions in which a record sees the unknowns of a fit, the best first; `phi` is its misfit.
-pub(super) fn directions(fit: &Fit, phi: f64) -> Vec<Direction> {
+/// Directions in which a record sees the unknowns of a fit, the best first.
+pub(super) fn directions(fit: &Fit, spread: &Spread) -> Vec<Direction> {
     let unknowns = fit.model.space.dimension();
     let jacobian = &fit.search.best().jacobian;
     let eigen = of_unknowns(jacobian, fit.variables(), unknowns).symmetric_eigen();
@@ -63,7 +64,11 @@ pub(super) fn directions(fit: &Fit, phi: f64) -> Vec<Direction> {
         // sixteen digits of the largest are rounding
         let seen = eigen.eigenvalues[k] > 1e-14 * largest;
         let deviation = if seen {
-            phi / eigen.eigenvalues[k].sqrt()
+            let along = eigen.eigenvectors.column(k);
+            // the root of the mean square of the growths, by how much of each unknown lies along it
+            let growth = along.iter().zip(spread.growth.iter());
+            let square: f64 = growth.map(|(part, own)| (part * own).powi(2)).sum();
+            (spread.dispersion * square / eigen.eigenvalues[k]).sqrt()
         } else {
             f64::INFINITY
         };

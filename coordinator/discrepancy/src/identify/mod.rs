@@ -24,10 +24,10 @@ pub use glance::glance;
 use crate::ground::establish::establish;
 use crate::inputs::Inputs;
 use crate::laboratory::{Laboratory, Stage};
-use crate::linear::evidence::misfit;
 use crate::model::experiments::Experiments;
 use crate::model::unknowns::Unstated;
 use crate::size::never_exact::never_exact;
+use crate::size::spread::coloured;
 use protocol::case::Channel;
 use settings::FREE;
 
@@ -62,15 +62,16 @@ pub async fn identify<L: Laboratory>(
     let fit = &walked.fit;
     let mut shown = experiments.during(Stage::Show);
     let sights = band::sights(&mut shown, &walked, conditions).await?;
-    let phi = misfit(fit.chi_squared(), fit.entries());
+    let spread = &walked.spread;
+    let coloured: Vec<String> = spread.largest_growth().map(coloured).into_iter().collect();
     // less than the noise that was stated is nothing to explain
     let is_noise = fit.chi_squared() <= base.noise()
         || base.is_noise(fit.chi_squared(), fit.x().len(), inputs.thresholds.adequacy);
     Ok(Some(Identified {
         genes: fit.model.genes(fit.x()),
         unknowns: estimate::estimates(&walked),
-        directions: information::directions(fit, phi),
-        nuisances: never_exact(fit, phi),
+        directions: information::directions(fit, spread),
+        nuisances: never_exact(fit, spread),
         bands: sights
             .iter()
             .map(|sight| band::band(&walked, sight))
@@ -79,6 +80,6 @@ pub async fn identify<L: Laboratory>(
         left: fit.chi_squared() / base.noise(),
         is_noise,
         noise: base.known,
-        notes: base.notes.clone(),
+        notes: [&base.notes[..], &coloured[..]].concat(),
     }))
 }

@@ -1,6 +1,6 @@
 //! Refits beside a fit, with one unknown held: steps by the Jacobian of the fit, which cost a simulation or two
 //! each, and a new Jacobian only where those no longer help.
-use super::profile::NEAR;
+use super::profile::{NEAR, RISE};
 use super::settings::FREE;
 use crate::laboratory::Laboratory;
 use crate::model::experiments::Experiments;
@@ -19,10 +19,10 @@ const TRIED: [f64; 2] = [1.0, 0.3];
 const STEPS: usize = 8;
 const JACOBIANS: usize = 2;
 
-/// Beside what is refitted, and what rise is wanted.
+/// Beside what is refitted, and what rise is wanted of each unknown that may be held.
 pub(super) struct Asked<'a> {
     pub(super) fit: &'a Fit,
-    pub(super) rise: f64,
+    pub(super) rises: &'a [f64],
 }
 
 /// A refit on its way.
@@ -36,6 +36,8 @@ struct Descent {
     /// Whether the Jacobian is of this point.
     fresh: bool,
     over: bool,
+    /// The rise that is wanted.
+    rise: f64,
 }
 
 impl Descent {
@@ -74,8 +76,11 @@ pub(super) async fn refit<L: Laboratory>(
         .into_iter()
         .map(|begun| {
             let (cost, residual, point) = begun?;
+            let rise = point.model.held.and_then(|k| asked.rises.get(k).copied());
+            let rise = rise.unwrap_or(RISE);
             Some(Descent {
-                over: cost - least <= LITTLE * asked.rise,
+                over: cost - least <= LITTLE * rise,
+                rise,
                 point,
                 residual,
                 cost,
@@ -100,10 +105,10 @@ pub(super) async fn refit<L: Laboratory>(
                 one.residual = residual;
                 one.point = point;
             }
-            one.over = one.cost - least <= LITTLE * asked.rise
-                || (gained < GAIN * asked.rise && (one.fresh || one.own >= JACOBIANS));
+            one.over = one.cost - least <= LITTLE * one.rise
+                || (gained < GAIN * one.rise && (one.fresh || one.own >= JACOBIANS));
             // what did not help was of another point
-            one.fresh = !one.over && gained < GAIN * asked.rise;
+            one.fresh = !one.over && gained < GAIN * one.rise;
         }
         active.retain(|one| one.fresh);
         renew(experiments, active).await?;

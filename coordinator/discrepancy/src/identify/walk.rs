@@ -3,14 +3,15 @@
 //! Where the quadratic picture holds, simulations at the end that it has say so, and a refit finds nothing to
 //! do. It decides what to simulate; [`super::profile`] decides where.
 use super::information::{inverse, with_priors};
-use super::profile::{Next, RISE, Side};
+use super::profile::{Next, Side};
 use super::refit::{Asked, refit};
 use super::settings::FREE;
 use crate::laboratory::Laboratory;
-use crate::linear::evidence::misfit;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::model::unknowns::Point;
+use crate::record::metric::Metric;
+use crate::size::spread::Spread;
 use nalgebra::DMatrix;
 use search::least_squares::Settings;
 
@@ -23,19 +24,27 @@ const AGAIN: usize = 2;
 pub(super) struct Walked {
     /// The best fit.
     pub(super) fit: Fit,
-    /// Covariance of its variables for a misfit of one.
+    /// How far the record leaves its variables open, to first order.
+    pub(super) spread: Spread,
+    /// Covariance of its variables for a dispersion of one.
     pub(super) covariance: Option<DMatrix<f64>>,
     /// Below and above, unknown by unknown.
     pub(super) sides: Vec<Side>,
-    /// The rise that ends an interval: that of the quadratic times the squared misfit.
-    pub(super) rise: f64,
+    /// The rise that ends an interval, unknown by unknown: the square of the interval's quantile, times the dispersion,
+    /// times the variance that the colour of the residual costs.
+    pub(super) rises: Vec<f64>,
 }
 
 impl Walked {
     /// How a side ends, and where (coordinate).
     pub(super) fn end(&self, side: &Side) -> Next {
         let from = self.fit.x()[side.unknown];
-        side.next(from, self.fit.search.cost(), self.rise)
+        side.next(from, self.fit.search.cost(), self.rises[side.unknown])
+    }
+
+    /// The rise that ends an interval where the residual is white.
+    pub(super) fn rise(&self) -> f64 {
+        self.spread.quantile * self.spread.quantile * self.spread.dispersion
     }
 
     /// The sides of an unknown.
@@ -53,13 +62,14 @@ pub(super) async fn walk<L: Laboratory>(
 ) -> Result<Walked, L::Error> {
     let mut others = restarted(experiments, fit.clone()).await?;
     let fit = others.pop().unwrap_or(fit);
-    let mut walked = begin(fit, &others);
+    let metric = &experiments.on.metric;
+    let mut walked = begin(metric, fit, &others);
     follow(experiments, &mut walked).await?;
     for _ in 0..AGAIN {
         let cost = walked.fit.search.cost();
         let marks = walked.sides.iter().flat_map(|side| &side.marks);
         let least = marks.min_by(|a, b| a.cost.total_cmp(&b.cost));
-        let Some(better) = least.filter(|mark| mark.cost < cost - BETTER * walked.rise) else {
+        let Some(better) = least.filter(|mark| mark.cost < cost - BETTER * walked.rise()) else {
             break;
         };
         let start = walked.fit.at(better.x.clone());
@@ -70,21 +80,22 @@ pub(super) async fn walk<L: Laboratory>(
             break;
         }
         // what was seen from another valley says too much is left
-        walked = begin(fit, &others);
+        walked = begin(&experiments.on.metric, fit, &others);
         follow(experiments, &mut walked).await?;
     }
     Ok(walked)
 }
 
 /// A fit with all its profiles still to follow, but for what other fits say of them.
-fn begin(fit: Fit, others: &[Fit]) -> Walked {
-    let phi = misfit(fit.chi_squared(), fit.entries());
-    let rise = RISE * phi * phi;
+fn begin(metric: &Metric, fit: Fit, others: &[Fit]) -> Walked {
+    let spread = Spread::of(metric, &fit);
+    let white = spread.quantile * spread.quantile * spread.dispersion;
+    let rises: Vec<f64> = spread.growth.iter().map(|own| white * own * own).collect();
     let covariance = inverse(with_priors(&fit.search.best().jacobian, fit.variables()));
     let axes = fit.model.space.axes().iter().enumerate();
     let sides = axes.flat_map(|(k, axis)| {
         let variance = covariance.as_ref().map_or(f64::INFINITY, |c| c[(k, k)]);
-        let predicted = (rise * variance).sqrt();
+        let predicted = (rises[k] * variance).sqrt();
         let interval = axis.interval();
         [(-1.0, interval.from), (1.0, interval.to)]
             .map(|(sign, bound)| Side::new(k, sign, bound, predicted))
@@ -92,14 +103,15 @@ fn begin(fit: Fit, others: &[Fit]) -> Walked {
     let mut walked = Walked {
         sides: sides.collect(),
         covariance,
-        rise,
+        spread,
+        rises,
         fit,
     };
     let (x, least) = (walked.fit.x().to_vec(), walked.fit.search.cost());
     for other in others {
         let cost = other.search.cost();
-        if cost - least < rise {
-            for side in &mut walked.sides {
+        for side in &mut walked.sides {
+            if cost - least < walked.rises[side.unknown] {
                 side.know(x[side.unknown], cost, other.x());
             }
         }
@@ -115,7 +127,7 @@ async fn restarted<L: Laboratory>(
 ) -> Result<Vec<Fit>, L::Error> {
     /// Half width of an interval from which an unknown is hardly seen (coordinate).
     const HARDLY: f64 = 0.05;
-    let sides = begin(fit.clone(), &[]).sides;
+    let sides = begin(&experiments.on.metric, fit.clone(), &[]).sides;
     let weak = sides.iter().filter(|side| side.sign > 0.0);
     let weak = weak.filter(|side| side.predicted > HARDLY);
     let weak: Vec<usize> = weak.map(|side| side.unknown).collect();
@@ -163,7 +175,7 @@ async fn follow<L: Laboratory>(
         });
         let asked = Asked {
             fit: &walked.fit,
-            rise: walked.rise,
+            rises: &walked.rises,
         };
         let found = refit(experiments, &asked, starts.collect()).await?;
         for ((place, at), found) in looks.into_iter().zip(found) {

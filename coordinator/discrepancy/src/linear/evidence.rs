@@ -2,8 +2,9 @@
 //! approximation of its evidence.
 //!
 //! `ln Z = -1/2 (|r|^2 + u^T u) + 1/2 ln |L| - 1/2 ln |J^T J + L|`, with `u` the parameters in units of
-//! their priors. Differences are divided by `phi^2`, `phi = max(1, chi^2 / n)` of the best model: a
-//! law whose shape is a little wrong would otherwise win or lose by tens of nats that mean nothing.
+//! their priors. Differences are divided by the dispersion `chi^2 / (n - p)` of the best model, at least 1: the
+//! quasi-likelihood of an error whose variance is so many times the noise's (Burnham & Anderson, *Model Selection and
+//! Multimodel Inference*, 2.5).
 use nalgebra::{Cholesky, Dyn};
 use search::least_squares::{Linearized, Variable};
 
@@ -47,19 +48,14 @@ pub(crate) fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
     diagonal.iter().map(|d| 2.0 * libm::log(*d)).sum()
 }
 
-/// How far the best model misfits: `max(1, chi^2 / n)`.
-pub fn misfit(chi_squared: f64, n: usize) -> f64 {
-    (chi_squared / n.max(1) as f64).max(1.0)
-}
-
-/// The positions whose evidence lies within `3 phi^2` nats of the best, best first.
-pub fn ambiguity_set(evidences: &[f64], phi: f64) -> Vec<usize> {
+/// The positions whose evidence, over a dispersion, lies within so many nats of the best, best first.
+pub fn ambiguity_set(evidences: &[f64], dispersion: f64, margin: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..evidences.len())
         .filter(|&i| evidences[i].is_finite())
         .collect();
     order.sort_by(|&a, &b| evidences[b].total_cmp(&evidences[a]).then(a.cmp(&b)));
     let best = order.first().map_or(0.0, |&i| evidences[i]);
-    order.retain(|&i| best - evidences[i] < 3.0 * phi * phi);
+    order.retain(|&i| best - evidences[i] < margin * dispersion);
     order
 }
 
@@ -99,10 +95,9 @@ mod tests {
     }
 
     #[test]
-    fn the_set_widens_with_the_misfit_of_the_best() {
+    fn the_set_widens_with_the_dispersion_of_the_best() {
         let evidences = [-10.0, f64::NEG_INFINITY, -4.0, -6.5, -30.0];
-        assert_eq!(ambiguity_set(&evidences, 1.0), [2, 3]);
-        assert_eq!(ambiguity_set(&evidences, 1.5), [2, 3, 0]);
-        assert!((misfit(30.0, 20) - 1.5).abs() < 1e-15 && (misfit(10.0, 20) - 1.0).abs() < 1e-15);
+        assert_eq!(ambiguity_set(&evidences, 1.0, 3.0), [2, 3]);
+        assert_eq!(ambiguity_set(&evidences, 2.25, 3.0), [2, 3, 0]);
     }
 }

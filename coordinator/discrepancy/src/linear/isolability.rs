@@ -4,19 +4,17 @@
 //! `D_jk^2 = g~_j^T (I - P_G~k) g~_j` with projected signatures: two effects are told apart where
 //! `D^2 > 11`. (Eriksson, Frisk, Krysander: distinguishability; Doehler, Mevel, Zhang: min-max test.)
 use crate::linear::tangent::Tangent;
+use crate::thresholds::APART;
 use nalgebra::DMatrix;
 use statrs::distribution::{ChiSquared, ContinuousCDF as _};
-
-/// An effect is told apart from another where `D^2` exceeds this.
-pub const APART: f64 = 11.0;
 
 /// What an effect has to overcome to be seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hurdle {
     /// Tail probability that its own score test must fall below.
     pub p_value: f64,
-    /// The misfit; variances are inflated by its square.
-    pub phi: f64,
+    /// Variance of a residual in units of the noise's.
+    pub dispersion: f64,
 }
 
 /// Normal quantile of the power at which a limit is stated: 90 %.
@@ -54,7 +52,7 @@ pub fn detection_limit(
             .max(0.0)
             .sqrt();
     let noncentrality = (0.25 * (s * s - 2.0 * m)).max(0.0);
-    hurdle.phi * (noncentrality / own).sqrt()
+    (hurdle.dispersion * noncentrality / own).sqrt()
 }
 
 /// How alike two effects are once recalibration has taken its share: the squared cosine of the
@@ -96,17 +94,17 @@ pub fn distances(signatures: &[DMatrix<f64>], tangent: &Tangent) -> DMatrix<f64>
 pub struct Separation {
     /// The two, in the list's order.
     pub members: [usize; 2],
-    /// The smaller of their two distances, over what it takes to tell them apart at this misfit.
+    /// The smaller of their two distances, over what it takes to tell them apart at this dispersion.
     pub apart: f64,
 }
 
-/// How far all pairs are apart at the signatures' sizes under a misfit, in the list's order.
-pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, phi: f64) -> Vec<Separation> {
+/// How far all pairs are apart at the signatures' sizes under a dispersion, in the list's order.
+pub fn pairs(signatures: &[DMatrix<f64>], tangent: &Tangent, dispersion: f64) -> Vec<Separation> {
     let distances = distances(signatures, tangent);
     let n = signatures.len();
     let of = |j: usize, k: usize| Separation {
         members: [j, k],
-        apart: distances[(j, k)].min(distances[(k, j)]) / (APART * phi * phi),
+        apart: distances[(j, k)].min(distances[(k, j)]) / (APART * dispersion),
     };
     (0..n)
         .flat_map(|j| (j + 1..n).map(move |k| of(j, k)))
@@ -189,7 +187,7 @@ mod tests {
         let tangent = nothing(1);
         let hurdle = Hurdle {
             p_value: 1e-3,
-            phi: 1.0,
+            dispersion: 1.0,
         };
         let limit = |strength: f64, hurdle: &Hurdle| {
             detection_limit(&column(&[strength]), 0, false, &tangent, hurdle)
@@ -197,9 +195,12 @@ mod tests {
         // chi2_1 above 10.828 at p = 0.001, so d = 3.291 + 1.282
         let plain = limit(1.0, &hurdle);
         assert!((plain / (3.291 + 1.282) - 1.0).abs() < 0.03, "{plain}");
-        // ten times the signature is seen at a tenth of the size; twice the misfit at twice it
+        // ten times the signature is seen at a tenth of the size; four times the variance at twice it
         assert!((10.0 * limit(10.0, &hurdle) / plain - 1.0).abs() < 1e-9);
-        let doubtful = Hurdle { phi: 2.0, ..hurdle };
+        let doubtful = Hurdle {
+            dispersion: 4.0,
+            ..hurdle
+        };
         assert!((limit(1.0, &doubtful) / plain - 2.0).abs() < 1e-9);
         // a sign halves the tail
         let signed = detection_limit(&column(&[1.0]), 0, true, &tangent, &hurdle);

@@ -6,9 +6,21 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use search::least_squares::{Linearized, Variable};
 
+/// Places of the variables that are free at a point: inside of their bounds, and of some influence.
+pub(crate) fn free(at: &Linearized, variables: &[Variable]) -> Vec<usize> {
+    let inside = |k: &usize| {
+        let (x, v) = (at.x[*k], &variables[*k]);
+        let moves = at.jacobian.column(*k).norm_squared() > 0.0;
+        moves && x > v.lower && x < v.upper
+    };
+    (0..variables.len()).filter(inside).collect()
+}
+
 /// The projector off a tangent space.
 #[derive(Clone, Debug)]
 pub struct Tangent {
+    /// Places of the variables that absorb.
+    free: Vec<usize>,
     jacobian: DMatrix<f64>,
     /// Of `J^T J + L`; none where there is nothing to absorb.
     factor: Option<Cholesky<f64, Dyn>>,
@@ -18,12 +30,7 @@ impl Tangent {
     /// At a fitted point. Variables that lie on a bound of theirs, or change nothing, absorb
     /// nothing.
     pub fn new(at: &Linearized, variables: &[Variable]) -> Self {
-        let inside = |k: &usize| {
-            let (x, v) = (at.x[*k], &variables[*k]);
-            let moves = at.jacobian.column(*k).norm_squared() > 0.0;
-            moves && x > v.lower && x < v.upper
-        };
-        let free: Vec<usize> = (0..variables.len()).filter(inside).collect();
+        let free = free(at, variables);
         let jacobian = at.jacobian.select_columns(&free);
         let mut curvature = jacobian.tr_mul(&jacobian);
         for (i, &k) in free.iter().enumerate() {
@@ -38,12 +45,38 @@ impl Tangent {
         } else {
             curvature.cholesky()
         };
-        Self { jacobian, factor }
+        Self {
+            free,
+            jacobian,
+            factor,
+        }
     }
 
     /// Number of parameters that absorb.
     pub fn dimension(&self) -> usize {
         self.jacobian.ncols()
+    }
+
+    /// How many parameters worth the fit has: the trace of the projector, which counts one that is known beforehand by
+    /// as much of it as the record says (Hastie, Tibshirani, Friedman, *Elements of Statistical Learning*, 7.6).
+    pub fn parameters(&self) -> f64 {
+        self.factor.as_ref().map_or(0.0, |factor| {
+            let curvature = self.jacobian.tr_mul(&self.jacobian);
+            factor.solve(&curvature).trace()
+        })
+    }
+
+    /// By how much each variable that absorbs, by its place, moves to explain a vector.
+    pub(crate) fn estimate(&self, x: &DVector<f64>) -> Vec<(usize, f64)> {
+        let Some(factor) = &self.factor else {
+            return Vec::new();
+        };
+        let moved = factor.solve(&self.jacobian.tr_mul(x));
+        self.free
+            .iter()
+            .copied()
+            .zip(moved.iter().copied())
+            .collect()
     }
 
     /// What is left of a vector.

@@ -3,7 +3,6 @@ use crate::linear::evidence;
 use crate::linear::tangent::Tangent;
 use crate::model::unknowns::{Model, Point};
 use crate::record::measured::Curves;
-use nalgebra::DMatrix;
 use protocol::announce::EffectDescriptor;
 use search::least_squares::{LeastSquares, Variable};
 
@@ -57,9 +56,15 @@ impl Fit {
         self.search.best().residual.len()
     }
 
-    /// How far it misfits: `max(1, chi^2 / n)`.
-    pub fn misfit(&self) -> f64 {
-        evidence::misfit(self.chi_squared(), self.entries())
+    /// Degrees of freedom of the residual: `n - p`, at least 1.
+    pub fn freedom(&self) -> f64 {
+        (self.entries() as f64 - self.tangent().parameters()).max(1.0)
+    }
+
+    /// Variance of an entry of the residual in units of the noise's, `max(1, chi^2 / (n - p))`: the dispersion by which
+    /// differences of log likelihoods are divided (`McCullagh` & Nelder, *Generalized Linear Models*, 4.5).
+    pub fn dispersion(&self) -> f64 {
+        (self.chi_squared() / self.freedom()).max(1.0)
     }
 
     /// The log evidence of the model (nats), up to a constant of the record.
@@ -70,18 +75,6 @@ impl Fit {
     /// What its unknowns can absorb.
     pub fn tangent(&self) -> Tangent {
         Tangent::new(self.search.best(), self.variables())
-    }
-
-    /// Covariance of the unknowns, inflated by a misfit; nothing where one of them is left open.
-    pub fn covariance(&self, misfit: f64) -> Option<DMatrix<f64>> {
-        let jacobian = &self.search.best().jacobian;
-        let mut curvature = jacobian.tr_mul(jacobian);
-        for (k, v) in self.variables().iter().enumerate() {
-            if let Some(prior) = v.prior {
-                curvature[(k, k)] += 1.0 / (prior.deviation * prior.deviation);
-            }
-        }
-        Some(curvature.cholesky()?.inverse() * (misfit * misfit))
     }
 
     /// Points beside this one, each with the signed step of the unknown that was moved: in its order,

@@ -3,11 +3,12 @@
 //! A latent force pair across a joint with harmonics up to `H_f`, whose amplitudes have a prior that
 //! falls off with the order, has the Bayes factor
 //! `ln BF = 1/2 u^T (Q^-1 + F)^-1 u - 1/2 ln |I + Q F|`, `u = H^T r`, `F = H^T B H`,
-//! `Q = s^2 diag((1 + h/2)^-4)`, maximised over the scale s. Joints within `max(3 phi^2, 10 %)` nats
-//! of the best are not told apart. The amplitudes that are likeliest then give the force itself over the
+//! `Q = s^2 diag((1 + h/2)^-4)`, maximised over the scale s. Joints within 3 nats, times the dispersion, or
+//! 10 % of the best are not told apart. The amplitudes that are likeliest then give the force itself over the
 //! period: its shape is a hint at the cause where no name fits (a latent force).
 use crate::linear::evidence::log_determinant;
 use crate::linear::tangent::Tangent;
+use crate::thresholds::{JOINTS, SET};
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
@@ -75,9 +76,9 @@ pub fn rank(latents: &[Latent], residual: &DVector<f64>, tangent: &Tangent) -> V
 }
 
 /// How many of a ranking, from the first on, are not told apart.
-pub fn indistinguishable(ranked: &[JointEvidence], phi: f64) -> usize {
+pub fn indistinguishable(ranked: &[JointEvidence], dispersion: f64) -> usize {
     let best = ranked.first().map_or(0.0, |first| first.log_bayes);
-    let margin = (3.0 * phi * phi).max(0.1 * best);
+    let margin = (SET * dispersion).max(JOINTS * best);
     ranked
         .iter()
         .take_while(|one| best - one.log_bayes < margin)

@@ -9,6 +9,7 @@ use crate::place::latent::latents;
 use crate::place::residual::Residual;
 use crate::place::{along, joint, order, whiteness};
 use crate::record::whitened::WhitenedRecord;
+use crate::thresholds::MAPS;
 use nalgebra::DVector;
 
 /// Where the disagreement lies.
@@ -35,9 +36,6 @@ impl Where {
     }
 }
 
-/// Share of false entries that a map may hold.
-const LEVEL: f64 = 0.05;
-
 /// Draws the maps of what the recalibrated model leaves.
 pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<Where, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
@@ -53,9 +51,9 @@ pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<
     };
     let deviations = deviations(&base.on, &tangent);
     Ok(Where {
-        along: along::map::map(&residual, &deviations, inputs.thresholds.draws, LEVEL),
-        order: order::map(&residual, base.freedom, LEVEL),
-        equivalent: joint::indistinguishable(&joints, fit.misfit()),
+        along: along::map::map(&residual, &deviations, inputs.thresholds.draws, MAPS),
+        order: order::map(&residual, base.on.metric.freedom(), MAPS),
+        equivalent: joint::indistinguishable(&joints, fit.dispersion()),
         joints,
     })
 }
@@ -67,7 +65,7 @@ pub(crate) fn white(base: &Base, fit: &Fit) -> f64 {
         metric: &base.on.metric,
         tangent: &fit.tangent(),
     };
-    whiteness::p_value(&order::powers(&residual), base.freedom)
+    whiteness::p_value(&order::powers(&residual), base.on.metric.freedom())
 }
 
 /// What recalibration leaves of each cycle's deviation from the mean, whitened.

@@ -1,12 +1,17 @@
 //! The proof: curves of the model before and after, under every condition that has a record.
 use crate::ground::input_error::{InputError, input_errors};
+use crate::ground::preflight;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage, channels};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::proof::closed::{Closed, closed};
-use crate::proof::weighed::{Scale, Weighed};
+use crate::proof::scale::Scale;
+use crate::record::basis::Group;
 use crate::record::measured::{Curves, Record, Split};
+use crate::record::metric::Metric;
+use crate::record::noise::Noise;
+use crate::record::nuisance::{Acts, Nuisance};
 use crate::record::whitened::WhitenedRecord;
 
 /// The gap before and after on one record.
@@ -18,19 +23,10 @@ pub struct Row {
     pub part: Portion,
     /// The gap.
     pub closed: Closed,
-    /// How far it closes in the metric of the tests.
-    pub weighed: Weighed,
     /// Curves before, by channel.
     pub before: Curves,
     /// Curves after.
     pub after: Curves,
-}
-
-impl Row {
-    /// What it was shown on, in words.
-    pub(crate) fn words(&self) -> String {
-        self.part.words(self.condition)
-    }
 }
 
 /// Which part of the records a gap is counted on.
@@ -44,6 +40,8 @@ pub enum Portion {
     Channels,
     /// Another condition.
     Condition,
+    /// Blocks of what was fitted, each left out of the fit in turn.
+    LeftOut,
 }
 
 impl Portion {
@@ -54,6 +52,7 @@ impl Portion {
             Self::Cycles => "the cycles that were held out".to_owned(),
             Self::Channels => "the channels that were held out".to_owned(),
             Self::Condition => format!("condition {} of the case", condition + 1),
+            Self::LeftOut => "blocks of the record that are left out in turn".to_owned(),
         }
     }
 }
@@ -99,7 +98,7 @@ pub(crate) async fn shown<'a, L: Laboratory>(
                 let scale = Scale::of(record, &alike, &base.on.metric, fitted);
                 (alike, scale)
             }
-            Portion::Channels | Portion::Condition => {
+            Portion::Channels | Portion::Condition | Portion::LeftOut => {
                 let scale = elsewhere(session, record).await?;
                 (record.cycles.clone(), scale)
             }
@@ -114,31 +113,73 @@ pub(crate) async fn shown<'a, L: Laboratory>(
     Ok(shown)
 }
 
-/// A record that took no part in the fit, under its own noise and errors of its input.
+/// A record that took no part in the fit, under its own noise, errors of its input and instruments that only it has,
+/// and what a finer model changes there once the fit has taken what it can.
 async fn elsewhere<L: Laboratory>(
     session: &mut Session<'_, L>,
     record: &Record,
 ) -> Result<Scale, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
     let highest = inputs.thresholds.orders;
-    let own = WhitenedRecord::under_own_noise(record.clone(), highest, base.on.numerics.clone());
-    let mut metric = own.metric.clone();
+    let numerics = base.on.numerics.clone();
+    let own = WhitenedRecord::under_own_noise(record.clone(), highest, numerics);
+    let groups = Group::of(record, highest, &[]);
+    let mut noise = Noise::estimate(record, &groups, &[]);
+    let mut directions = Vec::new();
     let mut experiments = session.experiments(Stage::Show);
     let mut experiments = experiments.with(&own);
-    let simulated = experiments.curves(&[base.fit.point()]).await?;
-    if let Some(Some(curves)) = simulated.first() {
-        let at = (&base.fit, curves);
+    if let Some(seen) = experiments.linearized(&base.fit, record).await? {
+        let at = (&base.fit, &seen.curves);
         let errors = input_errors(&mut experiments, at, &inputs.library).await?;
-        let direction = |error: &InputError| metric.whiten(&error.curves) * error.deviation;
-        let directions: Vec<_> = errors.iter().map(direction).collect();
-        metric.marginalize(&directions);
+        let scaled = |error: InputError| scaled(error.curves, error.deviation);
+        directions.extend(errors.into_iter().map(scaled));
+        directions.extend(instruments(&base.fit, record, &seen.curves));
+        if let Some(first) = &base.preflight {
+            let mut finer = experiments.during(Stage::Preflight);
+            let at = (&base.fit, &seen.curves);
+            let changed = preflight::changed(&mut finer, at, &inputs.finer).await?;
+            if let Some((mut changed, _)) = changed {
+                // what a refit to the finer model would move the unknowns by moves this record, too
+                let whitened = base.on.metric.whiten(&first.difference);
+                for (k, moved) in base.fit.tangent().estimate(&whitened) {
+                    let Some(by) = &seen.changes[k] else { continue };
+                    let values = changed.iter_mut().flatten().zip(by.iter().flatten());
+                    values.for_each(|(value, by)| *value += moved * by);
+                }
+                noise.add_error(&groups, &own.metric.entries(&changed));
+            }
+        }
     }
-    Ok(Scale::of(
-        record,
-        &record.cycles,
-        &metric,
-        record.cycles.len(),
-    ))
+    let mut metric = Metric::new(&groups, &noise);
+    let directions: Vec<_> = directions.iter().map(|own| metric.whiten(own)).collect();
+    metric.marginalize(&directions);
+    let cycles = record.cycles.len();
+    Ok(Scale::of(record, &record.cycles, &metric, cycles))
+}
+
+/// What the instruments of a record that a fit knows nothing of may change, one standard deviation each.
+fn instruments(fit: &Fit, record: &Record, curves: &Curves) -> Vec<Curves> {
+    let known = |own: &Nuisance| {
+        let mut all = fit.model.nuisances.iter();
+        all.any(|one| one.nuisance.acts == own.acts && one.nuisance.id == own.id)
+    };
+    let own = record.stated.nuisances.iter().filter(|own| !known(own));
+    own.filter_map(|own| {
+        let Acts::Gain { curve } = own.acts else {
+            return None;
+        };
+        let channel = record.channels.iter().position(|c| c.curve == curve)?;
+        let mut change: Curves = curves.iter().map(|c| vec![0.0; c.len()]).collect();
+        change[channel].clone_from(&curves[channel]);
+        Some(scaled(change, own.deviation))
+    })
+    .collect()
+}
+
+/// Curves times a number.
+fn scaled(mut curves: Curves, by: f64) -> Curves {
+    curves.iter_mut().flatten().for_each(|value| *value *= by);
+    curves
 }
 
 /// Compares two models on records; nothing for a record on which one of them fails.
@@ -171,7 +212,6 @@ pub(crate) async fn compare<L: Laboratory>(
             Some(Row {
                 condition: shown.record.condition,
                 part: shown.part,
-                weighed: shown.scale.weighed(&before, &after),
                 closed: closed(shown.record, &shown.alike, &before, &after),
                 before,
                 after,

@@ -4,4 +4,4 @@ pub mod closed;
 pub mod compare;
 pub mod gap;
 pub mod predictive;
-pub mod weighed;
+pub(crate) mod scale;

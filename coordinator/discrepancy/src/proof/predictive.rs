@@ -10,19 +10,30 @@
 //! does not see decide nothing. With `dS = ln p(with) - ln p(without)`, `E exp dS = 1` where the effect is not there,
 //! so that `P(dS >= T) <= exp(-T)` however many effects were tried on the fitted record (Markov's inequality).
 //!
-//! Residuals and Jacobians of both models are divided by one scale, the smaller of their misfits: a model that is
-//! wrong by more than the noise predicts no better than that. Entries whose noise was estimated from few cycles are
-//! wider than Gaussian, which widens the scale once more.
+//! Residuals and Jacobians of both models are divided by one scale, the smaller of their dispersions: a model that is
+//! wrong by more than the noise predicts no better than that.
+//!
+//! Where nothing is held out, blocks of the fitted record are left out one after the other, which takes no simulation:
+//! with `b = J_B^T r_B` and `M = A - J_B^T J_B`
+//!
+//! `ln p = -1/2 (r_B^T r_B + b^T M^-1 b + ln |A| - ln |M|)`
+//!
+//! The same data chose the effect, so that Markov's bound needs as many times more as effects were tried.
 use crate::laboratory::Laboratory;
 use crate::linear::evidence::{deviation, log_determinant};
+use crate::linear::stack::stacked;
+use crate::linear::tangent::free;
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
 use crate::proof::compare::{Portion, Shown};
-use nalgebra::{DMatrix, DVector};
+use crate::proof::scale::widened;
+use crate::record::measured::difference;
+use crate::record::metric::Metric;
+use crate::record::noise::Known;
+use crate::record::whitened::WhitenedRecord;
+use crate::thresholds::Thresholds;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use search::least_squares::{Linearized, Variable};
-
-/// Largest factor by which noise variances from few cycles widen the scale.
-const WIDEST: f64 = 1.5;
 
 /// How much likelier one record that took no part in the fit is with an answer than without it.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,10 +53,21 @@ pub(crate) struct Scores {
     pub(crate) records: Vec<Prediction>,
     /// Of all of them as one record; none where there is none.
     pub(crate) together: Option<f64>,
+    /// Records on which the model fails and the other one does not: part and condition.
+    pub(crate) failed: Vec<(Portion, usize)>,
 }
 
-/// Scores a model on everything that took no part in the fit, against one without some of its effects; `freedom` is
-/// that of a variance of the noise. Records on which one of them fails are left out.
+impl Scores {
+    /// What all of them together must reach for a name of so many effects out of so many that were tried (nats).
+    pub(crate) fn needed(&self, thresholds: &Thresholds, effects: usize, tried: usize) -> f64 {
+        let left_out = self.records.iter().any(|one| one.part == Portion::LeftOut);
+        let searched = libm::log(tried.max(1) as f64) * effects as f64;
+        thresholds.prediction + if left_out { searched } else { 0.0 }
+    }
+}
+
+/// Scores a model on everything that took no part in the fit, against another one. Records whose noise is neither seen
+/// nor stated say nothing; where no other is held out, blocks of the fitted one are left out.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -53,34 +75,83 @@ pub(crate) async fn scores<L: Laboratory>(
     experiments: &mut Experiments<'_, L>,
     shown: &[Shown<'_>],
     [with, without]: [&Fit; 2],
-    freedom: f64,
 ) -> Result<Scores, L::Error> {
-    let scale = scale([with, without], freedom);
+    let on = experiments.on;
+    let dispersion = with.dispersion().min(without.dispersion());
+    let posteriors = [with, without].map(|fit| Posterior::of(&on.metric, fit, dispersion));
     let mut found = Scores::default();
     let mut all = [Vec::new(), Vec::new()];
-    for one in shown.iter().filter(|one| one.part != Portion::Fitted) {
+    let known = |one: &&Shown<'_>| !matches!(one.scale.known(), Known::Guessed);
+    let held_out = shown.iter().filter(|one| one.part != Portion::Fitted);
+    for one in held_out.filter(known) {
         let with_it = predicted(experiments, one, with).await?;
         let without_it = predicted(experiments, one, without).await?;
-        let (Some(with_it), Some(without_it)) = (with_it, without_it) else {
-            continue;
+        let (with_it, without_it) = match (with_it, without_it) {
+            (Some(with_it), Some(without_it)) => (with_it, without_it),
+            (None, Some(_)) => {
+                found.failed.push((one.part, one.record.condition));
+                continue;
+            }
+            (_, None) => continue,
         };
-        let nats =
-            log_predictive(with, &with_it, scale) - log_predictive(without, &without_it, scale);
         found.records.push(Prediction {
             condition: one.record.condition,
             part: one.part,
-            nats,
+            nats: posteriors[0].predicted(&with_it) - posteriors[1].predicted(&without_it),
         });
         all[0].push(with_it);
         all[1].push(without_it);
     }
-    if !found.records.is_empty() {
+    if found.records.is_empty() {
+        let each = [(&posteriors[0], with), (&posteriors[1], without)];
+        let [with_it, without_it] = each.map(|(own, fit)| own.left_out(on, fit));
+        if let (Some(with_it), Some(without_it)) = (with_it, without_it) {
+            let nats = with_it - without_it;
+            found.records.push(Prediction {
+                condition: on.record.condition,
+                part: Portion::LeftOut,
+                nats,
+            });
+            found.together = Some(nats);
+        }
+    } else {
         let [with_it, without_it] = all.map(|own| Predicted::stacked(&own));
-        found.together = Some(
-            log_predictive(with, &with_it, scale) - log_predictive(without, &without_it, scale),
-        );
+        found.together =
+            Some(posteriors[0].predicted(&with_it) - posteriors[1].predicted(&without_it));
     }
     Ok(found)
+}
+
+/// Why a score is not enough for a name, if it is not: no record may be less likely by as much as the first of two
+/// bounds, and all of them together must be likelier by the second.
+pub(crate) fn unpredicted(id: &str, scores: &Scores, [alone, needed]: [f64; 2]) -> Option<String> {
+    if let Some((part, condition)) = scores.failed.first() {
+        return Some(format!(
+            "{id} does not run under {}",
+            part.words(*condition)
+        ));
+    }
+    let worst = scores.records.iter().find(|one| one.nats < -alone);
+    if let Some(worst) = worst {
+        return Some(format!(
+            "{id} explains the fitted cycles and predicts {} worse: with it they are {:.1} nats less likely",
+            worst.part.words(worst.condition),
+            -worst.nats
+        ));
+    }
+    let Some(together) = scores.together else {
+        return Some(format!(
+            "{id} explains what was fitted, and there is nothing that it could predict: nothing is held out, and the \
+             record is too short to leave a part of it out"
+        ));
+    };
+    // no number is no evidence
+    (together.is_nan() || together < needed).then(|| {
+        format!(
+            "{id} explains the fitted cycles and predicts the others no better: with it what took no part is \
+             {together:.1} nats likelier, and {needed:.1} are needed"
+        )
+    })
 }
 
 /// A record as a fit predicts it. Held-out cycles of the fitted condition need no simulation.
@@ -143,56 +214,126 @@ impl Predicted {
     }
 }
 
-/// The variance that both models' residuals are taken to have, in units of the noise's; `freedom` is that of a
-/// variance of the noise.
-pub(crate) fn scale(models: [&Fit; 2], freedom: f64) -> f64 {
-    let per_freedom = |fit: &Fit| {
-        let left = fit.entries().saturating_sub(fit.x().len()).max(1);
-        fit.chi_squared() / left as f64
-    };
-    let [a, b] = models.map(per_freedom);
-    let few = if freedom > 2.0 {
-        (freedom / (freedom - 2.0)).min(WIDEST)
-    } else {
-        WIDEST
-    };
-    a.min(b).max(1.0) * few
+/// What a fit says of its unknowns, residuals in standard deviations.
+struct Posterior<'a> {
+    variables: &'a [Variable],
+    at: Linearized,
+    dispersion: f64,
 }
 
-/// The log density of a record after a fit (nats), up to a constant of the record; `scale` is the variance of a
-/// residual. No number where the fit leaves an unknown open altogether.
-pub(crate) fn log_predictive(fit: &Fit, record: &Predicted, scale: f64) -> f64 {
-    predictive((fit.search.best(), fit.variables()), record, scale)
-}
+impl<'a> Posterior<'a> {
+    /// Of a fit to a record in a metric, under a dispersion.
+    fn of(metric: &Metric, fit: &'a Fit, dispersion: f64) -> Self {
+        let at = fit.search.best();
+        let root = dispersion.sqrt();
+        let residual = widened(metric, DMatrix::from_columns(&[at.residual.clone() / root]));
+        Self {
+            variables: fit.variables(),
+            at: Linearized {
+                x: at.x.clone(),
+                residual: residual.column(0).into_owned(),
+                jacobian: widened(metric, at.jacobian.clone() / root),
+            },
+            dispersion,
+        }
+    }
 
-fn predictive((at, variables): (&Linearized, &[Variable]), record: &Predicted, scale: f64) -> f64 {
-    // what lies on a bound, or moves nothing, is known as well as its bound
-    let free: Vec<usize> = (0..variables.len())
-        .filter(|&k| {
-            let (x, v) = (at.x[k], &variables[k]);
-            let moves = [&at.jacobian, &record.jacobian];
-            let moves = moves.iter().any(|j| j.column(k).norm_squared() > 0.0);
-            moves && x > v.lower && x < v.upper
-        })
-        .collect();
-    let fitted = at.jacobian.select_columns(&free);
-    let predicted = record.jacobian.select_columns(&free);
-    let mut precision = fitted.tr_mul(&fitted) / scale;
-    for (i, &k) in free.iter().enumerate() {
-        let deviation = deviation(&variables[k]);
-        precision[(i, i)] += 1.0 / (deviation * deviation);
+    /// Precision of unknowns after the fit.
+    fn precision(&self, of: &[usize]) -> DMatrix<f64> {
+        let jacobian = self.at.jacobian.select_columns(of);
+        let mut precision = jacobian.tr_mul(&jacobian);
+        for (i, &k) in of.iter().enumerate() {
+            let deviation = deviation(&self.variables[k]);
+            precision[(i, i)] += 1.0 / (deviation * deviation);
+        }
+        precision
     }
-    let with = &precision + predicted.tr_mul(&predicted) / scale;
-    let b = predicted.tr_mul(&record.residual) / scale;
-    let square = record.residual.norm_squared() / scale;
-    if free.is_empty() {
-        return -0.5 * square;
+
+    /// The log density of a record (nats), up to a constant of it and of the dispersion. No number where the fit leaves
+    /// an unknown open altogether.
+    fn predicted(&self, record: &Predicted) -> f64 {
+        let root = self.dispersion.sqrt();
+        let (z, jacobian) = (&record.residual / root, &record.jacobian / root);
+        // what lies on a bound is known as well as that; what moves neither record has nothing to say
+        let both = Linearized {
+            x: self.at.x.clone(),
+            residual: DVector::zeros(0),
+            jacobian: stacked(&self.at.jacobian, &jacobian),
+        };
+        let free = free(&both, self.variables);
+        if free.is_empty() {
+            return -0.5 * z.norm_squared();
+        }
+        let precision = self.precision(&free);
+        let jacobian = jacobian.select_columns(&free);
+        let with = &precision + jacobian.tr_mul(&jacobian);
+        let b = jacobian.tr_mul(&z);
+        let (Some(with), Some(precision)) = (with.cholesky(), precision.cholesky()) else {
+            return f64::NAN;
+        };
+        let explained = b.dot(&with.solve(&b));
+        let volume = log_determinant(&with) - log_determinant(&precision);
+        -0.5 * (z.norm_squared() - explained + volume)
     }
-    let (Some(with), Some(precision)) = (with.cholesky(), precision.cholesky()) else {
-        return f64::NAN;
-    };
-    let explained = b.dot(&with.solve(&b));
-    -0.5 * (square - explained + log_determinant(&with) - log_determinant(&precision))
+
+    /// The sum of the log densities of blocks of the fitted record, each left out of the fit: its cycles where there
+    /// are several, else parts of it. None where it has no two.
+    fn left_out(&self, on: &WhitenedRecord, fit: &Fit) -> Option<f64> {
+        let blocks: Vec<Predicted> = if on.record.cycles.len() > 1 {
+            self.cycles(on, fit)
+        } else {
+            let blocks = on.metric.blocks(&self.at.residual);
+            let rows = |rows: &Vec<usize>| Predicted {
+                residual: self.at.residual.select_rows(rows),
+                jacobian: self.at.jacobian.select_rows(rows),
+            };
+            blocks.iter().map(rows).collect()
+        };
+        (blocks.len() > 1).then(|| self.blocks_left_out(&blocks))
+    }
+
+    /// The sum of the log densities of blocks of the fitted record, each beside all the rest of it.
+    fn blocks_left_out(&self, blocks: &[Predicted]) -> f64 {
+        let free = free(&self.at, self.variables);
+        let precision = self.precision(&free);
+        let whole = precision
+            .clone()
+            .cholesky()
+            .map(|own| log_determinant(&own));
+        let block = |block: &Predicted| {
+            let square = block.residual.norm_squared();
+            if free.is_empty() {
+                return -0.5 * square;
+            }
+            let jacobian = block.jacobian.select_columns(&free);
+            let rest: Option<Cholesky<f64, Dyn>> =
+                (&precision - jacobian.tr_mul(&jacobian)).cholesky();
+            let (Some(whole), Some(rest)) = (whole, rest) else {
+                return f64::NAN;
+            };
+            let b = jacobian.tr_mul(&block.residual);
+            let volume = whole - log_determinant(&rest);
+            -0.5 * (square + b.dot(&rest.solve(&b)) + volume)
+        };
+        blocks.iter().map(block).sum()
+    }
+
+    /// Each cycle of the fitted record by itself: of `n` it is worth an `n`-th of their mean.
+    fn cycles(&self, on: &WhitenedRecord, fit: &Fit) -> Vec<Predicted> {
+        let share = (on.record.cycles.len() as f64).sqrt();
+        let cycles = on.record.cycles.iter();
+        let residual = |cycle| {
+            let left = on.metric.whiten(&difference(cycle, &fit.curves, 1.0));
+            let left = DMatrix::from_columns(&[left / (share * self.dispersion.sqrt())]);
+            widened(&on.metric, left).column(0).into_owned()
+        };
+        cycles
+            .map(|cycle| Predicted {
+                residual: residual(cycle),
+                jacobian: &self.at.jacobian / share,
+            })
+            .collect()
+    }
 }
 
 #[cfg(test)]
@@ -211,6 +352,19 @@ mod tests {
                 mean: 0.0,
                 deviation,
             }),
+        }
+    }
+
+    fn posterior<'a>(at: &Linearized, variables: &'a [Variable], dispersion: f64) -> Posterior<'a> {
+        let root = dispersion.sqrt();
+        Posterior {
+            variables,
+            at: Linearized {
+                x: at.x.clone(),
+                residual: &at.residual / root,
+                jacobian: &at.jacobian / root,
+            },
+            dispersion,
         }
     }
 
@@ -245,7 +399,7 @@ mod tests {
             let dense = -0.5 * (z.dot(&solved) + libm::log(covariance.determinant()));
             // both models have the constant -n/2 ln s^2 in common
             let constant = -0.5 * 7.0 * libm::log(scale);
-            let own = predictive((&at, &variables), &record, scale) + constant;
+            let own = posterior(&at, &variables, scale).predicted(&record) + constant;
             assert!((own - dense).abs() < 1e-10, "{own} {dense}");
         }
     }
@@ -262,7 +416,7 @@ mod tests {
             residual: DVector::from_element(3, 1.0),
             jacobian: table(3, 1, 6),
         };
-        let own = predictive((&at, &[variable(1.0, [-9.0, 9.0])]), &record, 1.0);
+        let own = posterior(&at, &[variable(1.0, [-9.0, 9.0])], 1.0).predicted(&record);
         assert!((own + 1.5).abs() < 1e-12, "{own}");
     }
 
@@ -295,10 +449,95 @@ mod tests {
                 residual: &held - g.rows(40, 40).column(0) * size,
                 jacobian: -g.rows(40, 40).into_owned(),
             };
-            let with = predictive((&at, &[variable(2.0, [-9.0, 9.0])]), &record, 1.0);
-            let needed = crate::thresholds::Thresholds::default().prediction;
+            let with = posterior(&at, &[variable(2.0, [-9.0, 9.0])], 1.0).predicted(&record);
+            let needed = Thresholds::default().prediction;
             claims += u32::from(with + 0.5 * held.norm_squared() >= needed);
         }
         assert!(claims <= 20, "{claims} of {sets}");
+    }
+
+    fn said(cycles: f64, condition: f64, together: Option<f64>) -> Option<String> {
+        let one = |(part, nats): (Portion, f64)| Prediction {
+            condition: usize::from(part == Portion::Condition),
+            part,
+            nats,
+        };
+        let records = [(Portion::Cycles, cycles), (Portion::Condition, condition)].map(one);
+        let scores = Scores {
+            records: records.into(),
+            together,
+            failed: Vec::new(),
+        };
+        unpredicted("slip", &scores, [3.0, 3.0])
+    }
+
+    #[test]
+    fn a_name_must_predict_all_together_and_nothing_clearly_worse() {
+        assert_eq!(said(5.0, -2.9, Some(3.0)), None);
+        let better = said(2.9, 0.0, Some(2.9)).unwrap();
+        assert!(
+            better.contains("no better") && better.contains("2.9 nats"),
+            "{better}"
+        );
+        let worse = said(90.0, -3.1, Some(80.0)).unwrap();
+        assert!(worse.contains("condition 2 of the case worse"), "{worse}");
+        assert!(
+            said(1.0, 1.0, Some(f64::NAN)).is_some(),
+            "no number is no evidence"
+        );
+        let nothing = unpredicted("slip", &Scores::default(), [3.0, 3.0]).unwrap();
+        assert!(
+            nothing.contains("nothing that it could predict"),
+            "{nothing}"
+        );
+        let gone = Scores {
+            failed: vec![(Portion::Condition, 1)],
+            ..Scores::default()
+        };
+        assert!(
+            unpredicted("slip", &gone, [3.0, 3.0])
+                .unwrap()
+                .contains("does not run")
+        );
+    }
+
+    /// A left-out block is predicted as the dense Gaussian of all data, conditioned on the rest, has it.
+    #[test]
+    fn left_out_blocks_are_those_of_the_dense_gaussian() {
+        let jacobian = table(9, 2, 11);
+        let y = DVector::from_iterator(9, table(9, 1, 12).iter().copied());
+        let deviation = 1.4;
+        let variables = [0, 1].map(|_| variable(deviation, [-9.0, 9.0]));
+        let prior = DMatrix::identity(2, 2) / (deviation * deviation);
+        // the fit: residual y + J x, least with the prior
+        let x = -(jacobian.tr_mul(&jacobian) + &prior)
+            .lu()
+            .solve(&jacobian.tr_mul(&y))
+            .unwrap();
+        let residual = &y + &jacobian * &x;
+        let rows = [2, 3, 4, 5];
+        let rest: Vec<usize> = (0..9).filter(|k| !rows.contains(k)).collect();
+        let covariance = DMatrix::identity(9, 9)
+            + &jacobian * prior.try_inverse().unwrap() * jacobian.transpose();
+        let log_density = |of: &[usize]| {
+            let own = covariance.select_rows(of).select_columns(of);
+            let y = y.select_rows(of);
+            let solved = own.clone().lu().solve(&y).unwrap();
+            -0.5 * (y.dot(&solved) + libm::log(own.determinant()))
+        };
+        let all: Vec<usize> = (0..9).collect();
+        let dense = log_density(&all) - log_density(&rest);
+        let at = Linearized {
+            x: x.iter().copied().collect(),
+            residual,
+            jacobian,
+        };
+        let own = posterior(&at, &variables, 1.0);
+        let block = Predicted {
+            residual: own.at.residual.select_rows(&rows),
+            jacobian: own.at.jacobian.select_rows(&rows),
+        };
+        let left_out = own.blocks_left_out(&[block]);
+        assert!((left_out - dense).abs() < 1e-10, "{left_out} {dense}");
     }
 }

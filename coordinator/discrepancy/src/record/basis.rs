@@ -6,6 +6,7 @@ use crate::record::scatter::unexplained;
 use crate::record::spectrum::{Orders, Spectra};
 use nalgebra::Complex;
 use protocol::case::{Abscissa, Channel};
+use std::ops::RangeInclusive;
 
 type C = Complex<f64>;
 
@@ -57,16 +58,34 @@ impl Basis {
         }
     }
 
-    /// Half-width of the neighbourhood of an entry (from 0) in which noise is about as strong.
-    pub fn reach(&self, place: usize) -> usize {
+    /// The entries about one (from 0) in which noise is about as strong, that one among them. Slow curves of samples
+    /// stand for themselves: the constant, and both phases of the first order.
+    pub fn neighbours(&self, place: usize) -> RangeInclusive<usize> {
+        let (reach, slow) = match self {
+            Self::Orders(_) => {
+                let reach = match place + 1 {
+                    0..=5 => 2,
+                    6..=20 => 3,
+                    21..=60 => 6,
+                    _ => 12,
+                };
+                (reach, 0)
+            }
+            Self::Samples(_) => ((self.places() / 8).max(12), self.slow()),
+        };
+        let last = self.places().saturating_sub(1);
+        match place {
+            0 if slow > 0 => 0..=0,
+            _ if place < slow => 1..=slow - 1,
+            _ => place.saturating_sub(reach).max(slow)..=(place + reach).min(last),
+        }
+    }
+
+    /// How many entries, from the first on, are slow curves of samples.
+    pub fn slow(&self) -> usize {
         match self {
-            Self::Orders(_) => match place + 1 {
-                0..=5 => 2,
-                6..=20 => 3,
-                21..=60 => 6,
-                _ => 12,
-            },
-            Self::Samples(_) => (self.places() / 8).max(12),
+            Self::Orders(_) => 0,
+            Self::Samples(samples) => samples.first().map_or(0, Samples::slow),
         }
     }
 
@@ -75,6 +94,28 @@ impl Basis {
         match self {
             Self::Orders(_) => (2.0 * entries.iter().map(C::norm_sqr).sum::<f64>()).sqrt(),
             Self::Samples(samples) => samples[row].rms(entries),
+        }
+    }
+
+    /// How many times as strong an entry of noise is as one of white noise of the same standard deviation, where it is
+    /// correlated from one value to the next: a first-order process is stronger at low orders, and innovations of
+    /// samples are as strong as the noise itself.
+    pub fn shape_of_noise(&self, correlation: f64, place: usize) -> f64 {
+        match self {
+            Self::Orders(orders) => {
+                let rho = correlation;
+                let turn = std::f64::consts::TAU * (place + 1) as f64 / orders.samples() as f64;
+                ((1.0 - rho * rho) / (1.0 - 2.0 * rho * libm::cos(turn) + rho * rho)).max(1.0)
+            }
+            Self::Samples(_) => 1.0,
+        }
+    }
+
+    /// Variance of an entry of white noise of a standard deviation.
+    pub fn variance_of_noise(&self, deviation: f64) -> f64 {
+        match self {
+            Self::Orders(orders) => deviation * deviation / orders.samples() as f64,
+            Self::Samples(_) => deviation * deviation,
         }
     }
 
@@ -90,12 +131,12 @@ impl Basis {
 
     /// The waves of which a channel's whitened entries consist, each with two parts that are as strong as
     /// one entry: its orders as they are, or those of a row of samples.
-    pub fn waves(&self, entries: Vec<C>) -> Vec<C> {
+    pub fn waves(&self, row: usize, entries: Vec<C>) -> Vec<C> {
         match self {
             Self::Orders(_) => entries,
-            Self::Samples(_) => {
+            Self::Samples(samples) => {
                 let n = entries.len();
-                let row: Vec<f64> = entries.iter().map(|e| e.re).collect();
+                let row = samples[row].by_sample(&entries);
                 // the last wave of an even row has no second part
                 let highest = (n.saturating_sub(1) / 2).min(WAVES);
                 let waves = Orders::new(n, highest).transform(&row);
@@ -207,16 +248,16 @@ fn samples(
             .zip(points.first())
             .map_or(0.0, |(b, a)| b - a);
         let step = span / (points.len() as f64 - 1.0).max(1.0);
-        let rho = record.stated.noise_correlation;
-        let length = if rho > 0.0 {
-            -step / libm::log(rho)
-        } else {
-            0.0
+        let own = |c: &usize| {
+            let rho = record.correlation(*c);
+            let length = if rho > 0.0 {
+                -step / libm::log(rho)
+            } else {
+                0.0
+            };
+            Samples::of(&record.channels[*c].channel, length)
         };
-        return channels
-            .iter()
-            .map(|&c| Samples::of(&record.channels[c].channel, length))
-            .collect();
+        return channels.iter().map(own).collect();
     }
     let own = |curves: &Vec<Vec<f64>>| -> Spectra {
         let curve = |c: &usize| curves[*c].iter().map(|y| C::from(*y)).collect();
@@ -236,16 +277,12 @@ fn samples(
         .collect()
 }
 
-/// Powers, each the mean over the neighbourhood in which noise is about as strong.
+/// Powers, each the mean over the entries about it in which noise is about as strong.
 pub(crate) fn smoothed(basis: &Basis, powers: &[f64]) -> Vec<f64> {
-    let highest = powers.len();
     let mean = |place: usize| {
-        let reach = basis.reach(place);
-        let (from, to) = (
-            place.saturating_sub(reach),
-            (place + reach + 1).min(highest),
-        );
-        powers[from..to].iter().sum::<f64>() / (to - from) as f64
+        let about = basis.neighbours(place);
+        let count = about.clone().count();
+        powers[about].iter().sum::<f64>() / count as f64
     };
-    (0..highest).map(mean).collect()
+    (0..powers.len()).map(mean).collect()
 }

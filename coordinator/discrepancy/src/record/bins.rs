@@ -67,11 +67,12 @@ impl Bins {
     }
 }
 
-/// Whitened entries of a channel of a group along the abscissa, one value a bin.
-pub(crate) fn along(group: &Group, entries: &[Complex<f64>]) -> Vec<f64> {
+/// Whitened entries of a channel, by its place in its group, along the abscissa, one value a bin.
+pub(crate) fn along(group: &Group, row: usize, entries: &[Complex<f64>]) -> Vec<f64> {
     match &group.basis {
         Basis::Orders(_) => turn(entries),
-        Basis::Samples(_) => {
+        Basis::Samples(samples) => {
+            let entries = samples[row].by_sample(entries);
             let bins = Bins::of(group);
             let (mut sums, mut counts) = (vec![0.0; bins.count], vec![0.0; bins.count]);
             // a sample's entry says what it adds to the one before: the first has none where constants do not count
@@ -85,7 +86,7 @@ pub(crate) fn along(group: &Group, entries: &[Complex<f64>]) -> Vec<f64> {
                     reason = "not negative, and cut at the last bin"
                 )]
                 let bin = (ahead as usize).min(bins.count - 1);
-                sums[bin] += entry.re;
+                sums[bin] += entry;
                 counts[bin] += 1.0;
             }
             let each = sums.iter().zip(&counts);

@@ -18,6 +18,11 @@ pub struct Recorded {
     pub scored: bool,
     /// Whether it takes no part in any fit or test: it is compared at the end alone.
     pub held_out: bool,
+    /// Correlation of its noise from one value to the next, over the grid; none where it is not stated.
+    pub correlation: Option<f64>,
+    /// What no law of the model is better than: a standard deviation in its unit that adds to the noise; none unless
+    /// stated.
+    pub model_error: Option<f64>,
     /// Its names, unit, abscissa and noise; what was measured of it are the record's cycles.
     pub channel: Channel,
 }
@@ -30,6 +35,8 @@ impl Recorded {
             curve,
             scored: channel.record.is_some(),
             held_out: false,
+            correlation: None,
+            model_error: None,
             channel: Channel {
                 record: None,
                 ..channel.clone()
@@ -69,8 +76,6 @@ pub struct Split {
 pub struct Stated {
     /// What the input may be wrong by from cycle to cycle.
     pub input_scatter: Vec<InputScatter>,
-    /// Correlation of the noise from sample to sample, over the grid.
-    pub noise_correlation: f64,
     /// Variance of one cycle about the mean by channel, where more cycles than these tell it.
     pub cycle_variance: Vec<f64>,
     /// What may be off by a little, constant over the measurement.
@@ -91,6 +96,11 @@ impl Record {
     /// Standard deviation of a value of a channel, as stated.
     pub fn noise(&self, channel: usize) -> Option<f64> {
         self.channels[channel].channel.noise
+    }
+
+    /// Correlation of a channel's noise from one value to the next, over the grid; 0 where it is not stated.
+    pub fn correlation(&self, channel: usize) -> f64 {
+        self.channels[channel].correlation.unwrap_or(0.0)
     }
 
     /// Samples of a turn.
@@ -296,6 +306,8 @@ pub(crate) mod tests {
             curve,
             scored: true,
             held_out: false,
+            correlation: None,
+            model_error: None,
             channel,
         }
     }

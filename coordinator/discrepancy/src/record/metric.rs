@@ -8,7 +8,7 @@
 use crate::record::basis::{Group, smoothed};
 use crate::record::bins::{Bins, along};
 use crate::record::measured::Curves;
-use crate::record::noise::Noise;
+use crate::record::noise::{Known, Noise};
 use crate::record::spectrum::Spectra;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -19,6 +19,7 @@ type C = Complex<f64>;
 pub struct Metric {
     blocks: Vec<Block>,
     channels: usize,
+    known: Known,
     /// Orthonormal directions and by how much each is shortened.
     shrunk: Option<(DMatrix<f64>, DVector<f64>)>,
 }
@@ -29,6 +30,8 @@ struct Block {
     group: Group,
     /// Inverse Cholesky factors, place by place.
     factors: Vec<DMatrix<C>>,
+    /// Degrees of freedom behind the variances, place by place.
+    freedoms: Vec<f64>,
     /// Where its part begins.
     begin: usize,
 }
@@ -126,7 +129,7 @@ impl Metric {
     /// A covariance that is not positive definite leaves its entry out.
     pub fn new(groups: &[Group], noise: &Noise) -> Self {
         let mut begin = 0;
-        let block = |(group, covariances): (&Group, &Vec<DMatrix<C>>)| {
+        let block = |((group, covariances), freedoms): ((&Group, &Vec<DMatrix<C>>), &Vec<f64>)| {
             let rows = group.channels.len();
             let factor = |covariance: &DMatrix<C>| {
                 let lower = covariance.clone().cholesky()?.unpack();
@@ -137,6 +140,7 @@ impl Metric {
                 factors: factors
                     .map(|s| factor(s).unwrap_or_else(|| DMatrix::zeros(rows, rows)))
                     .collect(),
+                freedoms: freedoms.clone(),
                 group: group.clone(),
                 begin,
             };
@@ -144,10 +148,67 @@ impl Metric {
             block
         };
         Self {
-            blocks: groups.iter().zip(&noise.covariances).map(block).collect(),
+            blocks: groups
+                .iter()
+                .zip(&noise.covariances)
+                .zip(&noise.freedoms)
+                .map(block)
+                .collect(),
+            known: noise.known,
             channels: groups.iter().map(|group| group.channels.len()).sum(),
             shrunk: None,
         }
+    }
+
+    /// How the noise is known.
+    pub const fn known(&self) -> Known {
+        self.known
+    }
+
+    /// Degrees of freedom behind the variance of an entry, for each entry of a whitened vector; infinite where it was
+    /// not seen.
+    pub fn freedoms(&self) -> DVector<f64> {
+        let mut out = DVector::zeros(self.len());
+        for block in &self.blocks {
+            let width = block.parts() * block.rows();
+            for (place, freedom) in block.freedoms.iter().enumerate() {
+                out.rows_mut(block.begin + width * place, width)
+                    .fill(*freedom);
+            }
+        }
+        out
+    }
+
+    /// Degrees of freedom behind the variance of an entry, of the least well known one that pools several; infinite
+    /// where none was seen.
+    pub fn freedom(&self) -> f64 {
+        let pooled = self.blocks.iter().flat_map(|block| {
+            let slow = block
+                .group
+                .basis
+                .slow()
+                .min(block.freedoms.len().saturating_sub(1));
+            &block.freedoms[slow..]
+        });
+        pooled.copied().fold(f64::INFINITY, f64::min)
+    }
+
+    /// Degrees of freedom behind the variance of what is slow in the least well known channel, for intervals: an order by
+    /// itself, since those that are pooled with it are only about as strong, or the innovations of samples together.
+    pub fn freedom_of_intervals(&self) -> f64 {
+        let each = self.blocks.iter().flat_map(|block| {
+            let basis = &block.group.basis;
+            let slow = basis.slow().min(block.freedoms.len().saturating_sub(1));
+            let places = block.freedoms.iter().enumerate().skip(slow);
+            places.map(move |(place, freedom)| {
+                if block.group.is_periodic() {
+                    freedom / basis.neighbours(place).count() as f64
+                } else {
+                    *freedom
+                }
+            })
+        });
+        each.fold(f64::INFINITY, f64::min)
     }
 
     /// Number of channels.
@@ -234,17 +295,61 @@ impl Metric {
     /// The waves of a whitened vector, by channel, lowest first: parts of variance 1 where it is noise.
     /// Orders of the period where a channel has one, else waves of its samples.
     pub fn waves(&self, whitened: &DVector<f64>) -> Spectra {
-        self.by_channel(|block, row| block.group.basis.waves(block.entries(whitened, row)))
+        self.by_channel(|block, row| block.group.basis.waves(row, block.entries(whitened, row)))
     }
 
     /// A whitened vector along each channel's abscissa, in the channel's bins.
     pub fn along(&self, whitened: &DVector<f64>) -> Vec<Vec<f64>> {
-        self.by_channel(|block, row| along(&block.group, &block.entries(whitened, row)))
+        self.by_channel(|block, row| along(&block.group, row, &block.entries(whitened, row)))
     }
 
     /// The abscissas' bins, by channel.
     pub fn bins(&self) -> Vec<Bins> {
         self.by_channel(|block, _| Bins::of(&block.group))
+    }
+
+    /// Parts of a whitened vector, by the places of their entries, that say little of one another where a residual is
+    /// noise with a few slow waves: stretches of samples of at least five correlation lengths each, every fifth order of
+    /// a period. At most ten.
+    pub(crate) fn blocks(&self, residual: &DVector<f64>) -> Vec<Vec<usize>> {
+        const MOST: usize = 10;
+        const ORDERS: usize = 5;
+        /// Correlation lengths that a stretch has at least.
+        const LENGTHS: f64 = 5.0;
+        let samples = self.blocks.iter().filter(|own| !own.group.is_periodic());
+        let lengths = samples.map(|block| {
+            let rows = (0..block.rows()).map(|row| {
+                let entries = block.entries(residual, row);
+                let slow = block.group.basis.slow().min(entries.len());
+                let row: Vec<f64> = entries[slow..].iter().map(|e| e.re).collect();
+                row.len() as f64 / (LENGTHS * correlation_length(&row))
+            });
+            rows.fold(f64::INFINITY, f64::min)
+        });
+        let fit = lengths.fold(f64::INFINITY, f64::min);
+        let count = (2..=MOST).rev().find(|count| *count as f64 <= fit);
+        let count = if fit.is_finite() {
+            count.unwrap_or(2)
+        } else {
+            ORDERS
+        };
+        let mut parts = vec![Vec::new(); count];
+        for block in &self.blocks {
+            let places = block.factors.len();
+            let slow = block.group.basis.slow();
+            let width = block.parts() * block.rows();
+            for place in 0..places {
+                let part = if block.group.is_periodic() || place < slow {
+                    place % count
+                } else {
+                    (place - slow) * count / (places - slow)
+                };
+                let begin = block.begin + width * place;
+                parts[part].extend(begin..begin + width);
+            }
+        }
+        parts.retain(|part| !part.is_empty());
+        parts
     }
 
     /// For each entry of a whitened vector the mean power, in variances of noise, of those about it.
@@ -287,11 +392,22 @@ impl Metric {
     }
 }
 
+/// How many neighbours of a row say what one of them does: `1 + 2 sum rho_k` up to the first correlation below 0, at
+/// least 1 (the integrated autocorrelation time; Sokal 1997).
+fn correlation_length(row: &[f64]) -> f64 {
+    let power: f64 = row.iter().map(|x| x * x).sum();
+    let rho = |lag: usize| {
+        let pairs = row.iter().zip(&row[lag..]);
+        pairs.map(|(a, b)| a * b).sum::<f64>() / power
+    };
+    let positive = (1..row.len()).map(rho).take_while(|rho| *rho > 0.0);
+    1.0 + 2.0 * positive.sum::<f64>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::record::basis::Basis;
-    use crate::record::noise::Known;
     use crate::record::spectrum::Orders;
     use protocol::case::Abscissa;
 
@@ -325,7 +441,7 @@ mod tests {
         let noise = Noise {
             covariances: vec![(0..3).map(covariance).collect()],
             known: Known::Stated,
-            freedom: f64::INFINITY,
+            freedoms: vec![vec![f64::INFINITY; 3]],
         };
         Metric::new(&[group()], &noise)
     }

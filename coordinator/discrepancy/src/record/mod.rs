@@ -14,4 +14,4 @@ pub mod whitened;
 
 pub use input_scatter::InputScatter;
 pub use measured::{Curves, Record, Recorded, Split, Stated, mean_of};
-pub use nuisance::{Acts, Nuisance, WITHIN};
+pub use nuisance::{Acts, Nuisance};

@@ -5,10 +5,12 @@
 //! shrunk towards its diagonal as far as the few cycles demand (DISCOVERY: noise model). With one cycle
 //! there is no scatter: then what the channels state, and what no smooth curve does, stand for it, and
 //! everything that follows is marked as resting on that.
+use crate::linear::score::student;
 use crate::record::basis::{Basis, Group, smoothed};
 use crate::record::measured::Record;
 use crate::record::scatter::unexplained;
 use crate::record::spectrum::{Orders, Spectra};
+use crate::thresholds::STATED;
 use nalgebra::{Complex, DMatrix, DVector};
 
 type C = Complex<f64>;
@@ -38,14 +40,21 @@ pub struct Noise {
     pub covariances: Vec<Vec<DMatrix<C>>>,
     /// How it is known.
     pub known: Known,
-    /// Degrees of freedom behind a variance, of the least well known entry; infinite where it was not seen.
-    pub freedom: f64,
+    /// Degrees of freedom behind a variance, group by group and entry by entry; infinite where it was not seen.
+    pub freedoms: Vec<Vec<f64>>,
 }
 
 impl Noise {
     /// From a record; `inputs` are curves by which cycles may differ because their input did (per
     /// unit of that input), channel by channel.
     pub fn estimate(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
+        let mut noise = Self::measured(record, groups, inputs);
+        noise.add_model_error(record, groups);
+        noise
+    }
+
+    /// The noise of the measurement alone.
+    fn measured(record: &Record, groups: &[Group], inputs: &[Vec<Vec<f64>>]) -> Self {
         if record.cycles.len() < 2 {
             let stated = |c: usize| record.noise(c).is_some();
             let known = if (0..record.channels.len()).all(stated) {
@@ -57,15 +66,37 @@ impl Noise {
             return Self {
                 covariances: groups.iter().map(assume).collect(),
                 known,
-                freedom: f64::INFINITY,
+                freedoms: groups
+                    .iter()
+                    .map(|group| vec![f64::INFINITY; group.basis.places()])
+                    .collect(),
             };
         }
         let seen = groups.iter().map(|group| seen(record, group, inputs));
-        let (covariances, freedoms): (Vec<_>, Vec<f64>) = seen.unzip();
+        let (covariances, freedoms) = seen.unzip();
         Self {
             covariances,
             known: Known::Seen,
-            freedom: freedoms.into_iter().fold(f64::INFINITY, f64::min),
+            freedoms,
+        }
+    }
+
+    /// Adds what no law of a model is better than, as its channels state: alike at every entry that is compared, and
+    /// however many cycles there are.
+    fn add_model_error(&mut self, record: &Record, groups: &[Group]) {
+        for (group, covariances) in groups.iter().zip(&mut self.covariances) {
+            let places = covariances.len() as f64;
+            for (row, &channel) in group.channels.iter().enumerate() {
+                let error = record.channels[channel].model_error.unwrap_or(0.0);
+                let variance = match &group.basis {
+                    // orders share the mean square, twice each
+                    Basis::Orders(_) => error * error / (2.0 * places),
+                    Basis::Samples(_) => error * error,
+                };
+                for covariance in covariances.iter_mut() {
+                    covariance[(row, row)] += C::from(variance);
+                }
+            }
         }
     }
 
@@ -84,8 +115,13 @@ impl Noise {
     }
 }
 
-/// From the scatter between cycles, with the degrees of freedom of the least well known variance.
-fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatrix<C>>, f64) {
+/// From the scatter between cycles, with the degrees of freedom of each entry's variance.
+///
+/// Slow curves of samples scatter by themselves, never by less than the samples beside them. Their few degrees of
+/// freedom `nu` widen them as Student's 95 % interval is wider than the normal one: two cycles know a mean to a
+/// factor of six. All entries of a channel together are
+/// never less than half of the variance that it states: a data sheet may be off by as much, a few cycles by more.
+fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatrix<C>>, Vec<f64>) {
     let basis = &group.basis;
     let of = |curves: &Vec<Vec<f64>>| group.transform(curves);
     let inputs: Vec<Spectra> = inputs.iter().map(of).collect();
@@ -93,31 +129,76 @@ fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatri
     let cycles = deviations.len() as f64;
     let freedom = cycles - 1.0 - inputs.len() as f64 / 10.0;
     let (channels, parts) = (group.channels.len(), basis.parts() as f64);
-    let mut least = f64::INFINITY;
-    let covariances = (0..basis.places())
-        .map(|place| {
-            let reach = basis.reach(place);
-            let (from, to) = (place.saturating_sub(reach), place + reach);
-            let mut sum = DMatrix::<C>::zeros(channels, channels);
-            let mut terms = 0.0;
-            for k in from..=to.min(basis.places() - 1) {
-                for cycle in &deviations {
-                    let d = DVector::from_fn(channels, |c, _| cycle[c][k]);
-                    sum += &d * d.adjoint();
-                }
-                terms += freedom;
+    let about = |place: usize| {
+        let mut sum = DMatrix::<C>::zeros(channels, channels);
+        let mut terms = 0.0;
+        for k in basis.neighbours(place) {
+            for cycle in &deviations {
+                let d = DVector::from_fn(channels, |c, _| cycle[c][k]);
+                sum += &d * d.adjoint();
             }
-            least = least.min(parts * terms);
-            let single = sum / C::from(terms);
-            shrink(single, 0.5 * parts * terms) / C::from(cycles)
-        })
-        .collect();
-    (covariances, least)
+            terms += freedom;
+        }
+        (
+            shrink(sum / C::from(terms), 0.5 * parts * terms),
+            parts * terms,
+        )
+    };
+    let slow = basis.slow();
+    let beside = (0 < slow && slow < basis.places()).then(|| about(slow).0);
+    let each = (0..basis.places()).map(|place| {
+        let (mut covariance, freedom) = about(place);
+        if place < slow {
+            let wide = student(freedom) / student(f64::INFINITY);
+            covariance *= C::from(wide * wide);
+            if let Some(beside) = &beside {
+                at_least(&mut covariance, beside);
+            }
+        }
+        (covariance / C::from(cycles), freedom)
+    });
+    let (mut covariances, freedoms): (Vec<DMatrix<C>>, Vec<f64>) = each.unzip();
+    for (row, &channel) in group.channels.iter().enumerate() {
+        let Some(stated) = record.noise(channel) else {
+            continue;
+        };
+        let fast = slow.min(covariances.len())..;
+        let own: f64 = covariances[fast.clone()]
+            .iter()
+            .map(|s| s[(row, row)].re)
+            .sum();
+        let count = covariances[fast].len() as f64;
+        let least = basis.variance_of_noise(stated) * count / (STATED * cycles);
+        if own < least {
+            let by = if own > 0.0 { (least / own).sqrt() } else { 0.0 };
+            for covariance in &mut covariances {
+                covariance.row_mut(row).scale_mut(by);
+                covariance.column_mut(row).scale_mut(by);
+                if own <= 0.0 {
+                    covariance[(row, row)] = C::from(least / count);
+                }
+            }
+        }
+    }
+    (covariances, freedoms)
+}
+
+/// Raises each variance to that of another covariance, correlations kept.
+fn at_least(covariance: &mut DMatrix<C>, least: &DMatrix<C>) {
+    for k in 0..covariance.nrows() {
+        let (own, least) = (covariance[(k, k)].re, least[(k, k)].re);
+        if own < least {
+            // of nothing there is nothing to keep
+            let by = if own > 0.0 { (least / own).sqrt() } else { 0.0 };
+            covariance.row_mut(k).scale_mut(by);
+            covariance.column_mut(k).scale_mut(by);
+            covariance[(k, k)] = C::from(least);
+        }
+    }
 }
 
 /// As stated, or as the curve is rougher than anything smooth, whichever is more.
 fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
-    let rho = record.stated.noise_correlation;
     let variance = |c: &usize| {
         let curve = record.cycles.first().map_or(&[][..], |cycle| &cycle[*c]);
         let stated = record.noise(*c).unwrap_or(0.0);
@@ -145,18 +226,11 @@ fn assumed(record: &Record, group: &Group) -> Vec<DMatrix<C>> {
     };
     let variances: Vec<f64> = group.channels.iter().map(variance).collect();
     let at = |place: usize| {
-        let shape = match &group.basis {
-            Basis::Orders(orders) => {
-                // a first-order process is stronger at low orders
-                let turn = std::f64::consts::TAU * (place + 1) as f64 / orders.samples() as f64;
-                ((1.0 - rho * rho) / (1.0 - 2.0 * rho * libm::cos(turn) + rho * rho)).max(1.0)
-            }
-            Basis::Samples(_) => 1.0,
-        };
-        DMatrix::from_diagonal(&DVector::from_iterator(
-            variances.len(),
-            variances.iter().map(|v| C::from(v * shape)),
-        ))
+        let each = variances.iter().zip(&group.channels);
+        let each = each.map(|(variance, &c)| {
+            C::from(variance * group.basis.shape_of_noise(record.correlation(c), place))
+        });
+        DMatrix::from_diagonal(&DVector::from_iterator(variances.len(), each))
     };
     (0..group.basis.places()).map(at).collect()
 }

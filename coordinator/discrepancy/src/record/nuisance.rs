@@ -32,6 +32,3 @@ pub enum Acts {
         curve: usize,
     },
 }
-
-/// So many standard deviations are within what an instrument is good to: only beyond is it a discovery.
-pub const WITHIN: f64 = 3.0;

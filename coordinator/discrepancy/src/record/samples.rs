@@ -4,7 +4,9 @@
 //! first-order autoregression of any grid) has `rho_i = exp(-(x_i+1 - x_i) / l)` between neighbours, and
 //! its innovations `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as itself. Where a
 //! channel has no zero, a constant is turned into one entry that is left out; so of n samples n - 1 entries
-//! remain. Values that do not count alike are multiplied by their weights first.
+//! remain. Where it has one, the constant and the first order of the span are turned into entries of their own
+//! (Householder reflections), the first three: cycles that drift scatter there by more than from sample to sample.
+//! Values that do not count alike are multiplied by their weights first.
 use crate::record::measured::power;
 use nalgebra::Complex;
 use protocol::case::Channel;
@@ -16,12 +18,19 @@ type C = Complex<f64>;
 pub struct Samples {
     /// Correlation of each sample with the one before it; 0 for the first.
     rho: Vec<f64>,
-    /// The direction of the reflection that turns a constant into the first entry; empty where the constant
-    /// counts.
-    mirror: Vec<f64>,
+    /// Directions of the reflections that turn slow curves into the first entries: the constant, and where it counts
+    /// the first order of the span as well.
+    mirrors: Vec<Vec<f64>>,
+    /// Length of what each of those curves adds to the ones before it.
+    lengths: Vec<f64>,
+    /// Whether the constant counts.
+    absolute: bool,
     /// Weights of the values; empty where all count alike.
     weights: Vec<f64>,
 }
+
+/// Samples from which the first order of the span is told from the noise.
+const ORDER_SHOWS: usize = 8;
 
 impl Samples {
     /// On the places of a channel, for noise of a correlation length in their unit; 0 where every sample is on
@@ -43,20 +52,27 @@ impl Samples {
         });
         let mut samples = Self {
             rho: std::iter::once(0.0).chain(rho).collect(),
-            mirror: Vec::new(),
+            mirrors: Vec::new(),
+            lengths: Vec::new(),
+            absolute,
             weights: weights.to_vec(),
         };
-        if absolute {
-            return samples;
+        for slow in slow_curves(points, absolute) {
+            let mut mirror = samples.reflected(samples.innovations(&slow));
+            let known = samples.mirrors.len();
+            mirror[..known].fill(0.0);
+            let norm = length_of(&mirror);
+            if norm <= f64::EPSILON * points.len() as f64 {
+                break;
+            }
+            // away from the entry's own sign: no cancellation
+            mirror[known] += norm.copysign(mirror[known]);
+            let length = length_of(&mirror);
+            samples
+                .mirrors
+                .push(mirror.iter().map(|v| v / length).collect());
+            samples.lengths.push(norm);
         }
-        let mut mirror = samples.innovations(&vec![1.0; points.len()]);
-        let norm = length_of(&mirror);
-        if let Some(first) = mirror.first_mut() {
-            // the image of a constant is positive everywhere: no cancellation
-            *first += norm;
-        }
-        let norm = length_of(&mirror);
-        samples.mirror = mirror.iter().map(|v| v / norm).collect();
         samples
     }
 
@@ -87,14 +103,32 @@ impl Samples {
 
     /// Entries of a curve.
     pub fn len(&self) -> usize {
-        self.rho
-            .len()
-            .saturating_sub(usize::from(!self.is_absolute()))
+        self.rho.len().saturating_sub(self.left_out())
     }
 
     /// Whether the constant counts.
     pub const fn is_absolute(&self) -> bool {
-        self.mirror.is_empty()
+        self.absolute
+    }
+
+    /// How many of the entries are slow curves instead of samples: they are the first.
+    pub const fn slow(&self) -> usize {
+        if self.absolute { self.mirrors.len() } else { 0 }
+    }
+
+    /// How many of the turned innovations are no entries.
+    const fn left_out(&self) -> usize {
+        if self.absolute { 0 } else { self.mirrors.len() }
+    }
+
+    /// Entries sample by sample: slow curves are turned back into what they are at each.
+    pub fn by_sample(&self, entries: &[C]) -> Vec<f64> {
+        let row: Vec<f64> = entries.iter().map(|e| e.re).collect();
+        if self.absolute {
+            self.turned_back(row)
+        } else {
+            row
+        }
     }
 
     /// Whether a curve has none.
@@ -104,21 +138,20 @@ impl Samples {
 
     /// The entries of a curve; they have no imaginary part.
     pub fn transform(&self, curve: &[f64]) -> Vec<C> {
-        let mirrored = self.reflected(self.innovations(curve));
-        let left_out = usize::from(!self.is_absolute());
-        mirrored.into_iter().skip(left_out).map(C::from).collect()
+        let turned = self.reflected(self.innovations(curve)).into_iter();
+        turned.skip(self.left_out()).map(C::from).collect()
     }
 
     /// The curve whose entries these are, up to a constant where that does not count.
     pub fn curve(&self, entries: &[C]) -> Vec<f64> {
-        let left_out = (!self.is_absolute()).then_some(0.0);
-        let all = left_out.into_iter().chain(entries.iter().map(|e| e.re));
+        let left_out = std::iter::repeat_n(0.0, self.left_out());
+        let all = left_out.chain(entries.iter().map(|e| e.re));
         let mut before = 0.0;
         let step = |(rho, e): (&f64, f64)| {
             before = rho * before + (1.0 - rho * rho).sqrt() * e;
             before
         };
-        let all = self.reflected(all.collect());
+        let all = self.turned_back(all.collect());
         let mut curve: Vec<f64> = self.rho.iter().zip(all).map(step).collect();
         for (y, weight) in curve.iter_mut().zip(&self.weights) {
             *y /= weight;
@@ -142,29 +175,61 @@ impl Samples {
         self.rho.iter().zip(curve).enumerate().map(step).collect()
     }
 
-    fn reflected(&self, mut x: Vec<f64>) -> Vec<f64> {
-        let along: f64 = x.iter().zip(&self.mirror).map(|(x, v)| x * v).sum();
-        for (x, v) in x.iter_mut().zip(&self.mirror) {
-            *x -= 2.0 * along * v;
-        }
-        x
+    fn reflected(&self, x: Vec<f64>) -> Vec<f64> {
+        self.mirrors
+            .iter()
+            .fold(x, |x, mirror| reflected(x, mirror))
     }
 
-    /// Minus twice the logarithm of the restricted likelihood, at the likeliest variance; up to a constant
-    /// of the curves.
-    fn surprise(&self, deviations: &[Vec<f64>]) -> f64 {
-        let square = |curve: &Vec<f64>| self.transform(curve).iter().map(C::norm_sqr).sum::<f64>();
-        let sum: f64 = deviations.iter().map(square).sum();
-        let constant = if self.is_absolute() {
-            1.0
-        } else {
-            length_of(&self.innovations(&vec![1.0; self.rho.len()]))
-        };
-        let determinant: f64 = self.rho.iter().map(|rho| libm::log(1.0 - rho * rho)).sum();
-        self.len() as f64 * libm::log(sum.max(f64::MIN_POSITIVE))
-            + determinant
-            + 2.0 * libm::log(constant)
+    fn turned_back(&self, x: Vec<f64>) -> Vec<f64> {
+        self.mirrors
+            .iter()
+            .rev()
+            .fold(x, |x, mirror| reflected(x, mirror))
     }
+
+    /// Minus twice the logarithm of the restricted likelihood, slow curves left open, at the likeliest variance; up to
+    /// a constant of the curves.
+    fn surprise(&self, deviations: &[Vec<f64>]) -> f64 {
+        let square = |curve: &Vec<f64>| {
+            let entries = self.transform(curve).into_iter().skip(self.slow());
+            entries.map(|e| e.norm_sqr()).sum::<f64>()
+        };
+        let sum: f64 = deviations.iter().map(square).sum();
+        let slow: f64 = self.lengths.iter().map(|own| libm::log(*own)).sum();
+        let determinant: f64 = self.rho.iter().map(|rho| libm::log(1.0 - rho * rho)).sum();
+        (self.len() - self.slow()) as f64 * libm::log(sum.max(f64::MIN_POSITIVE))
+            + determinant
+            + 2.0 * slow
+    }
+}
+
+/// The curves that have entries of their own: the constant, and where it counts both phases of the first order of the
+/// span. A single value has none.
+fn slow_curves(points: &[f64], absolute: bool) -> Vec<Vec<f64>> {
+    let n = points.len();
+    let (Some(first), Some(last), 2..) = (points.first(), points.last(), n) else {
+        return Vec::new();
+    };
+    let constant = vec![1.0; n];
+    if !absolute || n < ORDER_SHOWS {
+        return vec![constant];
+    }
+    let turn = std::f64::consts::TAU * (n as f64 - 1.0) / (n as f64 * (last - first));
+    let angles = || points.iter().map(|x| turn * (x - first));
+    vec![
+        constant,
+        angles().map(libm::cos).collect(),
+        angles().map(libm::sin).collect(),
+    ]
+}
+
+fn reflected(mut x: Vec<f64>, mirror: &[f64]) -> Vec<f64> {
+    let along: f64 = x.iter().zip(mirror).map(|(x, v)| x * v).sum();
+    for (x, v) in x.iter_mut().zip(mirror) {
+        *x -= 2.0 * along * v;
+    }
+    x
 }
 
 fn length_of(x: &[f64]) -> f64 {

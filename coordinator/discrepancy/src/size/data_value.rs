@@ -60,7 +60,7 @@ pub(crate) async fn weigh<L: Laboratory>(
     let own = |one: &Visible<'_>| scaled(&one.suspect.signature, &one.amounts);
     let here: Vec<DMatrix<f64>> = visible.iter().map(own).collect();
     let at = fit.search.best();
-    let mut alike = pairs(&here, &fit.tangent(), fit.misfit());
+    let mut alike = pairs(&here, &fit.tangent(), fit.dispersion());
     alike.retain(|pair| pair.apart < 1.0);
     alike.sort_by(|a, b| a.apart.total_cmp(&b.apart));
     if alike.is_empty() {
@@ -89,7 +89,7 @@ pub(crate) async fn weigh<L: Laboratory>(
         pairs(
             &signatures,
             &Tangent::new(&both, fit.variables()),
-            fit.misfit(),
+            fit.dispersion(),
         )
     });
     let name = |k: usize| visible[k].suspect.effect.id.clone();

@@ -2,6 +2,8 @@
 use crate::cause::round::Round;
 use crate::linear::score::family_wise;
 use crate::model::fit::Fit;
+use crate::record::metric::Metric;
+use crate::size::spread::Spread;
 
 /// An effect of the answer.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,7 +19,7 @@ pub struct Estimate {
     pub parameters: Vec<ParameterEstimate>,
     /// Family-wise p-value of its score test.
     pub p_value: f64,
-    /// Log evidence against the model without it, over the squared misfit (nats).
+    /// Log evidence against the model without it, over the dispersion (nats).
     pub ln_evidence: f64,
 }
 
@@ -34,12 +36,8 @@ pub struct ParameterEstimate {
     pub interval: [f64; 2],
 }
 
-/// Half-width of a 95 % interval in standard deviations: Student's, for the nine degrees of freedom
-/// that the variance of a low order has from a handful of cycles.
-pub(crate) const QUANTILE: f64 = 2.262;
-
 /// The added effects with their sizes, then the other members of their sets.
-pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
+pub(crate) fn estimates(rounds: &[Round], after: &Fit, metric: &Metric) -> Vec<Estimate> {
     let mut found: Vec<Estimate> = Vec::new();
     for added_first in [true, false] {
         for round in rounds {
@@ -49,7 +47,7 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
                 .filter(|id| (round.added.as_ref() == Some(id)) == added_first);
             for id in members {
                 if found.iter().all(|e| e.id != *id) {
-                    found.extend(estimate(round, id, after));
+                    found.extend(estimate(round, id, (after, metric)));
                 }
             }
         }
@@ -59,7 +57,7 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit) -> Vec<Estimate> {
 
 /// Sizes of an added effect are those of the final model, beside everything else that was added; of
 /// a rival, those of its own refit.
-fn estimate(round: &Round, id: &str, after: &Fit) -> Option<Estimate> {
+fn estimate(round: &Round, id: &str, (after, metric): (&Fit, &Metric)) -> Option<Estimate> {
     let place = |fit: &Fit| fit.model.added.iter().position(|e| e.id == id);
     let refitted = round.refits.iter().find(|r| r.id == id);
     let own = refitted.map(|refitted| &refitted.fit);
@@ -68,12 +66,9 @@ fn estimate(round: &Round, id: &str, after: &Fit) -> Option<Estimate> {
     let position = place(fit)?;
     let effect = &fit.model.added[position];
     let first = fit.model.first_of(position);
-    let covariance = fit.covariance(round.phi);
+    let spread = Spread::of(metric, fit);
     let parameters = effect.parameters.iter().enumerate().map(|(k, p)| {
-        let variance = covariance
-            .as_ref()
-            .map_or(f64::INFINITY, |c| c[(first + k, first + k)]);
-        let half = QUANTILE * variance.sqrt() * p.scale;
+        let half = spread.quantile * spread.variance(first + k).sqrt() * p.scale;
         let value = (p.absent + fit.x()[first + k] * p.scale).clamp(p.lower, p.upper);
         ParameterEstimate {
             name: p.name.clone(),

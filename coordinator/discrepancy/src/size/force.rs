@@ -5,7 +5,8 @@ use crate::cause::round::Round;
 use crate::model::fit::Fit;
 use crate::model::probe;
 use crate::proof::compare::Row;
-use crate::size::estimate::QUANTILE;
+use crate::record::metric::Metric;
+use crate::size::spread::Spread;
 
 /// A force without a cause, with its size and what it explains.
 #[derive(Clone, Debug)]
@@ -24,7 +25,7 @@ pub struct Force {
     pub interval: [f64; 2],
     /// Of a harmonic, the phase of the harmonic at which it is largest (deg).
     pub phase_deg: Option<f64>,
-    /// Log evidence against the model without it, over the squared misfit (nats).
+    /// Log evidence against the model without it, over the dispersion (nats).
     pub ln_evidence: f64,
     /// The model with it.
     pub fit: Fit,
@@ -33,16 +34,20 @@ pub struct Force {
 }
 
 /// The force of a challenger that beat the model `before` it in a round; without its rows yet.
-pub(crate) fn force(challenger: Challenger, before: &Fit, round: &Round) -> Force {
+pub(crate) fn force(
+    challenger: Challenger,
+    (before, metric): (&Fit, &Metric),
+    round: &Round,
+) -> Force {
     let fit = challenger.fit;
     let first = before.model.added.len();
     let parts = &fit.model.added[first..];
     let scale = |k: usize| parts[k].parameters.first().map_or(1.0, |p| p.scale);
     let place = |k: usize| fit.model.first_of(first + k);
     let size = |k: usize| scale(k) * fit.x()[place(k)];
-    let covariance = fit.covariance(round.phi);
+    let spread = Spread::of(metric, &fit);
     let variance = |j: usize, k: usize| {
-        let own = covariance.as_ref().map(|c| c[(place(j), place(k))]);
+        let own = spread.covariance.as_ref().map(|c| c[(place(j), place(k))]);
         own.map_or(f64::INFINITY, |own| scale(j) * scale(k) * own)
     };
     let (amplitude, deviation, phase_deg) = match parts {
@@ -62,7 +67,7 @@ pub(crate) fn force(challenger: Challenger, before: &Fit, round: &Round) -> Forc
         }
         _ => (size(0), variance(0, 0).sqrt(), None),
     };
-    let half = QUANTILE * deviation;
+    let half = spread.quantile * deviation;
     let lowest = phase_deg.map_or(f64::NEG_INFINITY, |_| 0.0);
     let stronger = parts.first();
     let unit = stronger

@@ -31,7 +31,7 @@ pub(crate) fn limits(round: &Round, fit: &Fit, alpha: f64) -> Vec<Limit> {
     {
         let hurdle = Hurdle {
             p_value: single(alpha, suspect.tries * round.suspects.len()),
-            phi: fit.misfit(),
+            dispersion: fit.dispersion(),
         };
         let sizes = sizes(&suspect.effect);
         for (column, &k) in sizes.iter().enumerate() {

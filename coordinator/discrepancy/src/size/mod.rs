@@ -6,3 +6,4 @@ pub mod estimate;
 pub mod force;
 pub mod limit;
 pub mod never_exact;
+pub mod spread;

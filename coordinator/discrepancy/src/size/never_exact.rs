@@ -1,8 +1,8 @@
 //! What the instruments are off by, as a fit has it.
 use crate::model::fit::Fit;
 use crate::model::tolerated::Tolerated;
-use crate::record::nuisance::WITHIN;
-use crate::size::estimate::QUANTILE;
+use crate::size::spread::Spread;
+use crate::thresholds::WITHIN;
 use serde::Serialize;
 
 /// A nuisance with its likeliest value.
@@ -27,14 +27,17 @@ pub struct NeverExact {
     pub assumed: bool,
 }
 
-/// Those of a fit that are no added effects; `phi` is its misfit.
-pub(crate) fn never_exact(fit: &Fit, phi: f64) -> Vec<NeverExact> {
-    let covariance = fit.covariance(phi);
+/// Those of a fit that are no added effects.
+pub(crate) fn never_exact(fit: &Fit, spread: &Spread) -> Vec<NeverExact> {
     let one = |(place, one): (usize, &Tolerated)| {
         let own = &one.nuisance;
         let variable = one.variable();
-        let variance = covariance.as_ref().map_or(1.0, |c| c[(place, place)]);
-        let (x, half) = (fit.x()[place], QUANTILE * variance.sqrt());
+        // in standard deviations of what is known beforehand: that is all where nothing else is
+        let variance = spread
+            .covariance
+            .as_ref()
+            .map_or(1.0, |c| c[(place, place)]);
+        let (x, half) = (fit.x()[place], spread.quantile * variance.sqrt());
         let bounded = |x: f64| own.deviation * x.clamp(variable.lower, variable.upper);
         NeverExact {
             id: own.id.clone(),

@@ -45,6 +45,8 @@ fn times() -> Vec<f64> {
 
 fn channel(curve: usize, noise: Option<f64>) -> Recorded {
     Recorded {
+        correlation: None,
+        model_error: None,
         curve,
         scored: true,
         held_out: false,
@@ -105,18 +107,14 @@ fn record(seed: u64, cycles: usize, clean: &Curves, stated: bool) -> Record {
     Record {
         condition: 0,
         channels: (0..2)
-            .map(|c| channel(c, stated.then_some(SIZES[c])))
+            .map(|c| Recorded {
+                correlation: stated.then(|| (-step / LENGTHS[0]).exp()),
+                ..channel(c, stated.then_some(SIZES[c]))
+            })
             .collect(),
         cycles: (0..cycles).map(|_| cycle()).collect(),
         held_out: false,
-        stated: Stated {
-            noise_correlation: if stated {
-                (-step / LENGTHS[0]).exp()
-            } else {
-                0.0
-            },
-            ..Stated::default()
-        },
+        stated: Stated::default(),
     }
 }
 
@@ -130,7 +128,8 @@ fn whitened(record: &Record) -> (Metric, f64, DVector<f64>) {
     let noise = Noise::estimate(record, &groups, &[]);
     let metric = Metric::new(&groups, &noise);
     let mean = metric.whiten(&record.mean());
-    (metric, noise.freedom, mean)
+    let freedom = metric.freedom();
+    (metric, freedom, mean)
 }
 
 /// A fit of nothing.
@@ -388,7 +387,7 @@ fn diagnosed(records: Vec<Record>) -> Diagnosis {
 }
 
 /// The whole way, without a period anywhere: a healthy record is left alone, each effect gets its name and its
-/// size, and one cycle carries a suspect but no name.
+/// size, and one cycle carries a name where its noise is stated.
 #[test]
 fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
     let healthy = diagnosed(vec![hidden(&[], 8, false)]);
@@ -405,15 +404,21 @@ fn what_is_hidden_in_a_record_without_a_period_gets_its_name() {
         assert!((low..=high).contains(&amount), "{found:?}");
         let white = answer.whiteness.expect("a test");
         assert!(white[0] < 0.01 && white[1] > 0.01, "{white:?}");
-        for (stated, word) in [(true, "assumed"), (false, "not known")] {
-            let one = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, stated)]);
-            let said = crate::trial::line(&one);
-            assert_eq!(one.verdict, Verdict::Unresolved, "{said}");
-            assert!(
-                one.reason.is_some_and(|reason| reason.contains(word)),
-                "{said}"
-            );
-        }
+        // of one cycle whose noise is stated, what blocks of it say of one another carries a name
+        let one = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, true)]);
+        let said = crate::trial::line(&one);
+        assert_eq!(
+            (one.verdict, &*one.effects[0].id),
+            (Verdict::Named, id),
+            "{said}"
+        );
+        assert_eq!(one.prediction.len(), 1, "{said}");
+        assert_eq!(one.prediction[0].part, Portion::LeftOut, "{said}");
+        let unknown = diagnosed(vec![hidden(&[(id, 5.0 * amount)], 1, false)]);
+        let said = crate::trial::line(&unknown);
+        assert_eq!(unknown.verdict, Verdict::Unresolved, "{said}");
+        let reason = unknown.reason.unwrap_or_default();
+        assert!(reason.contains("not known"), "{said}");
     }
 }
 

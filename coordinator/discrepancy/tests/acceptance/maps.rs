@@ -106,7 +106,7 @@ fn maps_of_noise_are_empty_in_nineteen_of_twenty() {
         };
         let along = along::map(&all, &deviations, 200, 0.05);
         windows += usize::from(!along.windows.is_empty());
-        let order = order::map(&all, noise.freedom, 0.05);
+        let order = order::map(&all, metric.freedom(), 0.05);
         peaks += usize::from(!order.peaks.is_empty());
         let seen: Vec<joint::Latent> = latents.iter().map(|l| l.seen(&metric)).collect();
         let ranked = joint::rank(&seen, &residual, &tangent);

@@ -33,7 +33,7 @@ pub(crate) struct Setup {
     pub(crate) numerics: Roughness,
     /// A ripple of the gauges that the record has and nothing makes (MPa).
     pub(crate) ripple_mpa: f64,
-    /// The noise that the data sheet states, over the true one.
+    /// The noise that the data sheet states, over the true one; no number where it states none.
     pub(crate) stated: f64,
 }
 
@@ -70,7 +70,8 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
             ripple(&mut cycle[..gauges], setup.ripple_mpa);
         }
         for recorded in &mut record.channels {
-            recorded.channel.noise = recorded.channel.noise.map(|noise| noise * setup.stated);
+            let stated = recorded.channel.noise.map(|noise| noise * setup.stated);
+            recorded.channel.noise = stated.filter(|noise| !noise.is_nan());
         }
     }
     let inputs = Inputs {
@@ -130,9 +131,9 @@ pub(crate) fn line(diagnosis: &Diagnosis) -> String {
                 .map(|f| format!("{} {:.0}", f.id, r.nats(f.log_evidence)))
                 .collect();
             format!(
-                "[p {:.1e} phi {:.2} set {:?} best {}]",
+                "[p {:.1e} dispersion {:.2} set {:?} best {}]",
                 r.p_value,
-                r.phi,
+                r.dispersion,
                 r.set,
                 best.join(", ")
             )

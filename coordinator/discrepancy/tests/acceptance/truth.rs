@@ -387,6 +387,8 @@ pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Reco
         curve,
         scored: curve < 4,
         held_out: false,
+        correlation: Some(CORRELATION),
+        model_error: None,
         channel,
     }
 }
@@ -418,7 +420,6 @@ pub(crate) fn record(truth: &Truth, condition: usize, channels: &[usize], cycles
                     deviation: LOAD_SCATTER,
                 },
             ],
-            noise_correlation: CORRELATION,
             ..Stated::default()
         },
     }

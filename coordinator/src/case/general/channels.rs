@@ -26,6 +26,10 @@ pub(super) struct Read {
     pub(super) cycles: Vec<Vec<f64>>,
     /// Whether it takes no part in any fit.
     pub(super) held_out: bool,
+    /// Correlation of its noise from one value to the next, where it is stated.
+    pub(super) correlation: Option<f64>,
+    /// What no law of the model is better than, where it is stated.
+    pub(super) model_error: Option<f64>,
     /// Record and condition that the replacing folder does not have.
     pub(super) missing: Option<(String, String)>,
 }
@@ -127,6 +131,7 @@ impl Source<'_> {
                 "give the standard deviation of one value, or leave it out",
             ));
         }
+        self.check_errors()?;
         let record::Read {
             places: points,
             mut cycles,
@@ -165,8 +170,36 @@ impl Source<'_> {
             },
             cycles,
             held_out: entry.held_out,
+            correlation: entry.correlation,
+            model_error: entry.model_error,
             missing,
         })
+    }
+
+    /// Checks what is stated of errors that are none of the noise's size.
+    fn check_errors(&self) -> Result<(), CaseError> {
+        let entry = self.entry;
+        let correlation = entry.correlation.filter(|rho| !(0.0..1.0).contains(rho));
+        if let Some(rho) = correlation {
+            return Err(self.refused(
+                &["correlation"],
+                rho.to_string(),
+                "from 0 to below 1",
+                "give the correlation of the noise from one value to the next, or leave it out",
+            ));
+        }
+        let error = entry
+            .model_error
+            .filter(|own| !(*own > 0.0 && own.is_finite()));
+        if let Some(error) = error {
+            return Err(self.refused(
+                &["model_error"],
+                error.to_string(),
+                &format!("above 0 {}", entry.unit),
+                "give the standard deviation that no law of the model is better than, or leave it out",
+            ));
+        }
+        Ok(())
     }
 
     /// Where the values stand, and what was measured there.

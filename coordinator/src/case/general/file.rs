@@ -74,6 +74,10 @@ pub(super) struct ChannelEntry {
     pub(super) condition: String,
     pub(super) abscissa: AbscissaEntry,
     pub(super) noise: Option<f64>,
+    /// Correlation of its noise from one value to the next.
+    pub(super) correlation: Option<f64>,
+    /// What no law of the model is better than, one standard deviation.
+    pub(super) model_error: Option<f64>,
     /// Whether its values have a zero; as the objective says unless stated.
     pub(super) offset: Option<Offset>,
     /// Whether its record takes no part in any fit.

@@ -44,7 +44,11 @@
 //! abscissa = { name = "phase", unit = "deg", period = 360.0 }   # period: only where the curve begins anew
 //! held_out = false                  # optional: as for a condition
 //! offset = "fixed"                  # optional: in place of the objective's, for this channel
-//! noise = 0.05                      # standard deviation of one value; needed where nothing was repeated
+//! noise = 0.05                      # standard deviation of one value; needed where nothing was repeated. Beside
+//!                                   # repeated cycles their scatter counts, and at least half of this variance
+//! correlation = 0.8                 # optional: of the noise, from one value to the next, where nothing was
+//!                                   # repeated; unless stated, a diagnosis takes it from what the best model leaves
+//! model_error = 0.02                # optional: no law of the model is better than this; adds to the noise
 //! record = { file = "measured/5hz.csv", at = "phase_deg", column = "force_n", cycle = "cycle" }
 //!                                   # weight = "COLUMN": factor of each value's difference; its noise is `noise`
 //!                                   # over it. rows = { column = "COLUMN", is = "WORD" }: those rows alone

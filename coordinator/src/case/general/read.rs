@@ -103,6 +103,8 @@ fn cycles(
     }
     let recorded = |(curve, _, read): &(usize, usize, &channels::Read)| Recorded {
         held_out: read.held_out,
+        correlation: read.correlation,
+        model_error: read.model_error,
         ..Recorded::new(*curve, &read.channel)
     };
     let cycle = |at: usize| -> Curves {

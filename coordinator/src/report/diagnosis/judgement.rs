@@ -4,17 +4,15 @@ use discrepancy::cause::refit::Refitted;
 use discrepancy::cause::suspect::Suspect;
 use discrepancy::diagnose::Round;
 use discrepancy::linear::score::{chi_squared_tail, family_wise};
+use discrepancy::thresholds::SET;
 use protocol::announce::Sign;
 
 /// Beyond this share a recalibration hides an effect for practical purposes.
 const HIDDEN: f64 = 0.999;
-/// Nats within which two refits are not told apart.
-const APART: f64 = 3.0;
-
 /// What became of a suspect.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Judgement {
-    /// Tail probability of its test with the round's misfit in the variances, the best of several
+    /// Tail probability of its test over the round's dispersion, the best of several
     /// shapes counted as such; none without a test.
     pub p_value: Option<f64>,
     /// Nats after the refit, against the model without it and over the squared misfit.
@@ -49,11 +47,11 @@ pub(super) fn ranked(round: &Round) -> Vec<(&Suspect, Judgement)> {
     all
 }
 
-/// Tail probability of a test, with the round's misfit in the variances.
+/// Tail probability of a test, over the round's dispersion.
 pub(super) fn tempered(round: &Round, suspect: &Suspect) -> Option<f64> {
     let score = suspect.score.as_ref()?;
     if suspect.statistic() > 0.0 {
-        let scaled = score.statistic / (round.phi * round.phi);
+        let scaled = score.statistic / round.dispersion;
         Some(family_wise(
             chi_squared_tail(scaled, score.freedom),
             suspect.tries,
@@ -71,7 +69,7 @@ fn refit<'a>(round: &'a Round, suspect: &Suspect) -> Option<&'a Refitted> {
 
 /// What became of one suspect.
 pub(super) fn judge(round: &Round, suspect: &Suspect) -> Judgement {
-    let scale = round.phi * round.phi;
+    let scale = round.dispersion;
     let refit = refit(round, suspect);
     Judgement {
         p_value: tempered(round, suspect),
@@ -108,7 +106,7 @@ fn after_refit(round: &Round, own: &Refitted, scale: f64) -> String {
     }
     if round.set.contains(&own.id) {
         return format!(
-            "kept in the ambiguity set: {} nats behind {}, less than {APART:.0}",
+            "kept in the ambiguity set: {} nats behind {} on what was fitted, and with what took no part less than {SET:.0} behind the best",
             nats(behind),
             best.id
         );

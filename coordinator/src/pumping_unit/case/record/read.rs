@@ -83,14 +83,17 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
     let places = Sensor::ALL.iter().zip(&channels).enumerate();
     let recorded = places
         .filter(|(_, (sensor, _))| cycles.channels.contains(sensor))
-        .map(|(curve, (_, channel))| Recorded::new(curve, channel));
+        .map(|(curve, (_, channel))| Recorded {
+            correlation: sheet.correlation(samples.step_deg / expected.step_deg),
+            ..Recorded::new(curve, channel)
+        });
     Ok(Read {
         cycles: Record {
             condition: expected.index,
             channels: recorded.collect(),
             cycles: cycles.single,
             held_out: false,
-            stated: sheet.stated(samples.step_deg / expected.step_deg, &cycles.channels),
+            stated: sheet.stated(&cycles.channels),
         },
         channels,
         facts,

@@ -116,9 +116,15 @@ impl Sheet {
         }
     }
 
-    /// What the sheet says of the measurement, for channels of these sensors that are sampled `grid` times as
-    /// densely on the output grid as in the record.
-    pub(super) fn stated(&self, grid: f64, recorded: &[Sensor]) -> Stated {
+    /// Correlation of the noise from one value to the next, of channels that are sampled `grid` times as densely on the
+    /// output grid as in the record, if the sheet states it.
+    pub(super) fn correlation(&self, grid: f64) -> Option<f64> {
+        let stated = self.gauges.noise_correlation_per_sample;
+        stated.map(|rho| libm::pow(rho, 1.0 / grid))
+    }
+
+    /// What the sheet says of the measurement, for channels of these sensors.
+    pub(super) fn stated(&self, recorded: &[Sensor]) -> Stated {
         let positive = |value: &f64| *value > 0.0;
         let turned = self.crank.index_tolerance_deg.filter(positive);
         let turned = turned.map(|tolerance| InputScatter::Abscissa { tolerance });
@@ -129,10 +135,6 @@ impl Sheet {
         });
         Stated {
             input_scatter: turned.into_iter().chain(loaded).collect(),
-            noise_correlation: self
-                .gauges
-                .noise_correlation_per_sample
-                .map_or(0.0, |rho| libm::pow(rho, 1.0 / grid)),
             nuisances: self.tolerance.nuisances(recorded),
             ..Stated::default()
         }

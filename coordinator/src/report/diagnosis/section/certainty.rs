@@ -63,11 +63,11 @@ fn facts(subject: &Subject<'_>) -> Vec<Fact> {
             }),
     );
     facts.extend(diagnosis.rounds.first().map(|round| {
-        let misfit = format!(
-            "χ² per entry of the record, best model: {}; variances are inflated by its square",
-            figure(round.phi)
+        let dispersion = format!(
+            "χ² per degree of freedom of the record, best model: {}; variances are as many times those of the noise",
+            figure(round.dispersion)
         );
-        Fact::new("misfit", misfit)
+        Fact::new("dispersion", dispersion)
     }));
     facts
 }

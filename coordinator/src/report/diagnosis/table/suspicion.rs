@@ -33,10 +33,10 @@ pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Ta
     ).noted([
         format!(
             "p: probability of a test as clear as this one if the effect is not there, with the \
-             variances inflated by the misfit of the best model ({}²). Absorbed: share of the effect's \
+             variances as many times those of the noise as the best model leaves ({}). Absorbed: share of the effect's \
              signature that recalibration takes up. Nats: gain of the log evidence over the model \
-             without it, with all genes free, over the squared misfit.",
-            figure(round.phi)
+             without it, with all genes free, over that dispersion.",
+            figure(round.dispersion)
         ),
         format!(
             "Over the whole family of named effects, p {}.",
@@ -50,7 +50,7 @@ pub(in crate::report::diagnosis) fn generics(round: &Round) -> Option<Table> {
     const SHOWN: usize = 6;
     let mut forces: Vec<_> = round.generics.iter().collect();
     forces.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));
-    let scale = round.phi * round.phi;
+    let scale = round.dispersion;
     let rows: Vec<Row> = forces
         .iter()
         .filter(|force| force.statistic() > 0.0)

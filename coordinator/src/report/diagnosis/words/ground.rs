@@ -27,9 +27,9 @@ pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<Str
     if let Some((round, rival)) = diagnosis.rejected()
         && let Some(best) = round.refits.first()
     {
-        let behind = (best.log_evidence - rival.log_evidence) / (round.phi * round.phi);
+        let behind = (best.log_evidence - rival.log_evidence) / round.dispersion;
         sentences.push(format!(
-            "The best rejected rival, {}, lies {} nats behind; 3 are asked for.",
+            "The best rejected rival, {}, lies {} nats behind on what was fitted; with what took no part, 3 are asked for.",
             named(subject, &rival.id),
             nats(behind)
         ));
@@ -57,8 +57,8 @@ pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<Str
     }
     if !diagnosis.noise.is_seen() {
         sentences.push(
-            "The noise was assumed, not seen: with one cycle there is no scatter to take it from, so \
-             every probability and every limit here is as good as the data sheet."
+            "The noise was stated, not seen: with one cycle there is no scatter to take it from, so \
+             every probability and every limit here is as good as that statement."
                 .to_owned(),
         );
     }
@@ -117,6 +117,7 @@ const fn part(part: Portion) -> &'static str {
         Portion::Cycles => "held-out cycles",
         Portion::Channels => "held-out channels",
         Portion::Condition => "another condition, which took no part",
+        Portion::LeftOut => "blocks of the record, left out in turn",
     }
 }
 

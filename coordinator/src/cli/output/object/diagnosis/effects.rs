@@ -26,7 +26,7 @@ struct ParameterOutput {
 #[derive(Debug, Serialize)]
 pub(super) struct RoundOutput {
     p_value: f64,
-    misfit: f64,
+    dispersion: f64,
     added: Option<String>,
     set: Vec<String>,
     reason: Option<String>,
@@ -100,7 +100,7 @@ pub(super) fn force(found: &Force) -> ForceOutput {
 pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
     let round = |round: &discrepancy::diagnose::Round| RoundOutput {
         p_value: round.p_value,
-        misfit: round.phi,
+        dispersion: round.dispersion,
         added: round.added.clone(),
         set: round.set.clone(),
         reason: round.reason.clone(),

@@ -2,7 +2,6 @@
 use discrepancy::proof::closed::Closed;
 use discrepancy::proof::compare::{Portion, Row};
 use discrepancy::proof::predictive::Prediction;
-use discrepancy::proof::weighed::Weighed;
 use protocol::case::Case;
 use serde::Serialize;
 
@@ -12,7 +11,7 @@ pub(super) struct PredictionOutput {
     /// Name of its condition.
     record: String,
     nats: f64,
-    /// What of the records it is: `cycles`, `channel` or `condition`.
+    /// What of the records it is: `cycles`, `channel`, `condition`, or `left_out` for blocks of the fitted one.
     held_out: &'static str,
 }
 
@@ -26,6 +25,7 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
                 Portion::Cycles => "cycles",
                 Portion::Channels => "channel",
                 Portion::Condition => "condition",
+                Portion::LeftOut => "left_out",
                 Portion::Fitted => return None,
             },
         })
@@ -36,29 +36,18 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
 /// The gap of the answer.
 #[derive(Debug, Default, Serialize)]
 pub(super) struct GapOutput {
-    calibration: Option<ClosedOutput>,
-    held_out: Option<ClosedOutput>,
+    calibration: Option<Closed>,
+    held_out: Option<Closed>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    held_out_channels: Option<ClosedOutput>,
-    other_condition: Option<ClosedOutput>,
-}
-
-/// The gap on a part of the records, with what it is in the metric of the tests.
-#[derive(Clone, Copy, Debug, Serialize)]
-struct ClosedOutput {
-    #[serde(flatten)]
-    closed: Closed,
-    weighed: Weighed,
+    held_out_channels: Option<Closed>,
+    other_condition: Option<Closed>,
 }
 
 /// The gap of an answer by its rows.
 pub(super) fn gap(rows: &[Row]) -> GapOutput {
     let one = |part: Portion| {
         let row = rows.iter().find(|row| row.part == part)?;
-        Some(ClosedOutput {
-            closed: row.closed,
-            weighed: row.weighed,
-        })
+        Some(row.closed)
     };
     GapOutput {
         calibration: one(Portion::Fitted),

@@ -17,7 +17,6 @@ use discrepancy::{
         closed::Closed,
         compare::{Portion, Row},
         predictive::Prediction,
-        weighed::Weighed,
     },
     record::{Record, Recorded, Stated, noise::Known},
     verdict::Verdict,
@@ -44,11 +43,6 @@ fn row(part: Portion, closed: f64) -> Row {
             after: 0.04 * (1.0 - closed),
             closed,
             interval: (part == Portion::Fitted).then_some([closed - 0.1, closed + 0.1]),
-        },
-        weighed: Weighed {
-            closed,
-            interval: [closed - 0.1, closed + 0.1],
-            shows: true,
         },
         before: Vec::new(),
         after: Vec::new(),
@@ -97,7 +91,7 @@ fn full(verdict: Verdict) -> Diagnosis {
             generics: Vec::new(),
             refits: Vec::new(),
             null_evidence: -900.0,
-            phi: 1.0,
+            dispersion: 1.0,
             p_value: 1e-9,
             set,
             added: Some("gauge_drift".to_owned()),
@@ -351,7 +345,6 @@ fn effects_gaps_and_limits_are_as_documented() {
     ] {
         assert_eq!(gap[part]["closed"], closed, "{part}");
         assert_eq!(gap[part]["before"], 0.04);
-        assert_eq!(gap[part]["weighed"]["closed"], closed);
     }
     assert!(gap["calibration"]["ci95"].is_array() && gap["held_out"]["ci95"].is_null());
     assert_eq!(said["rival"]["id"], "rope_toe");
