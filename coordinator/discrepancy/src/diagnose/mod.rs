@@ -3,6 +3,7 @@ mod belief;
 mod carry;
 mod claim;
 mod conclude;
+mod correlation;
 pub(crate) mod diagnosis;
 mod prune;
 mod reason;
@@ -28,6 +29,9 @@ use crate::proof::compare::shown;
 use crate::thresholds::PROMISED;
 use conclude::conclude;
 use rounds::rounds;
+
+/// Why nothing can be said where nothing runs.
+const NO_START: &str = "no point near the recommended parameters completes its simulation";
 
 /// Diagnoses.
 ///
@@ -66,11 +70,29 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
             "every channel of the calibrated condition is held out",
         ));
     }
-    let Some(base) = establish(lab, inputs, split.fitted.clone()).await? else {
-        return Ok(Diagnosis::unresolved(
-            "no point near the recommended parameters completes its simulation",
-        ));
+    let Some(mut base) = establish(lab, inputs, split.fitted.clone()).await? else {
+        return Ok(Diagnosis::unresolved(NO_START));
     };
+    let mut split = split;
+    let mut first = Session {
+        lab: &mut *lab,
+        base: &base,
+        inputs,
+    };
+    let completed = correlation::completed(&mut first).await?;
+    let again: Inputs;
+    let mut inputs = inputs;
+    if let Some((fitted, said)) = completed {
+        again = correlation::again(inputs, &fitted, &base.fit);
+        inputs = &again;
+        split.fitted = fitted;
+        base = match establish(lab, inputs, split.fitted.clone()).await? {
+            Some(base) => base,
+            None => return Ok(Diagnosis::unresolved(NO_START)),
+        };
+        base.notes.push(said);
+    }
+    let (base, split) = (base, split);
     let mut session = Session {
         lab,
         base: &base,

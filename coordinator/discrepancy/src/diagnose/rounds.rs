@@ -71,7 +71,7 @@ pub(crate) async fn rounds<L: Laboratory>(
 }
 
 /// Tests everything that is not in the model yet, and refits the suspects.
-async fn suspicion<L: Laboratory>(
+pub(crate) async fn suspicion<L: Laboratory>(
     session: &mut Session<'_, L>,
     current: &Fit,
     named: &[EffectDescriptor],

@@ -485,3 +485,86 @@ fn an_unknown_that_is_off_is_a_suspect() {
     // held at nothing without it: only two are fitted
     assert_eq!(answer.before.expect("a model").x().len(), 2);
 }
+
+/// One log with correlated noise of which the size alone is stated: its correlation is taken from what is left, a healthy
+/// one is left alone, and what is hidden in it gets its name.
+#[test]
+fn a_correlation_that_is_not_stated_is_taken_from_what_is_left() {
+    let without = |seed: u64, effects: &[(&str, f64)]| {
+        let clean = curves(&space().values(&TRUTH), effects);
+        let mut own = record(seed, 1, &clean, true);
+        for channel in &mut own.channels {
+            channel.correlation = None;
+        }
+        own
+    };
+    let sets = trials(12);
+    let (mut claims, mut quiet) = (0, 0);
+    for seed in 0..sets {
+        let answer = diagnosed(vec![without(400 + seed, &[])]);
+        let said = answer
+            .notes
+            .iter()
+            .any(|note| note.contains("is not stated"));
+        assert!(said, "{:?}", answer.notes);
+        claims += usize::from(!answer.effects.is_empty() && answer.verdict != Verdict::Unresolved);
+        quiet += usize::from(answer.verdict == Verdict::NothingDetected);
+    }
+    say(&format!(
+        "one log without a correlation: {claims} claims, {quiet} of {sets} nothing detected"
+    ));
+    assert!(20 * claims as u64 <= sets, "{claims}");
+    assert!(10 * quiet as u64 >= 8 * sets, "{quiet} of {sets}");
+    let answer = diagnosed(vec![without(450, &[("hardening", 0.8)])]);
+    let said = crate::trial::line(&answer);
+    assert_eq!(answer.verdict, Verdict::Named, "{said}");
+    assert_eq!(answer.effects[0].id, "hardening", "{said}");
+}
+
+/// Sensors with a zero whose cycles drift by more than they scatter from sample to sample: what two fitted cycles and a
+/// third say of a constant is what their means say, and no effect is named for it.
+#[test]
+fn cycles_that_drift_name_nothing() {
+    let drifting = |seed: u64, cycles: usize, effects: &[(&str, f64)]| {
+        let clean = curves(&space().values(&TRUTH), effects);
+        let mut own = record(seed, cycles, &clean, false);
+        for channel in &mut own.channels {
+            channel.channel.offset = Offset::Fixed;
+        }
+        let mut stream = Streams::new(seed, 22).at(0, Phase::Initial, 0);
+        for cycle in &mut own.cycles {
+            for (curve, size) in cycle.iter_mut().zip(SIZES) {
+                let (shift, tilt) = (size * stream.normal(), size * stream.normal());
+                for (y, t) in curve.iter_mut().zip(times()) {
+                    *y += shift + tilt * (t - 2.5) / 3.0;
+                }
+            }
+        }
+        own
+    };
+    let sets = trials(20);
+    for cycles in [3, 6] {
+        let (mut claims, mut quiet) = (Vec::new(), 0);
+        for seed in 0..sets {
+            let answer = diagnosed(vec![drifting(700 + seed, cycles, &[])]);
+            let claimed = !matches!(
+                answer.verdict,
+                Verdict::NothingDetected | Verdict::Unresolved
+            );
+            if claimed {
+                claims.push(crate::trial::line(&answer));
+            }
+            quiet += usize::from(answer.verdict == Verdict::NothingDetected);
+        }
+        say(&format!(
+            "{cycles} cycles that drift: {} claims, {quiet} of {sets} nothing detected",
+            claims.len()
+        ));
+        assert!(20 * claims.len() as u64 <= sets, "{claims:#?}");
+        assert!(10 * quiet as u64 >= 8 * sets, "{quiet} of {sets}");
+    }
+    let answer = diagnosed(vec![drifting(750, 6, &[("hardening", 0.4)])]);
+    let said = crate::trial::line(&answer);
+    assert_eq!(answer.verdict, Verdict::Named, "{said}");
+    assert_eq!(answer.effects[0].id, "hardening", "{said}");
+}

@@ -3,6 +3,7 @@ use crate::trial::{now, say};
 use discrepancy::diagnose::Inputs;
 use discrepancy::identify::{End, Identified, Seen, UnknownEstimate, identify};
 use discrepancy::laboratory::{Laboratory, Stage};
+use discrepancy::linear::score::student;
 use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::thresholds::Thresholds;
@@ -173,8 +174,10 @@ fn intervals_are_those_of_the_closed_form() {
         let own = named(&all, name);
         assert_eq!(own.seen, Seen::Both, "{own:?}");
         let [low, high] = own.interval.map(|end| end.expect("an end"));
-        let phi = all.left.max(1.0);
-        let half = 1.96 * phi * covariance[(k, k)].sqrt();
+        let freedom = (on.metric.len() as f64 - 5.0).max(1.0);
+        let dispersion = (all.left * on.metric.len() as f64 / freedom).max(1.0);
+        let quantile = student(on.metric.freedom_of_intervals());
+        let half = quantile * (dispersion * covariance[(k, k)]).sqrt();
         let width = 0.5 * (high - low);
         assert!((width / half - 1.0).abs() < 0.03, "{name}: {width} {half}");
         assert!((own.value - f64::midpoint(low, high)).abs() < 0.03 * half);
@@ -246,7 +249,8 @@ fn what_is_known_beforehand_counts() {
     let blind = named(&all, "blind");
     assert_eq!(blind.seen, Seen::Both, "{blind:?}");
     let [low, high] = blind.interval.map(|end| end.expect("an end"));
-    let factor = 10_f64.powf(1.96 * 0.2);
+    // the quantile is that of the noise, an order of which ten cycles tell
+    let factor = 10_f64.powf(student(18.0) * 0.2);
     assert!((blind.value - 2.0).abs() < 0.05, "{blind:?}");
     assert!((low * factor / 2.0 - 1.0).abs() < 0.1 && (high / factor / 2.0 - 1.0).abs() < 0.1);
 }
@@ -269,4 +273,152 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
         3 * sets
     ));
     assert!((0.9..=0.99).contains(&share), "{share}");
+}
+
+/// A straight line, on one log without a period.
+struct Line;
+
+const PLACES: usize = 60;
+/// Constant and slope.
+const LINE: [f64; 2] = [1.0, -0.7];
+
+fn places() -> Vec<f64> {
+    (0..PLACES).map(|k| 0.1 * k as f64).collect()
+}
+
+impl Laboratory for Line {
+    type Error = Infallible;
+
+    async fn observe(
+        &mut self,
+        _: Stage,
+        batch: Vec<SimulateSpec>,
+    ) -> Result<Vec<Option<Observation>>, Infallible> {
+        let seen = |spec: SimulateSpec| {
+            let x = spec.individual.genes;
+            let line = places().iter().map(|t| x[0] + x[1] * t).collect();
+            Some(Observation {
+                verdict: Verdict::Complete,
+                counters: Counters::default(),
+                curves: vec![line],
+                columns: Vec::new(),
+            })
+        };
+        Ok(batch.into_iter().map(seen).collect())
+    }
+}
+
+/// What is said of a line from one log whose noise of a size is correlated from one value to the next, with as much stated;
+/// and the textbook's half-widths.
+fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f64; 2]) {
+    let mut stream = Streams::new(seed, 34).at(0, Phase::Initial, 0);
+    let mut noise = stream.normal();
+    let mut next = || {
+        noise = correlation * noise + (1.0 - correlation * correlation).sqrt() * stream.normal();
+        noise
+    };
+    let measured: Vec<f64> = places()
+        .iter()
+        .map(|t| LINE[0] + LINE[1] * t + NOISE * next())
+        .collect();
+    let mut own = channel("line", 0);
+    own.abscissa.points = places();
+    own.abscissa.period = None;
+    own.offset = Offset::Fixed;
+    own.noise = stated;
+    let recorded = Recorded {
+        scored: true,
+        ..Recorded::new(0, &own)
+    };
+    let unknowns = ["constant", "slope"]
+        .map(|name| Unknown::new(name, "N", Scale::Linear, 0.0, [-20.0, 20.0]))
+        .to_vec();
+    let inputs = Inputs {
+        differences: false,
+        start: Some(vec![0.0; 2]),
+        space: Space::new(&unknowns).expect("ordered"),
+        unknowns,
+        records: vec![Record {
+            condition: 0,
+            channels: vec![recorded],
+            cycles: vec![vec![measured.clone()]],
+            held_out: false,
+            stated: Stated::default(),
+        }],
+        library: Vec::new(),
+        usual: Numerics::OF_THE_CASE,
+        finer: Vec::new(),
+        entrance: "least-squares",
+        seed: 1,
+        thresholds: Thresholds::default(),
+    };
+    let all = now(identify(&mut Line, &inputs, &[vec![own]])).expect("it fits");
+    let x = DMatrix::from_fn(PLACES, 2, |i, k| if k == 0 { 1.0 } else { places()[i] });
+    let y = DVector::from_vec(measured);
+    let inverse = x.tr_mul(&x).try_inverse().expect("regular");
+    let left = &y - &x * (&inverse * x.tr_mul(&y));
+    let freedom = (PLACES - 2) as f64;
+    let variance = left.norm_squared() / freedom;
+    let half = [0, 1].map(|k| student(freedom) * (variance * inverse[(k, k)]).sqrt());
+    (all, half)
+}
+
+/// Half-width and whether the truth is held, of both unknowns of a line.
+fn ends_of_line(all: &Identified) -> [(f64, bool); 2] {
+    let of = |k: usize| {
+        let own = named(all, ["constant", "slope"][k]);
+        let [low, high] = own.interval.map(|end| end.expect("an end"));
+        (0.5 * (high - low), (low..=high).contains(&LINE[k]))
+    };
+    [of(0), of(1)]
+}
+
+/// The intervals of a linear model with white residuals are those of textbook least squares, whether its noise is not
+/// stated or stated as a fifth of what it is; and they hold the truth as often as they say.
+#[test]
+fn intervals_of_white_residuals_are_the_textbooks() {
+    let sets = 200;
+    for stated in [None, Some(0.2 * NOISE)] {
+        let (mut held, mut alike) = (0, 0);
+        for seed in 0..sets {
+            let (all, half) = of_line(200 + seed, 0.0, stated);
+            for ((own, holds), half) in ends_of_line(&all).into_iter().zip(half) {
+                held += usize::from(holds);
+                alike += usize::from((own / half - 1.0).abs() < 0.01);
+            }
+        }
+        say(&format!(
+            "a line, noise {stated:?}: {alike} intervals are the textbook's, {held} hold the truth of {}",
+            2 * sets
+        ));
+        let share = held as f64 / (2 * sets) as f64;
+        assert!((0.92..=0.98).contains(&share), "{share}");
+        // one white residual in a hundred looks coloured, and is taken for that
+        assert!(alike as f64 >= 0.97 * (2 * sets) as f64, "{alike}");
+    }
+}
+
+/// Where what is left is coloured, intervals are wider, and it is said by how much; the textbook's would hold the truth half
+/// the time.
+#[test]
+fn intervals_of_coloured_residuals_grow_by_what_the_colour_costs() {
+    let sets = 100;
+    let (mut held, mut by_the_book, mut said) = (0, 0, 0);
+    for seed in 0..sets {
+        let (all, half) = of_line(500 + seed, 0.7, Some(NOISE));
+        said += usize::from(all.notes.iter().any(|note| note.contains("not white")));
+        for (k, (_, holds)) in ends_of_line(&all).into_iter().enumerate() {
+            held += usize::from(holds);
+            let value = named(&all, ["constant", "slope"][k]).value;
+            by_the_book += usize::from((value - LINE[k]).abs() <= half[k]);
+        }
+    }
+    say(&format!(
+        "a line with coloured noise: {held} of {} intervals hold the truth, {by_the_book} by the textbook; {said} of \
+         {sets} say so",
+        2 * sets
+    ));
+    assert!(said >= 80, "{said}");
+    assert!(held as f64 >= 0.75 * (2 * sets) as f64, "{held}");
+    assert!(3 * held >= 4 * by_the_book, "{held} {by_the_book}");
 }

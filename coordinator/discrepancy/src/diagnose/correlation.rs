@@ -1,0 +1,101 @@
+//! The correlation of noise that one cycle does not show and its channels do not state: taken once from what the likeliest
+//! model leaves.
+use crate::diagnose::rounds::suspicion;
+use crate::ground::session::Session;
+use crate::inputs::Inputs;
+use crate::laboratory::Laboratory;
+use crate::model::fit::Fit;
+use crate::record::measured::Record;
+use crate::record::noise::Known;
+
+/// The record with the correlations that it lacks, and what is to be said of them; nothing where it lacks none, or its
+/// noise is not stated.
+///
+/// # Errors
+/// Those of the laboratory.
+pub(crate) async fn completed<L: Laboratory>(
+    session: &mut Session<'_, L>,
+) -> Result<Option<(Record, String)>, L::Error> {
+    let base = session.base;
+    let mut record = base.on.record.clone();
+    let lacks = record.channels.iter().any(|own| own.correlation.is_none());
+    if base.known != Known::Stated || !lacks {
+        return Ok(None);
+    }
+    let named: Vec<_> = session.inputs.considered().filter(|e| !e.generic).collect();
+    let round = suspicion(session, &base.fit, &named, &[]).await?;
+    let refitted = round.refits.iter().map(|own| &own.fit);
+    let likeliest = refitted
+        .chain([&base.fit])
+        .max_by(|a, b| a.log_evidence().total_cmp(&b.log_evidence()))
+        .unwrap_or(&base.fit);
+    let found = correlations(&record, likeliest);
+    let mut said = Vec::new();
+    for (own, found) in record.channels.iter_mut().zip(found) {
+        if own.correlation.is_none() {
+            own.correlation = Some(found);
+            if found > 0.0 {
+                said.push(format!("{} {found:.2}", own.channel.title));
+            }
+        }
+    }
+    let words = if said.is_empty() {
+        "no correlation of the noise is stated, and what the likeliest model leaves has none"
+            .to_owned()
+    } else {
+        format!(
+            "the correlation of the noise from one value to the next is not stated: it is taken from what the likeliest \
+             model leaves ({})",
+            said.join(", ")
+        )
+    };
+    Ok(Some((record, words)))
+}
+
+/// What is diagnosed from where a fit arrived, with the correlations of a record for channels of the same name under
+/// every condition.
+pub(crate) fn again(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
+    let mut again = inputs.clone();
+    again.start = Some(fit.x()[..inputs.space.dimension()].to_vec());
+    for own in again.records.iter_mut().flat_map(|r| &mut r.channels) {
+        let mut same = record.channels.iter();
+        let same = same.find(|other| other.channel.name == own.channel.name);
+        own.correlation = own.correlation.or(same.and_then(|other| other.correlation));
+    }
+    again
+}
+
+/// Correlation of neighbouring values of what a fit leaves, channel by channel; 0 where noise without any may have as
+/// much.
+fn correlations(record: &Record, fit: &Fit) -> Vec<f64> {
+    /// Largest one: beyond, a model error is no noise of a channel any more.
+    const MOST: f64 = 0.99;
+    let mean = record.mean();
+    let channels = mean.iter().zip(&fit.curves).zip(&record.channels);
+    channels
+        .map(|((measured, simulated), own)| {
+            let left: Vec<f64> = measured.iter().zip(simulated).map(|(y, s)| y - s).collect();
+            let count = left.len() as f64;
+            let constant = if own.channel.is_absolute() {
+                0.0
+            } else {
+                left.iter().sum::<f64>() / count
+            };
+            let weight = |i: usize| own.channel.weights.get(i).copied().unwrap_or(1.0);
+            let left: Vec<f64> = left
+                .iter()
+                .enumerate()
+                .map(|(i, r)| (r - constant) * weight(i))
+                .collect();
+            let power: f64 = left.iter().map(|r| r * r).sum();
+            let lagged: f64 = left.windows(2).map(|pair| pair[0] * pair[1]).sum();
+            let rho = lagged / power;
+            // two standard errors of the correlation of white values (Bartlett)
+            if rho * count.sqrt() > 2.0 {
+                rho.min(MOST)
+            } else {
+                0.0
+            }
+        })
+        .collect()
+}
