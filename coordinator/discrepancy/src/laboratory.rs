@@ -81,7 +81,7 @@ pub fn channels(observation: &Observation, record: &Record) -> Option<Curves> {
     if observation.verdict != Verdict::Complete {
         return None;
     }
-    let curve = |recorded: &Recorded| observation.curves.get(recorded.curve).cloned();
+    let curve = |recorded: &Recorded| recorded.pick(observation.curves.get(recorded.curve)?);
     record.channels.iter().map(curve).collect()
 }
 

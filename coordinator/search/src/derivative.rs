@@ -28,12 +28,22 @@ impl Term {
 
     /// Adds its part to a change of a curve, which is the one of this place among the derivative's; nothing
     /// where that is not known.
-    pub fn add(&self, by: &Derivative, place: usize, sum: &mut [f64]) -> Option<()> {
+    pub fn add(
+        &self,
+        by: &Derivative,
+        (place, rows): (usize, Option<&[usize]>),
+        sum: &mut [f64],
+    ) -> Option<()> {
         match by {
             Derivative::Curves { per, curves } => {
-                let own = curves.get(place).filter(|own| own.len() == sum.len())?;
+                let own = curves.get(place)?;
+                let count = rows.map_or(own.len(), <[usize]>::len);
+                if count != sum.len() {
+                    return None;
+                }
                 let factor = self.factor(per);
-                for (sum, x) in sum.iter_mut().zip(own) {
+                for (k, sum) in sum.iter_mut().enumerate() {
+                    let x = own.get(rows.map_or(k, |rows| rows[k]))?;
                     *sum += factor * f64::from(*x);
                 }
                 Some(())

@@ -155,6 +155,31 @@ pub(super) const FAULTS: &[Fault] = &[
         &["`channels[0].noise` = -0.1", "above 0 N"],
     ),
     (
+        "a correlation of one",
+        CASE,
+        "noise = 0.1",
+        "noise = 0.1\ncorrelation = 1.0",
+        &["`channels[0].correlation` = 1", "below 1"],
+    ),
+    (
+        "a model error of nothing",
+        CASE,
+        "noise = 0.1",
+        "noise = 0.1\nmodel_error = 0.0",
+        &["`channels[0].model_error` = 0", "above 0 N"],
+    ),
+    (
+        "a part that holds out everything",
+        CASE,
+        "noise = 0.1",
+        "noise = 0.1\nheld_out = { from = -10.0, to = 400.0 }",
+        &[
+            "`channels[0].held_out` = from -10 to 400",
+            "from 0 to 270 deg",
+            "held_out = true",
+        ],
+    ),
+    (
         "no places",
         CASE,
         ", points = { first = 0.5, step = 0.25, count = 5 }",

@@ -164,6 +164,29 @@ fn records_are_averaged_and_channels_say_where_they_stand() {
     assert_eq!(first.cycles[1], [[1.0, 3.0, 4.0, 3.0]]);
 }
 
+/// A part of a channel that is held out stands behind the part that is fitted; what is stated of its errors belongs to both.
+#[test]
+fn a_part_of_a_channel_may_be_held_out() {
+    let case = Case::new();
+    let keys =
+        "noise = 0.1\ncorrelation = 0.5\nmodel_error = 0.2\nheld_out = { from = 90.0, to = 180.0 }";
+    case.replace("case.toml", "noise = 0.1", keys);
+    let loaded = case.load().unwrap();
+    let record = &loaded.cycles[0];
+    let [fitted, held] = &record.channels[..] else {
+        panic!("two parts");
+    };
+    assert_eq!((fitted.held_out, held.held_out), (false, true));
+    assert_eq!(fitted.channel.abscissa.points, [0.0, 270.0]);
+    assert_eq!(held.channel.abscissa.points, [90.0, 180.0]);
+    assert_eq!(record.cycles[1], [[1.0, 3.0], [3.0, 4.0]]);
+    for part in [fitted, held] {
+        assert_eq!((part.correlation, part.model_error), (Some(0.5), Some(0.2)));
+    }
+    // the case's own channel, which a calibration compares, is whole
+    assert_eq!(loaded.case.channels[0].abscissa.points.len(), 4);
+}
+
 /// Records of another folder replace those of the case by their names; what was not repeated there is
 /// simulated only, but for the calibrated condition.
 #[test]

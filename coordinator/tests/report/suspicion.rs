@@ -205,6 +205,7 @@ fn record(condition: usize, cycles: usize) -> Record {
         curve,
         scored: matches!(sensor, Sensor::Gauge(_)),
         held_out: false,
+        rows: None,
         correlation: None,
         model_error: None,
         channel: sensor.channel(condition, turn_deg.clone()),

@@ -101,8 +101,13 @@ fn conditions_words(
     let same = |own: &Recorded| {
         let curve = channels.iter().position(|c| c.name == own.channel.name)?;
         let points = channels[curve].abscissa.points.len();
-        (points == own.channel.abscissa.points.len())
-            .then(|| Recorded::new(curve, &channels[curve]))
+        let last = own.rows.as_ref().and_then(|rows| rows.last());
+        let fits = last.map_or(points == own.channel.abscissa.points.len(), |k| *k < points);
+        fits.then(|| {
+            let whole = Recorded::new(curve, &channels[curve]);
+            let rows = own.rows.clone();
+            rows.map_or_else(|| whole.clone(), |rows| whole.part(rows, false))
+        })
     };
     let channels: Option<Vec<Recorded>> = fitted.channels.iter().map(same).collect();
     let record = Record {
@@ -123,7 +128,7 @@ fn columns(on: &WhitenedRecord, sight: &Sight) -> DMatrix<f64> {
             .record
             .channels
             .iter()
-            .map(|own| change[own.curve].clone())
+            .filter_map(|own| own.pick(&change[own.curve]))
             .collect();
         columns.set_column(k, &-on.metric.whiten(&own));
     }

@@ -170,7 +170,10 @@ impl Wanted {
                 let column = columns.next();
                 let mut each = sum.iter_mut().zip(&record.channels);
                 known &= column.is_some_and(|column| {
-                    each.all(|(sum, own)| term.add(column, own.curve, sum).is_some())
+                    each.all(|(sum, own)| {
+                        let place = (own.curve, own.rows.as_deref());
+                        term.add(column, place, sum).is_some()
+                    })
                 });
             }
             known.then_some(sum)

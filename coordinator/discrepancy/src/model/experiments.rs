@@ -258,8 +258,8 @@ fn whitened(by: &Derivative, on: &WhitenedRecord, point: &Point) -> Derivative {
         return by.clone();
     };
     let own = |recorded: &Recorded| {
-        let curve = curves.get(recorded.curve)?;
-        Some(curve.iter().map(|x| f64::from(*x)).collect())
+        let curve = recorded.pick(curves.get(recorded.curve)?)?;
+        Some(curve.into_iter().map(f64::from).collect())
     };
     let own: Option<Curves> = on.record.channels.iter().map(own).collect();
     let Some(mut own) = own else {

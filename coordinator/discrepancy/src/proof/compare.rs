@@ -38,6 +38,8 @@ pub enum Portion {
     Cycles,
     /// Channels of the calibrated condition that took no part in it; none of its others.
     Channels,
+    /// Parts of channels of the calibrated condition that took no part in it, and no whole channel.
+    Segment,
     /// Another condition.
     Condition,
     /// Blocks of what was fitted, each left out of the fit in turn.
@@ -51,6 +53,7 @@ impl Portion {
             Self::Fitted => "the cycles that were fitted".to_owned(),
             Self::Cycles => "the cycles that were held out".to_owned(),
             Self::Channels => "the channels that were held out".to_owned(),
+            Self::Segment => "the part of the record that was held out".to_owned(),
             Self::Condition => format!("condition {} of the case", condition + 1),
             Self::LeftOut => "blocks of the record that are left out in turn".to_owned(),
         }
@@ -80,10 +83,16 @@ pub(crate) async fn shown<'a, L: Laboratory>(
     split: &'a Split,
 ) -> Result<Vec<Shown<'a>>, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
+    let whole = split.channels.channels.iter().any(|own| own.rows.is_none());
+    let apart = if whole {
+        Portion::Channels
+    } else {
+        Portion::Segment
+    };
     let parts = [
         (&split.fitted, Portion::Fitted),
         (&split.cycles, Portion::Cycles),
-        (&split.channels, Portion::Channels),
+        (&split.channels, apart),
     ];
     let others = inputs.records.iter().skip(1);
     let others = others.map(|record| (record, Portion::Condition));
@@ -98,7 +107,7 @@ pub(crate) async fn shown<'a, L: Laboratory>(
                 let scale = Scale::of(record, &alike, &base.on.metric, fitted);
                 (alike, scale)
             }
-            Portion::Channels | Portion::Condition | Portion::LeftOut => {
+            Portion::Channels | Portion::Segment | Portion::Condition | Portion::LeftOut => {
                 let scale = elsewhere(session, record).await?;
                 (record.cycles.clone(), scale)
             }

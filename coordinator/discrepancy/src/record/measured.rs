@@ -1,7 +1,7 @@
 //! What was measured, cycle by cycle, as the diagnosis takes it.
 use crate::record::input_scatter::InputScatter;
 use crate::record::nuisance::Nuisance;
-use protocol::case::Channel;
+use protocol::case::{Abscissa, Channel};
 use std::ops::Range;
 
 /// Curves of one cycle: channel by channel, in the channel's unit, on its abscissa.
@@ -13,6 +13,9 @@ pub struct Recorded {
     /// Which curve of an observation it is compared with: its place among the channels of its
     /// condition.
     pub curve: usize,
+    /// Which values of that curve it has, ascending; none where it has all. A channel of which a part is held out stands
+    /// twice in a record.
+    pub rows: Option<Vec<usize>>,
     /// Whether the gap is counted on it. The others help to tell causes apart; where none is
     /// counted on, all are.
     pub scored: bool,
@@ -33,6 +36,7 @@ impl Recorded {
     pub fn new(curve: usize, channel: &Channel) -> Self {
         Self {
             curve,
+            rows: None,
             scored: channel.record.is_some(),
             held_out: false,
             correlation: None,
@@ -41,6 +45,37 @@ impl Recorded {
                 record: None,
                 ..channel.clone()
             },
+        }
+    }
+}
+
+impl Recorded {
+    /// The part of it at some of its values, by their places, to be held out or not.
+    #[must_use]
+    pub fn part(&self, rows: Vec<usize>, held_out: bool) -> Self {
+        let own = &self.channel;
+        let points = rows.iter().map(|&k| own.abscissa.points[k]).collect();
+        let weights = rows.iter().filter_map(|&k| own.weights.get(k).copied());
+        Self {
+            held_out,
+            channel: Channel {
+                abscissa: Abscissa {
+                    points,
+                    ..own.abscissa.clone()
+                },
+                weights: weights.collect(),
+                ..own.clone()
+            },
+            rows: Some(rows),
+            ..self.clone()
+        }
+    }
+
+    /// Its values of a curve; nothing of one that is too short.
+    pub fn pick<T: Copy>(&self, curve: &[T]) -> Option<Vec<T>> {
+        match &self.rows {
+            None => Some(curve.to_vec()),
+            Some(rows) => rows.iter().map(|&k| curve.get(k).copied()).collect(),
         }
     }
 }
@@ -67,7 +102,7 @@ pub struct Split {
     pub fitted: Record,
     /// Cycles of the fitted channels that take no part.
     pub cycles: Record,
-    /// Channels that take no part.
+    /// Channels, or parts of them, that take no part.
     pub channels: Record,
 }
 
@@ -281,7 +316,7 @@ pub fn mean_of(cycles: &[&Curves]) -> Curves {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use protocol::case::{Abscissa, Offset};
+    use protocol::case::Offset;
 
     /// A channel on which the gap is counted, by its place among the curves of an observation.
     pub(crate) fn recorded(curve: usize) -> Recorded {
@@ -304,6 +339,7 @@ pub(crate) mod tests {
         };
         Recorded {
             curve,
+            rows: None,
             scored: true,
             held_out: false,
             correlation: None,

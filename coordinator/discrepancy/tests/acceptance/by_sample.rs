@@ -45,6 +45,7 @@ fn times() -> Vec<f64> {
 
 fn channel(curve: usize, noise: Option<f64>) -> Recorded {
     Recorded {
+        rows: None,
         correlation: None,
         model_error: None,
         curve,

@@ -387,6 +387,7 @@ pub(crate) fn recorded(curve: usize, samples: usize, noise: Option<f64>) -> Reco
         curve,
         scored: curve < 4,
         held_out: false,
+        rows: None,
         correlation: Some(CORRELATION),
         model_error: None,
         channel,

@@ -217,7 +217,7 @@ fn columns(space: &Space, genes: &[f64], residual: &Residual) -> Vec<Option<DVec
         let mut sum = DVector::zeros(residual.values.len());
         for term in terms(space, axis, &x, genes) {
             let by = residual.by.get(&term.column.name)?;
-            term.add(by, 0, sum.as_mut_slice())?;
+            term.add(by, (0, None), sum.as_mut_slice())?;
         }
         Some(sum)
     };

@@ -6,7 +6,7 @@ use super::{
         names,
         spread::mean_and_spread,
     },
-    file::{AbscissaEntry, ChannelEntry, ConditionEntry, PointsEntry},
+    file::{AbscissaEntry, ChannelEntry, ConditionEntry, HeldOut, PointsEntry},
     record,
 };
 use protocol::case::{Abscissa, Channel, ChannelRecord, Offset};
@@ -24,8 +24,8 @@ pub(super) struct Read {
     pub(super) channel: Channel,
     /// Each cycle by itself; none where nothing was measured.
     pub(super) cycles: Vec<Vec<f64>>,
-    /// Whether it takes no part in any fit.
-    pub(super) held_out: bool,
+    /// What of it takes no part in a diagnosis' fits.
+    pub(super) held_out: HeldOut,
     /// Correlation of its noise from one value to the next, where it is stated.
     pub(super) correlation: Option<f64>,
     /// What no law of the model is better than, where it is stated.
@@ -146,6 +146,7 @@ impl Source<'_> {
                 let name = file.file_name().unwrap_or_default().display().to_string();
                 (name, entry.condition.clone())
             });
+        self.check_segment(&points)?;
         let record = (!cycles.is_empty()).then(|| averaged(&cycles));
         let AbscissaEntry {
             name, unit, period, ..
@@ -174,6 +175,28 @@ impl Source<'_> {
             model_error: entry.model_error,
             missing,
         })
+    }
+
+    /// Checks a part that is held out: some values lie in it, and some do not.
+    fn check_segment(&self, points: &[f64]) -> Result<(), CaseError> {
+        let HeldOut::Segment(part) = self.entry.held_out else {
+            return Ok(());
+        };
+        let inside = points.iter().filter(|x| (part.from..=part.to).contains(x));
+        let inside = inside.count();
+        if inside > 0 && inside < points.len() {
+            return Ok(());
+        }
+        let ends = [points.first(), points.last()].map(|x| x.copied().unwrap_or_default());
+        Err(self.refused(
+            &["held_out"],
+            format!("from {} to {}", part.from, part.to),
+            &format!(
+                "a part of the record, which reaches from {} to {} {}",
+                ends[0], ends[1], self.entry.abscissa.unit
+            ),
+            "give a part with some of the values in it, or hold out the whole channel: held_out = true",
+        ))
     }
 
     /// Checks what is stated of errors that are none of the noise's size.

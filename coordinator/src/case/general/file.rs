@@ -80,13 +80,37 @@ pub(super) struct ChannelEntry {
     pub(super) model_error: Option<f64>,
     /// Whether its values have a zero; as the objective says unless stated.
     pub(super) offset: Option<Offset>,
-    /// Whether its record takes no part in any fit.
+    /// What of its record takes no part in a diagnosis' fits.
     #[serde(default)]
-    pub(super) held_out: bool,
+    pub(super) held_out: HeldOut,
     pub(super) record: Option<RecordEntry>,
     /// Where the model's program leaves it, if it is one of somebody's own: its kind reads that.
     #[serde(rename = "source")]
     _source: Option<Table>,
+}
+
+/// What of a record takes no part in the fits of a diagnosis.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub(super) enum HeldOut {
+    /// All of it, or nothing.
+    Whole(bool),
+    /// From one place to another, the ends among them.
+    Segment(SegmentEntry),
+}
+
+/// A part of an abscissa.
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SegmentEntry {
+    pub(super) from: f64,
+    pub(super) to: f64,
+}
+
+impl Default for HeldOut {
+    fn default() -> Self {
+        Self::Whole(false)
+    }
 }
 
 /// The axis of a curve.

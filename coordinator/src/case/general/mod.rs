@@ -42,7 +42,8 @@
 //! unit = "N"
 //! condition = "5hz"
 //! abscissa = { name = "phase", unit = "deg", period = 360.0 }   # period: only where the curve begins anew
-//! held_out = false                  # optional: as for a condition
+//! held_out = false                  # optional: as for a condition; or { from = 90.0, to = 180.0 }, a part of its record
+//!                                   # that `identify` and `diagnose` do not fit (a calibration's errors are of all)
 //! offset = "fixed"                  # optional: in place of the objective's, for this channel
 //! noise = 0.05                      # standard deviation of one value; needed where nothing was repeated. Beside
 //!                                   # repeated cycles their scatter counts, and at least half of this variance

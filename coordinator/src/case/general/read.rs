@@ -10,7 +10,7 @@ use super::{
     },
     channels::{self, Place},
     conditions,
-    file::{CaseFile, ConditionEntry},
+    file::{CaseFile, ConditionEntry, HeldOut},
     objective, unknowns,
 };
 use discrepancy::record::{Curves, Record, Recorded, Stated};
@@ -101,23 +101,47 @@ fn cycles(
             "give the channels of a condition the same cycles",
         ));
     }
-    let recorded = |(curve, _, read): &(usize, usize, &channels::Read)| Recorded {
-        held_out: read.held_out,
-        correlation: read.correlation,
-        model_error: read.model_error,
-        ..Recorded::new(*curve, &read.channel)
+    let recorded = |(curve, _, read): &(usize, usize, &channels::Read)| {
+        let own = Recorded {
+            correlation: read.correlation,
+            model_error: read.model_error,
+            ..Recorded::new(*curve, &read.channel)
+        };
+        parts(own, read.held_out)
     };
+    let channels: Vec<Vec<Recorded>> = measured.iter().map(recorded).collect();
     let cycle = |at: usize| -> Curves {
-        let curves = measured.iter().map(|(_, _, read)| read.cycles[at].clone());
-        curves.collect()
+        let both = measured.iter().zip(&channels);
+        let parts = both.flat_map(|((_, _, read), own)| {
+            let whole = &read.cycles[at];
+            own.iter().filter_map(|part| part.pick(whole))
+        });
+        parts.collect()
     };
     Ok(Some(Record {
         condition,
-        channels: measured.iter().map(recorded).collect(),
         cycles: (0..first.cycles.len()).map(cycle).collect(),
         held_out: entries[condition].held_out,
         stated: Stated::default(),
+        channels: channels.into_iter().flatten().collect(),
     }))
+}
+
+/// A channel as it is fitted and as it is held out.
+fn parts(own: Recorded, held_out: HeldOut) -> Vec<Recorded> {
+    match held_out {
+        HeldOut::Whole(held_out) => vec![Recorded { held_out, ..own }],
+        HeldOut::Segment(part) => {
+            let points = own.channel.abscissa.points.iter().enumerate();
+            let (inside, outside): (Vec<_>, Vec<_>) =
+                points.partition(|(_, x)| (part.from..=part.to).contains(*x));
+            let places = |of: Vec<(usize, &f64)>| of.into_iter().map(|(k, _)| k).collect();
+            vec![
+                own.part(places(outside), false),
+                own.part(places(inside), true),
+            ]
+        }
+    }
 }
 
 /// Remarks on records that `--measured DIR` does not repeat.

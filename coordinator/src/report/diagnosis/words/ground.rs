@@ -116,6 +116,7 @@ const fn part(part: Portion) -> &'static str {
         Portion::Fitted => "cycles that were fitted",
         Portion::Cycles => "held-out cycles",
         Portion::Channels => "held-out channels",
+        Portion::Segment => "held-out part",
         Portion::Condition => "another condition, which took no part",
         Portion::LeftOut => "blocks of the record, left out in turn",
     }

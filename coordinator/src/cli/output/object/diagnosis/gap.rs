@@ -11,7 +11,7 @@ pub(super) struct PredictionOutput {
     /// Name of its condition.
     record: String,
     nats: f64,
-    /// What of the records it is: `cycles`, `channel`, `condition`, or `left_out` for blocks of the fitted one.
+    /// What of the records it is: `cycles`, `channel`, `segment`, `condition`, or `left_out` for blocks of the fitted one.
     held_out: &'static str,
 }
 
@@ -24,6 +24,7 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
             held_out: match score.part {
                 Portion::Cycles => "cycles",
                 Portion::Channels => "channel",
+                Portion::Segment => "segment",
                 Portion::Condition => "condition",
                 Portion::LeftOut => "left_out",
                 Portion::Fitted => return None,
@@ -40,6 +41,8 @@ pub(super) struct GapOutput {
     held_out: Option<Closed>,
     #[serde(skip_serializing_if = "Option::is_none")]
     held_out_channels: Option<Closed>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    held_out_segment: Option<Closed>,
     other_condition: Option<Closed>,
 }
 
@@ -53,6 +56,7 @@ pub(super) fn gap(rows: &[Row]) -> GapOutput {
         calibration: one(Portion::Fitted),
         held_out: one(Portion::Cycles),
         held_out_channels: one(Portion::Channels),
+        held_out_segment: one(Portion::Segment),
         other_condition: one(Portion::Condition),
     }
 }
