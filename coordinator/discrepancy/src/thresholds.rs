@@ -22,7 +22,8 @@ pub struct Thresholds {
     /// in the fit, and below whose negative none of them may lie. A name that is not there reaches `ln 20` in at most
     /// one of twenty diagnoses, whatever was searched on the fitted record.
     pub prediction: f64,
-    /// Share of what is left above the noise that an effect must remove to be more than a trace.
+    /// Share of the gap before anything was added that an effect must remove to be more than a trace, where the model
+    /// without it leaves no more than noise.
     pub practical: f64,
     /// Effects that are added at most.
     pub rounds: usize,

@@ -88,7 +88,8 @@ pub(crate) async fn challenge<L: Laboratory>(
         let removed = current.chi_squared() - fit.chi_squared();
         let log_evidence = fit.log_evidence();
         let margin = thresholds.generic_gain * scale;
-        let noise = |left: f64| base.is_noise(left, fit.x().len(), thresholds.adequacy);
+        let noise =
+            |left: f64| base.is_noise(left, fit.tangent().parameters(), thresholds.adequacy);
         let clears = noise(fit.chi_squared()) && !noise(left);
         let beats = removed > thresholds.generic_factor * named + margin
             || (clears && removed > named + margin);

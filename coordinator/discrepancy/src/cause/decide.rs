@@ -21,11 +21,15 @@ pub(crate) fn decide(
         round.reason = Some(format!("{} is the likeliest, but {doubt}", best.id));
         return None;
     }
-    let lengths = [current, &best.fit].map(Fit::chi_squared);
-    let removed = share(lengths[0] - lengths[1], lengths[0], base.noise());
-    if removed < thresholds.practical {
+    let lengths = [&base.fit, current, &best.fit].map(Fit::chi_squared);
+    // beside what was found: what leaves no more than noise lacks nothing that matters
+    let parameters = current.tangent().parameters();
+    let adequate = base.is_noise(lengths[1], parameters, thresholds.adequacy);
+    let removed = removed(lengths, base.noise());
+    if adequate && removed < thresholds.practical {
         round.reason = Some(format!(
-            "{} is there, but a trace: it removes {:.1} % of what is left above the noise",
+            "{} is there, but a trace: it removes {:.1} % of what was above the noise, and without it no more than noise \
+             is left",
             best.id,
             100.0 * removed
         ));
@@ -65,9 +69,10 @@ pub(crate) fn decide_together(
     Some(beside)
 }
 
-/// What is removed, over what is left above the noise.
-fn share(removed: f64, left: f64, noise: f64) -> f64 {
-    removed / (left - noise).max(1.0)
+/// The share that an effect removes of the gap that there was before anything was added, from the squared lengths of the
+/// residual at first, now and with the effect, and what noise alone would leave.
+fn removed([first, now, then]: [f64; 3], noise: f64) -> f64 {
+    (now - then) / (first - noise).max(1.0)
 }
 
 /// Why a family's p-value and a gain of evidence (nats) are not enough, if they are not.
@@ -86,6 +91,14 @@ fn doubt(p_value: f64, gain: f64, thresholds: &Thresholds) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_removed_counts_by_the_gap_at_first() {
+        let own = removed([9000.0, 3000.0, 1000.0], 1000.0);
+        assert!((own - 0.25).abs() < 1e-12);
+        // of a gap that noise explains all is removed, or more
+        assert!(removed([990.0, 990.0, 980.0], 1000.0) > 1.0);
+    }
 
     #[test]
     fn a_doubt_names_what_is_missing_and_only_that() {

@@ -81,7 +81,7 @@ async fn likeliest_together<L: Laboratory>(
     let thresholds = &session.inputs.thresholds;
     let (base, adequacy) = (session.base, thresholds.adequacy);
     let most = thresholds.rounds.saturating_sub(current.model.added.len());
-    let enough = |fit: &Fit| base.is_noise(fit.chi_squared(), fit.x().len(), adequacy);
+    let enough = |fit: &Fit| base.is_noise(fit.chi_squared(), fit.tangent().parameters(), adequacy);
     let single = round.refits.iter().any(|refit| enough(&refit.fit));
     if most < 2 || (!challenged && (single || round.refits.is_empty())) {
         return Ok(None);

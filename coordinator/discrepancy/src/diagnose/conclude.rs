@@ -56,7 +56,7 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.wander_after = wander(&mut experiments, &after, inputs.others()).await?;
     }
     let thresholds = &inputs.thresholds;
-    let (chi_squared, parameters) = (after.chi_squared(), after.x().len());
+    let (chi_squared, parameters) = (after.chi_squared(), after.tangent().parameters());
     let misfit = !base.is_noise(chi_squared, parameters, thresholds.adequacy);
     let rejection = Rejection {
         names: diagnosis

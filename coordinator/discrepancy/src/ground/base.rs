@@ -26,12 +26,12 @@ impl Base {
         self.on.metric.len() as f64
     }
 
-    /// Whether noise alone may leave so much after a fit of so many parameters, at a level; where the
+    /// Whether noise alone may leave so much after a fit of so many effective parameters, at a level; where the
     /// noise is only assumed, whether the assumption bears with what is left.
-    pub(crate) fn is_noise(&self, chi_squared: f64, parameters: usize, level: f64) -> bool {
+    pub(crate) fn is_noise(&self, chi_squared: f64, parameters: f64, level: f64) -> bool {
         let n = self.on.metric.len();
         if !self.known.is_seen() {
-            let left = n.saturating_sub(parameters).max(1) as f64;
+            let left = (n as f64 - parameters).max(1.0);
             return (1.0 / STATED..=STATED).contains(&(chi_squared / left));
         }
         let freedom = n as f64 * (self.on.record.cycles.len() as f64 - 1.0);

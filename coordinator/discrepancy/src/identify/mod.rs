@@ -66,7 +66,11 @@ pub async fn identify<L: Laboratory>(
     let coloured: Vec<String> = spread.largest_growth().map(coloured).into_iter().collect();
     // less than the noise that was stated is nothing to explain
     let is_noise = fit.chi_squared() <= base.noise()
-        || base.is_noise(fit.chi_squared(), fit.x().len(), inputs.thresholds.adequacy);
+        || base.is_noise(
+            fit.chi_squared(),
+            fit.tangent().parameters(),
+            inputs.thresholds.adequacy,
+        );
     Ok(Some(Identified {
         genes: fit.model.genes(fit.x()),
         unknowns: estimate::estimates(&walked),

@@ -96,8 +96,8 @@ pub fn chi_squared_tail(x: f64, freedom: usize) -> f64 {
 
 /// Probability that a whitened residual of `n` entries, fitted with `parameters`, is so long where only
 /// noise is left, its variances known with `freedom` degrees of freedom: the tail of `F`.
-pub fn misfit_tail(chi_squared: f64, n: usize, parameters: usize, freedom: f64) -> f64 {
-    let left = n.saturating_sub(parameters).max(1) as f64;
+pub fn misfit_tail(chi_squared: f64, n: usize, parameters: f64, freedom: f64) -> f64 {
+    let left = (n as f64 - parameters).max(1.0);
     // variances without doubt are like very many degrees of freedom
     FisherSnedecor::new(left, freedom.clamp(1.0, 1e9))
         .map_or(1.0, |law| law.sf((chi_squared / left).max(0.0)))
@@ -208,8 +208,8 @@ mod tests {
         assert!((family_wise(0.001, 25) - (1.0 - 0.999_f64.powi(25))).abs() < 1e-12);
         assert!(family_wise(1e-300, 25) > 0.0);
         // F(1, many) is chi2_1, F(10, 10) has its median at 1
-        assert!((misfit_tail(3.841_458_8, 3, 2, 1e9) - 0.05).abs() < 1e-6);
-        assert!((misfit_tail(10.0, 12, 2, 10.0) - 0.5).abs() < 1e-9);
+        assert!((misfit_tail(3.841_458_8, 3, 2.0, 1e9) - 0.05).abs() < 1e-6);
+        assert!((misfit_tail(10.0, 12, 2.0, 10.0) - 0.5).abs() < 1e-9);
         assert!((family_wise(single(0.01, 25), 25) - 0.01).abs() < 1e-12);
         for (freedom, quantile) in [(1.0, 12.706), (9.0, 2.262), (f64::INFINITY, 1.960)] {
             assert!((student(freedom) - quantile).abs() < 1e-3, "{freedom}");

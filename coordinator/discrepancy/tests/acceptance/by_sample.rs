@@ -191,7 +191,7 @@ fn noise_is_rejected_as_often_as_is_said() {
             windows += usize::from(!map.windows.is_empty());
             coloured += usize::from(whiteness::p_value(&order::powers(&residual), freedom) < 0.05);
             let behind = z.len() as f64 * (cycles as f64 - 1.0);
-            let tail = misfit_tail(z.norm_squared(), z.len(), 0, behind);
+            let tail = misfit_tail(z.norm_squared(), z.len(), 0.0, behind);
             long += usize::from(tail < 0.05);
         }
         let share = |count: usize| 100.0 * count as f64 / sets as f64;
