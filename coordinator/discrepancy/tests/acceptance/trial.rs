@@ -33,6 +33,8 @@ pub(crate) struct Setup {
     pub(crate) numerics: Roughness,
     /// A ripple of the gauges that the record has and nothing makes (MPa).
     pub(crate) ripple_mpa: f64,
+    /// Whether every derivative is a difference of whole simulations.
+    pub(crate) differences: bool,
     /// The noise that the data sheet states, over the true one; no number where it states none.
     pub(crate) stated: f64,
 }
@@ -52,6 +54,7 @@ impl Default for Setup {
             labels: Vec::new(),
             numerics: Roughness::Exact,
             ripple_mpa: 0.0,
+            differences: false,
             stated: 1.0,
         }
     }
@@ -75,7 +78,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         }
     }
     let inputs = Inputs {
-        differences: false,
+        differences: setup.differences,
         space: space(),
         unknowns: Vec::new(),
         records,
@@ -95,7 +98,13 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         seed: 1,
         thresholds: setup.thresholds.clone(),
     };
-    let mut lab = AtOnce::new(&MACHINE, setup.lost_every, &setup.labels, setup.numerics);
+    let mut lab = AtOnce::new(
+        &MACHINE,
+        setup.lost_every,
+        &setup.labels,
+        setup.numerics,
+        !setup.differences,
+    );
     let answer = now(diagnose(&mut lab, &inputs));
     (answer, lab.lost)
 }

@@ -6,6 +6,7 @@
 )]
 mod asked;
 mod orthogonal;
+mod rates;
 mod rig;
 mod scaling;
 mod seen;

@@ -79,7 +79,7 @@ impl Rig {
         rig
     }
 
-    fn hiding(values: &Values, effects: &Effects, noise: u64) -> Self {
+    pub(crate) fn hiding(values: &Values, effects: &Effects, noise: u64) -> Self {
         let rig = Self(TempDir::new().unwrap(), noise);
         fs::create_dir_all(rig.file("case/measured")).unwrap();
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("case/case.toml");

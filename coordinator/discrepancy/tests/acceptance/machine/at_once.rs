@@ -2,7 +2,8 @@
 use super::{fineness::is_shorter, stand_in::Machine};
 use crate::case::grid;
 use discrepancy::laboratory::{Laboratory, Stage};
-use protocol::job::{Numerics, Observation, SimulateSpec};
+use protocol::case::EffectSetting;
+use protocol::job::{Column, Derivative, Numerics, Observation, Per, SimulateSpec, Verdict};
 use std::convert::Infallible;
 
 /// What discretisation does to the machine.
@@ -42,6 +43,8 @@ pub(crate) struct AtOnce<'a> {
     /// Names that are used outside, with the machine's own.
     labels: &'a [(String, String)],
     numerics: Roughness,
+    /// Whether observations come with the columns that a job asks for.
+    columns: bool,
     runs: u64,
     /// Runs that were lost.
     pub(crate) lost: u64,
@@ -53,12 +56,14 @@ impl<'a> AtOnce<'a> {
         lost_every: u64,
         labels: &'a [(String, String)],
         numerics: Roughness,
+        columns: bool,
     ) -> Self {
         Self {
             machine,
             lost_every,
             labels,
             numerics,
+            columns,
             runs: 0,
             lost: 0,
         }
@@ -76,6 +81,14 @@ impl<'a> AtOnce<'a> {
                 effect.id.clone_from(own);
             }
         }
+        let mut seen = self.simulated(&spec)?;
+        let columns = std::mem::take(&mut spec.columns);
+        seen.columns = columns.iter().map(|own| self.column(&spec, own)).collect();
+        Some(seen)
+    }
+
+    /// A simulation in the names of the machine; nothing where it does not complete.
+    fn simulated(&self, spec: &SimulateSpec) -> Option<Observation> {
         let shorter = is_shorter(&spec.numerics);
         let ripples = match self.numerics {
             Roughness::NothingFiner if spec.numerics != Numerics::OF_THE_CASE => {
@@ -93,14 +106,136 @@ impl<'a> AtOnce<'a> {
             | Roughness::NothingFiner
             | Roughness::NoShorterCylinders => 0.0,
         };
-        let mut seen = self.machine.observe(&spec);
+        let mut seen = self.machine.observe(spec);
         ripple(&mut seen.curves, ripples);
         Some(seen)
+    }
+
+    /// The derivative by a column: central differences of two steps, extrapolated to none (Richardson). None where they do
+    /// not agree, as about a kink.
+    fn column(&self, spec: &SimulateSpec, column: &Column) -> Derivative {
+        let missing = |reason: &str| Derivative::Missing {
+            reason: reason.to_owned(),
+        };
+        let Some(varied) = self.varied(spec, column) else {
+            return missing("it is nothing of this machine");
+        };
+        let slope = |step: f64| -> Option<Vec<Vec<f64>>> {
+            let [above, below] = [step, -step].map(|by| self.simulated(&varied.by(by)));
+            let (above, below) = (above?, below?);
+            if [&above, &below]
+                .iter()
+                .any(|own| own.verdict != Verdict::Complete)
+            {
+                return None;
+            }
+            let curves = above.curves.iter().zip(&below.curves);
+            let slope = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| (a - b) / (2.0 * step))
+                    .collect()
+            };
+            Some(curves.map(slope).collect())
+        };
+        let (Some(coarse), Some(fine)) = (slope(varied.step), slope(0.5 * varied.step)) else {
+            return missing("a neighbour does not complete");
+        };
+        let (mut largest, mut apart) = (0.0_f64, 0.0_f64);
+        let pairs = coarse.iter().flatten().zip(fine.iter().flatten());
+        for (a, b) in pairs {
+            largest = largest.max(b.abs());
+            apart = apart.max((a - b).abs());
+        }
+        if apart > AGREE * largest {
+            return missing("it has a kink here");
+        }
+        let extrapolated = |(a, b): (&f64, &f64)| ((4.0 * b - a) / 3.0) as f32;
+        let channels = coarse.iter().zip(&fine);
+        Derivative::Curves {
+            per: Per::Unit(String::new()),
+            curves: channels
+                .map(|(a, b)| a.iter().zip(b).map(extrapolated).collect())
+                .collect(),
+        }
+    }
+
+    /// What a column varies.
+    fn varied(&self, spec: &SimulateSpec, column: &Column) -> Option<Varied> {
+        let mut spec = spec.clone();
+        if let Some(k) = column
+            .name
+            .strip_prefix('x')
+            .and_then(|k| k.parse::<usize>().ok())
+        {
+            let step = STEP * spec.individual.genes.get(k)?;
+            return Some(Varied {
+                spec,
+                place: Place::Unknown(k),
+                step,
+            });
+        }
+        let (label, parameter) = column.name.rsplit_once('.')?;
+        let own = self.labels.iter().find(|(other, _)| other == label);
+        let id = own.map_or(label, |(_, own)| own);
+        let effect = self.machine.library().iter().find(|e| e.id == id)?;
+        let k = effect.parameters.iter().position(|p| p.name == parameter)?;
+        let all = &mut spec.individual.effects;
+        let at = all.iter().position(|e| e.id == id).unwrap_or_else(|| {
+            let value = |p: &protocol::announce::ParameterDescriptor| {
+                let stated = column.values.iter().find(|(name, _)| *name == p.name);
+                (p.name.clone(), stated.map_or(p.absent, |(_, value)| *value))
+            };
+            all.push(EffectSetting {
+                id: id.to_owned(),
+                parameters: effect.parameters.iter().map(value).collect(),
+            });
+            all.len() - 1
+        });
+        Some(Varied {
+            spec,
+            place: Place::Effect(at, k),
+            step: STEP * effect.parameters[k].scale,
+        })
+    }
+}
+
+/// Steps of differences, as shares of a value or of a usual size, and how near those of two steps must lie.
+const STEP: f64 = 2e-3;
+const AGREE: f64 = 1e-4;
+
+/// A simulation of which one number is varied.
+struct Varied {
+    spec: SimulateSpec,
+    place: Place,
+    step: f64,
+}
+
+/// Where that number stands.
+#[derive(Clone, Copy)]
+enum Place {
+    Unknown(usize),
+    /// An effect, and which of its parameters.
+    Effect(usize, usize),
+}
+
+impl Varied {
+    fn by(&self, step: f64) -> SimulateSpec {
+        let mut spec = self.spec.clone();
+        match self.place {
+            Place::Unknown(k) => spec.individual.genes[k] += step,
+            Place::Effect(at, k) => spec.individual.effects[at].parameters[k].1 += step,
+        }
+        spec
     }
 }
 
 impl Laboratory for AtOnce<'_> {
     type Error = Infallible;
+
+    fn differentiates(&self) -> bool {
+        self.columns
+    }
 
     async fn observe(
         &mut self,
