@@ -47,7 +47,7 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
         format!("{left}: noise alone may leave that.")
     } else {
         format!(
-            "{left}, which is more than noise: the model lacks something. Intervals are widened by that; \
+            "{left}, which is more than noise: the model lacks something. Intervals are as wide as that makes them; \
              `horsehead diagnose CASE` comes first, and an effect that is missing may move every value here."
         )
     }];
