@@ -64,6 +64,12 @@ pub trait Laboratory {
         true
     }
 
+    /// What a stage has left of its part, in plain simulations; infinite where nothing bounds it.
+    fn left(&self, stage: Stage) -> f64 {
+        let _ = stage;
+        f64::INFINITY
+    }
+
     /// Does a batch; observations in its order, nothing for an experiment that did not run to its
     /// end.
     ///

@@ -14,7 +14,8 @@ pub struct Thresholds {
     pub adequacy: f64,
     /// Misfit from which a fit is suspected to lie outside the valley that the case describes.
     pub valley: f64,
-    /// Suspects that are refitted with all unknowns free.
+    /// Suspects that are refitted with all unknowns free at a time, the likeliest first: all whose own test speaks for
+    /// them, as far as a round's share of the budget for refits allows.
     pub suspects: usize,
     /// Nats of log evidence, over the dispersion, that an effect must gain to be believed: odds of 20 to 1.
     pub gain: f64,
@@ -59,6 +60,10 @@ pub(crate) const MOST_NAMES: usize = 4;
 /// Standard deviations from what an instrument is good to within which it is no discovery: one in 370 lies beyond by
 /// chance, and a machine has a dozen instruments.
 pub const WITHIN: f64 = 3.0;
+
+/// Standard deviations from which an instrument that a fit without effects takes so far off is a sign that something else
+/// is missing: one in 16,000 lies beyond by chance. Instruments are then held within [`WITHIN`].
+pub(crate) const BEYOND: f64 = 4.0;
 
 /// Share of its range within which a size stands at a bound: less than any step of a fit.
 pub(crate) const AT_BOUND: f64 = 1e-3;

@@ -243,6 +243,8 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
 fn suspect(effect: &EffectDescriptor, statistic: f64, p_value: f64, absorbed: f64) -> Suspect {
     let able = p_value.is_finite();
     Suspect {
+        rungs: Vec::new(),
+        linear: true,
         effect: effect.clone(),
         score: able.then(|| Score {
             statistic,

@@ -28,7 +28,7 @@ impl Refitted {
     }
 }
 
-/// Refits of suspects, side by side; those that cannot be simulated are left out.
+/// Refits of suspects, side by side, each from its linear estimate and its rungs; those that cannot be simulated are left out.
 ///
 /// # Errors
 /// Those of the laboratory.
@@ -37,11 +37,22 @@ pub async fn refit<L: Laboratory>(
     fit: &Fit,
     suspects: &[&Suspect],
 ) -> Result<Vec<Refitted>, L::Error> {
-    let start = |suspect: &&Suspect| fit.with(&suspect.effect, &suspect.start);
-    let starts: Vec<Point> = suspects.iter().map(start).collect();
+    let starts = |suspect: &&Suspect| {
+        let all = std::iter::once(&suspect.start).chain(&suspect.rungs);
+        let all = all.map(|start| (suspect.effect.id.clone(), fit.with(&suspect.effect, start)));
+        all.collect::<Vec<(String, Point)>>()
+    };
+    let (ids, starts): (Vec<String>, Vec<Point>) = suspects.iter().flat_map(starts).unzip();
     let fits = experiments.fits(starts, Settings::short(8)).await?;
-    let refits = suspects.iter().zip(fits);
-    Ok(refits
-        .filter_map(|(suspect, fit)| Some(Refitted::new(suspect.effect.id.clone(), fit?)))
-        .collect())
+    let mut refits: Vec<Refitted> = Vec::new();
+    for (id, fit) in ids.into_iter().zip(fits) {
+        let Some(fit) = fit else { continue };
+        let own = Refitted::new(id, fit);
+        match refits.iter_mut().find(|other| other.id == own.id) {
+            Some(other) if own.log_evidence > other.log_evidence => *other = own,
+            Some(_) => {}
+            None => refits.push(own),
+        }
+    }
+    Ok(refits)
 }

@@ -4,7 +4,9 @@
 //! go, unless the effect is not linear up to the size that the record asks for: one difference per size
 //! says so. All others are differences at the effect's typical size, taken again where that changes the
 //! curves too much to be linear or too little to be seen. Effects whose law has a shape (an angle, a
-//! width, a ratio) are tried at several values of it, and the best of k tries is judged as such.
+//! width, a ratio) are tried at several values of it, and the best of k tries is judged as such. What acts from a
+//! level on (a clearance, an overflow) does nothing at one size and much at another: an effect that is not linear is tried
+//! along a ladder of sizes over its whole range, each a try of its own and a place from which it may be refitted.
 use crate::cause::suspect::Suspect;
 use crate::laboratory::Laboratory;
 use crate::linear::score::{Score, score};
@@ -37,6 +39,8 @@ struct Probe {
     exact: Option<DVector<f64>>,
     /// Whether the first order is all that is asked for.
     settled: bool,
+    /// Whether it is a rung of a ladder of sizes, which stays where it is.
+    rung: bool,
 }
 
 impl Probe {
@@ -56,6 +60,12 @@ const USABLE: [f64; 2] = [1.0, 20.0];
 const LINEAR: f64 = 0.98;
 /// Values of each shape that are tried.
 const SHAPES: usize = 6;
+/// Rungs of a ladder of sizes: the whole range, and halves of the one before.
+const RUNGS: i32 = 7;
+/// Rungs from which an effect is refitted, beside its linear estimate.
+const STARTS: usize = 3;
+/// By how much a change per unit may differ between two sizes of an effect that counts as linear.
+const PROPORTIONAL: f64 = 0.3;
 
 /// Tests effects on a fit's residual.
 ///
@@ -81,6 +91,7 @@ pub async fn examine<L: Laboratory>(
     take(experiments, fit, effects, &mut probes, |_| true).await?;
     adjust(effects, &mut probes, &tangent);
     take(experiments, fit, effects, &mut probes, |_| true).await?;
+    climb(experiments, fit, effects, &mut probes).await?;
     let residual = &fit.search.settled_residual();
     let judged = effects.iter().enumerate();
     Ok(judged
@@ -103,6 +114,7 @@ fn plan(effects: &[EffectDescriptor]) -> Vec<Probe> {
                     column: None,
                     exact: None,
                     settled: false,
+                    rung: false,
                 });
             }
         }
@@ -225,6 +237,58 @@ async fn take<L: Laboratory>(
     Ok(())
 }
 
+/// Tries effects that are not linear along ladders of their sizes, all sizes of an effect at the same rung.
+async fn climb<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: &Fit,
+    effects: &[EffectDescriptor],
+    probes: &mut Vec<Probe>,
+) -> Result<(), L::Error> {
+    let open = |probe: &&Probe| {
+        let named = !effects[probe.effect].generic;
+        probe.typical && !probe.settled && named
+    };
+    let doubtful: Vec<Probe> = probes.iter().filter(open).cloned().collect();
+    // half the size would do half as much if it were linear
+    let halves = doubtful.iter().map(|probe| Probe {
+        amount: 0.5 * probe.amount,
+        column: None,
+        ..probe.clone()
+    });
+    let mut halves: Vec<Probe> = halves.collect();
+    take(experiments, fit, effects, &mut halves, |_| true).await?;
+    let proportional = |(probe, half): (&Probe, &Probe)| match (&probe.column, &half.column) {
+        (Some(whole), Some(half)) => (whole - half).norm() < PROPORTIONAL * whole.norm(),
+        _ => false,
+    };
+    let pairs = doubtful.iter().zip(&halves);
+    let bent = pairs.filter(|pair| !proportional(*pair));
+    let bent: BTreeSet<usize> = bent.map(|(probe, _)| probe.effect).collect();
+    let mut rungs = Vec::new();
+    for k in bent {
+        let own: Vec<&Probe> = probes
+            .iter()
+            .filter(|p| p.effect == k && p.typical)
+            .collect();
+        for rung in 0..RUNGS {
+            rungs.extend(own.iter().map(|probe| {
+                let [lower, upper] = bounds(&effects[k].parameters[probe.size]);
+                let end = if probe.amount < 0.0 { lower } else { upper };
+                Probe {
+                    amount: end * 0.5_f64.powi(rung),
+                    column: None,
+                    typical: false,
+                    rung: true,
+                    ..(*probe).clone()
+                }
+            }));
+        }
+    }
+    take(experiments, fit, effects, &mut rungs, |_| true).await?;
+    probes.extend(rungs);
+    Ok(())
+}
+
 /// Chooses another amount for signatures that were too large, too small or failed.
 fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent) {
     for probe in probes.iter_mut().filter(|probe| !probe.settled) {
@@ -248,7 +312,7 @@ fn adjust(effects: &[EffectDescriptor], probes: &mut [Probe], tangent: &Tangent)
     }
 }
 
-/// The test of one effect: the best of its shapes.
+/// The test of one effect: the best of its shapes and of the rungs of its ladder.
 fn judge(
     k: usize,
     effect: &EffectDescriptor,
@@ -260,13 +324,28 @@ fn judge(
     let own: Vec<&Probe> = probes.iter().filter(|p| p.effect == k).collect();
     let mut best: Option<(Score, &[&Probe], DMatrix<f64>)> = None;
     let mut tries = 0;
+    let mut rungs: Vec<(f64, Vec<f64>)> = Vec::new();
     for group in own.chunks(positive.len().max(1)) {
         let columns: Option<Vec<DVector<f64>>> = group.iter().map(|p| p.column.clone()).collect();
         let Some(columns) = columns.filter(|c| !c.is_empty()) else {
             continue;
         };
-        tries += 1;
         let signature = DMatrix::from_columns(&columns);
+        let amounts = DVector::from_iterator(group.len(), group.iter().map(|p| p.amount));
+        let change = &signature * amounts;
+        let rung = group.iter().any(|probe| probe.rung);
+        // what does nothing there is no try
+        if rung && tangent.project(&change).norm() < USABLE[0] {
+            continue;
+        }
+        tries += 1;
+        if rung {
+            let mut start = group[0].shape.clone();
+            for probe in group {
+                start[probe.size] = probe.amount;
+            }
+            rungs.push(((residual - change).norm_squared(), start));
+        }
         let found = score(residual, &signature, &positive, tangent);
         let better = best.as_ref().is_none_or(|(other, ..)| {
             found.p_value < other.p_value
@@ -285,10 +364,15 @@ fn judge(
     if let Some(score) = &score {
         start = sized(effect, start, &mut score.size.iter());
     }
+    let linear = rungs.is_empty();
+    rungs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rungs.truncate(STARTS);
     Suspect {
         effect: effect.clone(),
         score,
         start,
+        rungs: rungs.into_iter().map(|(_, start)| start).collect(),
+        linear,
         signature,
         taken: group.iter().map(|probe| probe.parameters()).collect(),
         tries: tries.max(1),

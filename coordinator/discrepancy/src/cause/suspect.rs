@@ -12,6 +12,11 @@ pub struct Suspect {
     pub score: Option<Score>,
     /// Scaled values of its parameters that the test suggests.
     pub start: Vec<f64>,
+    /// Other scaled values of its parameters from which it may be refitted, the likeliest first: those at which an effect
+    /// that is not linear changes the curves by more than noise.
+    pub rungs: Vec<Vec<f64>>,
+    /// Whether the curves change in proportion to its size.
+    pub linear: bool,
     /// Whitened change per unit of each size; columns in the order of the sizes.
     pub signature: DMatrix<f64>,
     /// The effect's scaled parameters with which each column was taken, all other sizes absent.

@@ -4,7 +4,7 @@
 //! pairs and triples are tried on the projected linear system; what it proposes, refits with every unknown
 //! free judge.
 use crate::cause::suspect::Suspect;
-use crate::laboratory::Laboratory;
+use crate::laboratory::{Laboratory, Stage};
 use crate::linear::subset::{Subset, Subsets};
 use crate::model::experiments::Experiments;
 use crate::model::fit::Fit;
@@ -12,8 +12,10 @@ use crate::model::parameter::{positive, sized};
 use crate::model::unknowns::Point;
 use search::least_squares::Settings;
 
-/// How many effects at once, and how many such proposals are refitted.
-const TRIED: [(usize, usize); 2] = [(2, 3), (3, 1)];
+/// How many effects at once, and how many such proposals are refitted, as far as the budget for refits allows.
+const TRIED: [(usize, usize); 3] = [(2, 3), (3, 1), (2, 9)];
+/// How many are refitted side by side.
+const AT_ONCE: usize = 4;
 
 /// Several effects, refitted together.
 #[derive(Clone, Debug)]
@@ -40,13 +42,27 @@ pub(crate) async fn together<L: Laboratory>(
     let residual = fit.search.settled_residual();
     let subsets = Subsets::new(&residual, &signatures.collect::<Vec<_>>(), &fit.tangent());
     let tried = TRIED.into_iter().filter(|(count, _)| *count <= most);
-    let proposals: Vec<Subset> = tried
-        .flat_map(|(count, kept)| subsets.best(count, kept))
-        .collect();
-    let starts = proposals.iter().map(|own| started(fit, &able, own));
-    let fits = experiments
-        .fits(starts.collect(), Settings::short(6))
-        .await?;
+    let mut proposals: Vec<Subset> = Vec::new();
+    for subset in tried.flat_map(|(count, kept)| subsets.best(count, kept)) {
+        if proposals
+            .iter()
+            .all(|other| other.members != subset.members)
+        {
+            proposals.push(subset);
+        }
+    }
+    let mut fits = Vec::new();
+    for some in proposals.chunks(AT_ONCE) {
+        if !fits.is_empty() && !experiments.lab.may(Stage::Refit) {
+            break;
+        }
+        let starts = some.iter().map(|own| started(fit, &able, own));
+        fits.extend(
+            experiments
+                .fits(starts.collect(), Settings::short(6))
+                .await?,
+        );
+    }
     let members = |subset: &Subset| {
         let mut own: Vec<&Suspect> = subset.members.iter().map(|&k| able[k]).collect();
         own.sort_by(|a, b| b.statistic().total_cmp(&a.statistic()));

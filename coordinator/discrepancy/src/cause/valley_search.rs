@@ -46,30 +46,30 @@ pub(crate) async fn search<L: Laboratory>(
     let genes = current.model.space.dimension();
     let mut found = Vec::new();
     for place in leaders(round, LOOSE * lost) {
-        if !session.lab.may(Stage::Refit) {
+        if !session.lab.may(Stage::Basin) {
             break;
         }
         let fit = &round.refits[place].fit;
         let starts = from_rivals(round, place, genes);
-        let other = valley::follow(&mut session.experiments(Stage::Refit), fit, starts).await?;
+        let other = valley::follow(&mut session.experiments(Stage::Basin), fit, starts).await?;
         found.extend(other.map(|fit| Found { place, fit }));
     }
     settle(session, current, round, found).await?;
     deeper(session, current, round).await?;
     // from the start, with the likeliest effect where it is now
     if let Some(&place) = leaders(round, lost).first()
-        && session.lab.may(Stage::Refit)
+        && session.lab.may(Stage::Basin)
     {
         let fit = &round.refits[place].fit;
         let search = (session.inputs.entrance, session.inputs.seed);
         let rest = &fit.x()[genes..];
-        let mut experiments = session.experiments(Stage::Refit);
+        let mut experiments = session.experiments(Stage::Basin);
         let starts = basin::enter(&mut experiments, &fit.model, rest, search).await?;
         let other = valley::follow(&mut experiments, fit, starts).await?;
         let found = other.map(|fit| Found { place, fit }).into_iter().collect();
         settle(session, current, round, found).await?;
     }
-    if round.dispersion > lost && session.lab.may(Stage::Refit) {
+    if round.dispersion > lost && session.lab.may(Stage::Basin) {
         let found = from_low_orders(session, current, round).await?;
         if !found.is_empty() {
             settle(session, current, round, found).await?;
@@ -88,11 +88,11 @@ async fn deeper<L: Laboratory>(
     for _ in 0..DEEPER {
         let mut found = Vec::new();
         for place in leaders(round, LOOSE * session.inputs.thresholds.valley) {
-            if !session.lab.may(Stage::Refit) {
+            if !session.lab.may(Stage::Basin) {
                 break;
             }
             let fit = &round.refits[place].fit;
-            let other = valley::enter(&mut session.experiments(Stage::Refit), fit).await?;
+            let other = valley::enter(&mut session.experiments(Stage::Basin), fit).await?;
             found.extend(other.map(|fit| Found { place, fit }));
         }
         if found.is_empty() {
@@ -112,7 +112,7 @@ async fn from_low_orders<L: Laboratory>(
 ) -> Result<Vec<Found>, L::Error> {
     let effects: Vec<EffectDescriptor> = round.suspects.iter().map(|s| s.effect.clone()).collect();
     let highest = session.inputs.thresholds.orders;
-    let mut experiments = session.experiments(Stage::Refit);
+    let mut experiments = session.experiments(Stage::Basin);
     let likeliest = low_orders::likeliest(&mut experiments, current, &effects, highest).await?;
     let fits = experiments.fits(likeliest, Settings::short(3)).await?;
     let left = round.refits.iter().map(|refit| refit.fit.chi_squared());

@@ -83,6 +83,12 @@ pub(crate) async fn conclude<L: Laboratory>(
     };
     diagnosis.verdict = verdict(&findings);
     diagnosis.reason = reason(ground, diagnosis, &rejection);
+    if let Some(instruments) = base.strained() {
+        match &mut diagnosis.reason {
+            Some(reason) => reason.extend(["; ", &instruments]),
+            None => diagnosis.notes.push(instruments),
+        }
+    }
     if diagnosis.generic.is_none() {
         diagnosis.notes.extend(rejection.left);
     }

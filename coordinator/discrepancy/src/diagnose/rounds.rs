@@ -3,7 +3,8 @@
 use crate::cause::refit::refit;
 use crate::cause::round::Round;
 use crate::cause::signature::examine;
-use crate::cause::{suspect, valley_search};
+use crate::cause::suspect::{self, Suspect};
+use crate::cause::valley_search;
 use crate::diagnose::belief::believe;
 use crate::diagnose::diagnosis::Diagnosis;
 use crate::diagnose::prune::prune;
@@ -23,21 +24,63 @@ const LOOKS: usize = 2;
 /// Suspects that are refitted in any case.
 const RIVALS: usize = 3;
 
-/// Rounds of suspicion until nothing is gained; the model of the answer.
+/// How often rounds begin again after an effect was taken back or exchanged.
+const AGAIN: usize = 2;
+
+/// Rounds of suspicion until nothing is gained; the model of the answer. What was dropped beside an effect that is taken
+/// back or exchanged later is suspected again: the order in which effects are found decides nothing.
 pub(crate) async fn rounds<L: Laboratory>(
     session: &mut Session<'_, L>,
     shown: &[Shown<'_>],
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     let (base, inputs) = (session.base, session.inputs);
-    let (generic, mut open): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) =
-        inputs.considered().partition(|effect| effect.generic);
     let mut current = base.fit.clone();
+    let mut met: Vec<Vec<String>> = Vec::new();
+    let mut changed = false;
+    for _ in 0..=AGAIN {
+        current = forward(session, current, diagnosis).await?;
+        let found = ids(&current);
+        current = prune(session, current, shown, diagnosis).await?;
+        current = rank(session, current, shown, diagnosis).await?;
+        let kept = ids(&current);
+        changed |= kept != found;
+        if kept == found || met.contains(&kept) || !session.lab.may(Stage::Refit) {
+            break;
+        }
+        met.push(kept);
+    }
+    if changed && !current.model.added.is_empty() {
+        let mut finer = session.experiments(Stage::Preflight);
+        diagnosis.preflight_after =
+            preflight::check(&mut finer, &current, &base.fit, &inputs.finer).await?;
+    }
+    Ok(current)
+}
+
+/// The effects of a fit's model, in the order of their names.
+fn ids(fit: &Fit) -> Vec<String> {
+    let mut ids: Vec<String> = fit.model.added.iter().map(|own| own.id.clone()).collect();
+    ids.sort();
+    ids
+}
+
+/// Rounds of suspicion from a model on until nothing more is believed; the model then.
+async fn forward<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    mut current: Fit,
+    diagnosis: &mut Diagnosis,
+) -> Result<Fit, L::Error> {
+    let inputs = session.inputs;
+    let (generic, named): (Vec<EffectDescriptor>, Vec<EffectDescriptor>) =
+        inputs.considered().partition(|effect| effect.generic);
     let mut in_valley = false;
-    for number in 0..inputs.thresholds.rounds {
+    while current.model.added.len() < inputs.thresholds.rounds {
+        let number = diagnosis.rounds.len();
         if number > 0 && !(session.lab.may(Stage::What) && session.lab.may(Stage::Refit)) {
             break;
         }
+        let mut open = named.clone();
         open.retain(|effect| current.model.added.iter().all(|a| a.id != effect.id));
         let mut round = suspicion(session, &current, &open, &generic).await?;
         // the valley does not move far once it is found; a second effect may hide it from the first
@@ -55,19 +98,8 @@ pub(crate) async fn rounds<L: Laboratory>(
         let Some(next) = next else { break };
         diagnosis.rounds.extend(next.beside);
         current = next.fit;
-        if current.model.added.len() >= inputs.thresholds.rounds {
-            break;
-        }
     }
-    let added = current.model.added.len();
-    let answer = prune(session, current, shown, diagnosis).await?;
-    let answer = rank(session, answer, shown, diagnosis).await?;
-    if answer.model.added.len() < added {
-        let mut finer = session.experiments(Stage::Preflight);
-        diagnosis.preflight_after =
-            preflight::check(&mut finer, &answer, &base.fit, &inputs.finer).await?;
-    }
-    Ok(answer)
+    Ok(current)
 }
 
 /// Tests everything that is not in the model yet, and refits the suspects.
@@ -84,8 +116,30 @@ pub(crate) async fn suspicion<L: Laboratory>(
     let mut order = suspect::ranked(&suspects);
     // what its own test does not speak for is refitted only to have rivals
     let clear = order.iter().filter(|s| s.p_value() < thresholds.alpha);
-    let likely = clear.count().clamp(RIVALS, thresholds.suspects.max(RIVALS));
-    order.truncate(likely);
-    let refits = refit(&mut session.experiments(Stage::Refit), current, &order).await?;
+    let likely = clear.count().max(RIVALS);
+    let rest = order.split_off(likely.min(order.len()));
+    // what acts from a level on may do so whatever a test at one size says
+    let held: Vec<&str> = order.iter().map(|own| &*own.effect.id).collect();
+    let mut bent: Vec<&Suspect> = suspects
+        .iter()
+        .filter(|own| !own.rungs.is_empty() && !held.contains(&&*own.effect.id))
+        .collect();
+    bent.sort_by_key(|own| {
+        rest.iter()
+            .position(|other| other.effect.id == own.effect.id)
+    });
+    order.extend(bent);
+    // each round has an equal share of what is left for refits
+    let more = thresholds.rounds.saturating_sub(current.model.added.len());
+    let left = session.lab.left(Stage::Refit);
+    let share = left - left / more.max(1) as f64;
+    let mut refits = Vec::new();
+    for some in order.chunks(thresholds.suspects.max(RIVALS)) {
+        let spent = session.lab.left(Stage::Refit) < share;
+        if !refits.is_empty() && (spent || !session.lab.may(Stage::Refit)) {
+            break;
+        }
+        refits.extend(refit(&mut session.experiments(Stage::Refit), current, some).await?);
+    }
     Ok(Round::new(current, suspects, generics, refits))
 }

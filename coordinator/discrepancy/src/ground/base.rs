@@ -4,7 +4,7 @@ use crate::linear::score::misfit_tail;
 use crate::model::fit::Fit;
 use crate::record::noise::Known;
 use crate::record::whitened::WhitenedRecord;
-use crate::thresholds::STATED;
+use crate::thresholds::{STATED, WITHIN};
 
 /// What every test stands on.
 pub(crate) struct Base {
@@ -16,6 +16,8 @@ pub(crate) struct Base {
     pub(crate) preflight: Option<Preflight>,
     /// How the noise is known.
     pub(crate) known: Known,
+    /// Instruments that the model without effects took far beyond what they are good to, in words; they are held since.
+    pub(crate) instruments: Vec<String>,
     /// What else should be known.
     pub(crate) notes: Vec<String>,
 }
@@ -24,6 +26,17 @@ impl Base {
     /// The squared length of a residual that is noise alone.
     pub(crate) fn noise(&self) -> f64 {
         self.on.metric.len() as f64
+    }
+
+    /// What is said of instruments that the model without effects took far beyond what they are good to.
+    pub(crate) fn strained(&self) -> Option<String> {
+        (!self.instruments.is_empty()).then(|| {
+            format!(
+                "without effects the fit takes {}, a sign that something else is missing: instruments are held within \
+                 {WITHIN} tolerances",
+                self.instruments.join(", ")
+            )
+        })
     }
 
     /// Whether noise alone may leave so much after a fit of so many effective parameters, at a level; where the

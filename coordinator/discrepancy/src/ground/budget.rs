@@ -55,6 +55,10 @@ impl<L: Laboratory> Laboratory for Budgeted<'_, L> {
         left
     }
 
+    fn left(&self, stage: Stage) -> f64 {
+        self.left[stage as usize]
+    }
+
     async fn observe(
         &mut self,
         stage: Stage,

@@ -15,6 +15,7 @@ use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Noise;
 use crate::record::whitened::WhitenedRecord;
+use crate::thresholds::{BEYOND, WITHIN};
 use nalgebra::DVector;
 
 /// Noise, way into the valley, recalibration, numerical check, final metric, final fit; nothing where
@@ -67,7 +68,7 @@ pub(crate) async fn establish<L: Laboratory>(
         noise.add_error(&groups, &seen.left);
         let on = weigh(&noise);
         let mut last = Experiments {
-            lab,
+            lab: &mut *lab,
             on: &on,
             stage: Stage::Recalibrate,
         };
@@ -79,13 +80,39 @@ pub(crate) async fn establish<L: Laboratory>(
         notes.push("the finer model did not complete: the numerical error is unknown".to_owned());
         (on, second)
     };
+    notes.extend(model_errors(&record));
+    let mut finally = Experiments {
+        lab,
+        on: &on,
+        stage: Stage::Recalibrate,
+    };
+    let (fit, instruments) = held(&mut finally, fit).await?;
     Ok(Some(Base {
         on,
         fit,
+        instruments,
         preflight,
         known: noise.known,
         notes,
     }))
+}
+
+/// What is said of errors that channels state of any model.
+fn model_errors(record: &Record) -> Option<String> {
+    let errors = record.channels.iter().filter_map(|own| {
+        let error = own.model_error?;
+        Some(format!(
+            "{} {error} {}",
+            own.channel.title, own.channel.unit
+        ))
+    });
+    let errors: Vec<String> = errors.collect();
+    (!errors.is_empty()).then(|| {
+        format!(
+            "no law is taken to be better than this, which adds to the noise (model_error): {}",
+            errors.join(", ")
+        )
+    })
 }
 
 /// Dispersion from which a first fit may lie outside the valley: a model that lacks nothing leaves less, and the
@@ -124,4 +151,40 @@ async fn first_fit<L: Laboratory>(
         return Ok(Some(other));
     }
     Ok(Some(first))
+}
+
+/// A fit with its instruments held within what they are good to, where one of them stands far beyond: they do not take up
+/// what else is missing. With what stood there, in words.
+async fn held<L: Laboratory>(
+    experiments: &mut Experiments<'_, L>,
+    fit: Fit,
+) -> Result<(Fit, Vec<String>), L::Error> {
+    let beyond = fit.model.placed().filter_map(|(place, one)| {
+        let x = fit.x()[place];
+        let own = &one.nuisance;
+        (x.abs() > BEYOND).then(|| {
+            format!(
+                "{}.{} {:.1} times its tolerance of {:.2e} {}",
+                own.id,
+                own.parameter,
+                x.abs(),
+                own.deviation,
+                own.unit
+            )
+        })
+    });
+    let beyond: Vec<String> = beyond.collect();
+    if beyond.is_empty() {
+        return Ok((fit, beyond));
+    }
+    let mut start = fit.point();
+    for one in &mut start.model.nuisances {
+        one.farthest = WITHIN;
+    }
+    let places: Vec<usize> = fit.model.placed().map(|(place, _)| place).collect();
+    for place in places {
+        start.x[place] = start.x[place].clamp(-WITHIN, WITHIN);
+    }
+    let held = recalibrate::converge(experiments, start).await?;
+    Ok((held.unwrap_or(fit), beyond))
 }

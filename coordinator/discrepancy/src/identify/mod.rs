@@ -84,6 +84,6 @@ pub async fn identify<L: Laboratory>(
         left: fit.chi_squared() / base.noise(),
         is_noise,
         noise: base.known,
-        notes: [&base.notes[..], &coloured[..]].concat(),
+        notes: [&base.notes[..], base.strained().as_slice(), &coloured[..]].concat(),
     }))
 }

@@ -19,6 +19,8 @@ pub struct Tolerated {
     pub nuisance: Nuisance,
     /// The effect that it is, and which of its parameters; nothing of a channel's gain.
     effect: Option<(EffectDescriptor, usize)>,
+    /// Farthest from the absent value (standard deviations).
+    pub(crate) farthest: f64,
 }
 
 impl Tolerated {
@@ -38,6 +40,7 @@ impl Tolerated {
             (nuisance.deviation > 0.0).then(|| Self {
                 nuisance: nuisance.clone(),
                 effect,
+                farthest: FARTHEST,
             })
         };
         nuisances.iter().filter_map(one).collect()
@@ -56,7 +59,7 @@ impl Tolerated {
     /// As an unknown.
     pub(crate) fn variable(&self) -> Variable {
         let scaled = |bound: f64, absent: f64| (bound - absent) / self.nuisance.deviation;
-        let [mut lower, mut upper] = [-FARTHEST, FARTHEST];
+        let [mut lower, mut upper] = [-self.farthest, self.farthest];
         if let Some((effect, k)) = self.effect() {
             let p = &effect.parameters[k];
             lower = lower.max(scaled(p.lower, p.absent));

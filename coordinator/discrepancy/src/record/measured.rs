@@ -47,9 +47,7 @@ impl Recorded {
             },
         }
     }
-}
 
-impl Recorded {
     /// The part of it at some of its values, by their places, to be held out or not.
     #[must_use]
     pub fn part(&self, rows: Vec<usize>, held_out: bool) -> Self {

@@ -28,7 +28,15 @@ const SHOWS: f64 = 0.2;
 /// Effects of a round at a fit of which next to nothing shows, the largest share first.
 pub(crate) fn absorbed(round: &Round, fit: &Fit) -> Vec<Absorbed> {
     let tangent = fit.tangent();
-    let visible = round.suspects.iter().filter(|s| s.signature.ncols() > 0);
+    // of what is not in proportion to its size only a refit says so
+    let refuted = |id: &str| {
+        let mut refits = round.refits.iter();
+        refits.any(|own| own.id == id && own.log_evidence <= round.null_evidence)
+    };
+    let visible = round.suspects.iter().filter(|suspect| {
+        let moves = suspect.signature.norm_squared() > 0.0;
+        moves && (suspect.linear || refuted(&suspect.effect.id))
+    });
     let mut all: Vec<(f64, &Suspect)> = visible
         .map(|suspect| (taken(&suspect.signature, &tangent), suspect))
         .filter(|(share, _)| *share >= MOST)

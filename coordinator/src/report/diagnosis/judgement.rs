@@ -122,6 +122,13 @@ fn before_refit(round: &Round, suspect: &Suspect) -> String {
     let Some(score) = &suspect.score else {
         return "could not be simulated here: nothing is said about it".to_owned();
     };
+    if suspect.signature.norm_squared() <= 0.0 {
+        return "dropped: it changes nothing at any size that was tried".to_owned();
+    }
+    if !suspect.linear {
+        return "dropped: it acts from a level on, and no simulations were left to refit it"
+            .to_owned();
+    }
     if score.freedom == 0 || score.absorbed > HIDDEN {
         return "dropped: recalibration absorbs it, so this record cannot show it".to_owned();
     }

@@ -120,6 +120,27 @@ impl<'a> AtOnce<'a> {
         let Some(varied) = self.varied(spec, column) else {
             return missing("it is nothing of this machine");
         };
+        if column.name.starts_with("probe.") {
+            // a force without a cause is linear in its amplitude, but for laws beside it that are not
+            let step = varied.step;
+            let (Some(with), Some(without)) = (
+                self.simulated(&varied.by(step)),
+                self.simulated(&varied.by(0.0)),
+            ) else {
+                return missing("a neighbour does not complete");
+            };
+            let channels = with.curves.iter().zip(&without.curves);
+            let slope = |(a, b): (&Vec<f64>, &Vec<f64>)| {
+                a.iter()
+                    .zip(b)
+                    .map(|(a, b)| ((a - b) / step) as f32)
+                    .collect()
+            };
+            return Derivative::Curves {
+                per: Per::Unit(String::new()),
+                curves: channels.map(slope).collect(),
+            };
+        }
         let slope = |step: f64| -> Option<Vec<Vec<f64>>> {
             let [above, below] = [step, -step].map(|by| self.simulated(&varied.by(by)));
             let (above, below) = (above?, below?);
