@@ -90,7 +90,7 @@ fn a_name_stands_with_its_size_its_rival_and_what_to_do() {
         "size = 0.800\u{a0}MPa (95\u{a0}% interval 0.700 to 0.900\u{a0}MPa)"
             .replace('\u{a0}', " ")
             .as_str(),
-        "The best rejected rival, drift of the gauges (gauge_drift), lies 10.2 nats behind",
+        "The best rejected rival, drift of the gauges (gauge_drift), lies 14.3 nats behind",
         "held-out cycles",
         "another condition, which took no part",
         "the best rejected rival, load_cell_lag",
@@ -114,11 +114,11 @@ fn every_suspect_is_told_why_it_was_kept_or_dropped() {
         ),
         (
             "gauge_drift",
-            "kept in the ambiguity set: 2.0 nats behind pin_clearance",
+            "kept in the ambiguity set: 2.9 nats behind pin_clearance",
         ),
         (
             "load_cell_lag",
-            "dropped: beaten by 316.3 nats by pin_clearance",
+            "dropped: beaten by 442.9 nats by pin_clearance",
         ),
         ("rope_hysteresis", "dropped: not significant"),
         (
@@ -176,7 +176,7 @@ fn what_is_not_known_is_said() {
     let stopped = suspicion::stopped("there is no record of the calibrated condition");
     let said = words(&page(&stopped));
     assert!(said.contains("The reason: there is no record of the calibrated condition."));
-    assert!(said.contains("The noise was assumed, not seen"));
+    assert!(said.contains("The noise was stated, not seen"));
     assert!(!said.contains("What it shows"));
     assert!(text(&stopped.subject()).starts_with("UNRESOLVED\n"));
 }
@@ -217,7 +217,7 @@ fn a_suspect_under_assumed_noise_is_shown_and_not_named() {
             said.contains("suspected, not named: pin_clearance"),
             "{said}"
         );
-        assert!(said.contains("The noise was assumed, not seen"), "{said}");
+        assert!(said.contains("The noise was stated, not seen"), "{said}");
         for name in ["The simulation lacks", "[[effects]]", "Sizes of the answer"] {
             assert!(!said.contains(name), "{name} in\n{said}");
         }

@@ -255,7 +255,7 @@ fn suspect(effect: &EffectDescriptor, statistic: f64, p_value: f64, absorbed: f6
             absorbed,
         }),
         start: vec![0.0; effect.parameters.len()],
-        signature: DMatrix::zeros(ENTRIES, usize::from(able)),
+        signature: DMatrix::repeat(ENTRIES, usize::from(able), 0.1),
         taken: vec![vec![0.0; effect.parameters.len()]; usize::from(able)],
         tries: 3,
     }

@@ -60,8 +60,8 @@ const USABLE: [f64; 2] = [1.0, 20.0];
 const LINEAR: f64 = 0.98;
 /// Values of each shape that are tried.
 const SHAPES: usize = 6;
-/// Rungs of a ladder of sizes: the whole range, and halves of the one before.
-const RUNGS: i32 = 7;
+/// Rungs of a ladder of sizes, as shares of the range on the effect's side of its absent value.
+const RUNGS: [f64; 7] = [1.0, 0.75, 0.5, 0.25, 0.12, 0.06, 0.03];
 /// Rungs from which an effect is refitted, beside its linear estimate.
 const STARTS: usize = 3;
 /// By how much a change per unit may differ between two sizes of an effect that counts as linear.
@@ -270,12 +270,12 @@ async fn climb<L: Laboratory>(
             .iter()
             .filter(|p| p.effect == k && p.typical)
             .collect();
-        for rung in 0..RUNGS {
+        for rung in RUNGS {
             rungs.extend(own.iter().map(|probe| {
                 let [lower, upper] = bounds(&effects[k].parameters[probe.size]);
                 let end = if probe.amount < 0.0 { lower } else { upper };
                 Probe {
-                    amount: end * 0.5_f64.powi(rung),
+                    amount: end * rung,
                     column: None,
                     typical: false,
                     rung: true,

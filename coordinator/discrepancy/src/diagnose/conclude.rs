@@ -132,6 +132,16 @@ async fn predict<L: Laboratory>(
     if added.is_empty() {
         return Ok(None);
     }
+    if !session.lab.may(Stage::Show) {
+        return Ok(Some(format!(
+            "{} explains what was fitted, and the budget for showing it elsewhere is used up",
+            added
+                .iter()
+                .map(|own| &*own.id)
+                .collect::<Vec<_>>()
+                .join(" with ")
+        )));
+    }
     let mut experiments = session.experiments(Stage::Show);
     let whole = scores(&mut experiments, shown, [answer, &base.fit]).await?;
     diagnosis.prediction.clone_from(&whole.records);

@@ -23,15 +23,12 @@ pub use diagnosis::Diagnosis;
 use crate::ground::budget::Budgeted;
 use crate::ground::establish::establish;
 use crate::ground::session::Session;
-use crate::laboratory::Laboratory;
+use crate::laboratory::{Laboratory, Stage};
 use crate::place::whereabouts;
 use crate::proof::compare::shown;
 use crate::thresholds::PROMISED;
 use conclude::conclude;
 use rounds::rounds;
-
-/// Why nothing can be said where nothing runs.
-const NO_START: &str = "no point near the recommended parameters completes its simulation";
 
 /// Diagnoses.
 ///
@@ -70,8 +67,9 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
             "every channel of the calibrated condition is held out",
         ));
     }
-    let Some(mut base) = establish(lab, inputs, split.fitted.clone()).await? else {
-        return Ok(Diagnosis::unresolved(NO_START));
+    let mut base = match establish(lab, inputs, split.fitted.clone()).await? {
+        Ok(base) => base,
+        Err(baseless) => return Ok(Diagnosis::unresolved(baseless.reason())),
     };
     let mut split = split;
     let mut first = Session {
@@ -87,8 +85,8 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
         inputs = &again;
         split.fitted = fitted;
         base = match establish(lab, inputs, split.fitted.clone()).await? {
-            Some(base) => base,
-            None => return Ok(Diagnosis::unresolved(NO_START)),
+            Ok(base) => base,
+            Err(baseless) => return Ok(Diagnosis::unresolved(baseless.reason())),
         };
         base.notes.push(said);
     }
@@ -107,6 +105,11 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
         before: Some(base.fit.clone()),
         ..Diagnosis::unresolved("")
     };
+    if !session.lab.may(Stage::What) {
+        let reason = "the budget of the tests is used up: no effect was tested";
+        diagnosis.reason = Some(reason.to_owned());
+        return Ok(diagnosis);
+    }
     let promised = base.fit.search.promised_decrease();
     if promised > PROMISED {
         diagnosis.reason = Some(format!(

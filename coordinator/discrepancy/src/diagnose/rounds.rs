@@ -50,7 +50,7 @@ pub(crate) async fn rounds<L: Laboratory>(
         }
         met.push(kept);
     }
-    if changed && !current.model.added.is_empty() {
+    if changed && !current.model.added.is_empty() && session.lab.may(Stage::Preflight) {
         let mut finer = session.experiments(Stage::Preflight);
         diagnosis.preflight_after =
             preflight::check(&mut finer, &current, &base.fit, &inputs.finer).await?;

@@ -27,6 +27,9 @@ pub(crate) async fn believed<L: Laboratory>(
     after: &Fit,
 ) -> Result<Option<Checked>, L::Error> {
     let (base, finer) = (session.base, &session.inputs.finer);
+    if !session.lab.may(Stage::Preflight) {
+        return Ok(None);
+    }
     let mut experiments = session.experiments(Stage::Preflight);
     let Some(mut preflight) = check(&mut experiments, after, before, finer).await? else {
         return Ok(None);

@@ -18,13 +18,33 @@ use crate::record::whitened::WhitenedRecord;
 use crate::thresholds::{BEYOND, WITHIN};
 use nalgebra::DVector;
 
-/// Noise, way into the valley, recalibration, numerical check, final metric, final fit; nothing where
-/// no fit completes.
+/// Why there is no base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Baseless {
+    /// No fit completes.
+    NothingCompletes,
+    /// The recalibration had no simulations left.
+    RanOut,
+}
+
+impl Baseless {
+    /// In words.
+    pub(crate) const fn reason(self) -> &'static str {
+        match self {
+            Self::NothingCompletes => {
+                "no point near the recommended parameters completes its simulation"
+            }
+            Self::RanOut => "the budget of the recalibration is used up: nothing was tested",
+        }
+    }
+}
+
+/// Noise, way into the valley, recalibration, numerical check, final metric, final fit; or why not.
 pub(crate) async fn establish<L: Laboratory>(
     lab: &mut L,
     inputs: &Inputs,
     record: Record,
-) -> Result<Option<Base>, L::Error> {
+) -> Result<Result<Base, Baseless>, L::Error> {
     let highest = inputs.thresholds.orders;
     let own = WhitenedRecord::under_own_noise(record.clone(), highest, inputs.usual.clone());
     let mut experiments = Experiments {
@@ -33,8 +53,11 @@ pub(crate) async fn establish<L: Laboratory>(
         stage: Stage::Basin,
     };
     let Some(first) = first_fit(&mut experiments, inputs).await? else {
-        return Ok(None);
+        return Ok(Err(Baseless::NothingCompletes));
     };
+    if !experiments.lab.may(Stage::Recalibrate) {
+        return Ok(Err(Baseless::RanOut));
+    }
     let mut recalibration = experiments.during(Stage::Recalibrate);
     let errors = input_errors(&mut recalibration, (&first, &first.curves), &inputs.library).await?;
     let wrong: Vec<Curves> = errors.iter().map(|error| error.curves.clone()).collect();
@@ -53,10 +76,14 @@ pub(crate) async fn establish<L: Laboratory>(
     let mut experiments = experiments.with(&on);
     let mut recalibration = experiments.during(Stage::Recalibrate);
     let Some(second) = recalibrate::converge(&mut recalibration, first.point()).await? else {
-        return Ok(None);
+        return Ok(Err(Baseless::NothingCompletes));
     };
     let mut finer = experiments.during(Stage::Preflight);
-    let preflight = preflight::check(&mut finer, &second, &second, &inputs.finer).await?;
+    let preflight = if finer.lab.may(Stage::Preflight) {
+        preflight::check(&mut finer, &second, &second, &inputs.finer).await?
+    } else {
+        None
+    };
     let mut notes = Vec::new();
     let (on, fit) = if let Some(seen) = &preflight {
         if !seen.whole {
@@ -74,10 +101,10 @@ pub(crate) async fn establish<L: Laboratory>(
         };
         match recalibrate::converge(&mut last, second.point()).await? {
             Some(fit) => (on, fit),
-            None => return Ok(None),
+            None => return Ok(Err(Baseless::NothingCompletes)),
         }
     } else {
-        notes.push("the finer model did not complete: the numerical error is unknown".to_owned());
+        notes.push("no finer model completed: the numerical error is unknown".to_owned());
         (on, second)
     };
     notes.extend(model_errors(&record));
@@ -87,7 +114,7 @@ pub(crate) async fn establish<L: Laboratory>(
         stage: Stage::Recalibrate,
     };
     let (fit, instruments) = held(&mut finally, fit).await?;
-    Ok(Some(Base {
+    Ok(Ok(Base {
         on,
         fit,
         instruments,

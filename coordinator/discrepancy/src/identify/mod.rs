@@ -45,7 +45,7 @@ pub async fn identify<L: Laboratory>(
     let Some(record) = record else {
         return Ok(None);
     };
-    let Some(base) = establish(lab, inputs, record.free()).await? else {
+    let Ok(base) = establish(lab, inputs, record.free()).await? else {
         return Ok(None);
     };
     let mut experiments = Experiments {

@@ -42,7 +42,11 @@ pub(crate) async fn look<L: Laboratory>(session: &mut Session<'_, L>) -> Result<
     let fit = &base.fit;
     let tangent = fit.tangent();
     let left = fit.search.settled_residual();
-    let latents = latents(&mut session.experiments(Stage::Where), fit, &inputs.library).await?;
+    let latents = if session.lab.may(Stage::Where) {
+        latents(&mut session.experiments(Stage::Where), fit, &inputs.library).await?
+    } else {
+        Vec::new()
+    };
     let joints = joint::rank(&latents, &left, &tangent);
     let residual = Residual {
         left: &left,

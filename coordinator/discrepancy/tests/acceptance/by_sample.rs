@@ -12,7 +12,7 @@ use discrepancy::proof::compare::Portion;
 use discrepancy::record::basis::Group;
 use discrepancy::record::metric::Metric;
 use discrepancy::record::noise::{Known, Noise};
-use discrepancy::record::{Curves, Record, Recorded, Stated};
+use discrepancy::record::{Acts, Curves, Nuisance, Record, Recorded, Stated};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use nalgebra::{DMatrix, DVector};
@@ -278,9 +278,13 @@ fn curves(genes: &[f64], effects: &[(&str, f64)]) -> Curves {
         let fade = (-damping * t).exp();
         // a hardening spring rings faster while it swings far
         let phase = frequency * t + hard * (1.0 - fade * fade) + softening * fade * fade.sqrt();
+        // a stop from a level on, and a gauge whose factor is off
+        let level = effects.iter().find(|(name, _)| *name == "stop");
+        let level = level.map_or(f64::INFINITY, |(_, level)| *level);
+        let gain = 1.0 + amount("gain");
         (
-            fade * phase.cos(),
-            8.0 * fade * phase.cos() * (1.0 + 0.5 * hard * fade),
+            (fade * phase.cos()).clamp(-level, level),
+            gain * 8.0 * fade * phase.cos() * (1.0 + 0.5 * hard * fade),
         )
     };
     let drift = |t: f64| amount("drift") * (t - 2.5);
@@ -334,7 +338,22 @@ fn library() -> Vec<EffectDescriptor> {
         own("late", 0.01, Sign::Either),
         own("hardening", 0.2, Sign::Positive),
         own("drift", 0.05, Sign::Either),
+        stop(),
     ]
+}
+
+/// What stops the deflection from a level on: absent far out, and at its usual level still nothing is met.
+fn stop() -> EffectDescriptor {
+    let mut stop = effect(
+        "stop",
+        "stop",
+        Place::Dynamics,
+        vec![size("level", "1", 1.5, Sign::Either)],
+    );
+    let level = &mut stop.parameters[0];
+    (level.absent, level.typical, level.scale) = (2.0, 1.5, 0.5);
+    (level.lower, level.upper) = (0.02, 2.0);
+    stop
 }
 
 /// Frequency and damping, and a detuning that is not there.
@@ -568,4 +587,45 @@ fn cycles_that_drift_name_nothing() {
     let said = crate::trial::line(&answer);
     assert_eq!(answer.verdict, Verdict::Named, "{said}");
     assert_eq!(answer.effects[0].id, "hardening", "{said}");
+}
+
+/// What acts from a level on, and does nothing at its usual size, is found along its range; and it is never said that
+/// recalibration absorbs it where it does nothing.
+#[test]
+fn what_acts_from_a_level_on_is_tried_along_its_range() {
+    for level in [0.25, 0.45] {
+        let answer = diagnosed(vec![hidden(&[("stop", level)], 8, false)]);
+        let said = crate::trial::line(&answer);
+        assert_eq!(answer.verdict, Verdict::Named, "{said}");
+        assert_eq!(answer.effects[0].id, "stop", "{said}");
+        let found = answer.effects[0].parameters[0].value;
+        assert!((found / level - 1.0).abs() < 0.05, "{found} {level}");
+    }
+    let healthy = diagnosed(vec![hidden(&[], 8, false)]);
+    assert!(healthy.absorbed.iter().all(|own| own.id != "stop"));
+}
+
+/// An instrument that the model would have to take far beyond what it is good to, and that is in no library, is no
+/// instrument: it is held, what is left is not nothing, and the reason says so.
+#[test]
+fn instruments_do_not_swallow_what_is_missing() {
+    let clean = curves(&space().values(&TRUTH), &[("gain", 0.08)]);
+    let mut own = record(78, 8, &clean, false);
+    own.stated.nuisances = vec![Nuisance {
+        id: "force".to_owned(),
+        parameter: "gain".to_owned(),
+        unit: "1".to_owned(),
+        acts: Acts::Gain { curve: 1 },
+        deviation: 0.005,
+        never_negative: false,
+        assumed: false,
+    }];
+    let answer = diagnosed(vec![own]);
+    let said = crate::trial::line(&answer);
+    let reason = answer.reason.unwrap_or_default();
+    assert_eq!(answer.verdict, Verdict::Unresolved, "{said}");
+    assert!(
+        reason.contains("force.gain") && reason.contains("something else is missing"),
+        "{reason}"
+    );
 }

@@ -20,6 +20,7 @@ mod healthy;
 mod identify;
 mod machine;
 mod maps;
+mod mimic;
 mod nothing;
 mod numerics;
 mod robust;

@@ -4,6 +4,7 @@ use crate::strata::{named, planted};
 use crate::trial::{MACHINE, Setup, diagnose_usual, diagnosed, line, say};
 use crate::truth::{ALL, Truth};
 use discrepancy::diagnose::{Diagnosis, Round};
+use discrepancy::laboratory::Stage;
 use discrepancy::model::Fit;
 use discrepancy::proof::compare::Portion;
 use discrepancy::record::noise::Known;
@@ -179,6 +180,32 @@ fn withheld(answer: &Diagnosis) {
         "{}",
         line(answer)
     );
+}
+
+/// Every stage may run out: what it could not do is said, nothing is claimed that rests on it, and the stage is named.
+#[test]
+fn every_stage_may_run_out_of_simulations() {
+    let sick = planted(Truth::healthy(8400), named()[1], 8.0);
+    for stage in Stage::ALL {
+        let mut setup = Setup::default();
+        setup.thresholds.budget[stage as usize] = 0;
+        let (answer, _) = diagnosed(&sick, &setup);
+        let said = line(&answer);
+        // the way into the valley and the map of joints are looks that an answer can do without
+        let optional = [Stage::Basin, Stage::Where, Stage::Refit].contains(&stage);
+        if !optional {
+            assert_eq!(answer.verdict, Verdict::Unresolved, "{stage:?} {said}");
+            let reason = answer.reason.as_deref().unwrap_or_default();
+            assert!(!reason.is_empty(), "{stage:?}");
+        }
+        // what was never asked for did not run out
+        let idle = stage == Stage::Basin && answer.ran_out.is_empty();
+        assert!(idle || answer.ran_out.contains(&stage), "{stage:?} {said}");
+        if stage == Stage::Where {
+            let seen = answer.whereabouts.as_ref().expect("maps");
+            assert!(seen.joints.is_empty(), "{said}");
+        }
+    }
 }
 
 /// Any one channel is enough to say something, and none makes a healthy machine ill.

@@ -15,7 +15,7 @@ pub(super) struct Judgement {
     /// Tail probability of its test over the round's dispersion, the best of several
     /// shapes counted as such; none without a test.
     pub p_value: Option<f64>,
-    /// Nats after the refit, against the model without it and over the squared misfit.
+    /// Nats after the refit, against the model without it and over the dispersion.
     pub gain: Option<f64>,
     /// Whether it is in the model or in its ambiguity set.
     pub kept: bool,

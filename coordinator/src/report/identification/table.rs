@@ -28,7 +28,7 @@ pub(super) fn unknowns(subject: &Subject<'_>) -> Table {
         rows.collect(),
     )
     .noted([
-        "An end is where -2 ln L, all else refitted, has risen by 3.84 (times the squared misfit). An end where \
+        "An end is where -2 ln L, all else refitted, has risen by what a 95 % interval asks for at this dispersion (drawn as 3.84). An end where \
          simulations fail is one of the model, not of the record.",
         "What is not seen has the value at which the fit left it, which means nothing.",
     ])

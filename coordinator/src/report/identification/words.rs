@@ -3,6 +3,7 @@ use super::subject::Subject;
 use crate::report::number::fixed;
 use crate::report::words::listed;
 use discrepancy::identify::{End, Seen, UnknownEstimate};
+use discrepancy::record::noise::Known;
 
 /// The one sentence: how many unknowns are seen, and which are not.
 pub(super) fn lead(subject: &Subject<'_>) -> String {
@@ -51,11 +52,17 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
              `horsehead diagnose CASE` comes first, and an effect that is missing may move every value here."
         )
     }];
-    if !identified.noise.is_seen() {
-        all.push(
-            "The noise is assumed: there was one cycle, so intervals are as good as the data sheet.".to_owned(),
-        );
-    }
+    let noise = match identified.noise {
+        Known::Seen => None,
+        Known::Stated => Some(
+            "The noise is stated: there was one cycle, so intervals are as good as that statement, or as what is left \
+             where that is more.",
+        ),
+        Known::Guessed => Some(
+            "The noise is neither seen nor stated: intervals take it from what the fit leaves.",
+        ),
+    };
+    all.extend(noise.map(str::to_owned));
     all
 }
 

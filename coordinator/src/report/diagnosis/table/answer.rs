@@ -48,7 +48,7 @@ pub(in crate::report::diagnosis) fn sizes(subject: &Subject<'_>) -> Option<Table
         rows,
     )
     .noted([
-        "Intervals are those of the linearised fit with all genes free, inflated by its misfit; \
+        "Intervals are those of the linearised fit with all genes free, as wide as its dispersion and the colour of what is left make them; \
              they hold if the name is right.",
     ])
     .unless_empty()

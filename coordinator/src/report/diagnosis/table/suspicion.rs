@@ -73,7 +73,7 @@ pub(in crate::report::diagnosis) fn generics(round: &Round) -> Option<Table> {
         .collect();
     Table::new(
         "Forces without a cause that explain most",
-        ["", "statistic over squared misfit", "p", "amplitude"],
+        ["", "statistic over dispersion", "p", "amplitude"],
         rows,
     )
     .noted([

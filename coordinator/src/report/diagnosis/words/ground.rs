@@ -6,6 +6,7 @@ use crate::report::number::{figure, percent, quantity};
 use crate::report::words::condition_name;
 use discrepancy::diagnose::{Force, Limit};
 use discrepancy::proof::compare::{Portion, Row};
+use discrepancy::record::noise::Known;
 
 /// How sure the verdict is.
 pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<String> {
@@ -55,13 +56,18 @@ pub(in crate::report::diagnosis) fn confidence(subject: &Subject<'_>) -> Vec<Str
             )
         }));
     }
-    if !diagnosis.noise.is_seen() {
-        sentences.push(
+    let noise = match diagnosis.noise {
+        Known::Seen => None,
+        Known::Stated => Some(
             "The noise was stated, not seen: with one cycle there is no scatter to take it from, so \
-             every probability and every limit here is as good as that statement."
-                .to_owned(),
-        );
-    }
+             every probability and every limit here is as good as that statement.",
+        ),
+        Known::Guessed => Some(
+            "The noise is neither seen nor stated: it was guessed from how rough the curves are, and nothing is named \
+             on a guess.",
+        ),
+    };
+    sentences.extend(noise.map(str::to_owned));
     sentences
 }
 

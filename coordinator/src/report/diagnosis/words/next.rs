@@ -3,6 +3,7 @@ use crate::report::diagnosis::subject::Subject;
 use crate::report::number::percent;
 use crate::report::words::{command, listed};
 use discrepancy::diagnose::Diagnosis;
+use discrepancy::record::noise::Known;
 use discrepancy::verdict::Verdict;
 
 /// What to do next.
@@ -71,8 +72,9 @@ fn unresolved(diagnosis: &Diagnosis) -> String {
             command::SIMULATE,
             command::CHECK
         )
-    } else if !diagnosis.noise.is_seen() {
-        "Do not change the machine for a suspect whose noise is only assumed.".to_owned()
+    } else if diagnosis.noise == Known::Guessed {
+        "State `noise` of every channel, or record several cycles: a guess carries no name."
+            .to_owned()
     } else if diagnosis.rounds.is_empty() {
         format!(
             "Calibrate first (`{}`) and diagnose that run: tests mean nothing at a point that is not \
