@@ -61,6 +61,14 @@ pub(crate) const MOST_NAMES: usize = 4;
 /// chance, and a machine has a dozen instruments.
 pub const WITHIN: f64 = 3.0;
 
+/// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. Fewer have a
+/// variance of hardly any meaning, or none.
+pub(crate) const WIDEST: f64 = 1.5;
+
+/// Share of the gain of evidence of the likeliest from which a rival is ranked with it: what explains less of the fitted
+/// record does not explain enough of another to make up for that.
+pub(crate) const RANKED: f64 = 0.5;
+
 /// Standard deviations from which an instrument that a fit without effects takes so far off is a sign that something else
 /// is missing: one in 16,000 lies beyond by chance. Instruments are then held within [`WITHIN`].
 pub(crate) const BEYOND: f64 = 4.0;

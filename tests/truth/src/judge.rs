@@ -14,7 +14,48 @@ pub struct Trial {
     pub verdict: Verdict,
 }
 
+/// What became of a single hidden effect. Every set is one of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outcome {
+    /// It is the first name.
+    Right,
+    /// It is in the set of the first name.
+    InSet,
+    /// It is not named, and listed as what the record cannot show.
+    Absorbed,
+    /// It is not named.
+    Missed,
+    /// Something else is named whose set does not hold it.
+    False,
+}
+
+impl Outcome {
+    /// Every outcome, with its words.
+    pub const ALL: [(Self, &'static str); 5] = [
+        (Self::Right, "first name right"),
+        (Self::InSet, "in the set of another name"),
+        (Self::Absorbed, "not named, listed as absorbed"),
+        (Self::Missed, "not named"),
+        (Self::False, "another name, whose set does not hold it"),
+    ];
+}
+
 impl Trial {
+    /// What became of its first hidden effect.
+    pub fn outcome(&self) -> Outcome {
+        if self.first_is_right() {
+            Outcome::Right
+        } else if self.covered() {
+            Outcome::InSet
+        } else if !self.names_nobody() {
+            Outcome::False
+        } else if self.said_absorbed() {
+            Outcome::Absorbed
+        } else {
+            Outcome::Missed
+        }
+    }
+
     fn hides(&self, id: &str) -> bool {
         self.answer.effects.iter().any(|effect| effect.id == id)
     }
@@ -43,18 +84,36 @@ impl Trial {
         self.verdict.added().next().is_some_and(|id| self.hides(id))
     }
 
-    /// Size of the first hidden effect in units of the verdict's own detection limit, where it has one
-    /// for it.
-    pub fn over_limit(&self) -> Option<f64> {
+    /// Size of the first hidden effect in units of the detection limit that a diagnosis of an empty set with the same noise,
+    /// cycles and channels printed for it; none where there is no such set, or the record cannot show the effect. The
+    /// limit that its own diagnosis prints knows what is hidden.
+    pub fn over_limit(&self, all: &[Self]) -> Option<f64> {
         let effect = self.answer.effects.first()?;
+        let alike = |other: &&Self| {
+            let (own, other) = (&self.answer, &other.answer);
+            let noise = (other.noise - own.noise).abs() <= 1e-9 * own.noise;
+            other.effects.is_empty()
+                && noise
+                && other.cycles == own.cycles
+                && other.channels == own.channels
+        };
         let own = |limit: &&Limit| limit.id == effect.id && same(&limit.parameter, effect);
-        let limit = self.verdict.detection_limits.iter().find(own)?.size?;
-        Some(effect.value.abs() / limit.abs())
+        let empty = all.iter().filter(alike);
+        let limits = empty.filter_map(|set| set.verdict.detection_limits.iter().find(own)?.size);
+        let mut limits: Vec<f64> = limits.map(f64::abs).collect();
+        limits.sort_by(f64::total_cmp);
+        Some(effect.value.abs() / limits.get(limits.len() / 2)?)
     }
 
-    /// Relative error of the first hidden effect's size, and whether its interval holds it.
-    pub fn size_error(&self) -> Option<(f64, bool)> {
-        let effect = self.answer.effects.first()?;
+    /// Relative errors of the hidden effects' sizes that are named, and whether their intervals hold them.
+    pub fn size_errors(&self) -> Vec<(f64, bool)> {
+        let effects = self.answer.effects.iter();
+        effects
+            .filter_map(|effect| self.size_error(effect))
+            .collect()
+    }
+
+    fn size_error(&self, effect: &AnswerEffect) -> Option<(f64, bool)> {
         let found = self
             .verdict
             .effects

@@ -1,6 +1,6 @@
 //! Tests of judge and table: what a few verdicts are worth, and how they are counted.
 use crate::files::Channels;
-use crate::judge::Trial;
+use crate::judge::{Outcome, Trial};
 use crate::law::Nuisances;
 use crate::plan::{Answer, AnswerEffect, Stratum};
 use crate::table::table;
@@ -52,14 +52,26 @@ const PACKING: &str = r#"{"verdict": "ambiguous",
 fn a_right_name_a_set_that_holds_the_truth_and_a_false_name() {
     let right = trial(Stratum::Single, &["stuffing_box_friction"], PACKING);
     assert!(right.first_is_right() && right.covered() && right.false_names() == 0);
-    assert!((right.over_limit().unwrap() - 6.0).abs() < 1e-12);
-    let (error, covered) = right.size_error().unwrap();
-    assert!((error - 0.1).abs() < 1e-12 && covered);
+    // its own limit counts nothing; that of an empty set of the same noise does
+    let alone = [right.clone()];
+    assert_eq!(right.over_limit(&alone), None);
+    let empty = trial(Stratum::Zero, &[], PACKING);
+    let mut louder = empty.clone();
+    louder.answer.noise = 2.0;
+    assert_eq!(right.over_limit(&[louder]), None);
+    assert!((right.over_limit(&[empty]).unwrap() - 6.0).abs() < 1e-12);
+    let sizes = right.size_errors();
+    assert!((sizes[0].0 - 0.1).abs() < 1e-12 && sizes[0].1 && sizes.len() == 1);
+    assert_eq!(right.outcome(), Outcome::Right);
     let alike = trial(Stratum::Single, &["pivot_friction"], PACKING);
     assert!(!alike.first_is_right() && alike.covered() && alike.false_names() == 0);
     let wrong = trial(Stratum::Single, &["gauge_drift"], PACKING);
     assert!(!wrong.covered() && wrong.false_names() == 1);
     assert_eq!(wrong.mark(), "FALSE NAME");
+    assert_eq!(
+        (alike.outcome(), wrong.outcome()),
+        (Outcome::InSet, Outcome::False)
+    );
 }
 
 #[test]
@@ -86,7 +98,9 @@ fn claims_are_counted_by_stratum() {
         "| outside, detected: unlisted | >= 90 % | 1/1 = 100 % [2-100] |",
         "| double: exactly both | >= 60 % | 0/1 = 0 % [0-98] |",
         "| double: at least one | >= 85 % | 1/1 = 100 % [2-100] |",
-        "| single, at least 3 x limit: first name right, or listed as absorbed | >= 90 % | 1/1 = 100 % [2-100] |",
+        "| single: first name right |  | 1/1 = 100 % [2-100] |",
+        "| single: not named |  | 0/1 = 0 % [0-98] |",
+        "| single, at least 3 x the limit of an empty set: first name right | >= 85 % | 1/1 = 100 % [2-100] |",
         "| false names of all names | <= 10 % | 1/3 = 33 % [1-91] |",
         "7 sets judged, 2 without a verdict.",
     ] {
@@ -108,9 +122,12 @@ fn what_is_listed_as_absorbed_and_intervals_of_instruments_count() {
     assert_eq!(post.mark(), "listed as absorbed");
     assert_eq!(post.nuisances_held(), [1, 3]);
     let table = table(&[post], 0).unwrap();
-    assert!(
-        table.contains("or listed as absorbed | >= 90 % | 1/1 = 100 %"),
-        "{table}"
-    );
+    for line in [
+        "| single: not named, listed as absorbed |  | 1/1 = 100 %",
+        "| single: first name right |  | 0/1 = 0 %",
+        "| single, below that or without such a limit |  | 1 |",
+    ] {
+        assert!(table.contains(line), "{line}\n{table}");
+    }
     assert!(table.contains("| 95 % intervals of instruments hold | 90 to 98 % | 1/3 = 33 %"));
 }

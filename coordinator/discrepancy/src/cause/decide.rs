@@ -60,6 +60,7 @@ pub(crate) fn decide_together(
     let mut rounds = both.members.iter().map(|id| Round {
         added: Some(id.clone()),
         set: vec![id.clone()],
+        together: true,
         reason: None,
         ..round.clone()
     });

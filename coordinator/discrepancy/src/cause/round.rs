@@ -23,6 +23,10 @@ pub struct Round {
     pub set: Vec<String>,
     /// Which effect was added, if any.
     pub added: Option<String>,
+    /// How many names were ranked by what they predict where that gave the place of the added one to another; else 1.
+    pub ranked: usize,
+    /// Whether the added effect is one of several that were found together.
+    pub together: bool,
     /// Why none was.
     pub reason: Option<String>,
 }
@@ -44,6 +48,8 @@ impl Round {
             p_value: 1.0,
             set: Vec::new(),
             added: None,
+            ranked: 1,
+            together: false,
             reason: None,
         };
         round.judge(current);

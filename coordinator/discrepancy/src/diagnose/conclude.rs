@@ -147,7 +147,11 @@ async fn predict<L: Laboratory>(
     diagnosis.prediction.clone_from(&whole.records);
     let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
     let tried = diagnosis.rounds.first().map_or(1, |r| r.suspects.len());
-    let needed = whole.needed(thresholds, added.len(), tried);
+    // a name that what took no part has chosen needs as many times more as it chose from
+    let mut rounds = diagnosis.rounds.iter();
+    let kept = rounds.by_ref().filter(|round| round.added.is_some());
+    let chosen: f64 = kept.map(|round| libm::log(round.ranked as f64)).sum();
+    let needed = whole.needed(thresholds, added.len(), tried) + chosen;
     Ok(unpredicted(
         &ids.join(" with "),
         &whole,

@@ -53,14 +53,17 @@ pub(crate) async fn completed<L: Laboratory>(
 }
 
 /// What is diagnosed from where a fit arrived, with the correlations of a record for channels of the same name under
-/// every condition.
+/// every condition, and its largest for those of another name: they are held out.
 pub(crate) fn again(inputs: &Inputs, record: &Record, fit: &Fit) -> Inputs {
     let mut again = inputs.clone();
+    let all = record.channels.iter().filter_map(|own| own.correlation);
+    let largest = all.reduce(f64::max);
     again.start = Some(fit.x()[..inputs.space.dimension()].to_vec());
     for own in again.records.iter_mut().flat_map(|r| &mut r.channels) {
         let mut same = record.channels.iter();
         let same = same.find(|other| other.channel.name == own.channel.name);
-        own.correlation = own.correlation.or(same.and_then(|other| other.correlation));
+        let same = same.map(|other| other.correlation.unwrap_or(0.0));
+        own.correlation = own.correlation.or(same).or(largest);
     }
     again
 }

@@ -26,6 +26,7 @@ use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
 use crate::place::whereabouts;
 use crate::proof::compare::shown;
+use crate::record::measured::Record;
 use crate::thresholds::PROMISED;
 use conclude::conclude;
 use rounds::rounds;
@@ -83,7 +84,7 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
     if let Some((fitted, said)) = completed {
         again = correlation::again(inputs, &fitted, &base.fit);
         inputs = &again;
-        split.fitted = fitted;
+        split = again.records.first().map_or(split, Record::split);
         base = match establish(lab, inputs, split.fitted.clone()).await? {
             Ok(base) => base,
             Err(baseless) => return Ok(Diagnosis::unresolved(baseless.reason())),

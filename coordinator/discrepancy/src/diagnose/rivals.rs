@@ -2,19 +2,30 @@
 //! added, beside everything else of the answer, and is ranked with it.
 //!
 //! The rank is the log evidence of the fit over its dispersion, plus the predictive score on what took no part in it;
-//! left-out blocks of the fitted record count in the evidence already.
+//! left-out blocks of the fitted record count in the evidence already. A rival takes the place only if it is believed
+//! there as the added one was: by its evidence, and beside a finer model.
+use crate::cause::round::Round;
+use crate::cause::suspect::Suspect;
 use crate::diagnose::diagnosis::Diagnosis;
+use crate::ground::believed::believed;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
+use crate::linear::isolability::likeness;
 use crate::model::fit::Fit;
 use crate::proof::compare::{Portion, Shown};
 use crate::proof::predictive::scores;
-use crate::thresholds::SET;
+use crate::thresholds::{RANKED, SET};
 use search::least_squares::Settings;
 
-/// Share of the gain of evidence of the effect that was added from which a rival is ranked with it: what explains less
-/// of the fitted record does not explain enough of another to make up for that.
-const RANKED: f64 = 0.5;
+/// Rivals of an effect that was found together with others: those that resemble it most.
+const ALIKE: usize = 3;
+
+/// A name in the place of an added effect: its merit against that one (nats), and its fit.
+struct Ranked {
+    id: String,
+    merit: f64,
+    fit: Fit,
+}
 
 /// Ranks the rivals of each added effect: the best takes its place, and those within [`SET`] of the best are its set.
 /// Gives the answer.
@@ -25,70 +36,137 @@ pub(crate) async fn rank<L: Laboratory>(
     diagnosis: &mut Diagnosis,
 ) -> Result<Fit, L::Error> {
     for at in 0..diagnosis.rounds.len() {
-        let round = &diagnosis.rounds[at];
-        let Some(added) = round.added.clone() else {
+        let Some(added) = diagnosis.rounds[at].added.clone() else {
             continue;
         };
         let mut places = answer.model.added.iter();
         let Some(position) = places.position(|own| own.id == added) else {
             continue;
         };
-        let rivals = swapped(session, (&answer, position), diagnosis, at).await?;
-        let mut experiments = session.experiments(Stage::Show);
-        // merits against the answer as it is
-        let mut ranked: Vec<(f64, String, Option<Fit>)> = vec![(0.0, added.clone(), None)];
-        for (id, fit) in rivals {
-            let own = scores(&mut experiments, shown, [&fit, &answer]).await?;
-            if !own.failed.is_empty() {
-                continue;
+        let mut ranked = merits(session, (&answer, position), shown, &diagnosis.rounds[at]).await?;
+        let best = ranked.first().map_or(0.0, |first| first.merit.max(0.0));
+        let count = ranked.len() + 1;
+        ranked.retain(|own| best - own.merit < SET);
+        let mut set: Vec<(f64, String)> = vec![(0.0, added.clone())];
+        set.retain(|(merit, _)| best - merit < SET);
+        set.extend(ranked.iter().map(|own| (own.merit, own.id.clone())));
+        let exchanged = match ranked.first().filter(|own| own.merit > 0.0) {
+            Some(own) if carries(session, (&answer, position), &own.fit).await? => {
+                Some(ranked.swap_remove(0))
             }
-            let held_out = own.records.iter().all(|one| one.part != Portion::LeftOut);
-            let predicted = own.together.filter(|_| held_out).unwrap_or(0.0);
-            let dispersion = fit.dispersion().min(answer.dispersion());
-            let evidence = (fit.log_evidence() - answer.log_evidence()) / dispersion;
-            let merit = evidence + predicted;
-            if merit.is_finite() {
-                ranked.push((merit, id, Some(fit)));
-            }
+            _ => None,
+        };
+        // what stays in its place is in the set, whatever predicts better and is not believed
+        if exchanged.is_none() && set.iter().all(|(_, id)| *id != added) {
+            set.push((0.0, added));
         }
-        ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let best = ranked[0].0;
-        ranked.retain(|(merit, ..)| best - merit < SET);
+        set.sort_by(|a, b| b.0.total_cmp(&a.0));
         let round = &mut diagnosis.rounds[at];
-        round.set = ranked.iter().map(|(_, id, _)| id.clone()).collect();
-        if let (_, id, Some(fit)) = ranked.swap_remove(0) {
-            round.added = Some(id);
-            answer = fit;
+        round.set = set.into_iter().map(|(_, id)| id).collect();
+        if let Some(own) = exchanged {
+            round.ranked = count;
+            round.added = Some(own.id);
+            answer = own.fit;
         }
     }
     Ok(answer)
+}
+
+/// The rivals of an added effect in its place with their merits, the best first; none that does not run everywhere.
+async fn merits<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    at: (&Fit, usize),
+    shown: &[Shown<'_>],
+    round: &Round,
+) -> Result<Vec<Ranked>, L::Error> {
+    let (answer, _) = at;
+    let rivals = swapped(session, at, round).await?;
+    let mut experiments = session.experiments(Stage::Show);
+    let mut ranked = Vec::new();
+    for (id, fit) in rivals {
+        let own = scores(&mut experiments, shown, [&fit, answer]).await?;
+        if !own.failed.is_empty() {
+            continue;
+        }
+        let held_out = own.records.iter().all(|one| one.part != Portion::LeftOut);
+        let predicted = own.together.filter(|_| held_out).unwrap_or(0.0);
+        let dispersion = fit.dispersion().min(answer.dispersion());
+        let evidence = (fit.log_evidence() - answer.log_evidence()) / dispersion;
+        let merit = evidence + predicted;
+        if merit.is_finite() {
+            ranked.push(Ranked { id, merit, fit });
+        }
+    }
+    ranked.sort_by(|a, b| b.merit.total_cmp(&a.merit));
+    Ok(ranked)
+}
+
+/// Whether a fit with another effect in a place of an answer gains over the model without either what an effect must gain,
+/// also where what a finer model changes counts as noise.
+async fn carries<L: Laboratory>(
+    session: &mut Session<'_, L>,
+    (answer, position): (&Fit, usize),
+    fit: &Fit,
+) -> Result<bool, L::Error> {
+    let needed = session.inputs.thresholds.gain;
+    let without = if answer.model.added.len() == 1 {
+        Some(session.base.fit.clone())
+    } else {
+        let start = answer.point().without(position);
+        let mut experiments = session.experiments(Stage::Refit);
+        experiments.fit(start, Settings::short(6)).await?
+    };
+    let Some(without) = without else {
+        return Ok(false);
+    };
+    if (fit.log_evidence() - without.log_evidence()) / fit.dispersion() < needed {
+        return Ok(false);
+    }
+    let checked = believed(session, &without, fit).await?;
+    Ok(checked.is_none_or(|checked| checked.gain >= needed))
 }
 
 /// The rivals of an added effect in its place, beside everything else of an answer.
 async fn swapped<L: Laboratory>(
     session: &mut Session<'_, L>,
     (answer, position): (&Fit, usize),
-    diagnosis: &Diagnosis,
-    round: usize,
+    round: &Round,
 ) -> Result<Vec<(String, Fit)>, L::Error> {
-    let round = &diagnosis.rounds[round];
     let in_answer = |id: &String| answer.model.added.iter().any(|own| own.id == *id);
-    let best = round.refits.first();
-    let gain = |log_evidence: f64| log_evidence - round.null_evidence;
-    let enough = best.map_or(0.0, |best| RANKED * gain(best.log_evidence).max(0.0));
-    let rivals = round.refits.iter();
-    let rivals = rivals.filter(|own| !in_answer(&own.id) && gain(own.log_evidence) > enough);
-    let base = &session.base.fit;
-    if answer.model.added.len() == 1 && base.model.added.len() + 1 == answer.model.added.len() {
-        // in the first round they were refitted just so
-        let first = diagnosis.rounds.first().map(|first| first.null_evidence);
-        if first.is_some_and(|first| first.total_cmp(&round.null_evidence).is_eq()) {
-            return Ok(rivals
-                .map(|own| (own.id.clone(), own.fit.clone()))
-                .collect());
-        }
+    let mut rivals: Vec<_> = round
+        .refits
+        .iter()
+        .filter(|own| !in_answer(&own.id))
+        .collect();
+    if round.together {
+        // alone each may explain nothing
+        let tangent = session.base.fit.tangent();
+        let of = |id: &str| round.suspects.iter().find(|own| own.effect.id == id);
+        let added = of(&answer.model.added[position].id);
+        let alike = |other: Option<&Suspect>| {
+            let pair = added.zip(other);
+            pair.map_or(0.0, |(a, b)| likeness(&a.signature, &b.signature, &tangent))
+        };
+        rivals.sort_by(|a, b| alike(of(&b.id)).total_cmp(&alike(of(&a.id))));
+        rivals.truncate(ALIKE);
+    } else {
+        let gain = |log_evidence: f64| log_evidence - round.null_evidence;
+        let best = round
+            .refits
+            .first()
+            .map_or(0.0, |best| gain(best.log_evidence));
+        rivals.retain(|own| gain(own.log_evidence) > RANKED * best.max(0.0));
     }
-    let swapped = rivals.filter_map(|rival| {
+    let first =
+        answer.model.added.len() == 1 && rivals.iter().all(|own| own.fit.model.added.len() == 1);
+    if first {
+        // they were refitted just so
+        return Ok(rivals
+            .into_iter()
+            .map(|own| (own.id.clone(), own.fit.clone()))
+            .collect());
+    }
+    let swapped = rivals.into_iter().filter_map(|rival| {
         let own = rival.fit.model.added.len().checked_sub(1)?;
         let (effect, first) = (&rival.fit.model.added[own], rival.fit.model.first_of(own));
         let start = answer.point().without(position);

@@ -70,7 +70,10 @@ fn unrecorded(record: &Record, channels: &[Channel]) -> Vec<(Record, String)> {
     let candidate = |curve: usize| {
         let channel = &channels[curve];
         let mut own = record.channels.iter();
-        let like = own.position(|own| own.channel.unit == channel.unit)?;
+        let places = channel.abscissa.points.len();
+        let whole =
+            |own: &Recorded| own.rows.is_none() && own.channel.abscissa.points.len() == places;
+        let like = own.position(|own| own.channel.unit == channel.unit && whole(own))?;
         let cycle = |cycle: &Curves| vec![cycle[like].clone()];
         let mut blank = record.clone();
         blank.cycles = record.cycles.iter().map(cycle).collect();

@@ -1,7 +1,7 @@
 //! Fisher's information of a fit: covariances, and the directions in which unknowns are seen.
 //!
 //! Whitened residuals have variance 1, so the information of a record is `J^T J`; what is known beforehand
-//! adds its own. All of it counts the dispersion less (Cramér and Rao's bound, widened).
+//! adds its own. The record counts the dispersion less (Cramér and Rao's bound, widened).
 use super::answer::{Direction, Part};
 use crate::model::fit::Fit;
 use crate::size::spread::Spread;
@@ -56,7 +56,8 @@ const BLIND: f64 = 1.5;
 pub(super) fn directions(fit: &Fit, spread: &Spread) -> Vec<Direction> {
     let unknowns = fit.model.space.dimension();
     let jacobian = &fit.search.best().jacobian;
-    let eigen = of_unknowns(jacobian, fit.variables(), unknowns).symmetric_eigen();
+    let scaled = jacobian / spread.dispersion.sqrt();
+    let eigen = of_unknowns(&scaled, fit.variables(), unknowns).symmetric_eigen();
     let mut order: Vec<usize> = (0..unknowns).collect();
     order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
     let largest = order.first().map_or(0.0, |&k| eigen.eigenvalues[k]);
@@ -68,7 +69,7 @@ pub(super) fn directions(fit: &Fit, spread: &Spread) -> Vec<Direction> {
             // the root of the mean square of the growths, by how much of each unknown lies along it
             let growth = along.iter().zip(spread.growth.iter());
             let square: f64 = growth.map(|(part, own)| (part * own).powi(2)).sum();
-            (spread.dispersion * square / eigen.eigenvalues[k]).sqrt()
+            (square / eigen.eigenvalues[k]).sqrt()
         } else {
             f64::INFINITY
         };

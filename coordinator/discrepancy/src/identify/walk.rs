@@ -94,8 +94,7 @@ fn begin(metric: &Metric, fit: Fit, others: &[Fit]) -> Walked {
     let covariance = inverse(with_priors(&fit.search.best().jacobian, fit.variables()));
     let axes = fit.model.space.axes().iter().enumerate();
     let sides = axes.flat_map(|(k, axis)| {
-        let variance = covariance.as_ref().map_or(f64::INFINITY, |c| c[(k, k)]);
-        let predicted = (rises[k] * variance).sqrt();
+        let predicted = spread.quantile * spread.variance(k).sqrt();
         let interval = axis.interval();
         [(-1.0, interval.from), (1.0, interval.to)]
             .map(|(sign, bound)| Side::new(k, sign, bound, predicted))

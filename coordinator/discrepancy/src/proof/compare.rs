@@ -103,8 +103,9 @@ pub(crate) async fn shown<'a, L: Laboratory>(
         let (alike, scale) = match part {
             Portion::Fitted | Portion::Cycles => {
                 let alike = [&split.fitted.cycles[..], &split.cycles.cycles].concat();
-                let fitted = split.fitted.cycles.len();
-                let scale = Scale::of(record, &alike, &base.on.metric, fitted);
+                // in the directions of fitted cycles alone: what is held out must not shorten its own residual
+                let cycles = &split.fitted.cycles;
+                let scale = Scale::of(record, cycles, &base.on.metric, cycles.len());
                 (alike, scale)
             }
             Portion::Channels | Portion::Segment | Portion::Condition | Portion::LeftOut => {

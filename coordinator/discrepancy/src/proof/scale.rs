@@ -7,6 +7,7 @@
 use crate::record::measured::{Curves, Record};
 use crate::record::metric::Metric;
 use crate::record::noise::Known;
+use crate::thresholds::WIDEST;
 use nalgebra::{DMatrix, DVector};
 
 /// A record's mean in a metric.
@@ -22,7 +23,7 @@ pub(crate) struct Scale {
 
 impl Scale {
     /// A record in the metric of the mean of so many cycles of the same condition and channels; `alike` are
-    /// cycles that scatter as its own do, its own among them.
+    /// cycles that scatter as its own do: its own, or such as it has no part in.
     pub(crate) fn of(record: &Record, alike: &[Curves], metric: &Metric, cycles: usize) -> Self {
         let unit = (record.cycles.len() as f64 / cycles.max(1) as f64).sqrt();
         let own = record.cycles.len();
@@ -60,15 +61,16 @@ impl Scale {
         widened(&self.metric, columns)
     }
 
+    /// How many entries there are.
+    pub(crate) fn len(&self) -> usize {
+        self.metric.len()
+    }
+
     /// How the record's noise is known.
     pub(crate) const fn known(&self) -> Known {
         self.metric.known()
     }
 }
-
-/// Largest factor by which noise variances from few cycles are widened: that of six degrees of freedom. Fewer have a
-/// variance of hardly any meaning, or none.
-const WIDEST: f64 = 1.5;
 
 /// Divides the rows of columns by how much wider the entries of a metric are than they seem.
 pub(crate) fn widened(metric: &Metric, mut columns: DMatrix<f64>) -> DMatrix<f64> {

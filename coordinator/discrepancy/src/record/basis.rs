@@ -24,7 +24,7 @@ pub struct Group {
     pub basis: Basis,
 }
 
-/// Coordinates of a group's curves; none holds a curve's constant, for channels have no zero.
+/// Coordinates of a group's curves; they hold a curve's constant where its channel has a zero.
 #[derive(Clone, Debug)]
 pub enum Basis {
     /// Orders of the period.

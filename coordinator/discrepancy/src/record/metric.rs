@@ -310,7 +310,7 @@ impl Metric {
 
     /// Parts of a whitened vector, by the places of their entries, that say little of one another where a residual is
     /// noise with a few slow waves: stretches of samples of at least five correlation lengths each, every fifth order of
-    /// a period. At most ten.
+    /// a period. At most ten; none where there are no two.
     pub(crate) fn blocks(&self, residual: &DVector<f64>) -> Vec<Vec<usize>> {
         const MOST: usize = 10;
         const ORDERS: usize = 5;
@@ -329,10 +329,13 @@ impl Metric {
         let fit = lengths.fold(f64::INFINITY, f64::min);
         let count = (2..=MOST).rev().find(|count| *count as f64 <= fit);
         let count = if fit.is_finite() {
-            count.unwrap_or(2)
+            count.unwrap_or(0)
         } else {
             ORDERS
         };
+        if count == 0 {
+            return Vec::new();
+        }
         let mut parts = vec![Vec::new(); count];
         for block in &self.blocks {
             let places = block.factors.len();

@@ -88,12 +88,23 @@ impl Noise {
             let places = covariances.len() as f64;
             for (row, &channel) in group.channels.iter().enumerate() {
                 let error = record.channels[channel].model_error.unwrap_or(0.0);
-                let variance = match &group.basis {
-                    // orders share the mean square, twice each
-                    Basis::Orders(_) => error * error / (2.0 * places),
-                    Basis::Samples(_) => error * error,
-                };
-                for covariance in covariances.iter_mut() {
+                let weights = &record.channels[channel].channel.weights;
+                let slow = group.basis.slow();
+                let mean = weights.iter().map(|w| w * w).sum::<f64>() / weights.len().max(1) as f64;
+                for (place, covariance) in covariances.iter_mut().enumerate() {
+                    let variance = match &group.basis {
+                        // orders share the mean square, twice each
+                        Basis::Orders(_) => error * error / (2.0 * places),
+                        Basis::Samples(_) if weights.is_empty() => error * error,
+                        // slow curves have something of every value
+                        Basis::Samples(_) if place < slow => error * error * mean,
+                        Basis::Samples(_) => {
+                            error * error * {
+                                let first = weights.len().saturating_sub(group.basis.places());
+                                error * error * weights[place + first].powi(2)
+                            }
+                        }
+                    };
                     covariance[(row, row)] += C::from(variance);
                 }
             }
@@ -147,10 +158,12 @@ fn seen(record: &Record, group: &Group, inputs: &[Vec<Vec<f64>>]) -> (Vec<DMatri
     let slow = basis.slow();
     let beside = (0 < slow && slow < basis.places()).then(|| about(slow).0);
     let each = (0..basis.places()).map(|place| {
-        let (mut covariance, freedom) = about(place);
+        let (mut covariance, mut freedom) = about(place);
         if place < slow {
             let wide = student(freedom) / student(f64::INFINITY);
             covariance *= C::from(wide * wide);
+            // that is in it
+            freedom = f64::INFINITY;
             if let Some(beside) = &beside {
                 at_least(&mut covariance, beside);
             }

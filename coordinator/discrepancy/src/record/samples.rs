@@ -4,7 +4,7 @@
 //! first-order autoregression of any grid) has `rho_i = exp(-(x_i+1 - x_i) / l)` between neighbours, and
 //! its innovations `(y_i+1 - rho_i y_i) / sqrt(1 - rho_i^2)` are independent and as strong as itself. Where a
 //! channel has no zero, a constant is turned into one entry that is left out; so of n samples n - 1 entries
-//! remain. Where it has one, the constant and the first order of the span are turned into entries of their own
+//! remain. Where it has one, the constant and the first order of the span (of eight samples and more) are turned into entries of their own
 //! (Householder reflections), the first three: cycles that drift scatter there by more than from sample to sample.
 //! Values that do not count alike are multiplied by their weights first.
 use crate::record::measured::power;
@@ -205,12 +205,15 @@ impl Samples {
 }
 
 /// The curves that have entries of their own: the constant, and where it counts both phases of the first order of the
-/// span. A single value has none.
+/// span. A single value is its own.
 fn slow_curves(points: &[f64], absolute: bool) -> Vec<Vec<f64>> {
     let n = points.len();
-    let (Some(first), Some(last), 2..) = (points.first(), points.last(), n) else {
+    let (Some(first), Some(last)) = (points.first(), points.last()) else {
         return Vec::new();
     };
+    if absolute && n == 1 {
+        return Vec::new();
+    }
     let constant = vec![1.0; n];
     if !absolute || n < ORDER_SHOWS {
         return vec![constant];

@@ -37,7 +37,9 @@ impl Spread {
     pub fn of(metric: &Metric, fit: &Fit) -> Self {
         let freedom = fit.freedom();
         let per_freedom = fit.chi_squared() / freedom;
-        let known = !matches!(metric.known(), Known::Guessed);
+        // a residual without freedom tells no variance
+        let tells = freedom > 1.0 && per_freedom > 0.0;
+        let known = !(matches!(metric.known(), Known::Guessed) && tells);
         let dispersion = if known { fit.dispersion() } else { per_freedom };
         // a variance that comes from the residual is known as well as that; else as well as the noise's
         let noise = metric.freedom_of_intervals();
