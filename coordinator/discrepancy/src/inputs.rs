@@ -12,6 +12,8 @@ use search::space::Space;
 pub struct Inputs {
     /// The case's unknowns and their bounds.
     pub space: Space,
+    /// Names of the case's conditions, in its order.
+    pub conditions: Vec<String>,
     /// All unknowns of the case, of which those that are off are suspected.
     pub unknowns: Vec<Unknown>,
     /// Records, the calibrated condition's first.
@@ -42,6 +44,15 @@ impl Inputs {
         let off = Off::of(&self.unknowns).into_iter().map(|off| off.suspect);
         let all = self.library.iter().cloned().chain(off);
         all.filter(|suspect| !without.contains(&suspect.id))
+    }
+
+    /// A condition by its name, in words; by its place where it has none.
+    pub(crate) fn condition(&self, place: usize) -> String {
+        let name = self.conditions.get(place);
+        name.map_or_else(
+            || format!("condition {}", place + 1),
+            |name| format!("condition {name}"),
+        )
     }
 
     /// Records of the other conditions that are not held out.

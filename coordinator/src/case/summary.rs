@@ -1,5 +1,6 @@
 //! What `horsehead case check` tells about a case that is in order.
 use super::{loaded::Loaded, note::Note};
+use discrepancy::record::{Record, Recorded};
 use std::fmt::Write as _;
 
 /// A case in short.
@@ -34,6 +35,37 @@ impl Summary {
     }
 }
 
+/// What is stated of a channel's errors, and what of it is held out.
+fn stated(record: Option<&Record>, curve: usize) -> String {
+    let parts = record.iter().flat_map(|record| &record.channels);
+    let parts: Vec<&Recorded> = parts.filter(|own| own.curve == curve).collect();
+    let Some(own) = parts.first() else {
+        return String::new();
+    };
+    let unit = &own.channel.unit;
+    let mut said = Vec::new();
+    said.extend(
+        own.channel
+            .noise
+            .map(|noise| format!("noise {noise} {unit}")),
+    );
+    said.extend(own.correlation.map(|rho| format!("correlation {rho:.3}")));
+    said.extend(
+        own.model_error
+            .map(|error| format!("model error {error} {unit}")),
+    );
+    if let Some(held) = parts.iter().find(|own| own.held_out) {
+        let part = held
+            .rows
+            .as_ref()
+            .map(|rows| format!("{} values held out", rows.len()));
+        said.push(part.unwrap_or_else(|| "held out".to_owned()));
+    }
+    // a comma before the first as well
+    said.insert(0, String::new());
+    said.join(", ")
+}
+
 /// What a case says itself, of whatever kind its model is.
 pub(crate) fn text(loaded: &Loaded) -> String {
     let case = &loaded.case;
@@ -48,7 +80,11 @@ pub(crate) fn text(loaded: &Loaded) -> String {
             None if unknown.fixed => "known".to_owned(),
             None => format!("{:.2e} .. {:.2e}", unknown.lower, unknown.upper),
         };
-        let off = if unknown.is_off() { ", off" } else { "" };
+        let off = match &unknown.suspect {
+            _ if !unknown.is_off() => String::new(),
+            Some(group) => format!(", off, suspected with {group}"),
+            None => ", off".to_owned(),
+        };
         let _infallible = writeln!(
             text,
             "  {name:<width$} {start:>10.3e} ({searched}{off}) {unit}"
@@ -61,8 +97,14 @@ pub(crate) fn text(loaded: &Loaded) -> String {
         let _infallible = writeln!(text, "effect      {}: {}", effect.id, numbers.join(", "));
     }
     for (index, condition) in case.conditions.iter().enumerate() {
-        let _infallible = writeln!(text, "condition   {}", condition.name);
-        for (_, channel) in case.channels_of(index) {
+        let record = loaded.cycles.iter().find(|own| own.condition == index);
+        let held_out = if record.is_some_and(|record| record.held_out) {
+            " (held out)"
+        } else {
+            ""
+        };
+        let _infallible = writeln!(text, "condition   {}{held_out}", condition.name);
+        for (curve, (_, channel)) in case.channels_of(index).enumerate() {
             let places = channel.abscissa.points.len();
             let recorded = channel.record.as_ref().map_or_else(
                 || "not measured".to_owned(),
@@ -70,8 +112,11 @@ pub(crate) fn text(loaded: &Loaded) -> String {
             );
             let _infallible = writeln!(
                 text,
-                "  {}: {places} values over {} [{}], {recorded}",
-                channel.title, channel.abscissa.name, channel.unit
+                "  {}: {places} values over {} [{}], {recorded}{}",
+                channel.title,
+                channel.abscissa.name,
+                channel.unit,
+                stated(record, curve)
             );
         }
     }

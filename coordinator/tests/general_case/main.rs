@@ -183,6 +183,18 @@ fn a_part_of_a_channel_may_be_held_out() {
     for part in [fitted, held] {
         assert_eq!((part.correlation, part.model_error), (Some(0.5), Some(0.2)));
     }
+    let said = case::check(case.0.path(), &Overrides::default())
+        .unwrap()
+        .text;
+    for what in [
+        "noise 0.1 N",
+        "correlation 0.500",
+        "model error 0.2 N",
+        "2 values held out",
+        "fast (held out)",
+    ] {
+        assert!(said.contains(what), "{what} is not in\n{said}");
+    }
     // the case's own channel, which a calibration compares, is whole
     assert_eq!(loaded.case.channels[0].abscissa.points.len(), 4);
 }

@@ -164,7 +164,7 @@ fn parameters_that_would_have_to_wander_are_shown_with_their_values() {
 #[test]
 fn what_is_not_known_is_said() {
     let nothing = words(&page(&suspicion::diagnosis(Verdict::NothingDetected)));
-    assert!(nothing.contains("Nothing detected") && nothing.contains("1 would have been seen"));
+    assert!(nothing.contains("Nothing detected"));
     assert!(
         nothing.contains("never: absorbed"),
         "an absorbed effect has no limit"

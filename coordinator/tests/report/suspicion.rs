@@ -232,6 +232,7 @@ fn rows(records: &[Record], after: f64) -> Vec<Row> {
         .map(|(record, part)| Row {
             condition: record.condition,
             part,
+            held_out: false,
             closed: closed(&record, &record.cycles, &curves(1.0), &curves(after)),
             before: curves(1.0),
             after: curves(after),
@@ -288,6 +289,9 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
         log_evidence,
     };
     Round {
+        sizes: Vec::new(),
+        ranked: 1,
+        together: false,
         suspects,
         generics,
         refits: vec![

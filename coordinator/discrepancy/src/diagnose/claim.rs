@@ -120,7 +120,9 @@ impl Common {
         };
         let shared = |same: &dyn Fn(&Traits) -> bool| rest.iter().all(same);
         Self {
-            joint: shared(&|own| own.joint == first.joint).then(|| first.joint.clone()),
+            joint: shared(&|own| own.joint == first.joint)
+                .then(|| first.joint.clone())
+                .filter(|joint| !joint.is_empty()),
             channel: first
                 .channel
                 .filter(|c| shared(&|own| own.channel == Some(*c))),

@@ -3,6 +3,7 @@
 //! Where the tests do not stand on firm ground (assumed noise, a model that was never held against a
 //! finer one), what was found is taken out of the answer again: it stays visible as a suspect, with its
 //! size and its nats, and the reason says what it would take to name it. So does what does not carry.
+use crate::cause::round::Round;
 use crate::diagnose::carry;
 use crate::diagnose::claim::{claim, no_answer};
 use crate::diagnose::diagnosis::Diagnosis;
@@ -15,8 +16,9 @@ use crate::place::wander::refit::wander;
 use crate::place::whereabouts;
 use crate::proof::compare::{Shown, compare};
 use crate::proof::predictive::{scores, unpredicted};
+use crate::record::metric::Metric;
 use crate::record::noise::Known;
-use crate::size::estimate::estimates;
+use crate::size::estimate::{estimates, refitted};
 use crate::size::force::Force;
 use crate::size::never_exact::never_exact;
 use crate::size::spread::{Spread, coloured};
@@ -98,8 +100,23 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.notes.push(coloured(growth));
     }
     diagnosis.nuisances = never_exact(&after, &spread);
+    // what a missing effect leaves is no noise: limits are those beside the answer
+    let ratio = (after.dispersion() / base.fit.dispersion()).sqrt();
+    for limit in &mut diagnosis.limits {
+        limit.size *= ratio;
+    }
+    size_suspects(&mut diagnosis.rounds, &base.on.metric);
     diagnosis.after = Some(after);
     Ok(())
+}
+
+/// Gives every suspect that was refitted its size by its own refit, named or not.
+fn size_suspects(rounds: &mut [Round], metric: &Metric) {
+    for round in rounds {
+        let ids = round.refits.iter().map(|own| own.id.clone());
+        let sizes = ids.filter_map(|id| refitted(round, &id, metric));
+        round.sizes = sizes.collect();
+    }
 }
 
 /// What the tests stand on.
@@ -156,6 +173,7 @@ async fn predict<L: Laboratory>(
         &ids.join(" with "),
         &whole,
         [thresholds.prediction, needed],
+        session.inputs,
     ))
 }
 

@@ -64,14 +64,15 @@ async fn idle<L: Laboratory>(
     (answer, without): (&Fit, Vec<(usize, Fit)>),
     diagnosis: &Diagnosis,
 ) -> Result<Option<(usize, Fit, String)>, L::Error> {
-    let thresholds = &session.inputs.thresholds;
+    let inputs = session.inputs;
+    let thresholds = &inputs.thresholds;
     let tried = diagnosis.rounds.first().map_or(1, |r| r.suspects.len());
     let mut experiments = session.experiments(Stage::Show);
     for (position, fit) in without {
         let own = scores(&mut experiments, shown, [answer, &fit]).await?;
         let needed = [thresholds.prediction, own.needed(thresholds, 1, tried)];
         let id = &answer.model.added[position].id;
-        if let Some(reason) = unpredicted(id, &own, needed) {
+        if let Some(reason) = unpredicted(id, &own, needed, inputs) {
             return Ok(Some((position, fit, reason)));
         }
     }

@@ -98,7 +98,7 @@ fn conditions_words(
     let mut recorded = inputs.records.iter().skip(1);
     let recorded = recorded.find(|record| record.condition == condition);
     if let Some(record) = recorded.filter(|record| !record.cycles.is_empty()) {
-        let words = format!("the record of condition {} fitted, too", condition + 1);
+        let words = format!("the record of {} fitted, too", inputs.condition(condition));
         return Some((record.clone(), words));
     }
     let same = |own: &Recorded| {
@@ -118,7 +118,7 @@ fn conditions_words(
         channels: channels?,
         ..fitted.clone()
     };
-    let words = format!("the same channels under condition {}", condition + 1);
+    let words = format!("the same channels under {}", inputs.condition(condition));
     Some((record, words))
 }
 

@@ -21,6 +21,8 @@ pub struct Row {
     pub condition: usize,
     /// What of the records it is.
     pub part: Portion,
+    /// Whether the case holds it out: its condition, or that channel or part of a record.
+    pub held_out: bool,
     /// The gap.
     pub closed: Closed,
     /// Curves before, by channel.
@@ -47,14 +49,14 @@ pub enum Portion {
 }
 
 impl Portion {
-    /// In words, of a condition.
-    pub(crate) fn words(self, condition: usize) -> String {
+    /// In words, of a condition in words.
+    pub(crate) fn words(self, condition: &str) -> String {
         match self {
             Self::Fitted => "the cycles that were fitted".to_owned(),
             Self::Cycles => "the cycles that were held out".to_owned(),
             Self::Channels => "the channels that were held out".to_owned(),
             Self::Segment => "the part of the record that was held out".to_owned(),
-            Self::Condition => format!("condition {} of the case", condition + 1),
+            Self::Condition => condition.to_owned(),
             Self::LeftOut => "blocks of the record that are left out in turn".to_owned(),
         }
     }
@@ -222,6 +224,8 @@ pub(crate) async fn compare<L: Laboratory>(
             Some(Row {
                 condition: shown.record.condition,
                 part: shown.part,
+                held_out: shown.record.held_out
+                    || matches!(shown.part, Portion::Channels | Portion::Segment),
                 closed: closed(shown.record, &shown.alike, &before, &after),
                 before,
                 after,

@@ -19,6 +19,7 @@
 //! `ln p = -1/2 (r_B^T r_B + b^T M^-1 b + ln |A| - ln |M|)`
 //!
 //! The same data chose the effect, so that Markov's bound needs as many times more as effects were tried.
+use crate::inputs::Inputs;
 use crate::laboratory::Laboratory;
 use crate::linear::evidence::{deviation, log_determinant};
 use crate::linear::stack::stacked;
@@ -129,18 +130,24 @@ pub(crate) async fn scores<L: Laboratory>(
 
 /// Why a score is not enough for a name, if it is not: no record may be less likely by as much as the first of two
 /// bounds, and all of them together must be likelier by the second.
-pub(crate) fn unpredicted(id: &str, scores: &Scores, [alone, needed]: [f64; 2]) -> Option<String> {
+pub(crate) fn unpredicted(
+    id: &str,
+    scores: &Scores,
+    [alone, needed]: [f64; 2],
+    inputs: &Inputs,
+) -> Option<String> {
+    let words = |part: Portion, condition: usize| part.words(&inputs.condition(condition));
     if let Some((part, condition)) = scores.failed.first() {
         return Some(format!(
             "{id} does not run under {}",
-            part.words(*condition)
+            words(*part, *condition)
         ));
     }
     let worst = scores.records.iter().find(|one| one.nats < -alone);
     if let Some(worst) = worst {
         return Some(format!(
             "{id} explains the fitted cycles and predicts {} worse: with it they are {:.1} nats less likely",
-            worst.part.words(worst.condition),
+            words(worst.part, worst.condition),
             -worst.nats
         ));
     }
@@ -462,6 +469,24 @@ mod tests {
         assert!(claims <= 20, "{claims} of {sets}");
     }
 
+    /// A case of two conditions, and nothing else.
+    fn case() -> Inputs {
+        Inputs {
+            space: search::space::Space::new(&[]).unwrap(),
+            conditions: ["5rpm", "4rpm"].map(str::to_owned).to_vec(),
+            unknowns: Vec::new(),
+            records: Vec::new(),
+            library: Vec::new(),
+            start: None,
+            usual: protocol::job::Numerics::default(),
+            finer: Vec::new(),
+            entrance: "quick",
+            seed: 1,
+            thresholds: Thresholds::default(),
+            differences: false,
+        }
+    }
+
     fn said(cycles: f64, condition: f64, together: Option<f64>) -> Option<String> {
         let one = |(part, nats): (Portion, f64)| Prediction {
             condition: usize::from(part == Portion::Condition),
@@ -474,7 +499,7 @@ mod tests {
             together,
             failed: Vec::new(),
         };
-        unpredicted("slip", &scores, [3.0, 3.0])
+        unpredicted("slip", &scores, [3.0, 3.0], &case())
     }
 
     #[test]
@@ -486,12 +511,12 @@ mod tests {
             "{better}"
         );
         let worse = said(90.0, -3.1, Some(80.0)).unwrap();
-        assert!(worse.contains("condition 2 of the case worse"), "{worse}");
+        assert!(worse.contains("condition 4rpm worse"), "{worse}");
         assert!(
             said(1.0, 1.0, Some(f64::NAN)).is_some(),
             "no number is no evidence"
         );
-        let nothing = unpredicted("slip", &Scores::default(), [3.0, 3.0]).unwrap();
+        let nothing = unpredicted("slip", &Scores::default(), [3.0, 3.0], &case()).unwrap();
         assert!(
             nothing.contains("nothing that it could predict"),
             "{nothing}"
@@ -501,7 +526,7 @@ mod tests {
             ..Scores::default()
         };
         assert!(
-            unpredicted("slip", &gone, [3.0, 3.0])
+            unpredicted("slip", &gone, [3.0, 3.0], &case())
                 .unwrap()
                 .contains("does not run")
         );

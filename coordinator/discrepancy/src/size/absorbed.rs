@@ -77,13 +77,18 @@ fn measurement(suspect: &Suspect, fit: &Fit) -> String {
     let least = (0..axes.len())
         .map(|k| (without(k), k))
         .min_by(|(a, _), (b, _)| a.total_cmp(b));
-    let sensor = format!("a sensor at the {}", suspect.effect.joint.replace('_', " "));
+    let joint = suspect.effect.joint.replace('_', " ");
+    let sensor = if joint.is_empty() {
+        "a sensor where it acts".to_owned()
+    } else {
+        format!("a sensor at the {joint}")
+    };
     match least {
         Some((share, k)) if 1.0 - share >= SHOWS => format!(
             "{} known from a test of its own (then {:.0} % of it shows), or {sensor}",
             axes[k].unknown.name,
             100.0 * (1.0 - share)
         ),
-        _ => format!("{sensor}, or its resonance"),
+        _ => sensor,
     }
 }

@@ -58,12 +58,28 @@ pub(crate) fn estimates(rounds: &[Round], after: &Fit, metric: &Metric) -> Vec<E
 /// Sizes of an added effect are those of the final model, beside everything else that was added; of
 /// a rival, those of its own refit.
 fn estimate(round: &Round, id: &str, (after, metric): (&Fit, &Metric)) -> Option<Estimate> {
-    let place = |fit: &Fit| fit.model.added.iter().position(|e| e.id == id);
-    let refitted = round.refits.iter().find(|r| r.id == id);
-    let own = refitted.map(|refitted| &refitted.fit);
-    let fit = place(after).map_or(own, |_| Some(after))?;
-    let log_evidence = refitted.map_or_else(|| fit.log_evidence(), |own| own.log_evidence);
-    let position = place(fit)?;
+    if after.model.added.iter().any(|own| own.id == id) {
+        let refitted = round.refits.iter().find(|r| r.id == id);
+        let log_evidence = refitted.map_or_else(|| after.log_evidence(), |own| own.log_evidence);
+        sized(round, id, (after, metric), log_evidence)
+    } else {
+        refitted(round, id, metric)
+    }
+}
+
+/// Sizes of a suspect by its own refit.
+pub(crate) fn refitted(round: &Round, id: &str, metric: &Metric) -> Option<Estimate> {
+    let own = round.refits.iter().find(|r| r.id == id)?;
+    sized(round, id, (&own.fit, metric), own.log_evidence)
+}
+
+fn sized(
+    round: &Round,
+    id: &str,
+    (fit, metric): (&Fit, &Metric),
+    log_evidence: f64,
+) -> Option<Estimate> {
+    let position = fit.model.added.iter().position(|e| e.id == id)?;
     let effect = &fit.model.added[position];
     let first = fit.model.first_of(position);
     let spread = Spread::of(metric, fit);

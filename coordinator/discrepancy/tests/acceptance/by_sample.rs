@@ -393,6 +393,7 @@ fn diagnosed(records: Vec<Record>) -> Diagnosis {
 /// The same without some effects.
 fn diagnosed_without(records: Vec<Record>, without: &[&str]) -> Diagnosis {
     let inputs = Inputs {
+        conditions: Vec::new(),
         differences: false,
         space: space(),
         unknowns: unknowns(),

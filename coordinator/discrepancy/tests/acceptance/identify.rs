@@ -128,6 +128,7 @@ const TRUTH: [f64; 6] = [3.0, -2.0, 1.0, 1.0, 3e4, 3e-6];
 fn seen(seed: u64, unknowns: Vec<Unknown>) -> Identified {
     let space = Space::new(&unknowns).expect("ordered");
     let inputs = Inputs {
+        conditions: Vec::new(),
         differences: false,
         start: Some(vec![0.0; space.dimension()]),
         space,
@@ -334,6 +335,7 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f6
         .map(|name| Unknown::new(name, "N", Scale::Linear, 0.0, [-20.0, 20.0]))
         .to_vec();
     let inputs = Inputs {
+        conditions: Vec::new(),
         differences: false,
         start: Some(vec![0.0; 2]),
         space: Space::new(&unknowns).expect("ordered"),

@@ -92,6 +92,7 @@ fn diagnosed(ids: &[&str], amounts: [f64; 2]) -> Diagnosis {
         effect(id, id, Place::Dynamics, sizes)
     };
     let inputs = Inputs {
+        conditions: Vec::new(),
         differences: false,
         space: Space::new(&unknowns).expect("ordered"),
         unknowns,

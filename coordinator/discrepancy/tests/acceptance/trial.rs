@@ -78,6 +78,7 @@ pub(crate) fn diagnosed(truth: &Truth, setup: &Setup) -> (Diagnosis, u64) {
         }
     }
     let inputs = Inputs {
+        conditions: Vec::new(),
         differences: setup.differences,
         space: space(),
         unknowns: Vec::new(),

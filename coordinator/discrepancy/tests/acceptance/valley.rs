@@ -187,6 +187,7 @@ fn at(genes: [f64; 3]) -> Point {
 /// A diagnosis with looks for another valley from that misfit on.
 fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
     let inputs = Inputs {
+        conditions: Vec::new(),
         differences: false,
         space: space(),
         unknowns: Vec::new(),

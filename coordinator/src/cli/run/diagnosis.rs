@@ -125,6 +125,7 @@ pub(super) fn inputs<S>(
         .collect();
     let (usual, finer) = kind::of(case).numerics(case, thresholds)?;
     Ok(Inputs {
+        conditions: case.conditions.iter().map(|own| own.name.clone()).collect(),
         unknowns: case.unknowns.clone(),
         start: manifest.start_genes().map(|genes| space.point(genes)),
         space,

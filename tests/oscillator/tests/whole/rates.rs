@@ -40,6 +40,7 @@ fn diagnosed(rig: &Rig, cycles: usize) -> Diagnosis {
     let case = loaded.case;
     let records = loaded.cycles.iter().map(|record| record.part(0..cycles));
     let inputs = Inputs {
+        conditions: case.conditions.iter().map(|own| own.name.clone()).collect(),
         space: Space::new(&case.unknowns).unwrap(),
         unknowns: case.unknowns.clone(),
         records: records.collect(),

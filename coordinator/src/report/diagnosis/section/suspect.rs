@@ -2,6 +2,7 @@
 use crate::report::diagnosis::subject::Subject;
 use crate::report::diagnosis::{table as tables, words};
 use crate::report::document::{Block, Section};
+use discrepancy::diagnose::Round;
 
 pub(super) fn section(subject: &Subject<'_>) -> Section {
     let rounds = &subject.diagnosis().rounds;
@@ -16,6 +17,15 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
     }
 }
 
+/// Whether two rounds are one, of which each has another effect.
+fn same(one: &Round, other: &Round) -> bool {
+    let statistics = |round: &Round| -> Vec<u64> {
+        let all = round.suspects.iter();
+        all.map(|own| own.statistic().to_bits()).collect()
+    };
+    one.together && other.together && statistics(one) == statistics(other)
+}
+
 fn blocks(subject: &Subject<'_>) -> Vec<Block> {
     let diagnosis = subject.diagnosis();
     let mut blocks = vec![Block::Text(
@@ -24,8 +34,13 @@ fn blocks(subject: &Subject<'_>) -> Vec<Block> {
          then fitted for real, with every gene free."
             .to_owned(),
     )];
+    let mut before: Option<&Round> = None;
     for (number, round) in (1..).zip(&diagnosis.rounds) {
-        blocks.push(Block::Table(tables::suspects(number, round)));
+        // several effects that were found together stand in one table
+        if before.is_none_or(|before| !same(before, round)) {
+            blocks.push(Block::Table(tables::suspects(number, round)));
+        }
+        before = Some(round);
         blocks.extend(round.reason.as_ref().map(|reason| {
             Block::Text(format!(
                 "No effect of this round is in the answer: {reason}."

@@ -3,7 +3,6 @@ use crate::report::diagnosis::subject::Subject;
 use crate::report::diagnosis::words;
 use crate::report::document::{Block, Section};
 use crate::report::words::SYNTHETIC;
-use discrepancy::verdict::Verdict;
 
 pub(super) fn section(subject: &Subject<'_>) -> Section {
     let diagnosis = subject.diagnosis();
@@ -20,12 +19,6 @@ pub(super) fn section(subject: &Subject<'_>) -> Section {
             Block::Heading("How sure".to_owned(), ""),
             Block::List(grounds),
         ]);
-    }
-    if matches!(
-        diagnosis.verdict,
-        Verdict::NothingDetected | Verdict::Unresolved
-    ) {
-        blocks.extend(words::reach(subject).map(Block::Text));
     }
     blocks.extend([
         Block::Heading("What to do next".to_owned(), ""),

@@ -4,7 +4,7 @@ use super::value::{equals, interval, nats, p_value};
 use crate::report::diagnosis::subject::Subject;
 use crate::report::number::{figure, percent, quantity};
 use crate::report::words::condition_name;
-use discrepancy::diagnose::{Force, Limit};
+use discrepancy::diagnose::Force;
 use discrepancy::proof::compare::{Portion, Row};
 use discrepancy::record::noise::Known;
 
@@ -126,21 +126,4 @@ const fn part(part: Portion) -> &'static str {
         Portion::Condition => "another condition, which took no part",
         Portion::LeftOut => "blocks of the record, left out in turn",
     }
-}
-
-/// How many of the library's sizes would have been seen at their usual size.
-pub(in crate::report::diagnosis) fn reach(subject: &Subject<'_>) -> Option<String> {
-    let limits = &subject.diagnosis().limits;
-    let usual = |limit: &&Limit| {
-        let known = subject.parameter(&limit.id, &limit.parameter);
-        known.is_some_and(|known| limit.size <= known.scale)
-    };
-    let seen = limits.iter().filter(usual).count();
-    (!limits.is_empty()).then(|| {
-        format!(
-            "Of {} sizes in the library, {seen} would have been seen at the size that is usual on \
-             machines of this kind.",
-            limits.len()
-        )
-    })
 }

@@ -8,7 +8,7 @@ mod value;
 mod verdict;
 
 pub(super) use effect::{effects, generic};
-pub(super) use ground::{confidence, reach, role};
+pub(super) use ground::{confidence, role};
 pub(super) use next::next;
 pub(super) use value::{equals, interval, nats, p_value};
 pub(super) use verdict::{outcome, verdict};

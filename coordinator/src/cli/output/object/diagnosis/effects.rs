@@ -40,6 +40,8 @@ struct SuspectOutput {
     p_value: f64,
     statistic: f64,
     absorbed: Option<f64>,
+    /// Its numbers by its own refit, named or not; null where it was not refitted.
+    parameters: Option<BTreeMap<String, ParameterOutput>>,
     ln_evidence: Option<f64>,
 }
 
@@ -56,16 +58,18 @@ pub(super) struct ForceOutput {
     gap: GapOutput,
 }
 
+/// A parameter by its name.
+fn parameter(own: &ParameterEstimate) -> (String, ParameterOutput) {
+    let output = ParameterOutput {
+        value: own.value,
+        unit: own.unit.clone(),
+        ci95: own.interval,
+    };
+    (own.name.clone(), output)
+}
+
 /// An effect of the answer.
 pub(super) fn effect(diagnosis: &Diagnosis, found: &Estimate) -> EffectOutput {
-    let parameter = |own: &ParameterEstimate| {
-        let output = ParameterOutput {
-            value: own.value,
-            unit: own.unit.clone(),
-            ci95: own.interval,
-        };
-        (own.name.clone(), output)
-    };
     EffectOutput {
         id: found.id.clone(),
         title: found.title.clone(),
@@ -112,6 +116,11 @@ pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
                 p_value: suspect.p_value(),
                 statistic: suspect.statistic(),
                 absorbed: suspect.score.as_ref().map(|score| score.absorbed),
+                parameters: round
+                    .sizes
+                    .iter()
+                    .find(|own| own.id == suspect.effect.id)
+                    .map(|own| own.parameters.iter().map(parameter).collect()),
                 ln_evidence: round
                     .refits
                     .iter()

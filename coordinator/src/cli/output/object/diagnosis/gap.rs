@@ -38,11 +38,10 @@ pub(super) fn predictions(case: &Case, scores: &[Prediction]) -> Vec<PredictionO
 #[derive(Debug, Default, Serialize)]
 pub(super) struct GapOutput {
     calibration: Option<Closed>,
+    /// What the case holds out: a condition, a channel or a part of its record; else the cycles that were held out.
     held_out: Option<Closed>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    held_out_channels: Option<Closed>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    held_out_segment: Option<Closed>,
+    held_out_cycles: Option<Closed>,
     other_condition: Option<Closed>,
 }
 
@@ -52,11 +51,12 @@ pub(super) fn gap(rows: &[Row]) -> GapOutput {
         let row = rows.iter().find(|row| row.part == part)?;
         Some(row.closed)
     };
+    let cycles = one(Portion::Cycles);
+    let marked = rows.iter().find(|row| row.held_out).map(|row| row.closed);
     GapOutput {
         calibration: one(Portion::Fitted),
-        held_out: one(Portion::Cycles),
-        held_out_channels: one(Portion::Channels),
-        held_out_segment: one(Portion::Segment),
+        held_out: marked.or(cycles),
+        held_out_cycles: marked.and(cycles),
         other_condition: one(Portion::Condition),
     }
 }

@@ -38,6 +38,7 @@ fn row(part: Portion, closed: f64) -> Row {
     Row {
         condition: usize::from(part == Portion::Condition),
         part,
+        held_out: false,
         closed: Closed {
             before: 0.04,
             after: 0.04 * (1.0 - closed),
@@ -87,6 +88,9 @@ fn full(verdict: Verdict) -> Diagnosis {
         reason: None,
         effects: set.iter().map(|id| estimate(id)).collect(),
         rounds: vec![Round {
+            sizes: Vec::new(),
+            ranked: 1,
+            together: false,
             suspects: Vec::new(),
             generics: Vec::new(),
             refits: Vec::new(),
