@@ -27,6 +27,7 @@ const ARROWS: &[(&str, &str)] = &[
     ("oscillator", "search"),
     ("oscillator", "worker"),
     ("oscillator", "coordinator"),
+    ("oscillator", "discrepancy"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),

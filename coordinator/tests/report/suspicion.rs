@@ -289,7 +289,6 @@ fn round(case: &Case, library: &[EffectDescriptor]) -> Round {
         log_evidence,
     };
     Round {
-        sizes: Vec::new(),
         ranked: 1,
         together: false,
         suspects,

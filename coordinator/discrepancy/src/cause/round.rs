@@ -3,7 +3,6 @@ use crate::cause::refit::Refitted;
 use crate::cause::suspect::Suspect;
 use crate::linear::score::{chi_squared_tail, family_wise};
 use crate::model::fit::Fit;
-use crate::size::estimate::Estimate;
 
 /// One round of suspicion.
 #[derive(Clone, Debug)]
@@ -24,8 +23,6 @@ pub struct Round {
     pub set: Vec<String>,
     /// Which effect was added, if any.
     pub added: Option<String>,
-    /// Sizes of the suspects that were refitted, each by its own refit.
-    pub sizes: Vec<Estimate>,
     /// How many names were ranked by what they predict where that gave the place of the added one to another; else 1.
     pub ranked: usize,
     /// Whether the added effect is one of several that were found together.
@@ -51,7 +48,6 @@ impl Round {
             p_value: 1.0,
             set: Vec::new(),
             added: None,
-            sizes: Vec::new(),
             ranked: 1,
             together: false,
             reason: None,

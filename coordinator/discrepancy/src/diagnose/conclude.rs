@@ -18,7 +18,7 @@ use crate::proof::compare::{Shown, compare};
 use crate::proof::predictive::{scores, unpredicted};
 use crate::record::metric::Metric;
 use crate::record::noise::Known;
-use crate::size::estimate::{estimates, refitted};
+use crate::size::estimate::{Estimate, estimates, refitted};
 use crate::size::force::Force;
 use crate::size::never_exact::never_exact;
 use crate::size::spread::{Spread, coloured};
@@ -105,18 +105,16 @@ pub(crate) async fn conclude<L: Laboratory>(
     for limit in &mut diagnosis.limits {
         limit.size *= ratio;
     }
-    size_suspects(&mut diagnosis.rounds, &base.on.metric);
+    let rounds = diagnosis.rounds.iter();
+    diagnosis.sizes = rounds.map(|round| sizes(round, &base.on.metric)).collect();
     diagnosis.after = Some(after);
     Ok(())
 }
 
-/// Gives every suspect that was refitted its size by its own refit, named or not.
-fn size_suspects(rounds: &mut [Round], metric: &Metric) {
-    for round in rounds {
-        let ids = round.refits.iter().map(|own| own.id.clone());
-        let sizes = ids.filter_map(|id| refitted(round, &id, metric));
-        round.sizes = sizes.collect();
-    }
+/// Sizes of every suspect that was refitted in a round, by its own refit, named or not.
+fn sizes(round: &Round, metric: &Metric) -> Vec<Estimate> {
+    let ids = round.refits.iter().map(|own| &own.id);
+    ids.filter_map(|id| refitted(round, id, metric)).collect()
 }
 
 /// What the tests stand on.

@@ -28,6 +28,8 @@ pub struct Diagnosis {
     pub effects: Vec<Estimate>,
     /// The rounds.
     pub rounds: Vec<Round>,
+    /// Sizes of the suspects that were refitted, each by its own refit, round by round.
+    pub sizes: Vec<Vec<Estimate>>,
     /// Where the recalibrated model and the record part.
     pub whereabouts: Option<Where>,
     /// The numerical check of the recalibrated model.
@@ -88,6 +90,7 @@ impl Diagnosis {
             reason: Some(reason.to_owned()),
             effects: Vec::new(),
             rounds: Vec::new(),
+            sizes: Vec::new(),
             whereabouts: None,
             preflight: None,
             preflight_after: None,

@@ -1,6 +1,6 @@
 //! Effects, suspects and forces with their sizes and tests.
 use super::gap::{GapOutput, gap};
-use discrepancy::diagnose::{Diagnosis, Estimate, Force, ParameterEstimate};
+use discrepancy::diagnose::{Diagnosis, Estimate, Force, ParameterEstimate, Round};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -102,7 +102,7 @@ pub(super) fn force(found: &Force) -> ForceOutput {
 
 /// All rounds, in order.
 pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
-    let round = |round: &discrepancy::diagnose::Round| RoundOutput {
+    let round = |(at, round): (usize, &Round)| RoundOutput {
         p_value: round.p_value,
         dispersion: round.dispersion,
         added: round.added.clone(),
@@ -116,9 +116,11 @@ pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
                 p_value: suspect.p_value(),
                 statistic: suspect.statistic(),
                 absorbed: suspect.score.as_ref().map(|score| score.absorbed),
-                parameters: round
+                parameters: diagnosis
                     .sizes
-                    .iter()
+                    .get(at)
+                    .into_iter()
+                    .flatten()
                     .find(|own| own.id == suspect.effect.id)
                     .map(|own| own.parameters.iter().map(parameter).collect()),
                 ln_evidence: round
@@ -129,5 +131,5 @@ pub(super) fn rounds(diagnosis: &Diagnosis) -> Vec<RoundOutput> {
             })
             .collect(),
     };
-    diagnosis.rounds.iter().map(round).collect()
+    diagnosis.rounds.iter().enumerate().map(round).collect()
 }

@@ -88,7 +88,6 @@ fn full(verdict: Verdict) -> Diagnosis {
         reason: None,
         effects: set.iter().map(|id| estimate(id)).collect(),
         rounds: vec![Round {
-            sizes: Vec::new(),
             ranked: 1,
             together: false,
             suspects: Vec::new(),
