@@ -5,9 +5,11 @@
 //! least 1 where the noise was seen or stated, for then its variance is known.
 //!
 //! What is left may be coloured: a law of the wrong shape leaves slow waves, and unknowns that act slowly are known less
-//! well than as many independent entries would have it. With the power `S` of the residual, wave by wave, the covariance
-//! is the sandwich `A^-1 (J^T S J / s^4 + L) A^-1`, `A = J^T J / s^2 + L` (White 1980; in waves a stationary error is
-//! independent, so that its autocovariance needs no estimate). No variance falls below the one for white residuals.
+//! well than as many independent entries would have it. With the power `S` of the residual, wave by wave and times
+//! `n / (n - p)`, the covariance is the sandwich `A^-1 (J^T S J / s^4 + L) A^-1`, `A = J^T J / s^2 + L` (White 1980, HC1
+//! of `MacKinnon` & White 1985; in waves a stationary error is independent, so that its autocovariance needs no estimate).
+//! No variance falls below the one for white residuals. What stands at a bound is known as well as
+//! that to all others, and has the variance that it would have if it alone were free.
 use crate::linear::score::student;
 use crate::linear::tangent::free;
 use crate::model::fit::Fit;
@@ -17,7 +19,7 @@ use crate::record::metric::Metric;
 use crate::record::noise::Known;
 use crate::record::spectrum::Spectra;
 use crate::thresholds::COLOURED;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// How far a record leaves the unknowns of a fit open.
 #[derive(Clone, Debug)]
@@ -48,29 +50,11 @@ impl Spread {
         } else {
             noise
         };
-        let jacobian = &fit.search.best().jacobian;
-        let information = jacobian.tr_mul(jacobian) / dispersion;
-        let prior = DMatrix::from_diagonal(&precisions(fit));
-        let unit = DVector::from_element(fit.x().len(), 1.0);
-        let white = (&information + &prior).cholesky().map(|a| a.inverse());
-        let coloured = meat(metric, fit, dispersion);
-        let (covariance, growth) = match (white, coloured) {
-            (Some(white), Some(meat)) => {
-                let wide = &white * (meat / (dispersion * dispersion) + prior) * &white;
-                let growth = DVector::from_fn(unit.len(), |k, _| {
-                    (wide[(k, k)] / white[(k, k)]).max(1.0).sqrt()
-                });
-                // correlations of the sandwich, variances of whichever is wider
-                let scale = DVector::from_fn(unit.len(), |k, _| {
-                    (white[(k, k)] / wide[(k, k)]).max(1.0).sqrt()
-                });
-                let wide = DMatrix::from_fn(unit.len(), unit.len(), |i, j| {
-                    wide[(i, j)] * scale[i] * scale[j]
-                });
-                (Some(wide), growth)
-            }
-            (white, _) => (white, unit),
-        };
+        let count = fit.x().len();
+        let (covariance, growth) = covariance(metric, fit, dispersion).map_or_else(
+            || (None, DVector::from_element(count, 1.0)),
+            |(covariance, growth)| (Some(covariance), growth),
+        );
         Self {
             dispersion,
             quantile: student(behind),
@@ -101,49 +85,106 @@ pub fn coloured(growth: f64) -> String {
     )
 }
 
-/// Precisions of what is known of a fit's unknowns beforehand.
-fn precisions(fit: &Fit) -> DVector<f64> {
-    let each = fit.variables().iter();
-    let each = each.map(|v| v.prior.map_or(0.0, |p| 1.0 / (p.deviation * p.deviation)));
-    DVector::from_iterator(fit.x().len(), each)
+/// Covariance of a fit's unknowns under a dispersion, and by how much the colour of what is left widens each standard
+/// deviation; nothing where one of them is left open.
+fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
+    let at = fit.search.best();
+    let used = free(at, fit.variables());
+    let jacobian = at.jacobian.select_columns(&used);
+    let mut prior = DMatrix::zeros(used.len(), used.len());
+    for (i, &k) in used.iter().enumerate() {
+        let own = fit.variables()[k].prior;
+        prior[(i, i)] = own.map_or(0.0, |p| 1.0 / (p.deviation * p.deviation));
+    }
+    let information = jacobian.tr_mul(&jacobian) / dispersion + &prior;
+    let white = if used.is_empty() {
+        information
+    } else {
+        information.cholesky()?.inverse()
+    };
+    let mut own = white.clone();
+    let mut growth = DVector::from_element(used.len(), 1.0);
+    if let Some(meat) = meat(metric, fit, &jacobian, dispersion) {
+        own = &white * (meat / (dispersion * dispersion) + prior) * &white;
+        for k in 0..used.len() {
+            let wider = own[(k, k)] / white[(k, k)];
+            growth[k] = wider.max(1.0).sqrt();
+            // its correlations, and no variance below that for white residuals
+            let scale = (1.0 / wider).max(1.0).sqrt();
+            own.row_mut(k).scale_mut(scale);
+            own.column_mut(k).scale_mut(scale);
+        }
+    }
+    let count = fit.x().len();
+    let mut whole = DMatrix::zeros(count, count);
+    let mut growths = DVector::from_element(count, 1.0);
+    let fixed = (0..count).filter(|k| !used.contains(k));
+    for k in fixed {
+        whole[(k, k)] = alone(fit, &used, k, dispersion);
+    }
+    for (i, &k) in used.iter().enumerate() {
+        growths[k] = growth[i];
+        for (j, &l) in used.iter().enumerate() {
+            whole[(k, l)] = own[(i, j)];
+        }
+    }
+    Some((whole, growths))
 }
 
-/// `J^T S J` with the power of what a fit leaves, wave by wave; none where that is white.
-fn meat(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<DMatrix<f64>> {
+/// Variance of an unknown beside those that are free, if it were free too; infinite where it is open.
+fn alone(fit: &Fit, used: &[usize], k: usize, dispersion: f64) -> f64 {
+    let all: Vec<usize> = used.iter().copied().chain([k]).collect();
+    let jacobian = fit.search.best().jacobian.select_columns(&all);
+    let mut information = jacobian.tr_mul(&jacobian) / dispersion;
+    for (i, &k) in all.iter().enumerate() {
+        let own = fit.variables()[k].prior;
+        information[(i, i)] += own.map_or(0.0, |p| 1.0 / (p.deviation * p.deviation));
+    }
+    let inverse = information.cholesky().map(|own| own.inverse());
+    inverse.map_or(f64::INFINITY, |own| own[(used.len(), used.len())])
+}
+
+/// `J^T S J` with the power of what a fit leaves, wave by wave, for columns of its Jacobian; none where that is white.
+fn meat(
+    metric: &Metric,
+    fit: &Fit,
+    jacobian: &DMatrix<f64>,
+    dispersion: f64,
+) -> Option<DMatrix<f64>> {
+    let left = fit.search.settled_residual();
     let powers = order::powers(&Residual {
-        left: &fit.search.settled_residual(),
+        left: &left,
         metric,
         tangent: &fit.tangent(),
     });
     if whiteness::p_value(&powers, metric.freedom()) >= COLOURED {
         return None;
     }
-    let levels: Vec<Vec<f64>> = powers.iter().map(|row| smoothed(row)).collect();
-    let jacobian = &fit.search.best().jacobian;
-    let used = free(fit.search.best(), fit.variables());
-    let waves: Vec<Spectra> = used
-        .iter()
-        .map(|&k| metric.waves(&jacobian.column(k).into_owned()))
-        .collect();
-    let count = fit.x().len();
+    let correction = fit.entries() as f64 / fit.freedom();
+    let level = |waves: &Vec<Complex<f64>>| {
+        let powers = waves.iter().map(|wave| 0.5 * correction * wave.norm_sqr());
+        smoothed(&powers.collect::<Vec<f64>>())
+    };
+    let levels: Vec<Vec<f64>> = metric.waves(&left).iter().map(level).collect();
+    let columns = jacobian.column_iter();
+    let waves: Vec<Spectra> = columns.map(|own| metric.waves(&own.into_owned())).collect();
     // what lies in no wave counts by the dispersion
     let mut meat = jacobian.tr_mul(jacobian) * dispersion;
-    for (i, a) in used.iter().zip(&waves) {
-        for (j, b) in used.iter().zip(&waves) {
+    for (i, a) in waves.iter().enumerate() {
+        for (j, b) in waves.iter().enumerate() {
             let channels = a.iter().zip(b).zip(&levels);
             let excess = channels.map(|((a, b), levels)| {
                 let each = a.iter().zip(b).zip(levels);
                 each.map(|((a, b), level)| (level - dispersion) * (a.conj() * b).re)
                     .sum::<f64>()
             });
-            meat[(*i, *j)] += excess.sum::<f64>();
+            meat[(i, j)] += excess.sum::<f64>();
         }
     }
-    debug_assert_eq!(meat.nrows(), count);
     Some(meat)
 }
 
-/// Powers over those of noise, each the mean of those about it: narrow at the slow waves, where a law of the wrong shape
+/// Powers, each the mean of those about it: narrow at the slow waves, where a law of the wrong shape
 /// leaves most.
 fn smoothed(powers: &[f64]) -> Vec<f64> {
     let mean = |k: usize| {

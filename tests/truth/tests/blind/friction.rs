@@ -77,7 +77,7 @@ fn a_strong_friction_is_named_added_told_again_and_simulated_with_the_same_numbe
     assert_eq!(whole["effects"][0]["id"], "pivot_friction", "{whole}");
     let table = trial.open(&verdict);
     eprintln!("{table}");
-    assert!(table.contains("| single, all: first name right |  | 1/1 = 100 %"));
+    assert!(table.contains("| single: first name right |  | 1/1 = 100 %"));
     assert!(table.contains("| false names of all names | <= 10 % | 0/1 = 0 %"));
 
     // the case has what was found, once, and the run still knows its case
