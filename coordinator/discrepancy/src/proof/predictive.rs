@@ -352,6 +352,7 @@ mod tests {
     use super::*;
     use crate::proof::scale::Scale;
     use crate::record::measured::{Record, Stated, tests::recorded};
+    use protocol::case::Unknown;
     use search::least_squares::Prior;
 
     fn variable(deviation: f64, bounds: [f64; 2]) -> Variable {
@@ -472,7 +473,14 @@ mod tests {
     /// A case of two conditions, and nothing else.
     fn case() -> Inputs {
         Inputs {
-            space: search::space::Space::new(&[]).unwrap(),
+            space: search::space::Space::new(&[Unknown::new(
+                "mass",
+                "kg",
+                protocol::case::Scale::Linear,
+                1.0,
+                [0.0, 2.0],
+            )])
+            .unwrap(),
             conditions: ["5rpm", "4rpm"].map(str::to_owned).to_vec(),
             unknowns: Vec::new(),
             records: Vec::new(),
