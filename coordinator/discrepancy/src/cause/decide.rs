@@ -5,11 +5,10 @@
 use crate::cause::round::Round;
 use crate::cause::together::Together;
 use crate::ground::base::Base;
-use crate::linear::evidence::ambiguity_set;
 use crate::model::fit::Fit;
-use crate::thresholds::{SET, Thresholds};
+use crate::thresholds::Thresholds;
 
-/// Whether the best refit is believed; then it is the next model.
+/// Whether the best refit is believed; then it is the next model. Who may stand in its place is asked when all is found.
 pub(crate) fn decide(
     round: &mut Round,
     current: &Fit,
@@ -23,8 +22,7 @@ pub(crate) fn decide(
     }
     let lengths = [&base.fit, current, &best.fit].map(Fit::chi_squared);
     // beside what was found: what leaves no more than noise lacks nothing that matters
-    let parameters = current.tangent().parameters();
-    let adequate = base.is_noise(lengths[1], parameters, thresholds.adequacy);
+    let adequate = base.explains(current, thresholds.adequacy);
     let removed = removed(lengths, base.noise());
     if adequate && removed < thresholds.practical {
         round.reason = Some(format!(
@@ -35,15 +33,14 @@ pub(crate) fn decide(
         ));
         return None;
     }
-    let evidences: Vec<f64> = round.refits.iter().map(|r| r.log_evidence).collect();
-    let equal = ambiguity_set(&evidences, round.dispersion, SET).into_iter();
-    round.set = equal.map(|i| round.refits[i].id.clone()).collect();
-    round.added = Some(best.id.clone());
-    Some(best.fit.clone())
+    let (id, fit) = (best.id.clone(), best.fit.clone());
+    round.set = vec![id.clone()];
+    round.added = Some(id);
+    Some(fit)
 }
 
 /// Whether several effects at once are believed instead of the best one alone: the round becomes that of the
-/// first, and once more itself for each of the others. Who may stand in their places is asked beside the others later.
+/// first, and once more itself for each of the others.
 pub(crate) fn decide_together(
     round: &mut Round,
     both: &Together,

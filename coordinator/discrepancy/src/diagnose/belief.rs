@@ -81,8 +81,8 @@ async fn likeliest_together<L: Laboratory>(
     let thresholds = &session.inputs.thresholds;
     let (base, adequacy) = (session.base, thresholds.adequacy);
     let most = thresholds.rounds.saturating_sub(current.model.added.len());
-    let enough = |fit: &Fit| base.is_noise(fit.chi_squared(), fit.tangent().parameters(), adequacy);
-    let single = round.refits.iter().any(|refit| enough(&refit.fit));
+    let mut refits = round.refits.iter();
+    let single = refits.any(|refit| base.explains(&refit.fit, adequacy));
     if most < 2 || (!challenged && (single || round.refits.is_empty())) {
         return Ok(None);
     }

@@ -58,8 +58,7 @@ pub(crate) async fn conclude<L: Laboratory>(
         diagnosis.wander_after = wander(&mut experiments, &after, inputs.others()).await?;
     }
     let thresholds = &inputs.thresholds;
-    let (chi_squared, parameters) = (after.chi_squared(), after.tangent().parameters());
-    let misfit = !base.is_noise(chi_squared, parameters, thresholds.adequacy);
+    let misfit = !base.explains(&after, thresholds.adequacy);
     let rejection = Rejection {
         names: diagnosis
             .rounds
@@ -123,11 +122,11 @@ fn ground<L>(session: &Session<'_, L>, claims: bool, diagnosis: &Diagnosis) -> G
     let checked = base.preflight.is_some() || diagnosis.preflight_after.is_some();
     if claims && !checked {
         Ground::Unsound
-    } else if base.known == Known::Guessed {
+    } else if base.known() == Known::Guessed {
         Ground::NoiseUnknown
     } else if inputs.considered().all(|effect| effect.generic) {
         Ground::NothingConsidered
-    } else if base.known == Known::Stated {
+    } else if base.known() == Known::Stated {
         Ground::NoiseStated
     } else {
         Ground::Firm
@@ -147,28 +146,24 @@ async fn predict<L: Laboratory>(
     if added.is_empty() {
         return Ok(None);
     }
+    let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
+    let ids = ids.join(" with ");
     if !session.lab.may(Stage::Show) {
         return Ok(Some(format!(
-            "{} explains what was fitted, and the budget for showing it elsewhere is used up",
-            added
-                .iter()
-                .map(|own| &*own.id)
-                .collect::<Vec<_>>()
-                .join(" with ")
+            "{ids} explains what was fitted, and the budget for showing it elsewhere is used up"
         )));
     }
     let mut experiments = session.experiments(Stage::Show);
     let whole = scores(&mut experiments, shown, [answer, &base.fit]).await?;
     diagnosis.prediction.clone_from(&whole.records);
-    let ids: Vec<&str> = added.iter().map(|own| &*own.id).collect();
     let tried = diagnosis.rounds.first().map_or(1, |r| r.suspects.len());
     // a name that what took no part has chosen needs as many times more as it chose from
-    let mut rounds = diagnosis.rounds.iter();
-    let kept = rounds.by_ref().filter(|round| round.added.is_some());
+    let rounds = diagnosis.rounds.iter();
+    let kept = rounds.filter(|round| round.added.is_some());
     let chosen: f64 = kept.map(|round| libm::log(round.ranked as f64)).sum();
     let needed = whole.needed(thresholds, added.len(), tried) + chosen;
     Ok(unpredicted(
-        &ids.join(" with "),
+        &ids,
         &whole,
         [thresholds.prediction, needed],
         session.inputs,

@@ -19,7 +19,7 @@ pub(crate) async fn completed<L: Laboratory>(
     let base = session.base;
     let mut record = base.on.record.clone();
     let lacks = record.channels.iter().any(|own| own.correlation.is_none());
-    if base.known != Known::Stated || !lacks {
+    if base.known() != Known::Stated || !lacks {
         return Ok(None);
     }
     let named: Vec<_> = session.inputs.considered().filter(|e| !e.generic).collect();

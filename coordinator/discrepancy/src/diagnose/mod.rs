@@ -100,7 +100,7 @@ async fn within<L: Laboratory>(lab: &mut L, inputs: &Inputs) -> Result<Diagnosis
     let mut diagnosis = Diagnosis {
         reason: None,
         whereabouts: Some(whereabouts::look(&mut session).await?),
-        noise: base.known,
+        noise: base.known(),
         preflight: base.preflight.clone(),
         notes: base.notes.clone(),
         before: Some(base.fit.clone()),

@@ -25,7 +25,7 @@ pub(crate) struct Rejection {
 /// What is left and is no noise, in words.
 pub(crate) fn left(base: &Base, after: &Fit) -> String {
     let ratio = after.chi_squared() / base.noise();
-    let assumed = !base.known.is_seen();
+    let assumed = !base.known().is_seen();
     if assumed && ratio < 1.0 {
         format!("what is left is only {ratio:.2} times the assumed noise, which is no such noise")
     } else if assumed {

@@ -10,6 +10,7 @@ use crate::diagnose::diagnosis::Diagnosis;
 use crate::ground::believed::believed;
 use crate::ground::session::Session;
 use crate::laboratory::{Laboratory, Stage};
+use crate::linear::evidence::ambiguity_set;
 use crate::linear::isolability::likeness;
 use crate::model::fit::Fit;
 use crate::proof::compare::{Portion, Shown};
@@ -44,12 +45,13 @@ pub(crate) async fn rank<L: Laboratory>(
             continue;
         };
         let mut ranked = merits(session, (&answer, position), shown, &diagnosis.rounds[at]).await?;
-        let best = ranked.first().map_or(0.0, |first| first.merit.max(0.0));
-        let count = ranked.len() + 1;
-        ranked.retain(|own| best - own.merit < SET);
-        let mut set: Vec<(f64, String)> = vec![(0.0, added.clone())];
-        set.retain(|(merit, _)| best - merit < SET);
-        set.extend(ranked.iter().map(|own| (own.merit, own.id.clone())));
+        // the answer as it is has merit 0, and stands before what has as much
+        let merits = std::iter::once(0.0).chain(ranked.iter().map(|own| own.merit));
+        let names = std::iter::once(&added).chain(ranked.iter().map(|own| &own.id));
+        let (merits, names): (Vec<f64>, Vec<&String>) = merits.zip(names).unzip();
+        let places = ambiguity_set(&merits, 1.0, SET);
+        let mut set: Vec<String> = places.iter().map(|k| names[*k].clone()).collect();
+        let count = merits.len();
         let exchanged = match ranked.first().filter(|own| own.merit > 0.0) {
             Some(own) if carries(session, (&answer, position), &own.fit).await? => {
                 Some(ranked.swap_remove(0))
@@ -57,12 +59,11 @@ pub(crate) async fn rank<L: Laboratory>(
             _ => None,
         };
         // what stays in its place is in the set, whatever predicts better and is not believed
-        if exchanged.is_none() && set.iter().all(|(_, id)| *id != added) {
-            set.push((0.0, added));
+        if exchanged.is_none() && !set.contains(&added) {
+            set.push(added);
         }
-        set.sort_by(|a, b| b.0.total_cmp(&a.0));
         let round = &mut diagnosis.rounds[at];
-        round.set = set.into_iter().map(|(_, id)| id).collect();
+        round.set = set;
         if let Some(own) = exchanged {
             round.ranked = count;
             round.added = Some(own.id);

@@ -14,8 +14,6 @@ pub(crate) struct Base {
     pub(crate) fit: Fit,
     /// Its numerical check; nothing where no finer model completes.
     pub(crate) preflight: Option<Preflight>,
-    /// How the noise is known.
-    pub(crate) known: Known,
     /// Instruments that the model without effects took far beyond what they are good to, in words; they are held since.
     pub(crate) instruments: Vec<String>,
     /// What else should be known.
@@ -39,11 +37,21 @@ impl Base {
         })
     }
 
+    /// Whether what a fit leaves may be noise alone, at a level.
+    pub(crate) fn explains(&self, fit: &Fit, level: f64) -> bool {
+        self.is_noise(fit.chi_squared(), fit.tangent().parameters(), level)
+    }
+
+    /// How the noise is known.
+    pub(crate) const fn known(&self) -> Known {
+        self.on.metric.known()
+    }
+
     /// Whether noise alone may leave so much after a fit of so many effective parameters, at a level; where the
     /// noise is only assumed, whether the assumption bears with what is left.
     pub(crate) fn is_noise(&self, chi_squared: f64, parameters: f64, level: f64) -> bool {
         let n = self.on.metric.len();
-        if !self.known.is_seen() {
+        if !self.known().is_seen() {
             let left = (n as f64 - parameters).max(1.0);
             return (1.0 / STATED..=STATED).contains(&(chi_squared / left));
         }

@@ -117,9 +117,8 @@ pub(crate) async fn establish<L: Laboratory>(
     Ok(Ok(Base {
         on,
         fit,
-        instruments,
         preflight,
-        known: noise.known,
+        instruments,
         notes,
     }))
 }

@@ -65,12 +65,8 @@ pub async fn identify<L: Laboratory>(
     let spread = &walked.spread;
     let coloured: Vec<String> = spread.largest_growth().map(coloured).into_iter().collect();
     // less than the noise that was stated is nothing to explain
-    let is_noise = fit.chi_squared() <= base.noise()
-        || base.is_noise(
-            fit.chi_squared(),
-            fit.tangent().parameters(),
-            inputs.thresholds.adequacy,
-        );
+    let is_noise =
+        fit.chi_squared() <= base.noise() || base.explains(fit, inputs.thresholds.adequacy);
     Ok(Some(Identified {
         genes: fit.model.genes(fit.x()),
         unknowns: estimate::estimates(&walked),
@@ -83,7 +79,7 @@ pub async fn identify<L: Laboratory>(
         further: further::further(&walked, &sights, (inputs, &base.on), conditions),
         left: fit.chi_squared() / base.noise(),
         is_noise,
-        noise: base.known,
+        noise: base.known(),
         notes: [&base.notes[..], base.strained().as_slice(), &coloured[..]].concat(),
     }))
 }

@@ -42,11 +42,6 @@ impl Walked {
         side.next(from, self.fit.search.cost(), self.rises[side.unknown])
     }
 
-    /// The rise that ends an interval where the residual is white.
-    pub(super) fn rise(&self) -> f64 {
-        self.spread.quantile * self.spread.quantile * self.spread.dispersion
-    }
-
     /// The sides of an unknown.
     pub(super) fn of(&self, unknown: usize) -> impl Iterator<Item = &Side> {
         self.sides
@@ -69,7 +64,8 @@ pub(super) async fn walk<L: Laboratory>(
         let cost = walked.fit.search.cost();
         let marks = walked.sides.iter().flat_map(|side| &side.marks);
         let least = marks.min_by(|a, b| a.cost.total_cmp(&b.cost));
-        let Some(better) = least.filter(|mark| mark.cost < cost - BETTER * walked.rise()) else {
+        let Some(better) = least.filter(|mark| mark.cost < cost - BETTER * walked.spread.rise())
+        else {
             break;
         };
         let start = walked.fit.at(better.x.clone());
@@ -89,8 +85,11 @@ pub(super) async fn walk<L: Laboratory>(
 /// A fit with all its profiles still to follow, but for what other fits say of them.
 fn begin(metric: &Metric, fit: Fit, others: &[Fit]) -> Walked {
     let spread = Spread::of(metric, &fit);
-    let white = spread.quantile * spread.quantile * spread.dispersion;
-    let rises: Vec<f64> = spread.growth.iter().map(|own| white * own * own).collect();
+    let rises: Vec<f64> = spread
+        .growth
+        .iter()
+        .map(|own| spread.rise() * own * own)
+        .collect();
     let covariance = inverse(with_priors(&fit.search.best().jacobian, fit.variables()));
     let axes = fit.model.space.axes().iter().enumerate();
     let sides = axes.flat_map(|(k, axis)| {

@@ -69,6 +69,11 @@ impl Spread {
         own.unwrap_or(f64::INFINITY)
     }
 
+    /// By how much minus twice the log likelihood rises at the ends of an interval of an unknown where what is left is white.
+    pub fn rise(&self) -> f64 {
+        self.quantile * self.quantile * self.dispersion
+    }
+
     /// The largest growth by colour, where there is any.
     pub fn largest_growth(&self) -> Option<f64> {
         let largest = self.growth.iter().copied().fold(1.0, f64::max);
@@ -91,11 +96,7 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     let at = fit.search.best();
     let used = free(at, fit.variables());
     let jacobian = at.jacobian.select_columns(&used);
-    let mut prior = DMatrix::zeros(used.len(), used.len());
-    for (i, &k) in used.iter().enumerate() {
-        let own = fit.variables()[k].prior;
-        prior[(i, i)] = own.map_or(0.0, |p| 1.0 / (p.deviation * p.deviation));
-    }
+    let prior = prior(fit, &used);
     let information = jacobian.tr_mul(&jacobian) / dispersion + &prior;
     let white = if used.is_empty() {
         information
@@ -131,15 +132,21 @@ fn covariance(metric: &Metric, fit: &Fit, dispersion: f64) -> Option<(DMatrix<f6
     Some((whole, growths))
 }
 
+/// Precision of what is known beforehand of some of a fit's unknowns.
+fn prior(fit: &Fit, of: &[usize]) -> DMatrix<f64> {
+    let deviations = of
+        .iter()
+        .map(|&k| fit.variables()[k].prior.map(|p| p.deviation));
+    let precisions =
+        deviations.map(|own| own.map_or(0.0, |deviation| 1.0 / (deviation * deviation)));
+    DMatrix::from_diagonal(&DVector::from_iterator(of.len(), precisions))
+}
+
 /// Variance of an unknown beside those that are free, if it were free too; infinite where it is open.
 fn alone(fit: &Fit, used: &[usize], k: usize, dispersion: f64) -> f64 {
     let all: Vec<usize> = used.iter().copied().chain([k]).collect();
     let jacobian = fit.search.best().jacobian.select_columns(&all);
-    let mut information = jacobian.tr_mul(&jacobian) / dispersion;
-    for (i, &k) in all.iter().enumerate() {
-        let own = fit.variables()[k].prior;
-        information[(i, i)] += own.map_or(0.0, |p| 1.0 / (p.deviation * p.deviation));
-    }
+    let information = jacobian.tr_mul(&jacobian) / dispersion + prior(fit, &all);
     let inverse = information.cholesky().map(|own| own.inverse());
     inverse.map_or(f64::INFINITY, |own| own[(used.len(), used.len())])
 }

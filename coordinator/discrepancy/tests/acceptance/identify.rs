@@ -1,27 +1,23 @@
 //! What a record sees, of models whose likelihood is known in closed form.
+use crate::by_curves::ByCurves;
 use crate::trial::{now, say};
 use discrepancy::diagnose::Inputs;
 use discrepancy::identify::{End, Identified, Seen, UnknownEstimate, identify};
-use discrepancy::laboratory::{Laboratory, Stage};
 use discrepancy::linear::score::student;
 use discrepancy::record::whitened::WhitenedRecord;
 use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::thresholds::Thresholds;
 use nalgebra::{DMatrix, DVector};
 use protocol::case::{Abscissa, Channel, Offset, Scale, Unknown};
-use protocol::job::{Counters, Numerics, Observation, SimulateSpec, Verdict};
+use protocol::job::{Numerics, SimulateSpec};
 use search::random::{Phase, Streams};
 use search::space::Space;
-use std::convert::Infallible;
 
 const SAMPLES: usize = 180;
 const NOISE: f64 = 0.5;
 const CYCLES: usize = 10;
 
-/// Waves of a turn, weighed by unknowns.
-struct Waves;
-
-/// Curves of unknowns: the first two in the first channel, nearly alike; the third in both; the fourth in
+/// Waves of a turn, weighed by unknowns: the first two in the first channel, nearly alike; the third in both; the fourth in
 /// none; the fifth matters while it is small, the sixth while it is large; nothing runs where the fourth
 /// passes ten times its start.
 fn curves(x: &[f64]) -> Option<Curves> {
@@ -41,26 +37,6 @@ fn curves(x: &[f64]) -> Option<Curves> {
     };
     let (first, second) = (0..SAMPLES).map(at).unzip();
     Some(vec![first, second])
-}
-
-impl Laboratory for Waves {
-    type Error = Infallible;
-
-    async fn observe(
-        &mut self,
-        _: Stage,
-        batch: Vec<SimulateSpec>,
-    ) -> Result<Vec<Option<Observation>>, Infallible> {
-        let seen = |spec: SimulateSpec| {
-            Some(Observation {
-                verdict: Verdict::Complete,
-                counters: Counters::default(),
-                curves: curves(&spec.individual.genes)?,
-                columns: Vec::new(),
-            })
-        };
-        Ok(batch.into_iter().map(seen).collect())
-    }
 }
 
 fn channel(name: &str, condition: usize) -> Channel {
@@ -141,7 +117,8 @@ fn seen(seed: u64, unknowns: Vec<Unknown>) -> Identified {
         seed: 1,
         thresholds: Thresholds::default(),
     };
-    now(identify(&mut Waves, &inputs, &conditions())).expect("it fits")
+    let mut waves = ByCurves(|spec| curves(&spec.individual.genes));
+    now(identify(&mut waves, &inputs, &conditions())).expect("it fits")
 }
 
 fn named<'a>(all: &'a Identified, name: &str) -> &'a UnknownEstimate {
@@ -276,9 +253,7 @@ fn intervals_hold_the_truth_as_often_as_they_say() {
     assert!((0.9..=0.99).contains(&share), "{share}");
 }
 
-/// A straight line, on one log without a period.
-struct Line;
-
+/// Places of a straight line, on one log without a period.
 const PLACES: usize = 60;
 /// Constant and slope.
 const LINE: [f64; 2] = [1.0, -0.7];
@@ -287,26 +262,10 @@ fn places() -> Vec<f64> {
     (0..PLACES).map(|k| 0.1 * k as f64).collect()
 }
 
-impl Laboratory for Line {
-    type Error = Infallible;
-
-    async fn observe(
-        &mut self,
-        _: Stage,
-        batch: Vec<SimulateSpec>,
-    ) -> Result<Vec<Option<Observation>>, Infallible> {
-        let seen = |spec: SimulateSpec| {
-            let x = spec.individual.genes;
-            let line = places().iter().map(|t| x[0] + x[1] * t).collect();
-            Some(Observation {
-                verdict: Verdict::Complete,
-                counters: Counters::default(),
-                curves: vec![line],
-                columns: Vec::new(),
-            })
-        };
-        Ok(batch.into_iter().map(seen).collect())
-    }
+fn line(spec: &SimulateSpec) -> Curves {
+    let x = &spec.individual.genes;
+    let line = places().into_iter().map(|t| x[0] + x[1] * t);
+    vec![line.collect()]
 }
 
 /// What is said of a line from one log whose noise of a size is correlated from one value to the next, with as much stated;
@@ -354,7 +313,12 @@ fn of_line(seed: u64, correlation: f64, stated: Option<f64>) -> (Identified, [f6
         seed: 1,
         thresholds: Thresholds::default(),
     };
-    let all = now(identify(&mut Line, &inputs, &[vec![own]])).expect("it fits");
+    let all = now(identify(
+        &mut ByCurves(|spec| Some(line(spec))),
+        &inputs,
+        &[vec![own]],
+    ))
+    .expect("it fits");
     let x = DMatrix::from_fn(PLACES, 2, |i, k| if k == 0 { 1.0 } else { places()[i] });
     let y = DVector::from_vec(measured);
     let inverse = x.tr_mul(&x).try_inverse().expect("regular");

@@ -12,6 +12,7 @@
     clippy::repeat_vec_with_capacity,
     reason = "a stand-in machine with known, small numbers and ASCII names"
 )]
+mod by_curves;
 mod by_sample;
 mod case;
 mod composed;
@@ -23,6 +24,7 @@ mod maps;
 mod mimic;
 mod nothing;
 mod numerics;
+mod ringing;
 mod robust;
 mod single;
 mod strata;

@@ -1,24 +1,20 @@
 //! Two effects and a third that resembles their sum: whichever is found first, the two are the answer.
+use crate::by_curves::ByCurves;
 use crate::case::{effect, size};
 use crate::trial::{line, now};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::laboratory::{Laboratory, Stage};
-use discrepancy::record::{Record, Recorded, Stated};
+use discrepancy::record::{Curves, Record, Recorded, Stated};
 use discrepancy::thresholds::Thresholds;
 use discrepancy::verdict::Verdict;
 use protocol::announce::{Place, Sign};
 use protocol::case::{Abscissa, Channel, Offset, Scale, Unknown};
-use protocol::job::{Counters, Numerics, Observation, SimulateSpec, Verdict as Ended};
+use protocol::job::{Numerics, SimulateSpec};
 use search::random::{Phase, Streams};
 use search::space::Space;
-use std::convert::Infallible;
 
 const SAMPLES: usize = 144;
 
-/// A wave whose size is unknown, with waves of other orders as effects.
-struct Waves;
-
-/// Values over a turn: the unknown, two waves, what resembles their sum, and two that have nothing to do with it.
+/// A wave whose size is unknown with waves of other orders as effects, over a turn: the unknown, two waves, what resembles their sum, and two that have nothing to do with it.
 fn curve(x: f64, amounts: &[(&str, f64)]) -> Vec<f64> {
     let amount = |id: &str| {
         let own = amounts.iter().find(|(name, _)| *name == id);
@@ -38,29 +34,13 @@ fn curve(x: f64, amounts: &[(&str, f64)]) -> Vec<f64> {
     (0..SAMPLES).map(at).collect()
 }
 
-impl Laboratory for Waves {
-    type Error = Infallible;
-
-    async fn observe(
-        &mut self,
-        _: Stage,
-        batch: Vec<SimulateSpec>,
-    ) -> Result<Vec<Option<Observation>>, Infallible> {
-        let seen = |spec: SimulateSpec| {
-            let own = &spec.individual;
-            let effects = own.effects.iter();
-            let effects: Vec<(&str, f64)> = effects
-                .map(|e| (e.id.as_str(), e.parameters[0].1))
-                .collect();
-            Some(Observation {
-                verdict: Ended::Complete,
-                counters: Counters::default(),
-                curves: vec![curve(own.genes[0], &effects)],
-                columns: Vec::new(),
-            })
-        };
-        Ok(batch.into_iter().map(seen).collect())
-    }
+fn waves(spec: &SimulateSpec) -> Curves {
+    let own = &spec.individual;
+    let effects = own.effects.iter();
+    let effects: Vec<(&str, f64)> = effects
+        .map(|e| (e.id.as_str(), e.parameters[0].1))
+        .collect();
+    vec![curve(own.genes[0], &effects)]
 }
 
 /// Diagnoses a record of both waves, the library in an order.
@@ -117,7 +97,7 @@ fn diagnosed(ids: &[&str], amounts: [f64; 2]) -> Diagnosis {
             ..Thresholds::default()
         },
     };
-    now(diagnose(&mut Waves, &inputs))
+    now(diagnose(&mut ByCurves(|spec| Some(waves(spec))), &inputs))
 }
 
 #[test]

@@ -3,11 +3,12 @@
 //! clock a degree off moves the valley away.
 //!
 //! Each test also goes without the look: what it asserts is that the look is needed, and enough.
+use crate::by_curves::ByCurves;
 use crate::case;
 use crate::trial::now;
 use crate::truth::recorded;
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
-use discrepancy::laboratory::{Laboratory, Stage};
+use discrepancy::laboratory::Stage;
 use discrepancy::model::experiments::Experiments;
 use discrepancy::model::{Fit, Model, Point};
 use discrepancy::record::whitened::WhitenedRecord;
@@ -17,11 +18,10 @@ use discrepancy::verdict::Verdict;
 use discrepancy::{cause::low_orders, cause::signature, ground::valley};
 use nalgebra::Complex;
 use protocol::announce::{EffectDescriptor, Place, Sign};
-use protocol::job::{Counters, Numerics, Observation, SimulateSpec, Verdict as Ended};
+use protocol::job::{Numerics, SimulateSpec};
 use search::least_squares;
 use search::random::{Phase, Streams};
 use search::space::Space;
-use std::convert::Infallible;
 use std::f64::consts::TAU;
 
 const SAMPLES: usize = 360;
@@ -111,21 +111,7 @@ fn turn(order: usize, sample: usize) -> Complex<f64> {
     Complex::from_polar(1.0, angle)
 }
 
-struct Ropes;
-
-impl Laboratory for Ropes {
-    type Error = Infallible;
-
-    async fn observe(
-        &mut self,
-        _: Stage,
-        batch: Vec<SimulateSpec>,
-    ) -> Result<Vec<Option<Observation>>, Infallible> {
-        Ok(batch.iter().map(|spec| Some(observed(spec))).collect())
-    }
-}
-
-fn observed(spec: &SimulateSpec) -> Observation {
+fn ropes(spec: &SimulateSpec) -> Curves {
     let amount = |id: &str| {
         let given = spec.individual.effects.iter().find(|e| e.id == id);
         given.map_or(0.0, |e| e.parameters[0].1)
@@ -133,12 +119,7 @@ fn observed(spec: &SimulateSpec) -> Observation {
     let genes = &spec.individual.genes;
     let genes = [genes[0], genes[1], genes[2]];
     let (clock, lag) = (amount("card_time_shift"), amount("load_cell_lag"));
-    Observation {
-        verdict: Ended::Complete,
-        counters: Counters::default(),
-        curves: gauges(genes, clock, lag, amount("load_cell_gain")),
-        columns: Vec::new(),
-    }
+    gauges(genes, clock, lag, amount("load_cell_gain"))
 }
 
 fn record(truth: Ringing) -> Record {
@@ -168,7 +149,7 @@ fn whole(truth: Ringing) -> WhitenedRecord {
 }
 
 /// Experiments on it.
-fn basin<'a>(lab: &'a mut Ropes, on: &'a WhitenedRecord) -> Experiments<'a, Ropes> {
+fn basin<'a>(lab: &'a mut ByCurves, on: &'a WhitenedRecord) -> Experiments<'a, ByCurves> {
     Experiments {
         lab,
         on,
@@ -204,7 +185,7 @@ fn diagnosed(truth: Ringing, valley: f64) -> Diagnosis {
             ..Thresholds::default()
         },
     };
-    now(diagnose(&mut Ropes, &inputs))
+    now(diagnose(&mut ByCurves(|spec| Some(ropes(spec))), &inputs))
 }
 
 /// Chi-squared of the answer's model over its noise, and the stiffness that it has (decades).
@@ -223,7 +204,7 @@ fn a_fit_outside_the_valley_finds_its_way_into_it() {
         clock: 0.0,
     };
     let whole = whole(truth);
-    let mut ropes = Ropes;
+    let mut ropes = ByCurves(|spec| Some(ropes(spec)));
     let mut experiments = basin(&mut ropes, &whole);
     let left = |fit: &Fit| fit.chi_squared() / whole.metric.len() as f64;
     let outside = now(experiments.fit(at([0.6, 0.2, 0.0]), least_squares::Settings::short(1)));
@@ -269,7 +250,7 @@ fn low_orders_see_the_size_that_the_modes_hide() {
         clock: 4.0,
     };
     let whole = whole(truth);
-    let mut ropes = Ropes;
+    let mut ropes = ByCurves(|spec| Some(ropes(spec)));
     let mut experiments = basin(&mut ropes, &whole);
     let lost = now(experiments.fit(at([1.9, -1.9, 0.0]), least_squares::Settings::short(6)));
     let lost = lost.expect("it simulates");
