@@ -1,4 +1,5 @@
-//! Two effects and a third that resembles their sum: whichever is found first, the two are the answer.
+//! Effects that resemble others: one that mimics the sum of two, one that another condition alone tells from its twin, and
+//! one that is there under the fitted condition and not elsewhere.
 use crate::by_curves::ByCurves;
 use crate::case::{effect, size};
 use crate::trial::{line, now};
@@ -14,8 +15,10 @@ use search::space::Space;
 
 const SAMPLES: usize = 144;
 
-/// A wave whose size is unknown with waves of other orders as effects, over a turn: the unknown, two waves, what resembles their sum, and two that have nothing to do with it.
-fn curve(x: f64, amounts: &[(&str, f64)]) -> Vec<f64> {
+/// A wave whose size is unknown with waves of other orders as effects, over a turn: the unknown, two waves, what resembles
+/// their sum, two that have nothing to do with it, and a twin of the first one, which is another wave under the second
+/// condition.
+fn curve(x: f64, amounts: &[(&str, f64)], condition: usize) -> Vec<f64> {
     let amount = |id: &str| {
         let own = amounts.iter().find(|(name, _)| *name == id);
         own.map_or(0.0, |(_, amount)| *amount)
@@ -28,6 +31,12 @@ fn curve(x: f64, amounts: &[(&str, f64)]) -> Vec<f64> {
             + amount("one") * one
             + amount("other") * other
             + amount("sum") * sum
+            + amount("twin")
+                * if condition == 0 {
+                    one + 0.005 * (3.0 * t).sin()
+                } else {
+                    (4.0 * t).sin()
+                }
             + amount("fourth") * (7.0 * t).sin()
             + amount("fifth") * (8.0 * t).cos()
     };
@@ -40,11 +49,11 @@ fn waves(spec: &SimulateSpec) -> Curves {
     let effects: Vec<(&str, f64)> = effects
         .map(|e| (e.id.as_str(), e.parameters[0].1))
         .collect();
-    vec![curve(own.genes[0], &effects)]
+    vec![curve(own.genes[0], &effects, own.condition)]
 }
 
-/// Diagnoses a record of both waves, the library in an order.
-fn diagnosed(ids: &[&str], amounts: [f64; 2]) -> Diagnosis {
+/// Diagnoses records of what each condition has, the library in an order.
+fn diagnosed(ids: &[&str], hidden: &[&[(&str, f64)]], seed: u64) -> Diagnosis {
     let point = |k: usize| 360.0 * k as f64 / SAMPLES as f64;
     let channel = Channel {
         name: "wave".to_owned(),
@@ -63,9 +72,22 @@ fn diagnosed(ids: &[&str], amounts: [f64; 2]) -> Diagnosis {
         offset: Offset::Free,
         record: None,
     };
-    let truth = curve(3.0, &[("one", amounts[0]), ("other", amounts[1])]);
-    let mut stream = Streams::new(41, 0).at(0, Phase::Initial, 0);
-    let mut cycle = || vec![truth.iter().map(|y| y + 0.2 * stream.normal()).collect()];
+    let mut stream = Streams::new(seed, 0).at(0, Phase::Initial, 0);
+    let mut record = |condition: usize, amounts: &[(&str, f64)]| {
+        let truth = curve(3.0, amounts, condition);
+        let mut cycle = || vec![truth.iter().map(|y| y + 0.2 * stream.normal()).collect()];
+        Record {
+            condition,
+            channels: vec![Recorded {
+                scored: true,
+                ..Recorded::new(0, &channel)
+            }],
+            cycles: (0..8).map(|_| cycle()).collect(),
+            held_out: false,
+            stated: Stated::default(),
+        }
+    };
+    let records = hidden.iter().enumerate();
     let unknowns = vec![Unknown::new("size", "N", Scale::Linear, 2.0, [0.0, 9.0])];
     let own = |id: &&str| {
         let sizes = vec![size("amount", "N", 0.5, Sign::Either)];
@@ -76,16 +98,7 @@ fn diagnosed(ids: &[&str], amounts: [f64; 2]) -> Diagnosis {
         differences: false,
         space: Space::new(&unknowns).expect("ordered"),
         unknowns,
-        records: vec![Record {
-            condition: 0,
-            channels: vec![Recorded {
-                scored: true,
-                ..Recorded::new(0, &channel)
-            }],
-            cycles: (0..8).map(|_| cycle()).collect(),
-            held_out: false,
-            stated: Stated::default(),
-        }],
+        records: records.map(|(at, amounts)| record(at, amounts)).collect(),
         library: ids.iter().map(own).collect(),
         start: Some(vec![0.0]),
         usual: Numerics::OF_THE_CASE,
@@ -100,6 +113,12 @@ fn diagnosed(ids: &[&str], amounts: [f64; 2]) -> Diagnosis {
     now(diagnose(&mut ByCurves(|spec| Some(waves(spec))), &inputs))
 }
 
+/// The effects of an answer.
+fn added(answer: &Diagnosis) -> Vec<&str> {
+    let added = answer.after.as_ref().map(|fit| &fit.model.added);
+    added.into_iter().flatten().map(|e| &*e.id).collect()
+}
+
 #[test]
 fn two_effects_are_found_in_either_order_beside_one_that_resembles_their_sum() {
     for amounts in [[0.6, 0.5], [0.3, 0.7], [0.7, 0.3], [-0.5, -0.5]] {
@@ -107,13 +126,54 @@ fn two_effects_are_found_in_either_order_beside_one_that_resembles_their_sum() {
             ["one", "other", "sum", "fourth", "fifth"],
             ["sum", "fifth", "other", "one", "fourth"],
         ] {
-            let answer = diagnosed(&ids, amounts);
+            let both = [("one", amounts[0]), ("other", amounts[1])];
+            let answer = diagnosed(&ids, &[&both], 41);
             let said = line(&answer);
-            let added = answer.after.as_ref().map(|fit| &fit.model.added);
-            let mut found: Vec<&str> = added.into_iter().flatten().map(|e| &*e.id).collect();
+            let mut found = added(&answer);
             found.sort_unstable();
             assert_eq!(found, ["one", "other"], "{amounts:?} {ids:?} {said}");
             assert_eq!(answer.verdict, Verdict::Named, "{said}");
         }
     }
+}
+
+/// Twins explain the fitted record alike, and one of them often a little better than the one that is there: they are one
+/// set, until another condition shows which of them it is.
+#[test]
+fn another_condition_tells_twins_apart() {
+    let ids = ["one", "other", "twin", "fourth", "fifth"];
+    for seed in 60..66 {
+        for there in ["one", "twin"] {
+            let hidden = [(there, 0.6)];
+            let alone = diagnosed(&ids, &[&hidden], seed);
+            let said = line(&alone);
+            assert_eq!(alone.verdict, Verdict::Ambiguous, "{said}");
+            let mut set = alone.rounds[0].set.clone();
+            set.sort();
+            assert_eq!(set, ["one", "twin"], "{said}");
+            let both = diagnosed(&ids, &[&hidden, &hidden], seed);
+            let said = line(&both);
+            assert_eq!(both.verdict, Verdict::Named, "{said}");
+            assert_eq!(added(&both), [there], "{said}");
+        }
+    }
+}
+
+/// What explains the fitted record beside another effect, and has another condition move as it does not, is taken back; the
+/// other stays.
+#[test]
+fn an_effect_that_predicts_what_does_not_happen_is_taken_back() {
+    let ids = ["one", "other", "sum", "fourth", "fifth"];
+    let (here, there) = ([("one", 0.6), ("fourth", 0.4)], [("one", 0.6)]);
+    let answer = diagnosed(&ids, &[&here, &there], 70);
+    let said = line(&answer);
+    assert_eq!(added(&answer), ["one"], "{said}");
+    let mut reasons = answer
+        .rounds
+        .iter()
+        .filter_map(|round| round.reason.as_ref());
+    assert!(
+        reasons.any(|reason| reason.starts_with("fourth") && reason.contains("less likely")),
+        "{said}"
+    );
 }
