@@ -111,6 +111,11 @@ impl Rig {
             .filter(|name| name.starts_with("horsehead-") && !name.contains(".lock"))
             .collect()
     }
+
+    /// Whether something is in a folder that an evaluation left.
+    pub(crate) fn is_filled(&self, folder: &str) -> bool {
+        fs::read_dir(self.file(folder)).is_ok_and(|mut entries| entries.next().is_some())
+    }
 }
 
 /// A folder of the suites.

@@ -135,7 +135,7 @@ impl Scratch {
 impl Drop for Scratch {
     fn drop(&mut self) {
         if !self.kept
-            && let Err(error) = fs::remove_dir_all(&self.root)
+            && let Err(error) = remove(&self.root)
         {
             tracing::warn!("{} stays: {error}", self.root.display());
         }
@@ -171,9 +171,22 @@ pub(super) fn clean(place: &Path) {
         let path = entry.path();
         if is_ours && !path.join(KEPT).exists() && is_over(&path) {
             // another user's stays
-            drop(fs::remove_dir_all(path));
+            drop(remove(&path));
         }
     }
+}
+
+/// Removes a folder, its lock last: of a process killed meanwhile the next one still sees that it is over.
+fn remove(root: &Path) -> io::Result<()> {
+    for entry in fs::read_dir(root)? {
+        let entry = entry?;
+        if entry.file_type()?.is_dir() {
+            fs::remove_dir_all(entry.path())?;
+        } else if entry.file_name() != LOCK {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    fs::remove_dir_all(root)
 }
 
 /// Whether nobody is at work in a folder.
