@@ -79,12 +79,12 @@ fn if_every_job_kills_its_worker_the_run_stops_with_one_message() {
 fn if_no_local_worker_lives_the_run_says_so_instead_of_waiting() {
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("worker");
-    fs::write(&program, "#!/bin/sh\nexit 7\n").unwrap();
+    fs::write(&program, "#!/bin/sh\necho no libc here >&2\nexit 7\n").unwrap();
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
     let program = program.to_str().unwrap();
     let ended = run(folder.path(), 3, 2, ("HORSEHEAD_WORKER", program));
     assert_eq!(ended.status, Some(1), "{}", ended.errors);
     let words = "the local workers end again and again without a result (the last one ended with \
-                 status 7)";
+                 status 7: `no libc here`)";
     assert_eq!(ended.errors.matches(words).count(), 1, "{}", ended.errors);
 }

@@ -96,6 +96,31 @@ fn what_a_case_has_wrong_is_said_by_file_and_field() {
     }
 }
 
+#[test]
+fn a_record_beyond_the_curve_that_the_program_left_in_the_folder_is_refused() {
+    let rig = Rig::new();
+    rig.shell_case(GOOD, "");
+    let path = rig.file("case/case.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    let along = "column = \"y\", at = \"t\" }\n[obj";
+    fs::write(&path, text.replacen("column = \"y\" }\n[obj", along, 1)).unwrap();
+    // the record goes from 0 to 2
+    let left = rig.file("case/out.csv");
+    fs::write(&left, "t,y\n0,1\n1.5,2\n").unwrap();
+    let said = rig.refused(&["case", "check", "case"]);
+    for words in [
+        "channels",
+        "from 0 to 2",
+        "from 0 to 1.5",
+        "out.csv",
+        "cut the record",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    fs::write(&left, "t,y\n0,1\n3,2\n").unwrap();
+    rig.done(&["case", "check", "case"]);
+}
+
 /// A machine whose program gives other numbers for the same values does not work on the run; one that differs by
 /// no more than the case allows does.
 #[test]

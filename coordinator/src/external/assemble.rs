@@ -10,7 +10,7 @@ use crate::case::{
     file,
     source::Source,
 };
-use exchange::{Problem, dakota, pest};
+use exchange::{Problem, dakota, object, pest, table};
 use protocol::{
     case::Case,
     external::{
@@ -53,12 +53,14 @@ pub(super) fn assemble(
     named.extend(equations.iter().map(|equation| equation.name.clone()));
     let curves = own.channels.iter().enumerate();
     let curve = |(index, channel): (usize, &ChannelEntry)| {
-        assembly.curve(index, channel, &readings, &named)
+        let curve = assembly.curve(index, channel, &readings, &named)?;
+        assembly.reach(index, &curve, &readings, case)?;
+        Ok(curve)
     };
     Ok(External {
         files: files::read(source.document, source.folder, &own.model.files)?,
         fills,
-        curves: curves.map(curve).collect::<Result<_, _>>()?,
+        curves: curves.map(curve).collect::<Result<_, CaseError>>()?,
         readings,
         equations,
         parameters,
@@ -285,6 +287,60 @@ impl Assembly<'_> {
             })
         };
         equations.map(equation).collect()
+    }
+
+    /// Compares the channel's places with those of the curve that the program left in the case's folder, where it has
+    /// been run there: a place beyond the curve would fail every run.
+    ///
+    /// # Errors
+    /// A channel that reaches beyond that curve.
+    fn reach(
+        &self,
+        index: usize,
+        curve: &From,
+        readings: &[Reading],
+        case: &Case,
+    ) -> Result<(), CaseError> {
+        let (reading, at) = match curve {
+            From::Named(_) => return Ok(()),
+            From::Column { reading, at, .. } | From::Pointer { reading, at, .. } => (*reading, at),
+        };
+        let (Some(at), Some(channel)) = (at, case.channels.get(index)) else {
+            return Ok(());
+        };
+        let left = &readings[reading].file;
+        // what cannot be read there is no part of the case: the program writes it anew in its own folder
+        let Ok(text) = std::fs::read_to_string(self.folder.join(left)) else {
+            return Ok(());
+        };
+        let along = match curve {
+            From::Pointer { .. } => object::values(left, &text, at),
+            From::Named(_) | From::Column { .. } => table::column(left, &text, at),
+        };
+        let Ok(along) = along else {
+            return Ok(());
+        };
+        let places = &channel.abscissa.points;
+        let (Some(first), Some(last)) = (along.first(), along.last()) else {
+            return Ok(());
+        };
+        let (Some(&from), Some(&to)) = (places.first(), places.last()) else {
+            return Ok(());
+        };
+        let slack = 1e-9 * (last - first).abs();
+        if from >= first - slack && to <= last + slack {
+            return Ok(());
+        }
+        let way = [Step::Key("channels"), Step::Index(index)];
+        let unit = &channel.abscissa.unit;
+        Err(self.refused(
+            &way,
+            format!("channel `{}` from {from} to {to} {unit}", channel.name),
+            &format!("places from {first} to {last} {unit}, as the program's curve in {left} goes"),
+            &format!(
+                "cut the record, or let the program run further; remove {left} from the case's folder if it is an old one"
+            ),
+        ))
     }
 
     /// Where a channel comes from.

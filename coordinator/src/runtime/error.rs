@@ -29,9 +29,7 @@ pub enum DispatchError {
     )]
     NobodyToAsk,
     /// Local workers end again and again, and nobody else can join.
-    #[error(
-        "the local workers end again and again without a result (the last one {how}): run horsehead-worker by hand to see why"
-    )]
+    #[error("the local workers end again and again without a result (the last one {how})")]
     LocalWorkers {
         /// How the last one ended.
         how: String,

@@ -9,12 +9,12 @@
 use super::error::DispatchError;
 use link::locator::Locator;
 use std::{
-    io,
+    io::{self, BufRead, BufReader, Read, Write},
     os::unix::process::{CommandExt, ExitStatusExt},
     path::PathBuf,
-    process::{Child, Command, ExitStatus, Stdio},
+    process::{Child, ChildStderr, Command, ExitStatus, Stdio},
     sync::{
-        Arc,
+        Arc, Mutex, PoisonError,
         atomic::{AtomicU64, Ordering},
         mpsc,
     },
@@ -38,6 +38,10 @@ const PAUSE: Duration = Duration::from_millis(100);
 const LONGEST_PAUSE: Duration = Duration::from_millis(800);
 /// How long they may take to end by themselves.
 const PATIENCE: Duration = Duration::from_millis(1500);
+/// How long the last words of a worker that has ended are waited for: processes that it started may hold its output.
+const LAST_WORDS: Duration = Duration::from_millis(200);
+/// Most bytes of its output that are passed on as one line.
+const LONGEST_LINE: u64 = 64 << 10;
 
 /// What happened to local workers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -144,9 +148,55 @@ struct Program {
     connect: String,
 }
 
+/// Standard error of one worker: passed on line by line, the last one kept.
+struct Said {
+    last: Arc<Mutex<String>>,
+    /// Disconnected at the end of the output.
+    over: mpsc::Receiver<()>,
+}
+
+impl Said {
+    fn listen(output: ChildStderr) -> io::Result<Self> {
+        let last = Arc::new(Mutex::new(String::new()));
+        let (open, over) = mpsc::channel();
+        let keep = Arc::clone(&last);
+        let pass = move || {
+            let _open: mpsc::Sender<()> = open;
+            let mut output = BufReader::new(output);
+            let mut line = Vec::new();
+            while (&mut output)
+                .take(LONGEST_LINE)
+                .read_until(b'\n', &mut line)
+                .is_ok_and(|count| count > 0)
+            {
+                // a closed output of this program is no reason to stop reading: the worker would block
+                drop(io::stderr().write_all(&line));
+                let text = String::from_utf8_lossy(&line);
+                if !text.trim().is_empty() {
+                    text.trim()
+                        .clone_into(&mut keep.lock().unwrap_or_else(PoisonError::into_inner));
+                }
+                line.clear();
+            }
+        };
+        let builder = thread::Builder::new().name("worker-output".to_owned());
+        builder.stack_size(64 << 10).spawn(pass)?;
+        Ok(Self { last, over })
+    }
+
+    /// The last line of a worker that has ended, empty if it said nothing.
+    fn last(&self) -> String {
+        // nothing is ever sent: either the output ends, or the time is up
+        self.over.recv_timeout(LAST_WORDS).unwrap_or_default();
+        let last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        last.clone()
+    }
+}
+
 /// One worker and its history.
 struct Place {
     child: Option<Child>,
+    said: Said,
     begun: Instant,
     /// Results of the run when it last ended.
     results: u64,
@@ -161,16 +211,20 @@ struct Place {
 
 impl Place {
     fn start(program: &Program) -> io::Result<Self> {
-        let child = Command::new(&program.path)
+        let mut child = Command::new(&program.path)
             .args(["--connect", &program.connect, "--slots", "1", "--embedded"])
             .env_remove("HORSEHEAD_IDLE_TIMEOUT")
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
+            .stderr(Stdio::piped())
             // out of reach of Ctrl-C, which is for the coordinator to handle
             .process_group(0)
             .spawn()?;
+        let output = child.stderr.take();
+        let said = Said::listen(output.ok_or(io::ErrorKind::BrokenPipe)?)?;
         Ok(Self {
             child: Some(child),
+            said,
             begun: Instant::now(),
             results: 0,
             restarts: 0,
@@ -186,7 +240,11 @@ impl Place {
             Ok(None) => return None,
             Ok(Some(status)) => {
                 self.refused = status.code() == Some(REFUSED);
-                words(status)
+                let how = words(status);
+                match self.said.last() {
+                    last if last.is_empty() => how,
+                    last => format!("{how}: `{last}`"),
+                }
             }
             Err(error) => format!("is out of sight: {error}"),
         };
@@ -217,7 +275,7 @@ impl Place {
         self.again_at = None;
         match Self::start(program) {
             Ok(started) => {
-                (self.child, self.begun) = (started.child, started.begun);
+                (self.child, self.said, self.begun) = (started.child, started.said, started.begun);
                 None
             }
             Err(error) => Some(format!("cannot be started again: {error}")),

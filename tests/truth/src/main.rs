@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use truth::files::Channels;
 use truth::judge::Trial;
-use truth::law::Tolerance;
+use truth::law::{Kind, Tolerance};
 use truth::machine::Fineness;
 use truth::plan::{Order, Stratum, asked_kind, make};
 use truth::seal::Sealed;
@@ -48,9 +48,9 @@ struct Make {
     /// What the sets test.
     #[arg(long, value_enum)]
     stratum: StratumChoice,
-    /// Effect to hide, instead of one that is drawn.
-    #[arg(long, value_name = "ID")]
-    effect: Option<String>,
+    /// Effect to hide, instead of one that is drawn; of a double one or both, by commas.
+    #[arg(long, value_name = "ID", value_delimiter = ',')]
+    effect: Vec<String>,
     /// Its size in units of its typical size, instead of one that is drawn.
     #[arg(long, value_name = "TIMES", allow_negative_numbers = true)]
     times: Option<f64>,
@@ -77,7 +77,7 @@ struct Make {
     count: u16,
 }
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum StratumChoice {
     Single,
     Zero,
@@ -170,14 +170,24 @@ fn make_sets(arguments: &Make) -> anyhow::Result<()> {
         (0.0..1e3).contains(&arguments.nuisances),
         "--nuisances must be a factor of at least 0"
     );
-    let effect = arguments.effect.as_deref().map(asked_kind).transpose()?;
+    let asked = arguments.effect.iter().map(|id| asked_kind(id));
+    let asked: Vec<Kind> = asked.collect::<anyhow::Result<_>>()?;
+    let most = if arguments.stratum == StratumChoice::Double {
+        2
+    } else {
+        1
+    };
+    ensure!(
+        asked.len() <= most,
+        "--effect: sets of this stratum hide {most} at most"
+    );
     let mut sealed = Sealed::load_or_new(&arguments.answers)?;
     let mut commitment = String::new();
     for k in 0..arguments.count {
         let order = Order {
             seed: arguments.seed + u64::from(k),
             stratum: arguments.stratum.into(),
-            effect,
+            asked: asked.clone(),
             times: arguments.times,
             noise: arguments.noise,
             cycles: usize::from(arguments.cycles),

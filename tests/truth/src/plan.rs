@@ -67,8 +67,8 @@ pub struct Order {
     pub seed: u64,
     /// What it is to test.
     pub stratum: Stratum,
-    /// The effect, if it is not to be drawn.
-    pub effect: Option<Kind>,
+    /// Effects that are not to be drawn.
+    pub asked: Vec<Kind>,
     /// Its size in units of its typical size, if that is not to be drawn.
     pub times: Option<f64>,
     /// Factor on all noise.
@@ -112,9 +112,9 @@ impl Order {
         } else {
             &CATALOGUE
         };
-        let mut kinds = Vec::new();
-        if self.stratum != Stratum::Zero {
-            kinds.push(self.effect.unwrap_or_else(|| any(&mut draw, from)));
+        let mut kinds = self.asked.clone();
+        if self.stratum != Stratum::Zero && kinds.is_empty() {
+            kinds.push(any(&mut draw, from));
         }
         while self.stratum == Stratum::Double && kinds.len() < 2 {
             let other = any(&mut draw, from);
@@ -305,7 +305,7 @@ mod tests {
         Order {
             seed,
             stratum,
-            effect: None,
+            asked: Vec::new(),
             times: None,
             noise: 1.0,
             cycles: 5,
@@ -336,6 +336,13 @@ mod tests {
             assert!((below[0].size / below[0].kind.scale).abs() <= 0.1);
             let card = order(Stratum::Card, seed).effects().unwrap();
             assert!((6.0..=10.0).contains(&card[0].size));
+            let asked = ["pin_clearance", "crank_speed_ripple"];
+            let pair = Order {
+                asked: asked.map(|id| by_id(id).unwrap()).to_vec(),
+                ..order(Stratum::Double, seed)
+            };
+            let hidden = pair.effects().unwrap();
+            assert_eq!([hidden[0].kind.id, hidden[1].kind.id], asked);
         }
         assert_eq!(ids.len(), CATALOGUE.len(), "all of them come up");
     }

@@ -103,7 +103,7 @@ impl Suite<'_> {
         let order = |(_, stratum, k): (f64, Stratum, u64)| Order {
             seed: self.seed + APART * place(stratum) + k,
             stratum,
-            effect: None,
+            asked: Vec::new(),
             times: None,
             noise: 1.0,
             cycles: 5,
