@@ -11,7 +11,7 @@ use crate::report::words::objective_heading;
 use protocol::case;
 
 const COLUMNS: usize = 5;
-const LEFT: f64 = 58.0;
+const LEFT: f64 = 62.0;
 const BETWEEN: f64 = 28.0;
 const TOP: f64 = 52.0;
 const ROW: f64 = 178.0;

@@ -13,7 +13,7 @@ use crate::report::{kind, words};
 use protocol::case::{Case, Channel, ChannelRecord, Offset};
 use protocol::job::{ChannelScore, Verdict};
 
-const LEFT: f64 = 58.0;
+const LEFT: f64 = 62.0;
 const BETWEEN: f64 = 26.0;
 const TOP: f64 = 62.0;
 const VALUES_HEIGHT: f64 = 200.0;

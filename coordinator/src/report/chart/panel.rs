@@ -7,6 +7,8 @@ use crate::report::color::{AXIS, Color, GREY, GUIDE, INK, ZERO};
 const TICK: f64 = 4.0;
 /// Size of tick labels [px].
 const LABEL: f64 = 10.5;
+/// Width of a digit of that size [px].
+const DIGIT: f64 = 5.9;
 
 /// A rectangle on the sheet with a scale along each side.
 pub(crate) struct Panel {
@@ -66,7 +68,8 @@ impl Panel {
     pub(crate) fn left_axis(&self, canvas: &mut Canvas, labels: bool, title: &str) {
         let pen = axis_pen();
         canvas.line(&[(self.left, self.top), (self.left, self.bottom())], pen);
-        for tick in self.y.ticks() {
+        let ticks = self.y.ticks();
+        for tick in &ticks {
             let y = self.at_y(tick.value);
             let length = tick_length(&tick.label);
             canvas.line(&[(self.left - length, y), (self.left, y)], pen);
@@ -78,9 +81,13 @@ impl Panel {
         if title.is_empty() {
             return;
         }
+        let longest = ticks.iter().map(|tick| tick.label.chars().count()).max();
         let lettering = Lettering::new(LABEL, GREY).centered().above();
         canvas.text(
-            (self.left - 40.0, self.top + 0.5 * self.height),
+            (
+                self.left - title_distance(longest.unwrap_or(0)),
+                self.top + 0.5 * self.height,
+            ),
             title,
             lettering.upwards(),
         );
@@ -141,6 +148,11 @@ const fn axis_pen() -> Pen {
     Pen::new(AXIS, 0.8)
 }
 
+/// Distance of the left axis's title [px]: beyond tick labels of so many characters, but within the margin.
+fn title_distance(longest: usize) -> f64 {
+    (TICK + 6.0 + DIGIT * longest as f64).clamp(40.0, 50.0)
+}
+
 const fn tick_length(label: &str) -> f64 {
     if label.is_empty() { 0.55 * TICK } else { TICK }
 }
@@ -166,7 +178,15 @@ pub(crate) fn spread(wanted: &[f64], gap: f64, low: f64, high: f64) -> Vec<f64> 
 
 #[cfg(test)]
 mod tests {
-    use super::spread;
+    use super::{DIGIT, TICK, spread, title_distance};
+
+    #[test]
+    fn the_title_stands_beyond_the_longest_label() {
+        for longest in 0..8_u8 {
+            let labels = TICK + 3.0 + DIGIT * f64::from(longest);
+            assert!(title_distance(usize::from(longest)) > labels, "{longest}");
+        }
+    }
 
     #[test]
     fn labels_are_kept_apart_and_inside() {

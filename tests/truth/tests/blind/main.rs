@@ -11,3 +11,4 @@ mod apart;
 mod coarse;
 mod friction;
 mod nothing;
+mod practice;
