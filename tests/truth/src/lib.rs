@@ -16,6 +16,7 @@ pub mod law;
 pub mod machine;
 pub mod plan;
 pub mod seal;
+pub mod searches;
 pub mod suite;
 pub mod table;
 pub mod turn;

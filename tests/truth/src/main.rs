@@ -12,6 +12,7 @@ use truth::law::{Kind, Tolerance};
 use truth::machine::Fineness;
 use truth::plan::{Order, Stratum, asked_kind, make};
 use truth::seal::Sealed;
+use truth::searches::Searches;
 use truth::suite::Suite;
 use truth::table::table;
 use truth::verdict::Verdict;
@@ -28,6 +29,7 @@ enum Command {
     Make(Make),
     Open(Open),
     Run(Run),
+    Searches(SearchesOf),
 }
 
 /// Make sets of records, each in a folder with a random name, and seal what they hide.
@@ -136,6 +138,33 @@ struct Run {
     hours: Option<f64>,
 }
 
+/// Calibrate records by several searches and seeds, and print a table of objectives, stiffness and cost. What is there
+/// already is not run again.
+#[derive(Debug, Args)]
+struct SearchesOf {
+    /// Case folder; its own record is the first.
+    #[arg(long)]
+    case: PathBuf,
+    /// Folders of other records.
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    records: Vec<PathBuf>,
+    /// Files of what the records hide.
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    answers: Vec<PathBuf>,
+    /// The program that is judged; its worker lies beside it.
+    #[arg(long)]
+    horsehead: PathBuf,
+    /// Searches, by the names of their presets.
+    #[arg(long, value_delimiter = ',', default_value = "quick,memetic")]
+    presets: Vec<String>,
+    /// Seeds of each.
+    #[arg(long, value_delimiter = ',', default_value = "1,2,3")]
+    seeds: Vec<u64>,
+    /// Where results and the table go.
+    #[arg(long)]
+    out: PathBuf,
+}
+
 /// Open the answers and print what the verdicts are worth.
 #[derive(Debug, Args)]
 struct Open {
@@ -156,6 +185,7 @@ fn main() -> anyhow::Result<()> {
         Command::Make(arguments) => make_sets(&arguments),
         Command::Open(arguments) => open(&arguments),
         Command::Run(arguments) => run_all(&arguments),
+        Command::Searches(arguments) => compare(&arguments),
     }
 }
 
@@ -252,6 +282,21 @@ fn run_all(arguments: &Run) -> anyhow::Result<()> {
     let judged = judged(sealed, &suite.verdicts())?;
     fs::write(arguments.out.join("table.md"), &judged)?;
     say(&judged)
+}
+
+fn compare(arguments: &SearchesOf) -> anyhow::Result<()> {
+    let searches = Searches {
+        case: &arguments.case,
+        records: &arguments.records,
+        answers: &arguments.answers,
+        horsehead: &arguments.horsehead,
+        presets: &arguments.presets,
+        seeds: &arguments.seeds,
+        unknown: "kb1",
+        out: &arguments.out,
+    };
+    let table = searches.run(&mut |line| say(&format!("{line}\n")))?;
+    say(&table)
 }
 
 /// The table of all sets that have a verdict.
