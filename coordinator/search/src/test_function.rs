@@ -5,7 +5,7 @@ use crate::{
     space::{Space, SpaceError},
     strategy::Told,
 };
-use protocol::case::{Scale, Shift, Unknown, Valley};
+use protocol::case::{Scale, Shares, Shift, Unknown, Valley};
 
 /// What a function gives: the residual vector whose squared length is the fitness, or the grade of
 /// a point that fails.
@@ -89,13 +89,22 @@ impl TestFunction {
             unknown: format!("x{axis}"),
             by,
         });
+        let damped = self.optimum.len() > 4;
+        let stand_ins = [1.5, -1.5].into_iter().filter(|_| self.optimum.len() > 8);
+        let stand_ins = stand_ins.map(|by| Shift {
+            unknown: "x8".to_owned(),
+            by,
+        });
         let mut valley = Some(Valley {
             from: -0.3,
             to: 1.1,
             step: 0.02,
             uncovered_by: hiding.collect(),
-            shares: None,
-            stand_ins: Vec::new(),
+            shares: damped.then(|| Shares {
+                unknown: "x4".to_owned(),
+                of_scanned: vec![6e-4, 2e-3],
+            }),
+            stand_ins: stand_ins.collect(),
         });
         let unknowns = UNKNOWNS.iter().take(self.optimum.len()).enumerate();
         let unknowns = unknowns.map(|(axis, &(start, trust))| {

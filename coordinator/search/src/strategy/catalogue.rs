@@ -13,6 +13,7 @@ use crate::space::Space;
 /// Every preset, in the order in which help lists them.
 pub const CATALOGUE: &[Preset] = &[
     quick::QUICK,
+    quick::MEMETIC_AND_SCANS,
     quick::LEAST_SQUARES,
     quick::DESCENT,
     quick::HYBRID,

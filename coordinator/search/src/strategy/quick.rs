@@ -1,13 +1,14 @@
-//! A search that fits a laptop: a short memetic search in the trust box, line scans of the one
-//! unknown whose valley is narrow, and local refinement.
+//! Searches that fit a laptop, as sequences of parts: first points, line scans of the one unknown whose valley
+//! is narrow, races of descents, a short memetic search, refinement.
 //!
 //! A fitness with resonances has a valley in a stiffness that is a hundred times narrower than the
 //! box, so a population finds the plateau around it but not the valley; and on the plateau more
-//! damping always looks better, because it removes the oscillation whose phase does not fit. Hence the
-//! order: population, scan at several levels of damping, refinement, fine scan, refinement. Descents of
-//! the residual vector enter the valley from farther away: a few points and a coarse scan are enough to
-//! begin with, and a race tells which of them is the deepest. Which unknown has such a valley, and what hides it, the case says; where it says nothing, nothing is
-//! scanned.
+//! damping always looks better, because it removes the oscillation whose phase does not fit. `quick` therefore
+//! races descents of the residual vector from scattered points, which finds what the other unknowns are about,
+//! scans the narrow unknown around the best of them, on lines on which nothing hides the valley, and races descents
+//! again from the best stations. `memetic` needs the fitness alone: population, scan, refinement, fine scan,
+//! refinement. Which unknown has such a valley, and what hides it, the case says; where it says nothing, nothing
+//! is scanned.
 use super::{
     ask_tell::Strategy,
     conductor::Conductor,
@@ -20,7 +21,7 @@ use super::{
     offer::{Group, Preset, Promise},
     piece::Piece,
     refine::{self, Refine, RefineSettings},
-    scan::{self, Center, Scan, ScanSettings, Shift},
+    scan::{self, Center, Line, Scan, ScanSettings, Share, Shift},
     setting::{Setting, SettingsError, Values, require},
     settings::{Recipe, Settings, build_as},
 };
@@ -31,12 +32,38 @@ use crate::{
 use protocol::case::Valley;
 use serde::{Deserialize, Serialize};
 
-/// The search with refinements.
+/// Races of descents about a scan.
 pub const QUICK: Preset = Preset {
     name: "quick",
-    summary: "a short memetic search, line scans of a narrow valley, refinement",
+    summary: "a race of descents of the residual, a line scan of a narrow valley, another race",
     strategy: QuickSettings::STRATEGY,
-    settings: |plan| Settings::of(&QuickSettings::for_space(plan.space)),
+    settings: |plan| Settings::of(&QuickSettings::quick(plan.space)),
+    groups: &[
+        part("", "/parts/0/points", POINTS),
+        Group {
+            without: &["apart"],
+            ..part("race_", "/parts/1/least_squares", levenberg::SETTINGS)
+        },
+        part("scan_", "/parts/2/scan", scan::SETTINGS),
+        part("descent_", "/parts/3/least_squares", levenberg::SETTINGS),
+    ],
+    promise: Promise {
+        one_basin: 1e-8,
+        many_basins: 3.0,
+        distance: 1e-4,
+        opens_at_recommended: true,
+        // differences take an evaluation for each column
+        valley: Some(1_400),
+        chance: true,
+    },
+    build: build_as::<QuickSettings>,
+};
+
+/// The search by the fitness alone.
+pub const MEMETIC_AND_SCANS: Preset = Preset {
+    name: "memetic",
+    summary: "a short memetic search, line scans, refinement: by the objective alone",
+    settings: |plan| Settings::of(&QuickSettings::memetic(plan.space)),
     groups: &[
         MEMETIC,
         part("scan_", "/parts/1/scan", scan::SETTINGS),
@@ -48,14 +75,12 @@ pub const QUICK: Preset = Preset {
         one_basin: 1e-4,
         many_basins: 1.1,
         distance: 0.01,
-        opens_at_recommended: true,
-        valley: Some(1_100),
-        chance: true,
+        ..QUICK.promise
     },
-    build: build_as::<QuickSettings>,
+    ..QUICK
 };
 
-/// The search with descents of the residual vector.
+/// One race of descents.
 pub const LEAST_SQUARES: Preset = Preset {
     name: "least-squares",
     summary: "a few points and a line scan, then Levenberg-Marquardt on the residual",
@@ -65,12 +90,6 @@ pub const LEAST_SQUARES: Preset = Preset {
         part("scan_", "/parts/1/scan", scan::SETTINGS),
         part("descent_", "/parts/2/least_squares", levenberg::SETTINGS),
     ],
-    promise: Promise {
-        one_basin: 1e-8,
-        many_basins: 3.0,
-        distance: 1e-4,
-        ..QUICK.promise
-    },
     ..QUICK
 };
 
@@ -83,7 +102,7 @@ pub const DESCENT: Preset = Preset {
         named: "",
         place: "/parts/1/least_squares",
         table: levenberg::SETTINGS,
-        without: &["starts", "apart", "heat", "finish"],
+        without: &["starts", "apart", "heat", "keep"],
     }],
     promise: Promise {
         // it stays in the basin that it begins in
@@ -103,7 +122,10 @@ pub const HYBRID: Preset = Preset {
     groups: &[
         MEMETIC,
         part("scan_", "/parts/1/scan", scan::SETTINGS),
-        part("descent_", "/parts/2/least_squares", levenberg::SETTINGS),
+        Group {
+            without: &["keep"],
+            ..part("descent_", "/parts/2/least_squares", levenberg::SETTINGS)
+        },
     ],
     ..LEAST_SQUARES
 };
@@ -149,7 +171,7 @@ pub enum Part {
     LeastSquares(LevenbergSettings),
 }
 
-/// Settings of the quick search.
+/// Settings of a search in parts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct QuickSettings {
@@ -162,7 +184,7 @@ pub struct QuickSettings {
 impl QuickSettings {
     /// About 900 evaluations. The first axis with a valley is scanned, at the best point and with every
     /// set of shifts that may uncover it.
-    pub fn for_space(space: &Space) -> Self {
+    pub fn memetic(space: &Space) -> Self {
         let trust: Vec<Interval> = space.axes().iter().map(|axis| axis.trust).collect();
         let scanned = space.axes().iter().enumerate();
         let mut scanned =
@@ -210,7 +232,7 @@ impl QuickSettings {
     /// A global stage of some 300 evaluations, a coarse scan, and eight descents, half of which are given up
     /// after every heat.
     pub fn hybrid(space: &Space) -> Self {
-        let Self { trust, parts } = Self::for_space(space);
+        let Self { trust, parts } = Self::memetic(space);
         let Self {
             parts: descents, ..
         } = Self::least_squares(space);
@@ -242,15 +264,46 @@ impl QuickSettings {
         Self { trust, parts }
     }
 
+    /// A race of ten descents from scattered points, a scan about the best, and a race of eight from its
+    /// stations, two of which go to their floor: some 400 evaluations, 60 of them with columns.
+    pub fn quick(space: &Space) -> Self {
+        let Self { trust, mut parts } = Self::least_squares(space);
+        parts[0] = Part::Points { points: 16 };
+        if let Some(Part::LeastSquares(descent)) = parts.last_mut() {
+            // it decides between families of fits, not how deep each of them is
+            let race = Part::LeastSquares(LevenbergSettings {
+                starts: 10,
+                iterations: 8,
+                heat: 2,
+                keep: 2,
+                ..descent.clone()
+            });
+            *descent = LevenbergSettings {
+                starts: 8,
+                apart: 0.07,
+                heat: 2,
+                keep: 2,
+                ..descent.clone()
+            };
+            parts.insert(1, race);
+        }
+        Self { trust, parts }
+    }
+
     /// A few points and a scan from which descents of the residual vector begin: about 300 evaluations,
     /// some 40 of them with columns.
     pub fn least_squares(space: &Space) -> Self {
-        let Self { trust, mut parts } = Self::for_space(space);
+        let Self { trust, mut parts } = Self::memetic(space);
         parts.truncate(2);
         parts[0] = Part::Points { points: 24 };
         if let Part::Scan(scan) = &mut parts[1] {
             // a descent enters the valley from several of its widths away
             scan.step *= 7.0;
+            let axis = space.axes().get(scan.axis);
+            let valley = axis.and_then(|axis| axis.unknown.valley.as_ref());
+            if let Some(lines) = valley.and_then(|valley| held(space, valley)) {
+                scan.lines = lines;
+            }
         }
         parts.push(Part::LeastSquares(LevenbergSettings {
             starts: 4,
@@ -260,6 +313,7 @@ impl QuickSettings {
             longest: 1.5,
             level: 1e-3,
             heat: 6,
+            keep: 1,
             derivatives: Derivatives::Exact,
             finish: Finish::Usual,
         }));
@@ -269,18 +323,6 @@ impl QuickSettings {
 
 /// The scan of an axis for its valley, and a fine one on the floor that the first has found.
 fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
-    let shifts = valley.uncovered_by.iter();
-    // what is not searched cannot be shifted
-    let shifts = shifts.filter_map(|shift| {
-        let axis = space.position(&shift.unknown)?;
-        Some(Shift { axis, by: shift.by })
-    });
-    let mut lines = vec![Vec::new()];
-    for shift in shifts {
-        let with = |line: &Vec<Shift>| line.iter().copied().chain([shift]).collect();
-        let more: Vec<Vec<Shift>> = lines.iter().map(with).collect();
-        lines.extend(more);
-    }
     let coarse = ScanSettings {
         axis,
         center: Center::Start,
@@ -289,15 +331,55 @@ fn scans(space: &Space, axis: usize, valley: &Valley) -> [ScanSettings; 2] {
         step: valley.step,
         points: 1,
         apart: 0.3,
-        lines,
+        lines: uncovered(space, valley),
     };
     let mut fine = coarse.clone();
     fine.center = Center::Point;
     fine.below = 1.5 * valley.step;
     fine.above = fine.below;
     fine.step = 0.15 * valley.step;
-    fine.lines = vec![Vec::new()];
+    fine.lines = vec![Line::default()];
     [coarse, fine]
+}
+
+/// Shifts of what is searched.
+fn shifts(space: &Space, of: &[protocol::case::Shift]) -> Vec<Shift> {
+    let known = of.iter().filter_map(|shift| {
+        let axis = space.position(&shift.unknown)?;
+        Some(Shift { axis, by: shift.by })
+    });
+    known.collect()
+}
+
+/// Lines through and beside a point, with every set of shifts that uncover a valley.
+fn uncovered(space: &Space, valley: &Valley) -> Vec<Line> {
+    let mut lines = vec![Line::default()];
+    for shift in shifts(space, &valley.uncovered_by) {
+        let with = |line: &Line| Line {
+            shifts: line.shifts.iter().copied().chain([shift]).collect(),
+            share: None,
+        };
+        let more: Vec<Line> = lines.iter().map(with).collect();
+        lines.extend(more);
+    }
+    lines
+}
+
+/// Lines through a point and at each stand-in's shift, with what hides a valley held at shares of the scanned unknown;
+/// none where the case states no shares.
+fn held(space: &Space, valley: &Valley) -> Option<Vec<Line>> {
+    let shares = valley.shares.as_ref()?;
+    let axis = space.position(&shares.unknown)?;
+    let stand_ins = shifts(space, &valley.stand_ins);
+    let beside = stand_ins.into_iter().map(|shift| vec![shift]);
+    let lines = [Vec::new()].into_iter().chain(beside).flat_map(|shifts| {
+        let of = shares.of_scanned.iter().map(move |&of_scanned| Line {
+            shifts: shifts.clone(),
+            share: Some(Share { axis, of_scanned }),
+        });
+        of.collect::<Vec<Line>>()
+    });
+    Some(lines.collect())
 }
 
 impl Recipe for QuickSettings {

@@ -31,6 +31,26 @@ pub struct Shift {
     pub by: f64,
 }
 
+/// An unknown that is a share of the scanned one along a whole line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Share {
+    /// Its axis.
+    pub axis: usize,
+    /// Its value over that of the scanned unknown.
+    pub of_scanned: f64,
+}
+
+/// A line of stations through or beside a point.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Line {
+    /// Unknowns that are moved away from the point's values.
+    pub shifts: Vec<Shift>,
+    /// The unknown that follows the scanned one.
+    pub share: Option<Share>,
+}
+
 /// A line scan.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -49,8 +69,8 @@ pub struct ScanSettings {
     pub points: usize,
     /// How far apart those points are at least, along any axis but the scanned one (coordinate).
     pub apart: f64,
-    /// The lines through and beside each point, each with its shifts; at least one.
-    pub lines: Vec<Vec<Shift>>,
+    /// The lines through and beside each point; at least one.
+    pub lines: Vec<Line>,
 }
 
 impl ScanSettings {
@@ -77,8 +97,10 @@ impl ScanSettings {
             "above 0",
         )?;
         require(!self.lines.is_empty(), "lines of a scan", 0, least)?;
-        let shifted = self.lines.iter().flatten().map(|shift| shift.axis);
-        for axis in shifted.chain([self.axis]) {
+        let shifts = self.lines.iter().flat_map(|line| &line.shifts);
+        let shares = self.lines.iter().filter_map(|line| line.share.as_ref());
+        let beside = shifts.map(|shift| shift.axis).chain(shares.map(|s| s.axis));
+        for axis in beside.chain([self.axis]) {
             let known = axis < space.dimension();
             require(known, "axis of a scan", axis, "one that is searched")?;
         }
@@ -172,13 +194,18 @@ impl Piece for Scan {
                 Center::Start => 0.0,
                 Center::Point => base[axis],
             };
-            for shifts in &self.settings.lines {
+            for line in &self.settings.lines {
                 for station in 0..self.settings.stations() {
                     let mut point = base.clone();
-                    for shift in shifts {
+                    for shift in &line.shifts {
                         point[shift.axis] += shift.by;
                     }
                     point[axis] = middle - below + step * station as f64;
+                    if let Some(share) = line.share {
+                        let axes = self.space.axes();
+                        let wanted = share.of_scanned * axes[axis].value(point[axis]);
+                        point[share.axis] = axes[share.axis].coordinate(wanted);
+                    }
                     let genes = self.space.values(&point);
                     drafts.push(Draft {
                         genes,
