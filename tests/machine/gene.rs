@@ -273,6 +273,7 @@ fn a_calibration_finds_the_sizes_of_effects() {
                 longest: 100.0,
                 level: 0.0,
                 heat: 100,
+                keep: 1,
                 derivatives: Derivatives::Exact,
                 finish: Finish::Usual,
             }),

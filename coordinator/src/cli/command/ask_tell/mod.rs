@@ -26,14 +26,15 @@ are points to evaluate before the search, on top of what it plans, and to begin 
 and in, in any order, one point or many to a line:
   {{\"tell\": [{{\"id\": 0, \"f\": 3.5}}, {{\"id\": 1, \"failed\": true}}]}}
 The smaller f is the better. A point with \"residual\": true may be told with \"residual\": [..], whose
-squared length is f; least-squares goes nowhere without. Every line is answered, by {{\"ask\": []}} while
+squared length is f; quick, least-squares, descent and hybrid go nowhere without, memetic
+needs f alone. Every line is answered, by {{\"ask\": []}} while
 points are open. Last out:
   {{\"done\": \"planned\", \"evaluations\": 500, \"best\": {{\"id\": 7, \"x\": [..], \"f\": 0.1}}}}
 done: planned, threshold, budget, or input, as its end is the end. A line that cannot be taken ends the
 talk, too: {{\"error\": .., \"help\": .., \"evaluations\": .., \"best\": ..}}, and nothing of it was taken.
 
 Example:
-  horsehead ask-tell quick
+  horsehead ask-tell memetic
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
