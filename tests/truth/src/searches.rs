@@ -44,7 +44,7 @@ pub struct Outcome {
     pub seconds: f64,
 }
 
-/// What is read of `horsehead calibrate --output json`.
+/// What is read of `horsehead calibrate CASE --output json`.
 #[derive(Deserialize)]
 struct Result {
     wall_s: f64,

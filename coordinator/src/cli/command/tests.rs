@@ -376,7 +376,7 @@ fn unknown_settings_are_answered_with_the_nearest_and_bad_values_with_what_is_al
         error.help.starts_with("did you mean `encoding`?"),
         "{error:?}"
     );
-    let error = chosen("quick", &[("roulette", "wheel")], 1).unwrap_err();
+    let error = chosen("memetic", &[("roulette", "wheel")], 1).unwrap_err();
     assert!(
         error
             .message

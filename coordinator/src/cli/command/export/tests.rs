@@ -91,10 +91,10 @@ fn run_with(folder: &Path, results: usize) -> (Scribe, Option<EvaluationLog>) {
         format: FORMAT,
         program: bus::PROGRAM.to_owned(),
         command: "horsehead calibrate X".to_owned(),
-        preset: "quick".to_owned(),
+        preset: "memetic".to_owned(),
         seed: 3,
         set: Vec::new(),
-        settings: (preset("quick").unwrap().settings)(&Plan {
+        settings: (preset("memetic").unwrap().settings)(&Plan {
             space: &space,
             workers: 1,
         }),
