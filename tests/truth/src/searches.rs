@@ -1,12 +1,13 @@
 //! Searches side by side: calibrations of the judged program from several seeds, on records whose stiffness is
 //! known, as a table. A calibration whose result is there is not run again.
+use crate::suite::json_into;
 use anyhow::{Context as _, ensure};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 
 /// What is compared, on what.
 #[derive(Debug)]
@@ -107,22 +108,14 @@ impl Searches<'_> {
         let kept = self.out.join(format!("{name}.csv"));
         if !result.is_file() {
             let part = result.with_extension("part");
-            let file =
-                fs::File::create(&part).with_context(|| format!("writing {}", part.display()))?;
             let mut command = Command::new(self.horsehead);
             command.arg("calibrate").arg(self.case);
             if let Some(folder) = record.checked_sub(1).and_then(|k| self.records.get(k)) {
                 command.arg("--measured").arg(folder);
             }
-            let status = command
-                .args(["--preset", preset, "--seed", &seed.to_string(), "--run"])
-                .arg(&run)
-                .args(["--output", "json"])
-                .stdin(Stdio::null())
-                .stdout(file)
-                .stderr(Stdio::null())
-                .status()
-                .with_context(|| format!("starting {}", self.horsehead.display()))?;
+            command.args(["--preset", preset, "--seed", &seed.to_string()]);
+            command.arg("--run").arg(&run);
+            let status = json_into(&mut command, &part)?;
             ensure!(
                 status.success(),
                 "the calibration {name} failed ({status}): see {}",

@@ -11,7 +11,7 @@ use anyhow::{Context as _, bail};
 use protocol::pumping_unit::PumpingUnit;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// What is run, and where.
@@ -145,21 +145,13 @@ impl Suite<'_> {
         let begun = Instant::now();
         let run = self.out.join("runs").join(name);
         let part = verdict.with_extension("part");
-        let file =
-            fs::File::create(&part).with_context(|| format!("writing {}", part.display()))?;
-        let status = Command::new(self.horsehead)
-            .arg("diagnose")
-            .arg(self.case)
+        let mut command = Command::new(self.horsehead);
+        command.arg("diagnose").arg(self.case);
+        command
             .arg("--measured")
-            .arg(self.out.join("sets").join(name))
-            .arg("--run")
-            .arg(&run)
-            .args(["--output", "json"])
-            .stdin(Stdio::null())
-            .stdout(file)
-            .stderr(Stdio::null())
-            .status()
-            .with_context(|| format!("starting {}", self.horsehead.display()))?;
+            .arg(self.out.join("sets").join(name));
+        command.arg("--run").arg(&run);
+        let status = json_into(&mut command, &part)?;
         if !status.success() {
             if status.code().is_none() {
                 bail!("the diagnosis of {name} was stopped; `truth run` goes on with it");
@@ -171,6 +163,21 @@ impl Suite<'_> {
         fs::remove_dir_all(&run).with_context(|| format!("removing {}", run.display()))?;
         Ok(format!("in {} s", begun.elapsed().as_secs()))
     }
+}
+
+/// Runs a command of the judged program with `--output json` into a file, silently.
+///
+/// # Errors
+/// A file that cannot be written; a program that does not start.
+pub(crate) fn json_into(command: &mut Command, path: &Path) -> anyhow::Result<ExitStatus> {
+    let file = fs::File::create(path).with_context(|| format!("writing {}", path.display()))?;
+    command
+        .args(["--output", "json"])
+        .stdin(Stdio::null())
+        .stdout(file)
+        .stderr(Stdio::null())
+        .status()
+        .with_context(|| format!("starting {}", command.get_program().to_string_lossy()))
 }
 
 #[cfg(test)]

@@ -210,12 +210,18 @@ impl Levenberg {
         compared
     }
 
-    /// Gives up the worse half of the descents after every heat: the last one goes to its floor.
+    /// Descents that are left of so many after a heat.
+    fn left(&self, descents: usize) -> usize {
+        descents.div_ceil(2).max(self.settings.keep.min(descents))
+    }
+
+    /// Gives up the worse half of the descents after every heat, as far as they are not to be kept.
     fn select(&mut self) {
         let heat_over = self.round > 0 && self.round.is_multiple_of(self.settings.heat);
+        let left = self.left(self.searches.as_ref().map_or(0, Vec::len));
         if let Some(searches) = self.searches.as_mut().filter(|_| heat_over) {
             searches.sort_by(|(a, _), (b, _)| a.cost().total_cmp(&b.cost()));
-            searches.truncate(searches.len().div_ceil(2).max(self.settings.keep));
+            searches.truncate(left);
         }
     }
 
@@ -328,7 +334,7 @@ impl Piece for Levenberg {
         let mut ahead = 0;
         for round in self.round..self.generations() {
             if round > 0 && round.is_multiple_of(self.settings.heat) {
-                live = live.div_ceil(2).max(self.settings.keep.min(live));
+                live = self.left(live);
             }
             ahead += live * per_round;
         }

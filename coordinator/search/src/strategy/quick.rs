@@ -265,7 +265,8 @@ impl QuickSettings {
     }
 
     /// A race of ten descents from scattered points, a scan about the best, and a race of eight from its
-    /// stations, two of which go to their floor: some 400 evaluations, 60 of them with columns.
+    /// stations, two of which go to their floor: some 400 evaluations, 60 of them with columns. What these numbers
+    /// find stands in `tests/truth/README.md`.
     pub fn quick(space: &Space) -> Self {
         let Self { trust, mut parts } = Self::least_squares(space);
         parts[0] = Part::Points { points: 16 };
@@ -280,6 +281,7 @@ impl QuickSettings {
             });
             *descent = LevenbergSettings {
                 starts: 8,
+                // half of what the machine's stations lie apart
                 apart: 0.07,
                 heat: 2,
                 keep: 2,
