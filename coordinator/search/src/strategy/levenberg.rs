@@ -130,6 +130,41 @@ pub struct Levenberg {
     round: u32,
 }
 
+/// How far apart the starts of descents lie: along the narrow axis and those that can stand in for it, else along all.
+#[derive(Clone, Debug)]
+pub struct Apart {
+    /// An axis, and the least distance along it (coordinate).
+    axes: Vec<(usize, f64)>,
+}
+
+impl Apart {
+    /// A distance along the narrow axis, and half of each stand-in's shift along its own.
+    pub fn new(space: &Space, distance: f64) -> Self {
+        let mut axes = Vec::new();
+        for (k, axis) in space.axes().iter().enumerate() {
+            let Some(valley) = &axis.unknown.valley else {
+                continue;
+            };
+            axes.push((k, distance));
+            for shift in &valley.stand_ins {
+                if let Some(axis) = space.position(&shift.unknown) {
+                    axes.push((axis, 0.5 * shift.by.abs()));
+                }
+            }
+        }
+        if axes.is_empty() {
+            axes = (0..space.dimension()).map(|k| (k, distance)).collect();
+        }
+        Self { axes }
+    }
+
+    /// Whether one of two points is too near the other to begin a descent of its own.
+    pub fn near(&self, a: &[f64], b: &[f64]) -> bool {
+        let near = |&(k, distance): &(usize, f64)| (a[k] - b[k]).abs() < distance;
+        self.axes.iter().all(near)
+    }
+}
+
 impl Levenberg {
     /// # Errors
     /// If a setting lies outside its range.
@@ -146,15 +181,10 @@ impl Levenberg {
     /// Descents from the best points that lie apart.
     fn begin(&self, archive: &Archive) -> Vec<(LeastSquares, usize)> {
         let mut starts: Vec<(Vec<f64>, f64)> = Vec::new();
-        let compared = self.compared();
+        let apart = Apart::new(&self.space, self.settings.apart);
         for one in archive.ranked() {
             let x = self.space.point(&one.genes);
-            let near = |(other, _): &(Vec<f64>, f64)| {
-                compared
-                    .iter()
-                    .all(|&(k, apart)| (other[k] - x[k]).abs() < apart)
-            };
-            if !starts.iter().any(near) {
+            if !starts.iter().any(|(other, _)| apart.near(other, &x)) {
                 starts.push((x, one.told.fitness));
             }
             if starts.len() == self.settings.starts {
@@ -185,29 +215,6 @@ impl Levenberg {
             (LeastSquares::new(self.variables(&x), settings), 0)
         };
         starts.into_iter().map(search).collect()
-    }
-
-    /// Axes along which starts differ, and by how much at least: the narrow one and those that can stand in for it,
-    /// else all.
-    fn compared(&self) -> Vec<(usize, f64)> {
-        let apart = self.settings.apart;
-        let axes = self.space.axes().iter().enumerate();
-        let mut compared = Vec::new();
-        for (k, axis) in axes {
-            let Some(valley) = &axis.unknown.valley else {
-                continue;
-            };
-            compared.push((k, apart));
-            for shift in &valley.stand_ins {
-                if let Some(axis) = self.space.position(&shift.unknown) {
-                    compared.push((axis, 0.5 * shift.by.abs()));
-                }
-            }
-        }
-        if compared.is_empty() {
-            compared = (0..self.space.dimension()).map(|k| (k, apart)).collect();
-        }
-        compared
     }
 
     /// Descents that are left of so many after a heat.

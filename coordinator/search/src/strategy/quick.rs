@@ -186,10 +186,7 @@ impl QuickSettings {
     /// set of shifts that may uncover it.
     pub fn memetic(space: &Space) -> Self {
         let trust: Vec<Interval> = space.axes().iter().map(|axis| axis.trust).collect();
-        let scanned = space.axes().iter().enumerate();
-        let mut scanned =
-            scanned.filter_map(|(axis, own)| Some((axis, own.unknown.valley.as_ref()?)));
-        let scanned = scanned.next();
+        let scanned = narrow(space);
         // of the scanned axis only the valley's floor is left to refine
         let spread = |floor: f64, share: f64| {
             let all = trust.iter().enumerate();
@@ -298,15 +295,7 @@ impl QuickSettings {
         let Self { trust, mut parts } = Self::memetic(space);
         parts.truncate(2);
         parts[0] = Part::Points { points: 24 };
-        if let Part::Scan(scan) = &mut parts[1] {
-            // a descent enters the valley from several of its widths away
-            scan.step *= 7.0;
-            let axis = space.axes().get(scan.axis);
-            let valley = axis.and_then(|axis| axis.unknown.valley.as_ref());
-            if let Some(lines) = valley.and_then(|valley| held(space, valley)) {
-                scan.lines = lines;
-            }
-        }
+        parts[1] = coarse_scan(space).map_or(Part::NoScan, Part::Scan);
         parts.push(Part::LeastSquares(LevenbergSettings {
             starts: 4,
             iterations: 25,
@@ -321,6 +310,25 @@ impl QuickSettings {
         }));
         Self { trust, parts }
     }
+}
+
+/// The first unknown that has a narrow valley: its axis, and what the case says of the valley.
+fn narrow(space: &Space) -> Option<(usize, &Valley)> {
+    let mut axes = space.axes().iter().enumerate();
+    axes.find_map(|(axis, own)| Some((axis, own.unknown.valley.as_ref()?)))
+}
+
+/// The scan between races of descents: stations so far apart that a descent enters the valley from one of them, on
+/// lines on which nothing hides it. None where no unknown has a narrow valley.
+pub fn coarse_scan(space: &Space) -> Option<ScanSettings> {
+    let (axis, valley) = narrow(space)?;
+    let [mut scan, _] = scans(space, axis, valley);
+    // a descent enters the valley from several of its widths away
+    scan.step *= 7.0;
+    if let Some(lines) = held(space, valley) {
+        scan.lines = lines;
+    }
+    Some(scan)
 }
 
 /// The scan of an axis for its valley, and a fine one on the floor that the first has found.

@@ -85,6 +85,30 @@ impl ScanSettings {
         intervals + 1
     }
 
+    /// Points of the scan through and beside one point, line by line (coordinates).
+    pub fn points_around(&self, space: &Space, base: &[f64]) -> Vec<Vec<f64>> {
+        let middle = match self.center {
+            Center::Start => 0.0,
+            Center::Point => base[self.axis],
+        };
+        let point = |line: &Line, station: usize| {
+            let mut point = base.to_vec();
+            for shift in &line.shifts {
+                point[shift.axis] += shift.by;
+            }
+            point[self.axis] = middle - self.below + self.step * station as f64;
+            if let Some(share) = line.share {
+                let axes = space.axes();
+                let wanted = share.of_scanned * axes[self.axis].value(point[self.axis]);
+                point[share.axis] = axes[share.axis].coordinate(wanted);
+            }
+            point
+        };
+        let stations = 0..self.stations();
+        let along = |line| stations.clone().map(move |station| point(line, station));
+        self.lines.iter().flat_map(along).collect()
+    }
+
     /// # Errors
     /// If a setting lies outside its range.
     pub(super) fn check(&self, space: &Space) -> Result<(), SettingsError> {
@@ -181,39 +205,13 @@ impl Piece for Scan {
         if std::mem::replace(&mut self.done, true) {
             return None;
         }
-        let ScanSettings {
-            axis,
-            center,
-            below,
-            step,
-            ..
-        } = self.settings;
-        let mut drafts = Vec::new();
-        for base in self.bases(archive) {
-            let middle = match center {
-                Center::Start => 0.0,
-                Center::Point => base[axis],
-            };
-            for line in &self.settings.lines {
-                for station in 0..self.settings.stations() {
-                    let mut point = base.clone();
-                    for shift in &line.shifts {
-                        point[shift.axis] += shift.by;
-                    }
-                    point[axis] = middle - below + step * station as f64;
-                    if let Some(share) = line.share {
-                        let axes = self.space.axes();
-                        let wanted = share.of_scanned * axes[axis].value(point[axis]);
-                        point[share.axis] = axes[share.axis].coordinate(wanted);
-                    }
-                    let genes = self.space.values(&point);
-                    drafts.push(Draft {
-                        genes,
-                        purpose: Purpose::Scan,
-                    });
-                }
-            }
-        }
+        let bases = self.bases(archive).into_iter();
+        let points = bases.flat_map(|base| self.settings.points_around(&self.space, &base));
+        let draft = |point: Vec<f64>| Draft {
+            genes: self.space.values(&point),
+            purpose: Purpose::Scan,
+        };
+        let drafts: Vec<Draft> = points.map(draft).collect();
         self.running = drafts.len();
         (!drafts.is_empty()).then_some(Batch {
             generation: 1,
