@@ -1,5 +1,6 @@
 //! TOML files: parsed into typed data, with errors that show the line and the nearest known key.
 use super::{
+    conversion::{convert, convert_key, factor},
     error::{CaseError, damaged},
     file,
 };
@@ -34,7 +35,8 @@ impl Document {
     /// # Errors
     /// Missing, unreadable, empty or not text.
     pub(crate) fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
-        let text = file::text(path, file::read(path, role)?)?;
+        let bytes = file::read(path, role)?;
+        let text = file::text(path, file::decoded(&bytes).into_owned())?;
         Ok(Self {
             path: path.to_owned(),
             text,
@@ -194,6 +196,9 @@ pub(crate) fn short(value: f64) -> String {
 /// Stands in the `expecting` text of a type of case files, between what is expected and an example of it.
 const WRITE: &str = "; write ";
 
+/// What counts are, in words.
+const WHOLE: &str = "expected a whole number, 0 or greater";
+
 /// The first line of a library's message, without its list of alternatives.
 fn first_line(message: &str) -> String {
     let line = message.lines().next().unwrap_or_default();
@@ -204,7 +209,11 @@ fn first_line(message: &str) -> String {
         Some((head, kind)) if kind.starts_with("struct ") => format!("{head}, expected a table"),
         _ => line
             .replace("expected f64", "expected a number")
-            .replace("expected u8", "expected a whole number from 0 to 255"),
+            .replace("expected u8", "expected a whole number from 0 to 255")
+            .replace("expected usize", WHOLE)
+            .replace("expected u32", WHOLE)
+            .replace("expected u64", WHOLE)
+            .replace("expected i64", "expected a whole number"),
     }
 }
 
@@ -216,6 +225,12 @@ fn advice(message: &str) -> String {
         let known: Vec<&str> = quoted.collect();
         let list = known.join(", ");
         let choice = message.starts_with("unknown variant");
+        if !choice && let Some(conversion) = convert_key(what, &known) {
+            return conversion;
+        }
+        if choice && let Some(unit) = known.iter().find(|unit| factor(what, unit).is_some()) {
+            return format!("{}; known here: {list}", convert(what, unit));
+        }
         return match nearest(what, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`? known here: {list}"),
             None if choice => format!("choose one of: {list}"),
@@ -246,14 +261,27 @@ pub(crate) fn units() -> String {
         .join(", ")
 }
 
-/// The candidate that is most like a word, if any is much like it.
+/// Prefixes that turn a word into its opposite.
+const OPPOSITE: [&str; 4] = ["anti", "counter", "un", "non"];
+
+/// The candidate that is most like a word, if any is much like it; never its opposite.
 pub(crate) fn nearest<'a>(
     word: &str,
     candidates: impl Iterator<Item = &'a str>,
 ) -> Option<&'a str> {
+    let lower = word.to_lowercase().replace(['-', ' '], "_");
+    let word = lower.strip_prefix("anti").map_or(lower.clone(), |rest| {
+        format!("counter_{}", rest.trim_start_matches('_'))
+    });
+    let word = word.as_str();
+    let opposite = |candidate: &str| {
+        let before = word.strip_suffix(candidate).unwrap_or_default();
+        OPPOSITE.contains(&before.trim_end_matches('_'))
+    };
     candidates
+        .filter(|candidate| !opposite(candidate))
         .map(|candidate| {
-            let alike = strsim::normalized_damerau_levenshtein(word, candidate);
+            let alike = strsim::normalized_damerau_levenshtein(word, &candidate.to_lowercase());
             // a key that lacks its unit is the commonest slip: `mass` for `mass_kg`
             let prefix = candidate.starts_with(word) && word.len() >= 3;
             (candidate, if prefix { alike.max(0.9) } else { alike })
@@ -279,7 +307,7 @@ pub(crate) fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, 
 
 #[cfg(test)]
 mod tests {
-    use super::{advice, around, first_line};
+    use super::{advice, around, first_line, nearest};
 
     /// A line of a hundred thousand brackets filled the terminal.
     #[test]
@@ -293,6 +321,25 @@ mod tests {
         }
     }
 
+    /// `anticlockwise` was taken for `clockwise`.
+    #[test]
+    fn the_nearest_word_is_never_the_opposite() {
+        let senses = ["clockwise", "counter_clockwise"];
+        for (word, meant) in [
+            ("anticlockwise", "counter_clockwise"),
+            ("anti-clockwise", "counter_clockwise"),
+            ("counterclockwise", "counter_clockwise"),
+            ("Counter Clockwise", "counter_clockwise"),
+            ("clockwize", "clockwise"),
+            ("Clockwise", "clockwise"),
+        ] {
+            assert_eq!(nearest(word, senses.into_iter()), Some(meant), "{word}");
+        }
+        assert_eq!(nearest("unmeasured", ["measured"].into_iter()), None);
+        let units = ["N/m", "N.m"];
+        assert_eq!(nearest("N/M", units.into_iter()), Some("N/m"));
+    }
+
     #[test]
     fn the_words_of_the_library_become_what_to_write() {
         let table = "invalid type: floating point `3.14e8`, expected struct Beam with 2 elements";
@@ -303,6 +350,8 @@ mod tests {
         assert!(advice(gene).starts_with("write `{ value = 1.0 }`; units: "));
         let number = "invalid type: string \"4\", expected f64";
         assert!(first_line(number).ends_with("expected a number"));
+        let count = "invalid type: floating point `2.5`, expected usize";
+        assert!(first_line(count).ends_with("expected a whole number, 0 or greater"));
         let choice = "unknown variant `sideways`, expected `free` or `fixed`";
         assert_eq!(advice(choice), "choose one of: free, fixed");
         let field = "unknown field `zzzzzz`, expected `name` or `run`";

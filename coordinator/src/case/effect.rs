@@ -1,12 +1,14 @@
 //! Effects of a case file: numbers with their units and intervals, and where they come from.
 //!
 //! What effects there are is the model's business and not known here: shape, units and numbers are
-//! checked, names are not. A worker refuses what its model does not have, naming the same field.
+//! checked, and names where workers say which they know.
 use super::{
-    document::{Document, Step, nearest},
-    error::CaseError,
+    conversion::{convert, factor},
+    document::{Document, Step, nearest, short},
+    error::{CaseError, Faults},
     prior::interval,
 };
+use protocol::announce::EffectDescriptor;
 use protocol::case::{EffectSetting, Scale, Unknown};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -94,37 +96,106 @@ impl CaseEffect {
 /// where nobody here knows them: then a unit is a word, and a worker refuses what is not its own.
 ///
 /// # Errors
-/// The first identifier, unit or number that cannot be right.
+/// Every identifier, unit or number that cannot be right.
 pub(crate) fn check(
     document: &Document,
     effects: &[CaseEffect],
     units: &[&str],
 ) -> Result<(), CaseError> {
+    let mut faults = Faults::default();
     for (index, effect) in effects.iter().enumerate() {
         let way = |key| [Step::Key("effects"), Step::Index(index), Step::Key(key)];
         let quoted = format!("\"{}\"", effect.id);
         if !is_name(&effect.id) {
-            return Err(document.field(
+            faults.take::<()>(Err(document.field(
                 &way("id"),
                 quoted,
                 "an identifier of small letters, digits, `_` and `.`",
                 "write the identifier of an effect, as `pivot_friction`",
-            ));
-        }
-        if effects[..index].iter().any(|other| other.id == effect.id) {
-            return Err(document.field(
+            )));
+        } else if effects[..index].iter().any(|other| other.id == effect.id) {
+            faults.take::<()>(Err(document.field(
                 &way("id"),
                 quoted,
                 "an effect that no other table has",
                 "duplicate effect: put all its parameters into one table",
-            ));
+            )));
         }
         for (name, parameter) in &effect.parameters {
-            check_unit(document, (index, name), parameter, units)?;
-            check_parameter(document, index, name, parameter)?;
+            faults.take(check_unit(document, (index, name), parameter, units));
+            faults.take(check_parameter(document, index, name, parameter));
         }
     }
-    Ok(())
+    faults.end()
+}
+
+/// Checks effects against those that workers know.
+///
+/// # Errors
+/// Every effect and parameter that they do not know, has another unit there, or lies outside its range.
+pub(crate) fn check_known(
+    document: &Document,
+    effects: &[CaseEffect],
+    known: &[EffectDescriptor],
+) -> Result<(), CaseError> {
+    let mut faults = Faults::default();
+    for (index, effect) in effects.iter().enumerate() {
+        let table = [Step::Key("effects"), Step::Index(index)];
+        let Some(own) = known.iter().find(|own| own.id == effect.id) else {
+            let ids = known.iter().filter(|own| !own.generic);
+            let ids: Vec<&str> = ids.map(|own| own.id.as_str()).collect();
+            faults.take::<()>(Err(document.field(
+                &[table[0], table[1], Step::Key("id")],
+                format!("\"{}\"", effect.id),
+                format!("an effect that the workers know: {}", ids.join(", ")),
+                &meant(&effect.id, &ids),
+            )));
+            continue;
+        };
+        let names: Vec<&str> = own.parameters.iter().map(|p| p.name.as_str()).collect();
+        for (name, parameter) in &effect.parameters {
+            let way = [table[0], table[1], Step::Key("parameters"), Step::Key(name)];
+            let Some(known) = own.parameters.iter().find(|known| known.name == *name) else {
+                faults.take::<()>(Err(document.field(
+                    &way,
+                    parameter.value,
+                    format!("a parameter of {}: {}", own.id, names.join(", ")),
+                    &meant(name, &names),
+                )));
+                continue;
+            };
+            let to = |key| [way[0], way[1], way[2], way[3], Step::Key(key)];
+            if parameter.unit != known.unit {
+                faults.take::<()>(Err(document.field(
+                    &to("unit"),
+                    format!("\"{}\"", parameter.unit),
+                    format!("\"{}\"", known.unit),
+                    &convert(&parameter.unit, &known.unit),
+                )));
+            } else if !(known.lower..=known.upper).contains(&parameter.value) {
+                faults.take::<()>(Err(document.field(
+                    &to("value"),
+                    parameter.value,
+                    format!(
+                        "{} to {} {}",
+                        short(known.lower),
+                        short(known.upper),
+                        known.unit
+                    ),
+                    "correct the value, or its unit",
+                )));
+            }
+        }
+    }
+    faults.end()
+}
+
+/// Names the candidate that a word was probably meant for.
+fn meant(word: &str, candidates: &[&str]) -> String {
+    let near = nearest(word, candidates.iter().copied());
+    near.map_or("name one of them".to_owned(), |near| {
+        format!("did you mean `{near}`?")
+    })
 }
 
 fn is_name(text: &str) -> bool {
@@ -142,7 +213,10 @@ fn check_unit(
     if units.is_empty() || units.contains(&unit) {
         return Ok(());
     }
-    let near = nearest(unit, units.iter().copied());
+    let near = units.iter().find(|known| factor(unit, known).is_some());
+    let near = near
+        .copied()
+        .or_else(|| nearest(unit, units.iter().copied()));
     Err(document.field(
         &[
             Step::Key("effects"),
@@ -155,7 +229,7 @@ fn check_unit(
         format!("one of {}", units.join(", ")),
         &near.map_or(
             "state the value in the unit of the effect".to_owned(),
-            |near| format!("did you mean `{near}`?"),
+            |near| convert(unit, near),
         ),
     ))
 }

@@ -3,7 +3,7 @@
 //! Every message names the file, then the field (or row and column), its value and what is allowed,
 //! and ends in a `help:` line that says what to do. It does not know who reads it: the command
 //! line prints it as it is.
-use std::{io, path::Path};
+use std::{fmt, io, path::Path};
 use thiserror::Error;
 
 /// Why a case cannot be used.
@@ -102,6 +102,9 @@ pub enum CaseError {
         /// What to do.
         help: Box<str>,
     },
+    /// Several faults that do not depend on each other; two at least.
+    #[error("{0}")]
+    Several(Several),
     /// Two statements of a case exclude each other.
     #[error("{}: {field} is {value}, but {other}\nhelp: {help}", path.display())]
     Contradiction {
@@ -116,6 +119,53 @@ pub enum CaseError {
         /// What to do.
         help: Box<str>,
     },
+}
+
+/// Faults of one case; shown one after the other.
+#[derive(Debug)]
+pub struct Several(Vec<CaseError>);
+
+impl fmt::Display for Several {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(to, "{} faults", self.0.len())?;
+        for (index, fault) in self.0.iter().enumerate() {
+            write!(to, "\n\n{}. {fault}", index + 1)?;
+        }
+        Ok(())
+    }
+}
+
+/// Collects faults that do not depend on each other, so that all of them are said at once.
+#[derive(Debug, Default)]
+pub(crate) struct Faults(Vec<CaseError>);
+
+impl Faults {
+    /// Takes a result apart: the value, or none after its fault was kept.
+    pub(crate) fn take<T>(&mut self, result: Result<T, CaseError>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(CaseError::Several(Several(faults))) => {
+                self.0.extend(faults);
+                None
+            }
+            Err(fault) => {
+                self.0.push(fault);
+                None
+            }
+        }
+    }
+
+    /// Ends the collection.
+    ///
+    /// # Errors
+    /// If any fault was kept: itself, or all of them as [`CaseError::Several`].
+    pub(crate) fn end(mut self) -> Result<(), CaseError> {
+        match self.0.len() {
+            0 => Ok(()),
+            1 => self.0.pop().map_or(Ok(()), Err),
+            _ => Err(CaseError::Several(Several(self.0))),
+        }
+    }
 }
 
 /// A problem of a whole file.

@@ -1,10 +1,28 @@
 //! Reading the bytes of a case's files; knows nothing of what they mean.
 use super::error::{CaseError, damaged};
-use std::{fs, io, io::Read, path::Path};
+use std::{borrow::Cow, fs, io, io::Read, path::Path};
 
 /// Largest file, unpacked (bytes): 40 hours of a 100 Hz record; a larger one is a mistake or a
 /// compression bomb.
 const LIMIT: u64 = 1 << 30;
+
+/// Makes sure that there is a file.
+///
+/// # Errors
+/// Missing, with `role`: what it is needed for.
+pub(crate) fn there(path: &Path, role: &str) -> Result<(), CaseError> {
+    if path.exists() {
+        return Ok(());
+    }
+    Err(CaseError::Missing {
+        path: path.into(),
+        role: role.into(),
+        help: MISSING.into(),
+    })
+}
+
+/// What to do about a file that is missing.
+const MISSING: &str = "put the file there, or correct the name where it is stated";
 
 /// Reads a file whole.
 ///
@@ -29,7 +47,7 @@ pub(crate) fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
             CaseError::Missing {
                 path: path.into(),
                 role: role.into(),
-                help: "put the file there, or correct the name where it is stated".into(),
+                help: MISSING.into(),
             }
         } else {
             CaseError::Unreadable {
@@ -100,6 +118,22 @@ fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, Cas
         ));
     }
     Ok(outcome.map(|_| bytes))
+}
+
+/// The bytes in UTF-8 where they are UTF-16, as spreadsheets write it: by the byte-order mark, or by the empty half of
+/// each of the first letters.
+pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let (rest, unit): (&[u8], fn([u8; 2]) -> u16) = match bytes {
+        [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
+        [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),
+        [0, 1..=255, 0, 1..=255, ..] => (bytes, u16::from_be_bytes),
+        _ => return Cow::Borrowed(bytes),
+    };
+    let units = rest.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    let letters =
+        char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER));
+    Cow::Owned(letters.collect::<String>().into_bytes())
 }
 
 /// The bytes as text, without a byte-order mark.

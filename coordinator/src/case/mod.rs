@@ -5,6 +5,8 @@
 //! range and remedy; what is worth knowing is a [`Note`]. Here is what cases of all kinds share, and the
 //! general form; a kind of model that has a form of its own reads it in its own folder. Nothing here
 //! knows of dynamics, of search or of the wire.
+pub(crate) mod conversion;
+pub(crate) mod difference;
 pub(crate) mod document;
 pub(crate) mod effect;
 mod effect_text;

@@ -1,5 +1,8 @@
 //! Tables of numbers in CSV files: named columns, finite numbers, rows counted as lines of the file.
-use super::error::{CaseError, damaged};
+use super::{
+    error::{CaseError, damaged},
+    file::decoded,
+};
 use std::path::Path;
 
 /// A table that was read: the wanted columns, in the order in which they were asked for.
@@ -11,6 +14,8 @@ pub(crate) struct Table {
     pub(crate) lines: Vec<u64>,
     /// The names of the wanted columns.
     pub(crate) names: Vec<String>,
+    /// The names of the columns that were not read.
+    pub(crate) others: Vec<String>,
 }
 
 /// From this likeness on a column is a misspelt one.
@@ -37,7 +42,8 @@ impl Table {
         wanted: &[&str],
         optional: &[&str],
     ) -> Result<Self, CaseError> {
-        let mut reader = reader(bytes);
+        let bytes = decoded(bytes);
+        let (mut reader, comma) = reader(&bytes);
         let mut record = csv::ByteRecord::new();
         let header = header(path, &mut reader, &mut record)?;
         // a name that is all but there is a slip, and what it names must not be left out for it
@@ -65,6 +71,10 @@ impl Table {
             columns: vec![Vec::new(); wanted.len()],
             lines: Vec::new(),
             names: wanted.iter().map(|&name| name.to_owned()).collect(),
+            others: {
+                let other = |name: &&String| !wanted.contains(&name.as_str());
+                header.iter().filter(other).cloned().collect()
+            },
         };
         while advance(path, &mut reader, &mut record)? {
             let line = record.position().map_or(0, csv::Position::line);
@@ -75,16 +85,18 @@ impl Table {
                     column: header.last().map_or("", String::as_str).into(),
                     value: format!("a row of {} cells", record.len()).into(),
                     allowed: format!("{} cells, as in the header", header.len()).into(),
-                    help: "the row is cut off or has a stray comma: correct or remove it".into(),
+                    help: if comma == b',' && record.len() > header.len() {
+                        "a decimal comma cuts a cell in two: write decimal points, or separate the cells by \
+                         semicolons"
+                            .into()
+                    } else {
+                        "the row is cut off or has a stray separator: correct or remove it".into()
+                    },
                 });
             }
             for ((column, &at), name) in table.columns.iter_mut().zip(&places).zip(&wanted) {
-                column.push(number(
-                    path,
-                    line,
-                    name,
-                    record.get(at).unwrap_or_default(),
-                )?);
+                let cell = record.get(at).unwrap_or_default();
+                column.push(number(path, (line, name), cell, comma)?);
             }
             table.lines.push(line);
         }
@@ -108,8 +120,11 @@ impl Table {
         wanted: &[&str],
     ) -> Result<Self, CaseError> {
         let table = Self::read(path, bytes, wanted)?;
-        let header = header(path, &mut reader(bytes), &mut csv::ByteRecord::new())?;
-        match header.iter().find(|name| !wanted.contains(&name.as_str())) {
+        match table
+            .others
+            .iter()
+            .find(|name| !wanted.contains(&name.as_str()))
+        {
             None => Ok(table),
             Some(strange) => Err(damaged(
                 path,
@@ -139,12 +154,31 @@ impl Table {
     }
 }
 
-fn reader(bytes: &[u8]) -> csv::Reader<&[u8]> {
-    csv::ReaderBuilder::new()
+/// Names of the columns.
+///
+/// # Errors
+/// A first row that cannot be read.
+pub(crate) fn columns(path: &Path, bytes: &[u8]) -> Result<Vec<String>, CaseError> {
+    let bytes = decoded(bytes);
+    header(path, &mut reader(&bytes).0, &mut csv::ByteRecord::new())
+}
+
+/// A reader with the character that parts the cells: a semicolon or a tabulator where the first row has one and no
+/// comma.
+fn reader(bytes: &[u8]) -> (csv::Reader<&[u8]>, u8) {
+    let first = bytes
+        .split(|byte| *byte == b'\n')
+        .next()
+        .unwrap_or_default();
+    let has = |byte: &&u8| first.contains(*byte);
+    let between = *[b',', b';', b'\t'].iter().find(has).unwrap_or(&b',');
+    let reader = csv::ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
+        .delimiter(between)
         .trim(csv::Trim::All)
-        .from_reader(bytes)
+        .from_reader(bytes);
+    (reader, between)
 }
 
 /// Reads the first row: names of the columns.
@@ -220,10 +254,20 @@ fn place(
     }
 }
 
-/// A cell as a finite number.
-fn number(path: &Path, line: u64, name: &str, cell: &[u8]) -> Result<f64, CaseError> {
+/// A cell as a finite number, with a decimal comma where no comma parts the cells.
+fn number(
+    path: &Path,
+    (line, name): (u64, &str),
+    cell: &[u8],
+    between: u8,
+) -> Result<f64, CaseError> {
     let text = std::str::from_utf8(cell).unwrap_or_default();
-    let problem = match text.parse::<f64>() {
+    let point = if between == b',' {
+        text.parse::<f64>()
+    } else {
+        text.replacen(',', ".", 1).parse::<f64>()
+    };
+    let problem = match point {
         Ok(value) if value.is_finite() => return Ok(value),
         Ok(_) => "interpolate the value or remove the row: lost samples are allowed, NaN is not",
         Err(_) if cell.is_empty() => {

@@ -7,6 +7,8 @@ use serde::Serialize;
 pub enum Layer {
     /// The case can be read.
     Case,
+    /// The program of workers is there.
+    Program,
     /// Certificates are there, fit each other, and either end takes the other's.
     Certificate,
     /// The clock agrees with the certificates.
@@ -28,6 +30,7 @@ impl Layer {
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Case => "case",
+            Self::Program => "program",
             Self::Certificate => "certificate",
             Self::Clock => "clock",
             Self::Name => "name",

@@ -66,7 +66,7 @@ fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
     );
     let count = match blame(error).layer {
         Layer::Certificate | Layer::Clock if answered => 4,
-        Layer::Case | Layer::Certificate | Layer::Clock | Layer::Name => 0,
+        Layer::Case | Layer::Program | Layer::Certificate | Layer::Clock | Layer::Name => 0,
         Layer::Route => 1,
         Layer::Port | Layer::Firewall => 2,
         Layer::Version => 4,

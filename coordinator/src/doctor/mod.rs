@@ -5,7 +5,9 @@ mod blame;
 mod check;
 mod dial;
 mod listen;
+mod program;
 
 pub use check::{Check, Layer};
 pub use dial::dial;
 pub use listen::listen;
+pub use program::program;

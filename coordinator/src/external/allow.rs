@@ -5,7 +5,7 @@ use exchange::allow::Entry;
 use protocol::external::{External, entry_of};
 use std::{
     env,
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf},
 };
 
 /// An entry as a case proposes it.
@@ -45,7 +45,16 @@ pub(crate) fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
             "add it, or write the entry by hand; `horsehead allow --help` says where",
         ));
     };
-    let mut entry = Entry::new(found(program), arguments.to_vec());
+    let place = found(program);
+    if !is_there(&place, folder, &external) {
+        return Err(document.field(
+            &[Step::Key("model"), Step::Key("command")],
+            format!("\"{program}\""),
+            "a program of this machine, by its name or its whole path, or a file of the case, as \"./model.sh\"",
+            "there is no such program: install it, or correct the name",
+        ));
+    }
+    let mut entry = Entry::new(place, arguments.to_vec());
     entry.files = Some(external.digest());
     if let Some((program, arguments)) = own.model.version.split_first() {
         entry.version = vec![found(program).display().to_string()];
@@ -61,6 +70,23 @@ pub(crate) fn proposed(folder: &Path) -> Result<Proposal, CaseError> {
         entry,
         files: files.chain(filled).collect(),
     })
+}
+
+/// Whether there is a program at a place: on this machine, or where the case's files will lie.
+fn is_there(place: &Path, folder: &Path, external: &External) -> bool {
+    let plain = |path: &Path| {
+        path.components()
+            .filter(|part| *part != Component::CurDir)
+            .collect()
+    };
+    let inside: PathBuf = plain(place);
+    let mut files = external.files.iter().map(|file| Path::new(&file.path));
+    let travels = files.any(|file| plain(file) == inside);
+    let filled = external
+        .fills
+        .iter()
+        .any(|fill| plain(Path::new(&fill.file)) == inside);
+    place.is_absolute() && place.is_file() || travels || filled || folder.join(place).is_file()
 }
 
 /// Where a program lies: as the shell finds it; as it is named where it travels with the case.

@@ -83,6 +83,10 @@ impl Kind for Externals {
         Some(("calibrated.par", parameters(case, genes)))
     }
 
+    fn is_program(&self) -> bool {
+        true
+    }
+
     fn unready(&self, case: &Case) -> Option<(String, String)> {
         let name = entry_of(&case.model.kind)?;
         let path = exchange::allow::path();

@@ -50,6 +50,11 @@ pub(crate) trait Kind: Sync {
         None
     }
 
+    /// Whether a simulation starts a program of which nothing is known here, not even how long it runs.
+    fn is_program(&self) -> bool {
+        false
+    }
+
     /// Why workers of this machine cannot take part in a run on a case as things are, and what to do about it.
     fn unready(&self, _: &Case) -> Option<(String, String)> {
         None

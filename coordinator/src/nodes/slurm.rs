@@ -23,6 +23,13 @@ pub fn up(
 ) -> Result<Plan, NodeError> {
     let mut command = vec!["sbatch".to_owned()];
     for (key, value) in settings("--slurm", options, &[])? {
+        let counts = |part: &str| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit());
+        if key == "nodes" && !value.split('-').all(counts) {
+            return Err(NodeError::new(
+                format!("--slurm {options}: nodes={value} is no number of nodes"),
+                "write how many, as nodes=4, or between which numbers, as nodes=2-4",
+            ));
+        }
         command.push(format!("--{key}={value}"));
     }
     command.extend(arguments.iter().cloned());

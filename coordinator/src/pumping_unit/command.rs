@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     cli::{
-        argument::{individual::condition, output::OutputChoice},
+        argument::{case::case_folder, individual::condition, output::OutputChoice},
         output::{
             problem::{EXIT_CODES, Usage},
             terminal,
@@ -37,7 +37,7 @@ Examples:
 {EXIT_CODES}"))]
 pub(crate) struct Arguments {
     /// Case folder, with `case.toml` in it.
-    #[arg(value_name = "CASE")]
+    #[arg(value_name = "CASE", value_parser = case_folder)]
     case: PathBuf,
     /// How many modes; as many as the case simulates by default.
     #[arg(long, value_name = "N", env = "HORSEHEAD_MODES")]

@@ -34,4 +34,6 @@ pub use document::{Block, Figure, Report, Section, Table, page, text};
 pub(crate) use drawing::Drawing;
 pub use folder::ReportError;
 pub(crate) use general::General;
-pub use write::{calibration, parameters, ranges, simulation, write_calibration, write_simulation};
+pub use write::{
+    agreement, calibration, parameters, ranges, simulation, write_calibration, write_simulation,
+};

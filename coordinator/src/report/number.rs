@@ -162,6 +162,12 @@ pub(crate) fn count(value: u64) -> String {
 pub(crate) fn duration(seconds: f64) -> String {
     if !seconds.is_finite() || seconds < 0.0 {
         NONE.to_owned()
+    } else if seconds == 0.0 {
+        "0 s".to_owned()
+    } else if seconds < 1e-3 {
+        format!("{}{NO_BREAK}µs", figure(1e6 * seconds))
+    } else if seconds < 1.0 {
+        format!("{}{NO_BREAK}ms", figure(1e3 * seconds))
     } else if seconds < 100.0 {
         format!("{} s", figure(seconds))
     } else if seconds < 6000.0 {
@@ -191,7 +197,7 @@ pub(crate) fn field(value: Option<f64>) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{count, figure, fixed, percent, ratio};
+    use super::{count, duration, figure, fixed, percent, ratio};
 
     #[test]
     fn three_digits_and_powers_of_ten() {
@@ -203,6 +209,21 @@ mod tests {
         assert_eq!(figure(99_999.0), "1.00\u{a0}×\u{a0}10⁵");
         assert_eq!(figure(9.999), "10.0");
         assert_eq!(figure(f64::NAN), "–");
+    }
+
+    /// A diagnosis on a fast model said `7.11 x 10^-7 s`.
+    #[test]
+    fn a_time_has_the_unit_that_suits_it() {
+        for (seconds, said) in [
+            (0.0, "0 s"),
+            (7.11e-7, "0.711\u{a0}µs"),
+            (5.5e-2, "55.0\u{a0}ms"),
+            (1.5, "1.50 s"),
+            (150.0, "2.5 min"),
+            (7200.0, "2.0 h"),
+        ] {
+            assert_eq!(duration(seconds), said);
+        }
     }
 
     #[test]

@@ -3,7 +3,7 @@ use super::csv;
 use super::data::{Calibration, SingleRun};
 use super::document::{Report, Table, section_text};
 use super::folder::{ReportError, stream, write_report};
-use super::{kind, section};
+use super::{kind, section, table};
 use std::path::{Path, PathBuf};
 
 /// The report of a calibration.
@@ -27,6 +27,14 @@ pub fn simulation(run: &SingleRun) -> Report {
 /// The ranges of a simulation's curves.
 pub fn ranges(run: &SingleRun) -> Option<Table> {
     kind::of(&run.case).tables(run).into_iter().next()
+}
+
+/// Agreement of one simulation with its record, where there is one.
+pub fn agreement(run: &SingleRun) -> Option<Table> {
+    let mut rows = table::agreement(run);
+    // its heading is the title here
+    (!rows.is_empty()).then(|| rows.remove(0))?;
+    Some(table::sums("Against the record", rows))
 }
 
 /// Writes the report of a calibration into a folder, which is made if it does not exist:

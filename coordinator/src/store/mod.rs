@@ -21,4 +21,5 @@ mod tests;
 
 pub use error::StoreError;
 pub use export::{Exported, Label, Store};
+pub(crate) use table::gene_column;
 pub use target::{Format, Target};

@@ -19,6 +19,8 @@ const FIRST_ID: u64 = 1 << 40;
 pub struct Wanted {
     /// Index of the condition in the case.
     pub condition: usize,
+    /// Position of the first parameter set among all of this condition in the run: a job is numbered by it.
+    pub first: usize,
     /// Parameter sets, by name; gene values in declared units.
     pub individuals: Vec<(String, Vec<f64>)>,
     /// Pictures of what moves; 0 for none.
@@ -75,7 +77,7 @@ pub async fn compare<E: Evaluator>(
     for (group, one) in wanted.iter().enumerate() {
         let recorded = case.is_measured(one.condition);
         for (position, (_, genes)) in one.individuals.iter().enumerate() {
-            let first = first_id(one.condition, position);
+            let first = first_id(one.condition, one.first + position);
             if recorded {
                 let individual = Individual::new(one.condition, genes.clone());
                 let reply = Reply::Score {
@@ -144,7 +146,7 @@ fn collect(
     let mut individuals = Vec::with_capacity(one.individuals.len());
     for (position, (name, genes)) in one.individuals.iter().enumerate() {
         let pair = pairs.remove(&(group, position)).unwrap_or_default();
-        let id = JobId(first_id(one.condition, position) + 1);
+        let id = JobId(first_id(one.condition, one.first + position) + 1);
         let drawn = pair.drawn.ok_or(StudyError::WrongKind { id })?;
         individuals.push(Curves {
             name: name.clone(),

@@ -112,7 +112,7 @@ impl StudyError {
             Self::Evaluator(error) => return error.help.clone(),
             Self::Settings(_) => "correct that setting; `--preset paper` is always valid",
             Self::Misconfigured { .. } => {
-                "`horsehead case check CASE` checks what can be checked without a worker"
+                "correct that field of case.toml; `horsehead case check CASE` lists all that is wrong"
             }
             Self::Column { .. } => {
                 "give unknowns of the case, or EFFECT.PARAMETER of an effect that the workers know"

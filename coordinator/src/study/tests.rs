@@ -363,6 +363,7 @@ async fn a_comparison_keeps_its_order_whatever_arrives_first() {
     ];
     let wanted = |condition| Wanted {
         condition,
+        first: 0,
         individuals: individuals.clone(),
         pictures: 0,
         columns: Vec::new(),
@@ -396,6 +397,7 @@ async fn comparison_fails(answer: fn(&Space, u64, &Individual) -> Outcome) -> St
     let individuals = vec![("recommended".to_owned(), case.start())];
     let wanted = [Wanted {
         condition: 0,
+        first: 0,
         individuals,
         pictures: 0,
         columns: Vec::new(),

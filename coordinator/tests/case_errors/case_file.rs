@@ -9,6 +9,55 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &["case.toml", "[rod", "| "],
     ),
     (
+        "a key in millimetres",
+        |c| c.replace(TOML, "radius_m = 1.900", "radius_mm = 1900.0"),
+        &[
+            "case.toml",
+            "unknown field `radius_mm`",
+            "write `radius_m`, and multiply the value by 0.001",
+        ],
+    ),
+    (
+        "a sense in other words",
+        |c| {
+            c.replace(TOML, "sense = \"clockwise\"", "sense = \"anticlockwise\"");
+        },
+        &[
+            "case.toml",
+            "unknown variant `anticlockwise`",
+            "did you mean `counter_clockwise`?",
+        ],
+    ),
+    (
+        "several faults at once",
+        |c| {
+            c.replace(TOML, "mass_kg = 450.0", "mass_kg = -450.0");
+            c.replace(TOML, "radius_m = 1.900", "radius_m = 0.0");
+            c.replace(TOML, "recommended = 3.14e8", "recommended = 3.14e13");
+            c.effect("parameters = { moment = { value = inf, unit = \"N.m\" } }");
+            for file in ["measured/test_4rpm.csv.gz", "measured/card_5rpm.csv"] {
+                fs::remove_file(c.path(file)).unwrap();
+            }
+            for file in [
+                "back_head/back_head.msh",
+                "back_head/back_head_influence.csv",
+            ] {
+                fs::remove_file(c.path(file)).unwrap();
+            }
+        },
+        &[
+            "8 faults",
+            "`rod.mass_kg` = -450",
+            "`back_head.radius_m` = 0",
+            "`genes.kb1.recommended`",
+            "`effects[0].parameters.moment.value` = inf",
+            "test_4rpm.csv.gz: no such file",
+            "card_5rpm.csv: no such file",
+            "back_head.msh: no such file",
+            "back_head_influence.csv: no such file",
+        ],
+    ),
+    (
         "unknown key",
         |c| c.replace(TOML, "mass_kg = 450.0", "mas_kg = 450.0"),
         &[
@@ -37,7 +86,11 @@ pub(super) const FAULTS: &[Spoilt] = &[
                 "upper = 3.14e12, unit = \"N/mm\"",
             );
         },
-        &["case.toml", "unknown variant `N/mm`", "did you mean `N/m`?"],
+        &[
+            "case.toml",
+            "unknown variant `N/mm`",
+            "write `N/m`, and multiply the values by 1000",
+        ],
     ),
     (
         "a preload beyond any rope",
@@ -65,7 +118,7 @@ pub(super) const FAULTS: &[Spoilt] = &[
         &[
             "case.toml",
             "`effects[0].parameters.moment.unit` = \"kN.m\"",
-            "did you mean `N.m`?",
+            "write `N.m`, and multiply the values by 1000",
         ],
     ),
     (

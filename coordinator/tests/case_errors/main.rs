@@ -196,6 +196,50 @@ fn what_is_doubtful_is_a_note() {
     assert!(message.contains("on every cycle"), "{message}");
 }
 
+/// A misspelt gauge must not change what is minimised.
+#[test]
+fn an_objective_loses_a_gauge_only_where_the_case_says_so() {
+    let copy = Copy::new();
+    copy.lines(RECORD, |at, line| {
+        let renamed = line.replace("stress_1_mpa", "stress_upper");
+        Some(if at == 1 { renamed } else { line.into() })
+    });
+    copy.error();
+    copy.replace(
+        TOML,
+        "gauge = 1, weight = 1.0",
+        "gauge = 1, weight = 1.0, optional = true",
+    );
+    let loaded = case::load_with_notes(copy.folder.path(), &Overrides::default()).unwrap();
+    let terms = loaded.case.objective.terms.iter();
+    let terms: Vec<&str> = terms.map(|term| &*term.channel).collect();
+    assert_eq!(terms, ["gauge_3"]);
+    let notes: Vec<String> = loaded.notes.iter().map(ToString::to_string).collect();
+    let notes = notes.join("\n");
+    for expected in [
+        "column `stress_upper` is not used: did you mean `stress_1_mpa`?",
+        "the record lacks gauge_1: the objective is taken over gauge_3",
+    ] {
+        assert!(notes.contains(expected), "no `{expected}` in\n{notes}");
+    }
+    // without any gauge of the objective there is nothing to minimise
+    copy.replace(
+        TOML,
+        "gauge = 3, weight = 1.0",
+        "gauge = 1, weight = 1.0, optional = true",
+    );
+    copy.replace(
+        TOML,
+        "gauges = [{ gauge = 1, weight = 1.0, optional = true }, ",
+        "gauges = [",
+    );
+    let message = copy.error().to_string();
+    assert!(
+        message.contains("`objective.gauges[0].gauge` = 1"),
+        "{message}"
+    );
+}
+
 #[test]
 fn one_cycle_has_no_spread() {
     let copy = Copy::new();

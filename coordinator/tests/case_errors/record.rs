@@ -145,6 +145,24 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "column of the objective called otherwise",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 1 {
+                    line.replace("stress_1_mpa", "sigma_a")
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &[
+            "case.toml: `objective.gauges[0].gauge` = 1",
+            "a gauge that the record has: gauge_2, gauge_3, gauge_4",
+            "name its column stress_1_mpa (not used there: sigma_a)",
+            "optional = true",
+        ],
+    ),
+    (
         "text",
         |c| {
             c.lines(RECORD, |at, line| {

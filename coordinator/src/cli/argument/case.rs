@@ -5,13 +5,28 @@ use crate::{
 };
 use clap::Args;
 use protocol::case::Case;
-use std::path::{Path, PathBuf};
+use std::{
+    convert::Infallible,
+    path::{Path, PathBuf},
+};
+
+/// A case folder as it is typed: its `case.toml` stands for it.
+#[expect(clippy::unnecessary_wraps, reason = "the shape that clap asks for")]
+pub(crate) fn case_folder(typed: &str) -> Result<PathBuf, Infallible> {
+    let path = PathBuf::from(typed);
+    let is_file = path.file_name().is_some_and(|name| name == "case.toml") && path.is_file();
+    Ok(match path.parent().filter(|_| is_file) {
+        Some(folder) if folder.as_os_str().is_empty() => PathBuf::from("."),
+        Some(folder) => folder.to_owned(),
+        None => path,
+    })
+}
 
 /// Where a case comes from, shared by commands that read one.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct CaseChoice {
     /// Case folder, with `case.toml` in it.
-    #[arg(value_name = "CASE")]
+    #[arg(value_name = "CASE", value_parser = case_folder)]
     pub(crate) case: PathBuf,
     /// Folder whose inputs and records replace those of the case: a new test of the
     /// same machine.

@@ -1,7 +1,17 @@
 //! A table of individuals: a CSV file with a column for each unknown that a case searches.
-use crate::case::{CaseError, file, table::Table};
+use crate::{
+    case::{
+        CaseError, file,
+        table::{Table, columns},
+    },
+    store::gene_column,
+};
 use search::space::{Axis, Space};
 use std::path::Path;
+
+/// Columns by which a table is one that this program wrote: of `export`, and of a sweep. Its other columns say what came
+/// of the individuals.
+const EXPORTED: [&[&str]; 2] = [&["job", "verdict"], &["objective", "verdict"]];
 
 /// Individuals that somebody wrote down.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,7 +32,29 @@ impl Individuals {
         let bytes = file::read(path, "the table of individuals that was asked for")?;
         let names = space.axes().iter().map(|axis| axis.unknown.name.as_str());
         let names: Vec<&str> = names.collect();
-        let table = Table::read_alone(path, &bytes, &names)?;
+        let header = columns(path, &bytes)?;
+        let has = |name: &str| header.iter().any(|column| column == name);
+        // tables that were exported name a column by its unit, too
+        let named: Vec<String> = space
+            .axes()
+            .iter()
+            .map(|axis| gene_column(&axis.unknown))
+            .collect();
+        let both = names.iter().copied().zip(&named);
+        let wanted = both.map(|(name, exported)| {
+            if has(name) || !has(exported) {
+                name
+            } else {
+                exported
+            }
+        });
+        let wanted: Vec<&str> = wanted.collect();
+        let exported = EXPORTED.iter().any(|all| all.iter().all(|name| has(name)));
+        let table = if exported {
+            Table::read(path, &bytes, &wanted)?
+        } else {
+            Table::read_alone(path, &bytes, &wanted)?
+        };
         let row = |row: usize| {
             let cells = table.columns.iter().zip(space.axes()).enumerate();
             let cell = |(column, (values, axis)): (usize, (&Vec<f64>, &Axis))| {

@@ -1,5 +1,5 @@
 //! Arguments that several commands share, one kind per file.
-pub(super) mod case;
+pub(crate) mod case;
 pub(super) mod derivatives;
 pub(super) mod door;
 pub(super) mod factor;

@@ -1,7 +1,7 @@
 //! `horsehead allow`: what a case's own program may do on this machine.
 use crate::{
     cli::{
-        argument::output::OutputChoice,
+        argument::{case::case_folder, output::OutputChoice},
         output::{
             problem::{EXIT_CODES, Usage},
             terminal,
@@ -34,8 +34,11 @@ read it when they start; copy the entry to every machine that is to work on the 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Case folder, with `case.toml` in it.
-    #[arg(value_name = "CASE")]
+    #[arg(value_name = "CASE", value_parser = case_folder)]
     case: PathBuf,
+    /// Replace an entry of the same name that starts something else.
+    #[arg(long, env = "HORSEHEAD_REPLACE")]
+    replace: bool,
     /// Show the entry and write nothing.
     #[arg(long, env = "HORSEHEAD_DRY_RUN")]
     dry_run: bool,
@@ -72,6 +75,30 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         help: "nothing was written".to_owned(),
     })?;
     if let Some(own) = allowed.entry.get(&name) {
+        let started = |entry: &allow::Entry| {
+            let program = entry.program.display().to_string();
+            [&[program], &entry.arguments[..]].concat().join(" ")
+        };
+        if started(own) != started(&entry) && !arguments.replace {
+            return Err(Usage {
+                message: format!(
+                    "{}: entry `{name}` starts `{}`, this case wants `{}`",
+                    path.display(),
+                    started(own),
+                    started(&entry)
+                ),
+                help: "give the case an entry of its own with `entry = \"..\"` under [model] of case.toml, or \
+                       replace the other with --replace; nothing was written"
+                    .to_owned(),
+            }
+            .into());
+        }
+        if own.files != entry.files {
+            terminal::tell(&format!(
+                "note: entry `{name}` was allowed for other files until now; another case that uses it needs an \
+                 entry of its own"
+            ));
+        }
         // limits and variables are this machine's business and stay as they are
         entry = allow::Entry {
             program: entry.program,

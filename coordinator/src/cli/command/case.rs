@@ -5,8 +5,14 @@ use crate::cli::{
         problem::{EXIT_CODES, Usage},
         terminal,
     },
+    run::once::in_scratch,
 };
-use crate::external::{self, Proposal};
+use crate::{
+    case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document},
+    external::{self, Proposal},
+    kind,
+    study::{self, StudyError},
+};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use std::{
@@ -85,17 +91,63 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
 }
 
 fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
-    let overrides = crate::case::Overrides {
+    let overrides = Overrides {
         measured: choice.measured.clone(),
     };
     let summary = crate::case::check(&choice.case, &overrides)?;
+    let said = ask_worker(&choice.case, &overrides)?;
+    let notes = summary.notes.iter().map(ToString::to_string);
     let object = CheckOutput {
         case: &summary.name,
         conditions: &summary.conditions,
         unknowns: BTreeMap::from([(summary.key, &summary.unknowns[..])]),
-        notes: summary.notes.iter().map(ToString::to_string).collect(),
+        notes: notes.chain(said.iter().cloned()).collect(),
     };
-    terminal::print(output.output, || summary.text.clone(), &object)
+    let text = || {
+        let said = said.iter().map(|note| format!("\nnote: {note}"));
+        summary.text.trim_end().to_owned() + &said.collect::<String>()
+    };
+    terminal::print(output.output, text, &object)
+}
+
+/// What a worker of this machine knows of a case: whether its effects can be simulated, and whether its records can be
+/// those of its channels.
+fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String>> {
+    let loaded = load_with_notes(folder, overrides)?;
+    let case = &loaded.case;
+    if kind::of(case).is_program() {
+        let note = "not simulated: `horsehead simulate CASE` starts the case's program once";
+        return Ok(vec![note.to_owned()]);
+    }
+    let asked = || -> anyhow::Result<Vec<String>> {
+        if !loaded.effects.is_empty() {
+            // an effect that no worker knows leaves no case to work on
+            let mut bare = case.clone();
+            bare.effects.clear();
+            bare.effect_units.clear();
+            bare.unknowns
+                .retain(|unknown| unknown.of_effect().is_none());
+            let library = in_scratch(&bare, "check", 1, async |bus, stop| {
+                study::library(bus, stop).await
+            })?;
+            let document = document(folder, overrides)?;
+            check_known(&document, &loaded.effects, &library)?;
+        }
+        in_scratch(case, "check", 1, async |bus, stop| {
+            study::check_records(bus, case, stop).await
+        })
+    };
+    asked().or_else(|error| match error.downcast_ref::<StudyError>() {
+        Some(StudyError::Misconfigured { field, .. }) if field == "model.kind" => {
+            Ok(vec![format!(
+                "not simulated: the workers of this machine do not simulate `{}`",
+                case.model.kind
+            )])
+        }
+        Some(_) => Err(error),
+        None if error.is::<CaseError>() => Err(error),
+        None => Ok(vec![format!("not simulated: {error}")]),
+    })
 }
 
 /// What `case import --output json` prints.
@@ -128,7 +180,7 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
     }
     // what was written is read as every command will read it; a folder that none can read would block the next try
     let read = |folder: &Path| -> anyhow::Result<Proposal> {
-        crate::case::check(folder, &crate::case::Overrides::default())?;
+        crate::case::check(folder, &Overrides::default())?;
         Ok(external::proposed(folder)?)
     };
     let Proposal { name, entry, .. } = read(&imported.folder).inspect_err(|_| {

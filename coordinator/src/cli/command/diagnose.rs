@@ -1,7 +1,7 @@
 //! `horsehead diagnose`: where simulation and record part, which missing effect explains it, how sure
 //! that is, and how far the gap closes.
 use crate::cli::{
-    argument::{output::OutputChoice, workers::WorkersChoice},
+    argument::{case::case_folder, output::OutputChoice, workers::WorkersChoice},
     output::{diagnosis::Answer, problem::EXIT_CODES, progress::StageDisplay, terminal},
     run::{
         begun::Run,
@@ -31,7 +31,7 @@ Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Case folder, or the folder of a finished calibration.
-    #[arg(value_name = "CASE|RUN")]
+    #[arg(value_name = "CASE|RUN", value_parser = case_folder)]
     target: PathBuf,
     /// Folder whose inputs and records replace those of the case: a new test of the
     /// same machine.

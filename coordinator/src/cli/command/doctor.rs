@@ -1,14 +1,14 @@
 //! `horsehead doctor`: which layer between workers and a coordinator fails, and what to do.
 use crate::{
     cli::{
-        argument::{case::load_case, output::OutputChoice},
-        output::{
-            problem::{EXIT_CODES, Usage},
-            terminal,
+        argument::{
+            case::{case_folder, load_case},
+            output::OutputChoice,
         },
+        output::{problem::EXIT_CODES, terminal},
         run::bus,
     },
-    doctor::{Check, Layer, dial, listen},
+    doctor::{Check, Layer, dial, listen, program},
 };
 use clap::Args;
 use link::locator::Locator;
@@ -19,19 +19,21 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = format!("\
 Examples:
+  horsehead doctor
   horsehead doctor --connect quic/head.example:7447 --tls worker-01
   horsehead doctor --listen quic/0.0.0.0:7447 --tls keys
   horsehead doctor --listen quic/0.0.0.0:7447 --tls keys --case cases/cyjs10-5-37hb
 
 On a worker's machine, with the folder of a worker, --connect takes the steps that a worker takes, up
 to the first word of a coordinator that runs. On the coordinator's machine, before it runs, --listen
-looks whether it could listen there. Layers: case, certificate, clock, name, route, port, firewall,
-version. Exit code 1 where one fails.
+looks whether it could listen there. Without either it looks whether this machine can run workers of
+its own. Layers: case, program, certificate, clock, name, route, port, firewall, version. Exit code 1
+where one fails.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Where workers dial.
-    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_CONNECT", required_unless_present = "listen", conflicts_with = "listen", value_parser = Locator::parse)]
+    #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_CONNECT", conflicts_with = "listen", value_parser = Locator::parse)]
     connect: Option<Locator>,
     /// Where the coordinator is to listen.
     #[arg(long, value_name = "LOCATOR", env = "HORSEHEAD_LISTEN", value_parser = Locator::parse)]
@@ -40,7 +42,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_TLS")]
     tls: Option<PathBuf>,
     /// Case folder to look at first.
-    #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE")]
+    #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE", value_parser = case_folder)]
     case: Option<PathBuf>,
     #[command(flatten)]
     output: OutputChoice,
@@ -49,7 +51,7 @@ pub(super) struct Arguments {
 /// Of `horsehead doctor`.
 #[derive(Debug, Serialize)]
 struct DoctorOutput {
-    /// `worker` or `coordinator`.
+    /// `worker` or `coordinator`; `machine` where no address was given.
     side: &'static str,
     /// The address.
     locator: String,
@@ -73,21 +75,19 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         });
     }
     let tls = arguments.tls.as_deref();
+    // without an address, what runs on this machine alone needs
+    let here = Locator::parse("tcp/127.0.0.1:0").map_err(anyhow::Error::msg)?;
     let (side, at) = match (&arguments.connect, &arguments.listen) {
         (_, Some(at)) => ("coordinator", at),
         (Some(at), None) => ("worker", at),
-        (None, None) => {
-            return Err(Usage {
-                message: "neither --connect nor --listen is given".to_owned(),
-                help: "name the address that workers dial, or that the coordinator listens on"
-                    .to_owned(),
-            }
-            .into());
-        }
+        (None, None) => ("machine", &here),
     };
+    if side == "machine" {
+        checks.push(program());
+    }
     if checks.iter().all(|check| check.healthy) {
         checks.extend(match side {
-            "coordinator" => listen(at, tls),
+            "coordinator" | "machine" => listen(at, tls),
             _ => bus::block_on(async { Ok(dial(at, tls).await) })?,
         });
     }

@@ -92,7 +92,16 @@ commands! {
 
 /// Runs the program; its exit code says how it ended.
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => match problem::plainly(&error.to_string()) {
+            Some(text) if error.use_stderr() => {
+                terminal::tell(text.trim_end());
+                return ExitCode::from(problem::BAD_INPUT);
+            }
+            _ => error.exit(),
+        },
+    };
     terminal::diagnostics();
     match cli.command.run() {
         Ok(()) => ExitCode::SUCCESS,

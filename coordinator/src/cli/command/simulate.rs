@@ -2,15 +2,17 @@
 use crate::{
     cli::{
         argument::{
-            case::CaseChoice, derivatives::columns, individual::IndividualChoice,
-            output::OutputChoice,
+            case::CaseChoice,
+            derivatives::columns,
+            individual::IndividualChoice,
+            output::{Output, OutputChoice},
         },
         output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
-        run::{bus, command_line::command_line, once::compare_once},
+        run::{bus, calibration, command_line::command_line, once::compare_once},
     },
     kind,
     report::{self, Origin, SingleRun, table, words},
-    study::{Compared, Curves, PICTURES, Wanted},
+    study::{self, Compared, Curves, EvaluatorError, PICTURES, Wanted},
 };
 use anyhow::Context as _;
 use clap::Args;
@@ -65,18 +67,19 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     }
     let wanted = Wanted {
         condition,
+        first: 0,
         individuals: vec![(arguments.individual.genes.clone(), genes)],
         pictures,
         columns,
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
+    let mismatches = study::mismatches(case, &groups);
+    calibration::tell(&mismatches);
+    notes.extend(mismatches);
     let curves = first(groups).context("no result came back")?;
 
     let verdict = curves.drawn.verdict;
     let digest = kind::of(case).digest(&curves.drawn)?;
-    if verdict != Verdict::Complete {
-        terminal::tell(&format!("the simulation {}", words::verdict(&verdict)));
-    }
     let run = SingleRun {
         case: case.clone(),
         origin: Origin {
@@ -108,14 +111,30 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
             ));
         }
     }
+    if arguments.out.is_none() && arguments.output.output == Output::Table {
+        terminal::tell("for the report with figures and curves: the same with --out DIR");
+    }
     let object = simulation((case, condition), &curves, &derived, digest)?;
     let tables = || {
         let tables = report::ranges(&run).into_iter();
+        let tables = tables.chain(report::agreement(&run));
         let tables = tables.chain(table::derivatives(&run));
         let texts = tables.map(|table| table::text(&table, terminal::styled()));
         texts.collect::<Vec<_>>().join("\n")
     };
-    terminal::print(arguments.output.output, tables, &object)
+    terminal::print(arguments.output.output, tables, &object)?;
+    match verdict {
+        Verdict::Complete => Ok(()),
+        Verdict::Failed { .. } => Err(EvaluatorError {
+            message: format!("the simulation {}", words::verdict(&verdict)),
+            help: Some(
+                "what it did until then is shown; other values of the unknowns, given with --genes FILE, may \
+                 complete it"
+                    .to_owned(),
+            ),
+        }
+        .into()),
+    }
 }
 
 /// Genes that a search of this case would never try, one sentence each.

@@ -220,9 +220,11 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     assert!(
         other
             .to_string()
-            .ends_with("its case or its records differ"),
+            .ends_with("was begun: the model (its tables, load cards or numbers)"),
         "{other}"
     );
+    let help = other.downcast::<Usage>().unwrap().help;
+    assert!(help.contains("-quick-seed3-2"), "another folder in {help}");
     // the case comes back with every bit, so its hash and the journal still fit
     let kept = Calibration::open(&path).unwrap().case;
     assert_eq!(kept, case);

@@ -75,6 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     require_record(&run.manifest.case_folder, &case, condition)?;
     let wanted = Wanted {
         condition,
+        first: 0,
         individuals: pair(&case, &best),
         pictures: 0,
         columns: Vec::new(),

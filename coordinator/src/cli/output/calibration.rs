@@ -152,7 +152,7 @@ fn calibration(run: &Run, found: &Found, wall_s: f64) -> anyhow::Result<Calibrat
     // what workers of earlier sessions did is in the journal alone
     let (account, costs) = account::read_with_costs(&run.folder.file(journal::FILE))?;
     let Calibrated { best, finish, log } = &found.calibrated;
-    let mut notes = run.manifest.notes.clone();
+    let mut notes = [&run.manifest.notes[..], &found.notes].concat();
     if !best.complete {
         notes.push("no individual completed its simulation".to_owned());
     }

@@ -31,14 +31,13 @@ pub(crate) struct Answer<'a> {
 
 impl Answer<'_> {
     fn subject(&self) -> anyhow::Result<report::Subject<'_>> {
-        let manifest = &self.run.manifest;
         Ok(report::Subject {
             case: &self.loaded.case,
             records: &self.loaded.cycles,
             library: &self.found.library,
             diagnosed: &self.found.diagnosed,
             origin: self.run.origin(String::new())?,
-            notes: &manifest.notes,
+            notes: &self.found.notes,
             wall_s: self.wall_s,
         })
     }

@@ -21,12 +21,11 @@ pub(crate) fn show(
     wall_s: f64,
     output: Output,
 ) -> anyhow::Result<()> {
-    let manifest = &run.manifest;
     let subject = report::Subject {
         case: &run.case,
         identified: &found.identified,
         origin: run.origin(String::new())?,
-        notes: &manifest.notes,
+        notes: &found.notes,
         wall_s,
     };
     let about = format!("Parameters of {}", run.folder.path().display());

@@ -13,7 +13,7 @@ pub(crate) const EXIT_CODES: &str =
 /// Exit code of a command that could not do its work.
 const FAILED: u8 = 1;
 /// Exit code of a wrong command line or wrong input.
-const BAD_INPUT: u8 = 2;
+pub(crate) const BAD_INPUT: u8 = 2;
 /// Exit code after Ctrl-C.
 pub(crate) const INTERRUPTED: u8 = 130;
 
@@ -38,6 +38,26 @@ impl std::error::Error for Usage {}
 pub(crate) fn explain(error: &anyhow::Error) -> ExitCode {
     terminal::tell(&describe(error));
     ExitCode::from(code(error))
+}
+
+/// Words of the standard library about numbers that cannot be read, and what people would say.
+const NUMBERS: [(&str, &str); 6] = [
+    ("invalid digit found in string", "it is no whole number"),
+    ("invalid float literal", "it is no number"),
+    (
+        "cannot parse integer from empty string",
+        "there is no number",
+    ),
+    ("cannot parse float from empty string", "there is no number"),
+    ("number too large to fit in target type", "it is too large"),
+    ("number too small to fit in target type", "it is too small"),
+];
+
+/// A message about the command line in plain words; none where it is plain already.
+pub(crate) fn plainly(message: &str) -> Option<String> {
+    let replace = |text: String, (from, to): &(&str, &str)| text.replace(from, to);
+    let plain = NUMBERS.iter().fold(message.to_owned(), replace);
+    (plain != message).then_some(plain)
 }
 
 fn code(error: &anyhow::Error) -> u8 {

@@ -199,10 +199,14 @@ impl Watch<ProgressView> for Display {
 
 /// One line: what is counted, best, failures, workers, rate, time left.
 fn describe(view: &ProgressView, (counted, unit): (&str, &str), crew: &Crew) -> String {
-    let mut parts = vec![format!(
-        "{counted} {} of {}",
-        view.generation, view.generations
-    )];
+    let mut parts = Vec::new();
+    // before the first is asked for there is nothing to count, and one of one says nothing
+    if view.generations > 1 {
+        parts.push(format!(
+            "{counted} {} of {}",
+            view.generation, view.generations
+        ));
+    }
     if let Some(best) = view.best {
         parts.push(format!("best {best:.4}{unit}"));
     }
@@ -287,7 +291,7 @@ mod tests {
         let mut crew = Crew::default();
         assert_eq!(
             describe(&ProgressView::default(), words, &crew),
-            "generation or stage 0 of 0  waiting for workers"
+            "waiting for workers"
         );
         crew.workers.push(WorkerStatus {
             attached: true,
@@ -295,7 +299,7 @@ mod tests {
         });
         assert_eq!(
             describe(&ProgressView::default(), words, &crew),
-            "generation or stage 0 of 0  waiting for 1 worker to get ready"
+            "waiting for 1 worker to get ready"
         );
         crew.computing = Duration::from_secs(20);
         assert_eq!(

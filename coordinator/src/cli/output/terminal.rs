@@ -30,7 +30,13 @@ pub(crate) fn print(
     object: &impl Serialize,
 ) -> anyhow::Result<()> {
     let text = match output {
-        Output::Table => table(),
+        Output::Table => {
+            let mut text = table();
+            if !text.ends_with('\n') {
+                text.push('\n');
+            }
+            text
+        }
         Output::Json => {
             let mut text = serde_json::to_string(object)?;
             text.push('\n');

@@ -5,12 +5,12 @@ use super::{
     manifest::{Decides, Manifest},
 };
 use crate::{
-    case::{Loaded, Overrides, load_with_notes},
+    case::{Loaded, Overrides, difference::differences, load_with_notes},
     cli::output::problem::Usage,
     report::Origin,
 };
 use protocol::case::Case;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A run of one kind; `S` is what decides its result beside case, seed and start.
 #[derive(Clone, Debug)]
@@ -81,6 +81,10 @@ impl<S: Decides> Run<S> {
             }
             .into());
         }
+        let changes = differences(&earlier.case, &run.case);
+        if !changes.is_empty() {
+            return Err(run.changed(&changes).into());
+        }
         run.manifest.wall_s = earlier.manifest.wall_s;
         Ok(run)
     }
@@ -107,7 +111,7 @@ impl<S: Decides> Run<S> {
                 preset => format!("{difference} (it was begun with preset {preset})"),
             })
         } else {
-            (earlier.case != self.case).then(|| "its case or its records differ".to_owned())
+            None
         }
     }
 
@@ -182,25 +186,40 @@ impl<S: Decides> Run<S> {
             measured: manifest.replaced_records().map(ToOwned::to_owned),
         };
         let loaded = self.as_begun(load_with_notes(&manifest.case_folder, &overrides)?)?;
-        if loaded.case != self.case {
-            return Err(Usage {
-                message: format!(
-                    "the case has changed since {} was made, and its records are read anew",
-                    self.folder.path().display()
-                ),
-                help: format!(
-                    "put {} back as it was, or {} it again with another --run",
-                    manifest.case_folder.display(),
-                    manifest.kind
-                ),
-            }
-            .into());
+        let changes = differences(&self.case, &loaded.case);
+        if !changes.is_empty() {
+            return Err(self.changed(&changes).into());
         }
         Ok(loaded)
+    }
+
+    /// Why a run cannot go on with a case that was changed: the same command would say the same again.
+    fn changed(&self, changes: &str) -> Usage {
+        let manifest = &self.manifest;
+        let path = self.folder.path();
+        let another = manifest.resume_command(&unused(path));
+        Usage {
+            message: format!(
+                "the case has changed since {} was begun: {changes}",
+                path.display()
+            ),
+            help: format!(
+                "a run is of one case; put {} back as it was, or begin a run of the changed one:\n  {another}",
+                manifest.case_folder.display()
+            ),
+        }
     }
 
     /// A case without what this very diagnosis has added to it.
     pub(crate) fn as_begun(&self, loaded: Loaded) -> anyhow::Result<Loaded> {
         Ok(loaded.without_found_in(&bus::case_hash(&self.case)?))
     }
+}
+
+/// The first folder beside one that is not there yet: its name with a number from 2 on.
+fn unused(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let numbered = |number: u32| path.with_file_name(format!("{name}-{number}"));
+    let mut free = (2..1000).map(numbered).filter(|path| !path.exists());
+    free.next().unwrap_or_else(|| path.to_owned())
 }

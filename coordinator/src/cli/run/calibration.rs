@@ -1,5 +1,6 @@
 //! The work of a calibration: the search, then recommended and best individual side by side.
 use super::{begun::Run, diagnosis::inputs};
+use crate::cli::output::terminal;
 use crate::study::{
     self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, StageView, Stop, StudyError,
     Wanted, Watch,
@@ -17,9 +18,18 @@ pub(crate) struct Found {
     pub(crate) calibrated: Calibrated,
     /// Recommended and best individual, the calibrated condition first.
     pub(crate) compared: Vec<Compared>,
+    /// Records that cannot be those of their channels.
+    pub(crate) notes: Vec<String>,
 }
 
-/// Searches and compares on whatever evaluates: workers, or the recording of a journal, which gives
+/// Tells what there is to know of a run's records.
+pub(crate) fn tell(notes: &[String]) {
+    for note in notes {
+        terminal::tell(&format!("note: {note}"));
+    }
+}
+
+/// Looks at the recommended individual, searches, and compares on whatever evaluates: workers, or the recording of a journal, which gives
 /// the same again.
 ///
 /// # Errors
@@ -35,12 +45,27 @@ pub(crate) async fn calibrate<E: Evaluator>(
     let first = manifest.first_individuals().unwrap_or_default();
     let built = strategy::build_after(&manifest.settings, &space, manifest.seed, first);
     let mut strategy = built.map_err(StudyError::from)?;
+    let wanted = study::recommended(case, PICTURES);
+    let recommended = study::compare(evaluator, case, &wanted, stop).await?;
+    let notes = study::mismatches(case, &recommended);
+    tell(&notes);
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
-    let wanted = comparison(case, &calibrated.best.genes);
-    let compared = study::compare(evaluator, case, &wanted, stop).await?;
+    let best = |one: Wanted| Wanted {
+        first: 1,
+        individuals: vec![("optimised".to_owned(), calibrated.best.genes.clone())],
+        ..one
+    };
+    let wanted: Vec<Wanted> = wanted.into_iter().map(best).collect();
+    let optimised = study::compare(evaluator, case, &wanted, stop).await?;
+    let both = recommended.into_iter().zip(optimised);
+    let both = both.map(|(mut recommended, optimised)| {
+        recommended.individuals.extend(optimised.individuals);
+        recommended
+    });
     Ok(Found {
         calibrated,
-        compared,
+        compared: both.collect(),
+        notes,
     })
 }
 
@@ -67,24 +92,6 @@ pub(crate) async fn seen<E: Evaluator>(
         ..inputs
     };
     Ok(study::glance_on(evaluator, &inputs, watch, stop).await?)
-}
-
-/// Recommended and best individual under every condition with a record, the calibrated one first
-/// and with the moving machine.
-fn comparison(case: &Case, best: &[f64]) -> Vec<Wanted> {
-    let calibrated = case.objective.condition;
-    let others = (0..case.conditions.len())
-        .filter(|index| *index != calibrated)
-        .filter(|index| case.is_measured(*index));
-    std::iter::once(calibrated)
-        .chain(others)
-        .map(|condition| Wanted {
-            condition,
-            individuals: pair(case, best),
-            pictures: if condition == calibrated { PICTURES } else { 0 },
-            columns: Vec::new(),
-        })
-        .collect()
 }
 
 /// The two parameter sets of the paper's tables.

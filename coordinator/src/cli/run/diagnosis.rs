@@ -1,6 +1,7 @@
 //! The work of a diagnosis: what decides it, the case with its cycles, the experiments.
 use super::{
     begun::Run,
+    calibration::tell,
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
 };
@@ -44,6 +45,8 @@ impl manifest::Decides for Decides {
 
 /// What a diagnosis finds.
 pub(crate) struct Found {
+    /// What there is to know of the case and its records.
+    pub(crate) notes: Vec<String>,
     /// The answer and what it cost.
     pub(crate) diagnosed: Diagnosed,
     /// Effects that the workers know and the case has not, and unknowns of the case that are off.
@@ -63,6 +66,9 @@ pub(crate) async fn diagnose<E: Evaluator>(
     stop: &mut Stop,
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
+    let notes = study::check_records(evaluator, &loaded.case, stop).await?;
+    tell(&notes);
+    let notes = [&manifest.notes[..], &notes].concat();
     let off = Off::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {
         let mut known = library.iter().chain(off.iter().map(|off| &off.suspect));
@@ -89,6 +95,7 @@ pub(crate) async fn diagnose<E: Evaluator>(
     let diagnosed = study::diagnose_on(evaluator, &inputs, watch, stop).await?;
     let off = off.into_iter().map(|off| off.suspect);
     Ok(Found {
+        notes,
         diagnosed,
         library: inputs.library.into_iter().chain(off).collect(),
     })
@@ -96,7 +103,7 @@ pub(crate) async fn diagnose<E: Evaluator>(
 
 /// The search that finds the way into the valley: where no valley is narrow, descents find it in a fraction of the
 /// simulations.
-fn entrance(case: &Case) -> &'static str {
+pub(super) fn entrance(case: &Case) -> &'static str {
     let narrow = case.unknowns.iter().any(|unknown| unknown.valley.is_some());
     if narrow { "quick" } else { "least-squares" }
 }

@@ -1,7 +1,8 @@
 //! The work of an identification: what decides it, and what the record sees.
 use super::{
     begun::Run,
-    diagnosis::inputs,
+    calibration::tell,
+    diagnosis::{entrance, inputs},
     manifest::{self, IDENTIFY, Manifest},
 };
 use crate::{
@@ -40,6 +41,8 @@ impl manifest::Decides for Decides {
 
 /// What an identification finds.
 pub(crate) struct Found {
+    /// What there is to know of the case and its records.
+    pub(crate) notes: Vec<String>,
     /// The answer.
     pub(crate) identified: Identified,
     /// Stages that did experiments.
@@ -58,6 +61,9 @@ pub(crate) async fn identify<E: Evaluator>(
     stop: &mut Stop,
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
+    let notes = study::check_records(evaluator, &loaded.case, stop).await?;
+    tell(&notes);
+    let notes = [&manifest.notes[..], &notes].concat();
     let own = &manifest.settings;
     let thresholds = Thresholds {
         orders: own.orders,
@@ -66,7 +72,7 @@ pub(crate) async fn identify<E: Evaluator>(
     let case = &loaded.case;
     let inputs = Inputs {
         differences: own.differences,
-        ..inputs(loaded, manifest, &thresholds, (library, "least-squares"))?
+        ..inputs(loaded, manifest, &thresholds, (library, entrance(case)))?
     };
     let done = study::identify_on(evaluator, case, &inputs, watch, stop).await?;
     let Some(identified) = done.identified else {
@@ -80,6 +86,7 @@ pub(crate) async fn identify<E: Evaluator>(
         .into());
     };
     Ok(Found {
+        notes,
         identified,
         accounts: done.accounts,
     })

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::case::{
     document::{Document, Step},
-    error::{CaseError, damaged},
+    error::{CaseError, Faults, damaged},
     names,
     note::Note,
     source::Source,
@@ -52,8 +52,12 @@ pub(super) fn read_all(
         source: *source,
         file,
     };
+    let mut faults = Faults::default();
     let indices = 0..file.conditions.len();
-    indices.map(|index| all.condition(index)).collect()
+    let read = indices.filter_map(|index| faults.take(all.condition(index)));
+    let read = read.collect();
+    faults.end()?;
+    Ok(read)
 }
 
 impl Conditions<'_> {
@@ -79,7 +83,18 @@ impl Conditions<'_> {
         } else {
             self.place(&entry.card_file)
         };
-        let card = card::read(&card_file, entry.smoothing, &role)?;
+        let record_file = entry.record_file.as_ref();
+        let record_file = record_file.filter(|_| not_repeated.is_none());
+        let record_file = record_file.map(|name| self.place(name));
+        let mut faults = Faults::default();
+        let card = faults.take(card::read(&card_file, entry.smoothing, &role));
+        if let (None, Some(file)) = (&card, &record_file) {
+            faults.take(record::read(file, &self.expected(index, entry)));
+        }
+        faults.end()?;
+        let Some(card) = card else {
+            return Err(damaged(&card_file, "it cannot be read", "copy it again"));
+        };
         let highest = card.load_n.len() / 2;
         if let Smoothing::Harmonics(kept) = entry.smoothing
             && kept as usize > highest
@@ -94,19 +109,8 @@ impl Conditions<'_> {
                 "keep fewer harmonics, or use smoothing = \"none\"",
             ));
         }
-        let expected = Expected {
-            index,
-            condition: &entry.name,
-            speed_rpm: entry.speed_rpm,
-            case_file: &self.source.document.path,
-            step_deg: self.file.run.output_step_deg,
-            sense: self.file.crank.sense,
-        };
-        let record_file = entry.record_file.as_ref();
-        let read = record_file
-            .filter(|_| not_repeated.is_none())
-            .map(|name| record::read(&self.place(name), &expected))
-            .transpose()?;
+        let read = record_file.map(|file| record::read(&file, &self.expected(index, entry)));
+        let read = read.transpose()?;
         let condition = Condition {
             name: entry.name.clone(),
         };
@@ -133,6 +137,18 @@ impl Conditions<'_> {
                 notes: not_repeated.into_iter().collect(),
             },
         })
+    }
+
+    /// What the record of a condition is asked to agree with.
+    fn expected<'b>(&'b self, index: usize, entry: &'b ConditionEntry) -> Expected<'b> {
+        Expected {
+            index,
+            condition: &entry.name,
+            speed_rpm: entry.speed_rpm,
+            case_file: &self.source.document.path,
+            step_deg: self.file.run.output_step_deg,
+            sense: self.file.crank.sense,
+        }
     }
 
     /// A remark if the test in `--measured DIR` did not repeat a condition: it has no record then, and

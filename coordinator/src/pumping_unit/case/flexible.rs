@@ -2,7 +2,8 @@
 use super::{head, mesh, schema::CaseFile, twin};
 use crate::case::{
     document::{Document, Step},
-    error::CaseError,
+    error::{CaseError, Faults},
+    file,
 };
 use protocol::pumping_unit::{ModalHead, TwinRopes};
 use std::path::Path;
@@ -29,6 +30,16 @@ pub(super) fn read(
 ) -> Result<ReadHead, CaseError> {
     let flexible = &file.flexible_head;
     let modes_file = folder.join(&flexible.modes_file);
+    let mut faults = Faults::default();
+    let named = [&flexible.modes_file, &flexible.influence_file].into_iter();
+    for name in named.chain(&flexible.mesh_file) {
+        let role = format!(
+            "a table of the back head, named in {}",
+            document.path.display()
+        );
+        faults.take(file::there(&folder.join(name), &role));
+    }
+    faults.end()?;
     let (mut head, provenance) = head::read(&modes_file, &folder.join(&flexible.influence_file))?;
     head.stress = flexible.stress;
     let mut read = ReadHead {

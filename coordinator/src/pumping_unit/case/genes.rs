@@ -3,7 +3,7 @@
 use super::{coefficient::Bodies, recommended::Recommended, schema::GeneEntry};
 use crate::case::{
     document::{Document, Step, units},
-    error::CaseError,
+    error::{CaseError, Faults},
 };
 use protocol::{
     case::{Scale, Shares, Shift, Unknown, Valley},
@@ -25,68 +25,79 @@ pub(super) fn declared(
     table: &BTreeMap<Coefficient, GeneEntry>,
     bodies: &Bodies,
 ) -> Result<Vec<Unknown>, CaseError> {
-    let mut genes = Vec::new();
-    for name in Coefficient::ALL {
-        let Some(entry) = table.get(&name) else {
-            return Err(document.field(
-                &[Step::Key("genes")],
-                format!("a table without `{}`", name.as_str()),
-                "all ten coefficients: kb1, kb23, kb4, kb56, cb1, cb23, cb4, cb56, kc, cc",
-                &format!(
-                    "add `{} = {{ recommended = .., lower = .., upper = .., unit = \"..\" }}`",
-                    name.as_str()
-                ),
-            ));
-        };
-        let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
-        check_unit(document, &way("unit"), name, entry.unit)?;
-        let recommended = match entry.recommended {
-            Recommended::Value(value) => value,
-            Recommended::By(formula) => match bodies.give(formula, name) {
-                Some(si) => si / entry.unit.si_factor(),
-                None => {
-                    return Err(document.field(
-                        &way("recommended"),
-                        format!("\"{}\"", formula.word()),
-                        "a number; \"eq3\" for kb1, kb23, kb4 and kb56; \"hertz\" for kc where \
-                         contact.exponent = 1.5",
-                        "the formula does not give this coefficient: state a value",
-                    ));
-                }
-            },
-        };
-        let values = [
-            ("recommended", recommended),
-            ("lower", entry.lower),
-            ("upper", entry.upper),
-        ];
-        for (key, value) in values {
-            check_value(document, &way(key), value, entry.unit)?;
-        }
-        if entry.lower >= entry.upper {
-            return Err(document.field(
-                &way("lower"),
-                entry.lower,
-                format!("below upper = {} {}", entry.upper, entry.unit.symbol()),
-                "exchange or widen the bounds",
-            ));
-        }
-        if !(entry.lower..=entry.upper).contains(&recommended) {
-            return Err(document.field(
-                &way("recommended"),
-                recommended,
-                format!("{} to {} {}", entry.lower, entry.upper, entry.unit.symbol()),
-                "the bounds exclude the recommended value: widen them, or correct it",
-            ));
-        }
-        let bounds = [entry.lower, entry.upper];
-        let mut gene = unknown(name, entry.unit, recommended, bounds);
-        if let Some(prior) = entry.prior {
-            gene.prior = Some(prior.of(&gene, document, &way("prior"))?);
-        }
-        genes.push(gene);
-    }
+    let mut faults = Faults::default();
+    let all = Coefficient::ALL.into_iter();
+    let genes = all.filter_map(|name| faults.take(gene(document, table, bodies, name)));
+    let genes = genes.collect();
+    faults.end()?;
     Ok(genes)
+}
+
+/// One coefficient of a case, checked.
+fn gene(
+    document: &Document,
+    table: &BTreeMap<Coefficient, GeneEntry>,
+    bodies: &Bodies,
+    name: Coefficient,
+) -> Result<Unknown, CaseError> {
+    let Some(entry) = table.get(&name) else {
+        return Err(document.field(
+            &[Step::Key("genes")],
+            format!("a table without `{}`", name.as_str()),
+            "all ten coefficients: kb1, kb23, kb4, kb56, cb1, cb23, cb4, cb56, kc, cc",
+            &format!(
+                "add `{} = {{ recommended = .., lower = .., upper = .., unit = \"..\" }}`",
+                name.as_str()
+            ),
+        ));
+    };
+    let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
+    check_unit(document, &way("unit"), name, entry.unit)?;
+    let recommended = match entry.recommended {
+        Recommended::Value(value) => value,
+        Recommended::By(formula) => match bodies.give(formula, name) {
+            Some(si) => si / entry.unit.si_factor(),
+            None => {
+                return Err(document.field(
+                    &way("recommended"),
+                    format!("\"{}\"", formula.word()),
+                    "a number; \"eq3\" for kb1, kb23, kb4 and kb56; \"hertz\" for kc where \
+                     contact.exponent = 1.5",
+                    "the formula does not give this coefficient: state a value",
+                ));
+            }
+        },
+    };
+    let values = [
+        ("recommended", recommended),
+        ("lower", entry.lower),
+        ("upper", entry.upper),
+    ];
+    for (key, value) in values {
+        check_value(document, &way(key), value, entry.unit)?;
+    }
+    if entry.lower >= entry.upper {
+        return Err(document.field(
+            &way("lower"),
+            entry.lower,
+            format!("below upper = {} {}", entry.upper, entry.unit.symbol()),
+            "exchange or widen the bounds",
+        ));
+    }
+    if !(entry.lower..=entry.upper).contains(&recommended) {
+        return Err(document.field(
+            &way("recommended"),
+            recommended,
+            format!("{} to {} {}", entry.lower, entry.upper, entry.unit.symbol()),
+            "the bounds exclude the recommended value: widen them, or correct it",
+        ));
+    }
+    let bounds = [entry.lower, entry.upper];
+    let mut gene = unknown(name, entry.unit, recommended, bounds);
+    if let Some(prior) = entry.prior {
+        gene.prior = Some(prior.of(&gene, document, &way("prior"))?);
+    }
+    Ok(gene)
 }
 
 /// A coefficient as an unknown of a search.

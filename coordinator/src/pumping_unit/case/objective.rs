@@ -3,6 +3,7 @@ use super::schema::{ConditionEntry, GaugeWeight, ObjectiveEntry};
 use crate::case::{
     document::{Document, Step, nearest},
     error::CaseError,
+    table::clip,
 };
 use protocol::case::{Channel, Objective, Term};
 use protocol::pumping_unit::Sensor;
@@ -82,38 +83,67 @@ pub(super) fn with_offset(
         .map(move |own| Channel { offset, ..own })
 }
 
-/// Takes the objective over those of its gauges that its condition's record has; over all that were
-/// measured if it has none of them. Says so; none where there is nothing to say.
-pub(super) fn over_recorded(objective: &mut Objective, channels: &[Channel]) -> Option<String> {
+/// Takes the objective over those of its gauges that its condition's record has, where the others are optional. The
+/// remark that says so; none where the record has all of them.
+///
+/// # Errors
+/// A record without a gauge that is not optional, or without any of them.
+pub(super) fn over_recorded(
+    document: &Document,
+    entry: Option<&ObjectiveEntry>,
+    objective: &mut Objective,
+    (channels, unused): (&[Channel], &[String]),
+) -> Result<Option<String>, CaseError> {
     let own = channels
         .iter()
         .filter(|own| own.condition == objective.condition);
     let recorded: Vec<&Channel> = own.filter(|own| own.record.is_some()).collect();
     let there = |term: &Term| recorded.iter().any(|own| own.name == term.channel);
+    let gauges = entry.iter().flat_map(|entry| &entry.gauges);
+    let gauges: Vec<&GaugeWeight> = gauges.collect();
+    let kept = objective.terms.iter().any(there);
+    let needed = |at: usize| !kept || gauges.get(at).is_some_and(|gauge| !gauge.optional);
+    let mut terms = objective.terms.iter().enumerate();
+    let lost = terms.find(|(at, term)| !there(term) && needed(*at));
     if recorded.is_empty() || objective.terms.iter().all(there) {
-        return None;
+        return Ok(None);
+    }
+    let names = |all: &mut dyn Iterator<Item = &str>| all.collect::<Vec<_>>().join(", ");
+    let found = names(&mut recorded.iter().map(|own| &*own.name));
+    if let Some((at, _)) = lost {
+        let gauge = gauges.get(at).map_or(0, |gauge| gauge.gauge);
+        let step = |key| {
+            [
+                Step::Key("objective"),
+                Step::Key("gauges"),
+                Step::Index(at),
+                Step::Key(key),
+            ]
+        };
+        return Err(document.field(
+            &step("gauge"),
+            gauge,
+            format!("a gauge that the record has: {found}"),
+            &format!(
+                "name its column stress_{gauge}_mpa{}; or say that the objective may do without it: \
+                 {{ gauge = {gauge}, weight = 1.0, optional = true }}",
+                if unused.is_empty() {
+                    String::new()
+                } else {
+                    format!(" (not used there: {})", clip(&unused.join(", "), 120))
+                }
+            ),
+        ));
     }
     let (kept, lost): (Vec<Term>, Vec<Term>) = std::mem::take(&mut objective.terms)
         .into_iter()
         .partition(there);
-    let without: Vec<&str> = lost.iter().map(|term| &*term.channel).collect();
-    let all = || {
-        recorded.iter().map(|own| Term {
-            channel: own.name.clone(),
-            weight: 1.0,
-        })
-    };
-    objective.terms = if kept.is_empty() {
-        all().collect()
-    } else {
-        kept
-    };
-    let over: Vec<&str> = objective.terms.iter().map(|term| &*term.channel).collect();
-    Some(format!(
+    objective.terms = kept;
+    Ok(Some(format!(
         "the record lacks {}: the objective is taken over {}",
-        without.join(", "),
-        over.join(", ")
-    ))
+        names(&mut lost.iter().map(|term| &*term.channel)),
+        names(&mut objective.terms.iter().map(|term| &*term.channel)),
+    )))
 }
 
 fn term(gauge: u8, weight: f64) -> Term {
@@ -164,50 +194,4 @@ fn check_gauges(document: &Document, gauges: &[GaugeWeight]) -> Result<(), CaseE
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use protocol::case::ChannelRecord;
-
-    #[test]
-    fn an_objective_is_taken_over_the_gauges_that_are_there() {
-        let over = |gauges: &[u8]| {
-            let channel = |sensor: Sensor| {
-                let mut own = sensor.channel(0, vec![0.0, 180.0]);
-                own.record =
-                    gauges
-                        .iter()
-                        .any(|g| Sensor::Gauge(*g) == sensor)
-                        .then(|| ChannelRecord {
-                            cycles: 5,
-                            mean: vec![0.0; 2],
-                            spread: vec![0.0; 2],
-                        });
-                own
-            };
-            let mut objective = Objective {
-                condition: 0,
-                others: Vec::new(),
-                terms: vec![term(1, 1.0), term(3, 2.0)],
-            };
-            let said = over_recorded(&mut objective, &Sensor::ALL.map(channel));
-            let terms = objective.terms.iter();
-            let terms: Vec<(String, f64)> = terms.map(|t| (t.channel.clone(), t.weight)).collect();
-            (terms, said)
-        };
-        let named = |all: &[(u8, f64)]| -> Vec<(String, f64)> {
-            all.iter()
-                .map(|(g, w)| (Sensor::Gauge(*g).name(), *w))
-                .collect()
-        };
-        assert_eq!(over(&[1, 2, 3]), (named(&[(1, 1.0), (3, 2.0)]), None));
-        let (terms, said) = over(&[3, 4]);
-        assert_eq!(terms, named(&[(3, 2.0)]));
-        assert!(said.unwrap().contains("gauge_1"));
-        assert_eq!(over(&[2, 4]).0, named(&[(2, 1.0), (4, 1.0)]));
-        // no record at all: nothing to take it over
-        assert_eq!(over(&[]), (named(&[(1, 1.0), (3, 2.0)]), None));
-    }
 }

@@ -1,7 +1,10 @@
 //! Which values each number of a `case.toml` may have: one line per number. Whether the numbers fit each
 //! other is not asked here.
 use super::schema::CaseFile;
-use crate::case::{document::Document, error::CaseError};
+use crate::case::{
+    document::Document,
+    error::{CaseError, Faults},
+};
 
 /// Least and greatest value, and the unit for messages.
 struct Range(f64, f64, &'static str);
@@ -25,20 +28,22 @@ const MOST_MODES: usize = 24;
 /// Checks every number by itself.
 ///
 /// # Errors
-/// Names the first number outside its range, with the range and its unit.
+/// Names every number outside its range, with the range and its unit.
 pub(super) fn check(document: &Document, case: &CaseFile) -> Result<(), CaseError> {
     let all = bodies(case).into_iter().chain(ropes(case)).chain(run(case));
+    let mut faults = Faults::default();
     for (path, value, Range(low, high, unit)) in all.chain(twins(case)) {
-        document.within(path, value, low..=high, unit)?;
+        faults.take(document.within(path, value, low..=high, unit));
     }
     let modes = case.twin_ropes.as_ref().map_or(0, |pair| pair.modes);
     let most = MOST_MODES.saturating_sub(case.run.modes);
-    document.within(
+    faults.take(document.within(
         "twin_ropes.modes",
         modes as f64,
         0.0..=most as f64,
         &format!("modes: {MOST_MODES} together with run.modes"),
-    )
+    ));
+    faults.end()
 }
 
 /// A number of the file: where it stands, its value, and what it may be.

@@ -11,7 +11,7 @@ use super::{
 };
 use crate::case::{
     effect::{self, CaseEffect},
-    error::{CaseError, damaged},
+    error::{CaseError, Faults, damaged},
     loaded::{Loaded, Records},
     note::Note,
     source::Source,
@@ -25,7 +25,7 @@ use protocol::{
 /// Reads a case with its machine.
 ///
 /// # Errors
-/// The first thing that is wrong; see [`CaseError`].
+/// Everything that is wrong; see [`CaseError`].
 pub(in crate::pumping_unit) fn read(source: &Source<'_>) -> Result<Resolved, CaseError> {
     let mut resolved = resolve(source)?;
     match resolved.head.stale.take() {
@@ -60,31 +60,50 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
         document,
     } = *source;
     let file: CaseFile = document.parse()?;
-    ranges::check(document, &file)?;
-    let envelope = machine::check(document, &file)?;
-    let head = flexible::read(folder, document, &file)?;
-    machine::check_arc(document, &file, &head.head.arc_deg, &envelope)?;
-    let mut objective = objective::read(document, file.objective.as_ref(), &file.conditions)?;
-    effect::check(document, &file.effects, &EFFECT_UNITS)?;
+    let mut faults = Faults::default();
+    // geometry of numbers that cannot be right would be faults that are none
+    let ranged = faults.take(ranges::check(document, &file));
+    let envelope = ranged.and_then(|()| faults.take(machine::check(document, &file)));
+    let head = faults.take(flexible::read(folder, document, &file));
+    if let (Some(envelope), Some(head)) = (&envelope, &head) {
+        let arc = &head.head.arc_deg;
+        faults.take(machine::check_arc(document, &file, arc, envelope));
+    }
+    let stated = file.objective.as_ref();
+    let objective = faults.take(objective::read(document, stated, &file.conditions));
+    faults.take(effect::check(document, &file.effects, &EFFECT_UNITS));
+    let unknowns = faults.take(genes::declared(document, &file.genes, &Bodies::of(&file)));
+    let read = faults.take(condition::read_all(source, &file));
+    faults.end()?;
+    let (Some(envelope), Some(head), Some(mut objective), Some(mut unknowns), Some(read)) =
+        (envelope, head, objective, unknowns, read)
+    else {
+        return Err(damaged(
+            &document.path,
+            "it cannot be read",
+            "copy it again",
+        ));
+    };
+    unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let (mut notes, mut facts) = (Vec::new(), Vec::new());
     let (mut cycles, mut channels) = (Vec::new(), Vec::new());
     let (mut conditions, mut working) = (Vec::new(), Vec::new());
-    for read in condition::read_all(source, &file)? {
+    for read in read {
         conditions.push(read.condition);
         working.push(read.working);
-        let stated = file.objective.as_ref();
         channels.extend(objective::with_offset(stated, read.channels));
         facts.push(read.facts);
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
-    let said = objective::over_recorded(&mut objective, &channels);
+    let own = facts.get(objective.condition).and_then(Option::as_ref);
+    let unused = own.map_or(&[][..], |facts| &facts.unused);
+    let recorded = (&channels[..], unused);
+    let said = objective::over_recorded(document, stated, &mut objective, recorded)?;
     notes.extend(said.map(|text| Note {
         path: document.path.clone(),
         text,
     }));
-    let mut unknowns = genes::declared(document, &file.genes, &Bodies::of(&file))?;
-    unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let machine = Machine {
         gravity_m_s2: file.gravity_m_s2,
         beam: file.beam,

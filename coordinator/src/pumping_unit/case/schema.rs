@@ -187,4 +187,7 @@ pub(super) struct ObjectiveEntry {
 pub(super) struct GaugeWeight {
     pub(super) gauge: u8,
     pub(super) weight: f64,
+    /// Whether the objective does without it where the record lacks it.
+    #[serde(default)]
+    pub(super) optional: bool,
 }

@@ -14,7 +14,7 @@ pub(super) fn run() -> Columns<Fact> {
 }
 
 /// Name of the column of a gene, with its unit: `stiffness_n_per_m`.
-pub(super) fn gene_column(gene: &Unknown) -> String {
+pub(crate) fn gene_column(gene: &Unknown) -> String {
     column(&gene.name.replace('.', "_"), &gene.unit)
 }
 

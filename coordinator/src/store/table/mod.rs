@@ -6,6 +6,8 @@ mod about;
 mod event;
 mod result;
 
+pub(crate) use about::gene_column;
+
 use super::{
     book::{Book, Table},
     column::Column,

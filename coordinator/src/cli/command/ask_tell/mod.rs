@@ -25,8 +25,8 @@ are points to evaluate before the search, on top of what it plans, and to begin 
   {{\"ask\": [{{\"id\": 0, \"x\": [1e6, 0.2]}}]}}
 and in, in any order, one point or many to a line:
   {{\"tell\": [{{\"id\": 0, \"f\": 3.5}}, {{\"id\": 1, \"failed\": true}}]}}
-The smaller f is the better. A point with \"residual\": true may be told with \"residual\": [..], whose
-squared length is f; quick, least-squares, descent and hybrid go nowhere without, memetic
+The smaller f is the better. A point with \"residual\": true may be told with \"residual\": [..] alone,
+for f is its squared length; quick, least-squares, descent and hybrid go nowhere without, memetic
 needs f alone. Every line is answered, by {{\"ask\": []}} while
 points are open. Last out:
   {{\"done\": \"planned\", \"evaluations\": 500, \"best\": {{\"id\": 7, \"x\": [..], \"f\": 0.1}}}}

@@ -225,10 +225,14 @@ impl Answer {
     fn into_told(self) -> Result<(Told, Option<Residual>), Refused> {
         let id = self.id;
         let refuse = |why: &str| {
-            let help = "say \"f\" with a number, or \"failed\": true";
+            let help =
+                "say \"f\" with a number, \"residual\" with its numbers, or \"failed\": true";
             Err(Refused::new(format!("point {id} {why}"), help))
         };
-        match (self.f, self.failed) {
+        let squared = |residual: &[f64]| residual.iter().map(|r| r * r).sum();
+        let told = !self.residual.is_empty() && !self.failed;
+        let f = self.f.or_else(|| told.then(|| squared(&self.residual)));
+        match (f, self.failed) {
             (Some(fitness), false) => {
                 let by = BTreeMap::new();
                 let residual = (!self.residual.is_empty()).then_some(Residual {

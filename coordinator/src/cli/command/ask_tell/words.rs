@@ -61,7 +61,7 @@ pub(super) struct Answers {
 #[serde(deny_unknown_fields)]
 pub(super) struct Answer {
     pub(super) id: u64,
-    /// What is minimised.
+    /// What is minimised; the squared length of the residual where that alone is told.
     pub(super) f: Option<f64>,
     /// Whether there is no such number.
     #[serde(default)]

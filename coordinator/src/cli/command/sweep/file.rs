@@ -4,7 +4,7 @@ use crate::{
     case::{document::Document, require_record},
     cli::{
         argument::{
-            case::{LoadedCase, load_case},
+            case::{LoadedCase, case_folder, load_case},
             individuals::Individuals,
             output::OutputChoice,
             workers::WorkersChoice,
@@ -44,7 +44,7 @@ pub(super) struct FileArguments {
     #[arg(value_name = "FILE", required = true)]
     file: Option<PathBuf>,
     /// Case folder; a grid may name its own.
-    #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE")]
+    #[arg(long, value_name = "CASE", env = "HORSEHEAD_CASE", value_parser = case_folder)]
     case: Option<PathBuf>,
     /// Folder whose inputs and records replace those of the case.
     #[arg(long, value_name = "DIR", env = "HORSEHEAD_MEASURED")]

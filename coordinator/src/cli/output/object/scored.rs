@@ -18,15 +18,9 @@ pub(crate) struct ScoredOutput {
     /// Of a failed run its grade, above every complete run's; null where it could not be computed.
     objective: Option<f64>,
     complete: bool,
-    verdict: Ending,
-}
-
-/// How a simulation ended, as `horsehead simulate` says it, or why there was none.
-#[derive(Debug, Serialize)]
-#[serde(untagged)]
-enum Ending {
-    Simulated(VerdictOutput),
-    Lost(String),
+    /// How it ended; why there was no simulation where there was none.
+    #[serde(flatten)]
+    verdict: VerdictOutput,
 }
 
 impl From<&Scored> for ScoredOutput {
@@ -35,12 +29,16 @@ impl From<&Scored> for ScoredOutput {
             Ok(evaluation) => Self {
                 objective: Some(evaluation.fitness).filter(|objective| objective.is_finite()),
                 complete: evaluation.verdict == Verdict::Complete,
-                verdict: Ending::Simulated(evaluation.verdict.into()),
+                verdict: evaluation.verdict.into(),
             },
             Err(failure) => Self {
                 objective: None,
                 complete: false,
-                verdict: Ending::Lost(failure.to_string()),
+                verdict: VerdictOutput {
+                    verdict: failure.to_string(),
+                    load_fraction: None,
+                    time_fraction: None,
+                },
             },
         }
     }

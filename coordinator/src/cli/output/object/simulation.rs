@@ -3,7 +3,7 @@ use super::score::{ScoreOutput, Unknowns, channels, objective, unknowns};
 use crate::{kind, study::Curves};
 use protocol::{
     case::Case,
-    job::{Counters, Derivative, Reached, Verdict, Word},
+    job::{Counters, Derivative, Reached, Verdict},
     wire::WireError,
 };
 use serde::Serialize;
@@ -17,7 +17,8 @@ pub(crate) struct SimulateOutput<'a> {
     pub(crate) case: &'a str,
     /// Name of the condition.
     pub(crate) condition: &'a str,
-    /// `"complete"`, or what happened and how far it got.
+    /// How it ended.
+    #[serde(flatten)]
     pub(crate) verdict: VerdictOutput,
     /// Time on the worker (s).
     pub(crate) wall_s: f64,
@@ -43,46 +44,32 @@ pub(crate) struct SimulateOutput<'a> {
     pub(crate) digest: String,
 }
 
-/// How a simulation ended.
+/// How a simulation ended: one word, and how far it got where it failed.
 #[derive(Debug, Serialize)]
-#[serde(untagged)]
-pub(crate) enum VerdictOutput {
-    /// `"complete"`.
-    Complete(&'static str),
-    /// It failed while the static load was applied.
-    Settling {
-        /// What happened.
-        kind: Word,
-        /// Share of the load that was applied.
-        load_fraction: f64,
-    },
-    /// It failed in motion.
-    Moving {
-        /// What happened.
-        kind: Word,
-        /// Share of the simulated time that was reached.
-        time_fraction: f64,
-    },
+pub(crate) struct VerdictOutput {
+    /// `complete`, or what happened, as `load_not_lifted`.
+    pub(crate) verdict: String,
+    /// Share of the static load that was applied; only of a run that failed in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) load_fraction: Option<f64>,
+    /// Share of the simulated time that was reached; only of a run that failed in motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) time_fraction: Option<f64>,
 }
 
 impl From<Verdict> for VerdictOutput {
     fn from(verdict: Verdict) -> Self {
-        match verdict {
-            Verdict::Complete => Self::Complete("complete"),
-            Verdict::Failed {
-                kind,
-                reached: Reached::LoadFraction(load_fraction),
-            } => Self::Settling {
-                kind,
-                load_fraction,
+        let (verdict, load_fraction, time_fraction) = match verdict {
+            Verdict::Complete => ("complete".to_owned(), None, None),
+            Verdict::Failed { kind, reached } => match reached {
+                Reached::LoadFraction(share) => (kind.as_str().to_owned(), Some(share), None),
+                Reached::TimeFraction(share) => (kind.as_str().to_owned(), None, Some(share)),
             },
-            Verdict::Failed {
-                kind,
-                reached: Reached::TimeFraction(time_fraction),
-            } => Self::Moving {
-                kind,
-                time_fraction,
-            },
+        };
+        Self {
+            verdict,
+            load_fraction,
+            time_fraction,
         }
     }
 }

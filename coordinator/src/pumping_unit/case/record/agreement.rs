@@ -40,6 +40,8 @@ pub struct RecordFacts {
     pub speed_rpm: f64,
     /// Noise that the data sheet states, per sample \[MPa\].
     pub stated_noise_mpa: Option<f64>,
+    /// Columns that are not used.
+    pub unused: Vec<String>,
 }
 
 /// Largest difference of speeds that is no contradiction \[1\]: belt creep and slip reach 3 %.
@@ -105,6 +107,11 @@ pub(super) fn facts(path: &Path, samples: &Samples, sheet: &Sheet) -> RecordFact
         rate_hz: 1.0 / samples.step_s,
         speed_rpm,
         stated_noise_mpa: sheet.gauges.noise_rms_mpa,
+        unused: samples
+            .unused
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect(),
     }
 }
 
@@ -192,6 +199,11 @@ pub(super) fn remark(
             text,
         });
     };
+    for (column, near) in &samples.unused {
+        let near = near.map(|near| format!(": did you mean `{near}`?"));
+        let near = near.unwrap_or_default();
+        note(format!("column `{column}` is not used{near}"));
+    }
     match cycles.whole.len() {
         1 => note(
             "one whole cycle only: there is no spread between cycles, so no noise model".to_owned(),

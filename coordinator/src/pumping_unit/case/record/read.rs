@@ -6,7 +6,7 @@ use super::{
     sheet::Sheet,
 };
 use crate::case::{
-    error::{CaseError, damaged},
+    error::{CaseError, Faults, damaged},
     file,
     note::Note,
 };
@@ -47,16 +47,18 @@ pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Rea
     let packed = path
         .extension()
         .is_some_and(|end| end.eq_ignore_ascii_case("gz"));
-    let bytes = if packed {
-        file::read_gzip(path, &role)?
+    let mut faults = Faults::default();
+    let bytes = faults.take(if packed {
+        file::read_gzip(path, &role)
     } else {
-        file::read(path, &role)?
+        file::read(path, &role)
+    });
+    let role = format!("the data sheet of the record {}", path.display());
+    let sheet = faults.take(Sheet::read(&sheet_path(path), &role));
+    faults.end()?;
+    let (Some(bytes), Some((sheet, document, mut notes))) = (bytes, sheet) else {
+        return Err(damaged(path, "it cannot be read", "copy it again"));
     };
-    let sheet_path = sheet_path(path);
-    let (sheet, document, mut notes) = Sheet::read(
-        &sheet_path,
-        &format!("the data sheet of the record {}", path.display()),
-    )?;
     check_stated(&sheet, &document, expected)?;
     let samples = Samples::read(path, &bytes)?;
     let facts = facts(path, &samples, &sheet);

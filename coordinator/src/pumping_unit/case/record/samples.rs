@@ -1,7 +1,8 @@
 //! The samples of a gauge record: time, crank angle and stress columns, checked row by row.
 use crate::case::{
+    document::nearest,
     error::{CaseError, damaged},
-    table::Table,
+    table::{Table, clip},
 };
 use protocol::pumping_unit::Sensor;
 use std::path::Path;
@@ -19,6 +20,9 @@ const CURVES: [(&str, Sensor); 6] = [
     ("crank_torque_nm", Sensor::Torque),
 ];
 
+/// Columns for the reader: what a channel of the model is driven by is no reading of it.
+const FOR_READERS: [&str; 1] = ["polished_rod_load_n"];
+
 /// A record as it was sampled.
 #[derive(Debug)]
 pub(super) struct Samples {
@@ -26,6 +30,8 @@ pub(super) struct Samples {
     pub(super) angle_deg: Vec<f64>,
     /// What was recorded (MPa, m, N m), gauges first.
     pub(super) curves: Vec<(Sensor, Vec<f64>)>,
+    /// Columns that are not used, each with the nearest name that would be.
+    pub(super) unused: Vec<(String, Option<&'static str>)>,
     /// Time of the first sample after each index pulse \[s\].
     pub(super) pulses_s: Vec<f64>,
     /// Usual time between samples \[s\].
@@ -74,6 +80,11 @@ impl Samples {
         for (index, (_, values)) in curves.iter().take(gauges).enumerate() {
             check_stress(path, &table, index + COLUMNS.len(), values)?;
         }
+        let absent = || CURVES.iter().map(|(name, _)| *name);
+        let absent = || absent().filter(|name| !table.names.iter().any(|read| read == name));
+        let unused = table.others.iter();
+        let unused = unused.filter(|name| !FOR_READERS.contains(&name.as_str()));
+        let unused = unused.map(|name| (clip(name, 40), nearest(name, absent())));
         let step_s = median(time.iter().zip(time.iter().skip(1)).map(|(a, b)| b - a));
         let step_deg = median(
             angle_deg
@@ -89,6 +100,7 @@ impl Samples {
         Ok(Self {
             angle_deg,
             curves,
+            unused: unused.collect(),
             pulses_s,
             step_s,
             lost,

@@ -25,6 +25,7 @@ fn sampled(
             Sensor::Gauge(1),
             angle_deg.iter().map(|angle| stress(*angle)).collect(),
         )],
+        unused: Vec::new(),
         pulses_s: (1..=floor(last / 360.0))
             .map(|turn| turn as f64 * 12.0)
             .collect(),

@@ -1,0 +1,33 @@
+//! This machine alone: whether it has the program of workers.
+use super::check::{Check, Layer};
+use crate::runtime::locate::worker_program;
+use std::process::Command;
+
+/// What is found of the worker program: where it lies, and whether it starts and is of this version.
+pub fn program() -> Check {
+    let path = match worker_program() {
+        Ok(path) => path,
+        Err(error) => {
+            return Check::bad(
+                Layer::Program,
+                error.to_string(),
+                "build both programs together",
+            );
+        }
+    };
+    let own = env!("CARGO_PKG_VERSION");
+    let place = path.display();
+    let remedy = "put the program that was built with this one beside it";
+    match Command::new(&path).arg("--version").output() {
+        Ok(said) => {
+            let said = String::from_utf8_lossy(&said.stdout).trim().to_owned();
+            if said.split(' ').next_back() == Some(own) {
+                Check::good(Layer::Program, format!("{place}: {said}"))
+            } else {
+                let found = format!("{place} says it is `{said}`, not version {own}");
+                Check::bad(Layer::Program, found, remedy)
+            }
+        }
+        Err(error) => Check::bad(Layer::Program, format!("{place}: {error}"), remedy),
+    }
+}

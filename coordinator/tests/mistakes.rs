@@ -1,0 +1,317 @@
+//! Mistakes that people make at the command line, each with the words that it must be answered with: what is wrong, and
+//! what to do. Faults of a case's files have a list of their own in `case_errors`.
+#![expect(
+    clippy::unwrap_used,
+    reason = "helpers of tests: a command that cannot be run or read has failed"
+)]
+use std::{
+    fs,
+    path::{Path, PathBuf},
+    process::Command,
+};
+use tempfile::TempDir;
+
+/// A copy of the shipped case in a folder of its own, to which commands are relative.
+struct Desk {
+    folder: TempDir,
+}
+
+impl Desk {
+    fn new() -> Self {
+        let desk = Self {
+            folder: TempDir::new().unwrap(),
+        };
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
+        for part in ["measured", "back_head"] {
+            fs::create_dir_all(desk.path("case").join(part)).unwrap();
+            for file in fs::read_dir(shipped.join(part)).unwrap() {
+                let file = file.unwrap();
+                let to = desk.path("case").join(part).join(file.file_name());
+                fs::copy(file.path(), to).unwrap();
+            }
+        }
+        for file in ["case.toml", "recommended.toml", "table3_optimised.toml"] {
+            fs::copy(shipped.join(file), desk.path("case").join(file)).unwrap();
+        }
+        desk
+    }
+
+    fn path(&self, file: &str) -> PathBuf {
+        self.folder.path().join(file)
+    }
+
+    /// Replaces a text of a file that must have it.
+    fn replace(&self, file: &str, from: &str, to: &str) {
+        let text = fs::read_to_string(self.path(file)).unwrap();
+        assert!(text.contains(from), "{file} has no `{from}`");
+        fs::write(self.path(file), text.replacen(from, to, 1)).unwrap();
+    }
+
+    fn write(&self, file: &str, text: &str) {
+        fs::write(self.path(file), text).unwrap();
+    }
+
+    /// Adds an effect to the case.
+    fn effect(&self, lines: &str) {
+        self.replace(
+            "case/case.toml",
+            "[objective]",
+            &format!("{lines}\n\n[objective]"),
+        );
+    }
+
+    /// Runs a command; its exit code, and all that it said.
+    fn run(&self, command: &str) -> (i32, String) {
+        let output = Command::new(env!("CARGO_BIN_EXE_horsehead"))
+            .args(command.split(' '))
+            .current_dir(self.folder.path())
+            .env("HORSEHEAD_ALLOW", self.path("allow.toml"))
+            .output()
+            .unwrap();
+        let said = [output.stdout, output.stderr].concat();
+        let said = String::from_utf8_lossy(&said).into_owned();
+        (output.status.code().unwrap(), said)
+    }
+}
+
+/// A mistake: its name, what is done before, the command, its exit code, and words of the answer.
+type Mistake = (
+    &'static str,
+    fn(&Desk),
+    &'static str,
+    i32,
+    &'static [&'static str],
+);
+
+const SHORT: &str = "[[effects]]\nid = \"pivot_frictoin\"\nparameters = { moment = { value = 9.0, unit = \"N.m\" } }";
+
+const MISTAKES: &[Mistake] = &[
+    (
+        "the file in place of the folder",
+        |_| {},
+        "case check case/case.toml",
+        0,
+        &["CYJS10-5-37HB"],
+    ),
+    (
+        "no such case",
+        |_| {},
+        "case check casse",
+        2,
+        &["casse/case.toml: no such file", "horsehead case new"],
+    ),
+    (
+        "an effect misspelt",
+        |d| d.effect(SHORT),
+        "case check case",
+        2,
+        &[
+            "case.toml: `effects[0].id` = \"pivot_frictoin\"",
+            "did you mean `pivot_friction`?",
+        ],
+    ),
+    (
+        "a parameter of an effect misspelt, another one outside its range",
+        |d| {
+            d.effect(
+                "[[effects]]\nid = \"pivot_friction\"\nparameters = { momnet = { value = 9.0, unit = \"N.m\" }, \
+                 creep = { value = -4.0, unit = \"rad/s\" } }",
+            );
+        },
+        "case check case",
+        2,
+        &[
+            "2 faults",
+            "`effects[0].parameters.momnet` = 9",
+            "did you mean `moment`?",
+            "`effects[0].parameters.creep.value` = -4",
+        ],
+    ),
+    (
+        "an effect misspelt, simulated",
+        |d| d.effect(SHORT),
+        "simulate case",
+        1,
+        &[
+            "effects",
+            "pivot_frictoin",
+            "`horsehead case check CASE` lists all that is wrong",
+        ],
+    ),
+    (
+        "a seed in words",
+        |_| {},
+        "calibrate case --seed x",
+        2,
+        &[
+            "invalid value 'x' for '--seed <SEED>'",
+            "it is no whole number",
+        ],
+    ),
+    (
+        "a preset misspelt",
+        |_| {},
+        "calibrate case --preset quik",
+        2,
+        &["'quik'", "quick"],
+    ),
+    (
+        "a setting misspelt",
+        |_| {},
+        "calibrate case --set pionts=4",
+        2,
+        &["pionts", "points"],
+    ),
+    (
+        "a condition that there is not",
+        |_| {},
+        "simulate case --condition 6rpm",
+        2,
+        &["6rpm", "5rpm, 4rpm"],
+    ),
+    (
+        "a gene file that there is not",
+        |_| {},
+        "simulate case --genes best.toml",
+        2,
+        &["best.toml: no such file"],
+    ),
+    (
+        "a derivative by what there is not",
+        |_| {},
+        "simulate case --derivatives kb9",
+        2,
+        &["`kb9` is no unknown of the case", "kb1, kb23"],
+    ),
+    (
+        "a derivative by a parameter that an effect has not",
+        |_| {},
+        "simulate case --derivatives pivot_friction.moemnt",
+        2,
+        &["moemnt", "moment, creep"],
+    ),
+    (
+        "Slurm's nodes in letters",
+        |_| {},
+        "workers up --connect tcp/127.0.0.1:7447 --slurm nodes=abc",
+        2,
+        &["nodes=abc is no number of nodes", "nodes=4"],
+    ),
+    (
+        "a table of another case",
+        |d| d.write("table.csv", "k,c\n1,2\n"),
+        "sweep table.csv --case case",
+        2,
+        &["table.csv", "`kb1`", "the columns are: k, c"],
+    ),
+    (
+        "a table whose cells lie outside the bounds",
+        |d| d.write("table.csv", &table("kb1", "1")),
+        "sweep table.csv --case case",
+        2,
+        &["table.csv: row 2, column `kb1`", "3.14e4 to 3.14e12 N/m"],
+    ),
+    (
+        "a table that is no table",
+        |d| d.write("table.txt", "1 2 3\n"),
+        "sweep table.txt --case case",
+        2,
+        &["neither a grid nor a table"],
+    ),
+    (
+        "a run that there is not",
+        |_| {},
+        "report runs/nowhere",
+        2,
+        &["runs/nowhere", "no run folder"],
+    ),
+    (
+        "a folder in place of a run",
+        |_| {},
+        "report case",
+        2,
+        &["case", "no run folder"],
+    ),
+    (
+        "allowing a case that needs no permission",
+        |_| {},
+        "allow case",
+        2,
+        &["`model.kind` = \"dhh\"", "needs no permission"],
+    ),
+    (
+        "no workers at all",
+        |_| {},
+        "calibrate case --workers 0",
+        2,
+        &["--workers 2, or --listen"],
+    ),
+    (
+        "records that there are not",
+        |_| {},
+        "calibrate case --measured tests/of/march",
+        2,
+        &["tests/of/march: there is no such folder"],
+    ),
+    (
+        "an address without a port",
+        |_| {},
+        "calibrate case --listen 127.0.0.1",
+        2,
+        &["127.0.0.1", "tcp/127.0.0.1:7447"],
+    ),
+    (
+        "a folder that exists already",
+        |_| {},
+        "case new case",
+        2,
+        &["case/case.toml exists already"],
+    ),
+    (
+        "an effect to leave out that nobody knows",
+        |_| {},
+        "diagnose case --without friction",
+        2,
+        &["no effect `friction`", "pivot_friction"],
+    ),
+];
+
+/// A table of one individual at the recommended values, but for one of them.
+fn table(name: &str, value: &str) -> String {
+    let mut cells = [
+        ("kb1", "3.14e8"),
+        ("kb23", "1.26e8"),
+        ("kb4", "137"),
+        ("kb56", "137"),
+        ("cb1", "400"),
+        ("cb23", "400"),
+        ("cb4", "0.4"),
+        ("cb56", "0.4"),
+        ("kc", "1e6"),
+        ("cc", "100"),
+    ];
+    for (own, cell) in &mut cells {
+        if *own == name {
+            *cell = value;
+        }
+    }
+    let names = cells.map(|(name, _)| name).join(",");
+    format!("{names}\n{}\n", cells.map(|(_, cell)| cell).join(","))
+}
+
+#[test]
+fn every_mistake_is_answered_with_what_to_do() {
+    let mut wrong = Vec::new();
+    for (name, prepare, command, code, words) in MISTAKES {
+        let desk = Desk::new();
+        prepare(&desk);
+        let (ended, said) = desk.run(command);
+        let missing: Vec<&&str> = words.iter().filter(|part| !said.contains(**part)).collect();
+        if ended != *code || !missing.is_empty() {
+            wrong.push(format!(
+                "{name}: `{command}` ends with {ended}, not {code}; no {missing:?} in\n{said}"
+            ));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
