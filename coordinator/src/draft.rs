@@ -42,6 +42,20 @@ impl Draft {
         Ok(Self { file, place })
     }
 
+    /// A file beside its place that somebody else fills, by `fill`.
+    ///
+    /// # Errors
+    /// What the system or `fill` says; there is nothing left of the draft then.
+    pub(crate) fn filled<E: From<io::Error>>(
+        place: &Path,
+        fill: impl FnOnce(fs::File) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let draft = Self::new(place, &[])?;
+        fill(draft.file.reopen()?)?;
+        draft.file.as_file().sync_all()?;
+        Ok(draft)
+    }
+
     /// Takes the place.
     ///
     /// # Errors

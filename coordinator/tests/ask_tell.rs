@@ -115,6 +115,21 @@ fn every_strategy_talks_to_its_end_in_any_order() {
     }
 }
 
+/// The residual alone is enough: its squared length is what is minimised.
+#[test]
+fn a_point_may_be_told_with_its_residual_alone() {
+    let mut peer = Peer::new("least-squares");
+    let mut said = peer.say(&opening(&json!({"budget": 200})));
+    while let Some(points) = said["ask"].as_array() {
+        let alone = |point: &Value| json!({"id": point["id"], "residual": residual(point)});
+        let told: Vec<Value> = points.iter().map(alone).collect();
+        said = peer.say(&json!({"tell": told}).to_string());
+    }
+    let again = answer(&said["best"]);
+    assert_eq!(said["best"]["f"], again["f"], "{said}");
+    assert!(said["best"]["f"].as_f64().unwrap() < 1e-6, "{said}");
+}
+
 /// Lines that cannot be taken, with a word of the answer: the talk ends with code 2, and what was found
 /// before is not lost.
 #[test]

@@ -4,8 +4,10 @@
     clippy::unwrap_used,
     reason = "helpers of tests: a command that cannot be run or read has failed"
 )]
+use flate2::{Compression, read::GzDecoder, write::GzEncoder};
 use std::{
     fs,
+    io::{Read as _, Write as _},
     path::{Path, PathBuf},
     process::Command,
 };
@@ -49,6 +51,22 @@ impl Desk {
 
     fn write(&self, file: &str, text: &str) {
         fs::write(self.path(file), text).unwrap();
+    }
+
+    /// Rewrites the record: cells of a row by their columns, the header among them.
+    fn record(&self, rewrite: impl Fn(usize, &mut Vec<String>)) {
+        let path = self.path("case/measured/test_5rpm.csv.gz");
+        let mut text = String::new();
+        GzDecoder::new(fs::File::open(&path).unwrap())
+            .read_to_string(&mut text)
+            .unwrap();
+        let mut encoder = GzEncoder::new(fs::File::create(&path).unwrap(), Compression::fast());
+        for (row, line) in text.lines().enumerate() {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            rewrite(row, &mut cells);
+            writeln!(encoder, "{}", cells.join(",")).unwrap();
+        }
+        encoder.finish().unwrap();
     }
 
     /// Adds an effect to the case.
@@ -131,12 +149,84 @@ const MISTAKES: &[Mistake] = &[
         "an effect misspelt, simulated",
         |d| d.effect(SHORT),
         "simulate case",
-        1,
+        2,
         &[
             "effects",
             "pivot_frictoin",
             "`horsehead case check CASE` lists all that is wrong",
         ],
+    ),
+    (
+        "columns of two gauges exchanged",
+        |d| {
+            d.record(|row, cells| {
+                if row == 0 {
+                    cells.swap(2, 4)
+                }
+            })
+        },
+        "case check case",
+        0,
+        &[
+            "5rpm: the record of gauge 1 correlates by 0.98 with the simulated gauge 3, and by -0.84 with its own",
+            "correct their names",
+        ],
+    ),
+    (
+        "gauges of reversed sign, diagnosed by one look",
+        |d| {
+            d.record(|row, cells| {
+                for cell in &mut cells[2..6] {
+                    if row > 0 {
+                        *cell = format!("{}", -cell.parse::<f64>().unwrap());
+                    }
+                }
+            });
+        },
+        "simulate case",
+        0,
+        &[
+            "5rpm: the record of gauge 3 correlates by -0.98 with its simulation",
+            "multiply the column by -1",
+        ],
+    ),
+    (
+        "a simulation that fails",
+        |d| d.write("soft.toml", "kb1 = { value = 3.14e4, unit = \"N/m\" }\n"),
+        "simulate case --genes soft.toml",
+        1,
+        &["error: the simulation", "--genes FILE"],
+    ),
+    (
+        "no figures asked for",
+        |_| {},
+        "simulate case",
+        0,
+        &[
+            "with --out DIR",
+            "Against the record",
+            "gauge 1: relative error",
+        ],
+    ),
+    (
+        "doctor without an address",
+        |_| {},
+        "doctor",
+        0,
+        &["program      ok", "port         ok"],
+    ),
+    (
+        "a count with a fraction",
+        |d| {
+            d.replace(
+                "case/case.toml",
+                "back_cylinders = 72",
+                "back_cylinders = 72.5",
+            )
+        },
+        "case check case",
+        2,
+        &["case.toml", "expected a whole number"],
     ),
     (
         "a seed in words",
@@ -188,7 +278,7 @@ const MISTAKES: &[Mistake] = &[
         |_| {},
         "simulate case --derivatives pivot_friction.moemnt",
         2,
-        &["moemnt", "moment, creep"],
+        &["moemnt", "`pivot_friction` has moment, "],
     ),
     (
         "Slurm's nodes in letters",
@@ -314,4 +404,44 @@ fn every_mistake_is_answered_with_what_to_do() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
+}
+
+/// A run is of one case: what was changed is said, and the command that is advised works.
+#[test]
+fn a_case_that_was_edited_after_its_run_begins_another_one() {
+    let desk = Desk::new();
+    desk.write("table.csv", &table("kb1", "3.2e8"));
+    let sweep = "sweep table.csv --case case --run first";
+    assert_eq!(desk.run(sweep).0, 0);
+    desk.replace(
+        "case/case.toml",
+        "recommended = 3.14e8",
+        "recommended = 3.15e8",
+    );
+    let (code, said) = desk.run(sweep);
+    let words = "the case has changed since first was begun: kb1 starts at 3.15e8, not 3.14e8";
+    assert!(code == 2 && said.contains(words), "{said}");
+    let advised = said.lines().find(|line| line.contains("--run first-2"));
+    let advised = advised.unwrap_or_else(|| panic!("no command in\n{said}"));
+    let advised = advised.trim().trim_start_matches("horsehead ").to_owned();
+    let (code, said) = desk.run(&advised);
+    assert_eq!(code, 0, "{advised}: {said}");
+}
+
+/// What a sweep or an export wrote is read again, with the units in the names of its columns and all that came of the
+/// individuals beside them.
+#[test]
+fn tables_that_were_written_are_read() {
+    let desk = Desk::new();
+    desk.write("table.csv", &table("kb1", "3.2e8"));
+    let (code, said) = desk.run("sweep table.csv --case case --run first --output json");
+    assert_eq!(code, 0, "{said}");
+    let (code, said) = desk.run("export first --format csv");
+    assert_eq!(code, 0, "{said}");
+    for written in ["first/sweep.csv", "first/csv/evaluations.csv"] {
+        let again = format!("sweep {written} --case case --run of-{}", written.len());
+        let (code, said) = desk.run(&again);
+        assert_eq!(code, 0, "{written}: {said}");
+        assert!(said.contains("320000000"), "{written}: {said}");
+    }
 }

@@ -56,6 +56,7 @@ fn jobs(case: &Case) -> Vec<Job> {
 async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {
     let folder = tempfile::tempdir().unwrap();
     let mut options = DispatchOptions {
+        pause_limit: coordinator::runtime::PAUSE_LIMIT,
         case: case.clone(),
         ..tests::options(folder.path(), None, workers)
     };

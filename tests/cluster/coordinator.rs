@@ -11,6 +11,7 @@ use std::{
     io::{self, Write},
     path::Path,
     process::ExitCode,
+    time::Duration,
 };
 use tests::search_run::SearchRun;
 
@@ -36,7 +37,10 @@ async fn run() -> Result<(), Box<dyn Error>> {
         return Err("expected RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS".into());
     };
     let listen = (locator != "none").then_some(locator.as_str());
-    let options = tests::options(Path::new(run_dir), listen, local.parse()?);
+    let mut options = tests::options(Path::new(run_dir), listen, local.parse()?);
+    if let Ok(seconds) = env::var("HORSEHEAD_TEST_PAUSE_LIMIT_S") {
+        options.pause_limit = Duration::from_secs(seconds.parse()?);
+    }
     let mut dispatch = Dispatch::open(options).await?;
     let mut out = io::stdout();
     let delay_ms: u32 = delay_ms.parse()?;
@@ -57,7 +61,13 @@ async fn run() -> Result<(), Box<dyn Error>> {
             dispatch.submit(JobId(n), tests::job(n, delay_ms))?;
         }
         for _ in 0..jobs {
-            let completed = dispatch.next().await?;
+            let completed = match dispatch.next().await {
+                Ok(completed) => completed,
+                Err(error) => {
+                    dispatch.close().await?;
+                    return Err(error.into());
+                }
+            };
             writeln!(out, "{} {}", completed.id, completed.replayed)?;
             out.flush()?;
         }

@@ -54,6 +54,16 @@ impl OnSmallDisk {
     /// Starts it for so many jobs, unless this machine has no such disks; afterwards its run is
     /// copied to `copy` in `folder`.
     fn start(folder: &Path, locator: &str, jobs: u64, delay_ms: u32) -> Option<Self> {
+        Self::start_with(folder, locator, (jobs, delay_ms), &[])
+    }
+
+    /// The same with variables of the environment.
+    fn start_with(
+        folder: &Path,
+        locator: &str,
+        (jobs, delay_ms): (u64, u32),
+        environment: &[(&str, &str)],
+    ) -> Option<Self> {
         let small = folder.join("small");
         fs::create_dir(&small).unwrap();
         if !may_mount(&small) {
@@ -66,6 +76,7 @@ impl OnSmallDisk {
             .arg(env!("CARGO_BIN_EXE_test-coordinator"))
             .arg(small.join("run"))
             .args([locator, &jobs.to_string(), &delay_ms.to_string(), "0"])
+            .envs(environment.iter().copied())
             .stderr(Stdio::piped());
         let mut process = Process::start(command);
         let results = Arc::new(AtomicUsize::new(0));
@@ -142,6 +153,32 @@ fn a_full_disk_pauses_the_run_and_room_lets_it_go_on() {
     let last = run.end();
     assert!(last.starts_with("done repeated 0 "), "{last}");
     eprintln!("paused after {paused} of {JOBS} results");
+}
+
+/// A run that is left alone does not wait for ever: it says what happened and ends, with exit code 1.
+#[test]
+fn a_pause_that_is_too_long_ends_the_run_with_what_it_has() {
+    let folder = tempfile::tempdir().unwrap();
+    let locator = free_locator();
+    let _worker = Process::worker(&locator, &["--slots", "2"]);
+    let limit = [("HORSEHEAD_TEST_PAUSE_LIMIT_S", "2")];
+    let Some(mut run) = OnSmallDisk::start_with(folder.path(), &locator, (JOBS, 0), &limit) else {
+        tests::skip(NO_MOUNT);
+        return;
+    };
+    wait_until("it says that it pauses", LIMIT, || {
+        run.says("After 2 s it ends")
+    });
+    let results = run.results();
+    assert!((1..JOBS).contains(&results), "{results}");
+    assert_eq!(run.process.wait(LIMIT), Some(1));
+    run.listener.join().unwrap();
+    let said = run.said.lock().unwrap().clone();
+    let words = "the journal could not be written for 2 s (";
+    assert!(
+        said.contains(words) && said.contains("the same command goes on"),
+        "{said}"
+    );
 }
 
 /// Workers forget their results when a run ends. Found as a coordinator that waited a second for a

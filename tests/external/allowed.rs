@@ -40,6 +40,48 @@ fn nothing_is_started_that_was_not_allowed() {
 }
 
 #[test]
+fn an_entry_of_another_case_is_not_replaced_in_silence() {
+    let rig = Rig::new();
+    rig.shell_case(GOOD, "");
+    rig.done(&["allow", "case"]);
+    let path = rig.file("case/case.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(
+        &path,
+        text.replace("\"model.sh\"]\nfiles", "\"model.sh\", \"again\"]\nfiles"),
+    )
+    .unwrap();
+    let said = rig.refused(&["allow", "case"]);
+    for words in [
+        "entry `shell` starts `/bin/sh model.sh`",
+        "wants `/bin/sh model.sh again`",
+        "--replace",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    assert!(
+        !fs::read_to_string(rig.file("allow.toml"))
+            .unwrap()
+            .contains("again")
+    );
+    rig.done(&["allow", "case", "--replace"]);
+    // other files under the same name are worth a word
+    fs::write(rig.file("case/model.sh"), "# another\n".to_owned() + GOOD).unwrap();
+    let output = rig.run(&["allow", "case"]);
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(
+        output.status.success() && said.contains("was allowed for other files"),
+        "{said}"
+    );
+    // and a program that there is not is no program
+    fs::write(&path, text.replace("\"/bin/sh\"", "\"pyhton3\"")).unwrap();
+    let said = rig.refused(&["allow", "case"]);
+    for words in ["`model.command` = \"pyhton3\"", "there is no such program"] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+}
+
+#[test]
 fn what_a_case_has_wrong_is_said_by_file_and_field() {
     let rig = Rig::new();
     for (from, to, words) in [

@@ -63,6 +63,7 @@ async fn handshakes_that_are_never_finished_keep_nobody_out() {
     make(&keys, &[]);
     let locator = free_quic_locator();
     let dispatch = Dispatch::open(DispatchOptions {
+        pause_limit: coordinator::runtime::PAUSE_LIMIT,
         tls: Some(keys.clone()),
         ..options(&folder.path().join("run"), Some(&locator), 0)
     })

@@ -27,6 +27,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     let (jobs, delay_ms): (u64, u32) = (jobs.parse()?, delay_ms.parse()?);
     let begun = Instant::now();
     let mut dispatch = Dispatch::open(DispatchOptions {
+        pause_limit: coordinator::runtime::PAUSE_LIMIT,
         tls: Some(PathBuf::from(keys)),
         ..tests::options(Path::new(run_dir), Some(locator), 0)
     })

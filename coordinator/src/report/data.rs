@@ -3,7 +3,8 @@
 //! Every value carries its unit in its name. Nothing here knows of files, clocks or workers.
 use crate::account::JobCost;
 use discrepancy::identify::UnknownEstimate;
-use protocol::case::{Case, Channel};
+use discrepancy::proof::gap::Gap;
+use protocol::case::{Case, Channel, ChannelRecord};
 use protocol::event::Spent;
 use protocol::job::{Curves, Evaluation, Verdict};
 
@@ -82,6 +83,16 @@ impl Run {
             condition,
             curves: &self.curves,
         }
+    }
+
+    /// What it leaves of the measured channels of a condition.
+    pub(crate) fn gaps<'a>(&self, case: &'a Case, condition: usize) -> Vec<(&'a Channel, Gap)> {
+        let shown = self.shown(case, condition);
+        let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
+            let gap = Gap::between(record, shown.channel(channel), channel.is_absolute())?;
+            Some((channel, gap))
+        };
+        case.measured(condition).filter_map(gap).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! A report as a folder of files: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
 use super::document::{Report, page, text};
+use crate::draft::{Draft, replace};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
@@ -50,20 +51,20 @@ pub(crate) fn svg_name(figure: &str) -> String {
     format!("{}.svg", stem.collect::<String>())
 }
 
-/// Writes one file of text.
+/// Writes one file of text, whole or not at all.
 ///
 /// # Errors
 /// [`ReportError::Write`] when it cannot be written.
 pub(crate) fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, ReportError> {
     let path = folder.join(name);
-    let result = fs::create_dir_all(folder).and_then(|()| fs::write(&path, text));
+    let result = fs::create_dir_all(folder).and_then(|()| replace(&path, text.as_bytes()));
     match result {
         Ok(()) => Ok(path),
         Err(source) => Err(ReportError::Write { path, source }),
     }
 }
 
-/// Writes one file of numbers.
+/// Writes one file of numbers, whole or not at all.
 ///
 /// # Errors
 /// [`ReportError`] when it cannot be written.
@@ -73,11 +74,10 @@ pub(crate) fn stream(
     fill: impl FnOnce(BufWriter<File>) -> Result<(), ::csv::Error>,
 ) -> Result<PathBuf, ReportError> {
     let path = folder.join(name);
-    match File::create(&path) {
-        Ok(file) => match fill(BufWriter::new(file)) {
-            Ok(()) => Ok(path),
-            Err(source) => Err(ReportError::Csv { path, source }),
-        },
-        Err(source) => Err(ReportError::Write { path, source }),
+    let draft = Draft::filled(&path, |file| fill(BufWriter::new(file)));
+    let written = draft.and_then(|draft| Ok(draft.publish()?));
+    match written {
+        Ok(()) => Ok(path),
+        Err(source) => Err(ReportError::Csv { path, source }),
     }
 }

@@ -35,5 +35,6 @@ pub(crate) use drawing::Drawing;
 pub use folder::ReportError;
 pub(crate) use general::General;
 pub use write::{
-    agreement, calibration, parameters, ranges, simulation, write_calibration, write_simulation,
+    agreement, calibration, parameters, ranges, simulation, structure, write_calibration,
+    write_simulation,
 };

@@ -3,7 +3,7 @@ use super::csv;
 use super::data::{Calibration, SingleRun};
 use super::document::{Report, Table, section_text};
 use super::folder::{ReportError, stream, write_report};
-use super::{kind, section, table};
+use super::{kind, section, table, words};
 use std::path::{Path, PathBuf};
 
 /// The report of a calibration.
@@ -16,6 +16,11 @@ pub fn calibration(calibration: &Calibration) -> Report {
 /// Parameters and errors of a calibration, for a terminal.
 pub fn parameters(calibration: &Calibration, styled: bool) -> String {
     section_text(&section::parameters(calibration), styled)
+}
+
+/// What a calibration leaves that is no noise, in words; none where it leaves noise.
+pub fn structure(calibration: &Calibration) -> Option<String> {
+    words::structure(calibration)
 }
 
 /// The report of one simulation.

@@ -66,6 +66,15 @@ pub struct Summary {
 
 type Deliver = UnboundedSender<Result<Completed, DispatchError>>;
 
+/// A journal that cannot be written.
+#[derive(Debug)]
+struct Pause {
+    /// What the system says.
+    why: String,
+    /// When the run ends if it is still so.
+    ends: tokio::time::Instant,
+}
+
 pub(super) struct Engine<L> {
     run: RunId,
     core: Core,
@@ -80,7 +89,11 @@ pub(super) struct Engine<L> {
     sleep: Sleep,
     replayed: u64,
     /// The journal cannot be written for now; one that was deleted is not worth waiting for.
-    paused: bool,
+    paused: Option<Pause>,
+    /// Longest time for which it may be so.
+    pause_limit: Duration,
+    /// It was so for longer: nothing is waited for any more.
+    given_up: bool,
     /// When the snapshot has to be renewed because something happened.
     stale_at: Option<tokio::time::Instant>,
 }
@@ -99,6 +112,7 @@ impl<L: CoordinatorEnd> Engine<L> {
             core,
             journal,
             said,
+            pause_limit,
             ..
         } = parts;
         let begun = Instant::now();
@@ -115,7 +129,9 @@ impl<L: CoordinatorEnd> Engine<L> {
             begun,
             sleep: Sleep::since_now(),
             replayed: 0,
-            paused: false,
+            paused: None,
+            pause_limit,
+            given_up: false,
             stale_at: None,
         }
     }
@@ -124,6 +140,7 @@ impl<L: CoordinatorEnd> Engine<L> {
         let mut ticks = interval(TICK);
         ticks.set_missed_tick_behavior(MissedTickBehavior::Delay);
         loop {
+            let pause_ends = self.pause_ends();
             tokio::select! {
                 request = requests.recv() => match request {
                     Some(Request::Submit { id, job }) => self.submit(id, *job),
@@ -147,9 +164,25 @@ impl<L: CoordinatorEnd> Engine<L> {
                     self.show();
                 }
                 () = until(self.stale_at) => self.show(),
+                () = until(pause_ends) => self.give_up(),
             }
         }
         self.close().await
+    }
+
+    /// When the run has waited for long enough.
+    fn pause_ends(&self) -> Option<tokio::time::Instant> {
+        let pause = self.paused.as_ref().filter(|_| !self.given_up);
+        pause.map(|pause| pause.ends)
+    }
+
+    /// Ends the run with what it has.
+    fn give_up(&mut self) {
+        self.given_up = true;
+        if let Some(pause) = &self.paused {
+            let (why, limit) = (pause.why.clone(), self.pause_limit);
+            self.give(Err(DispatchError::Paused { why, limit }));
+        }
     }
 
     /// Handles what has arrived already: nobody is silent whose words wait to be read.
@@ -228,19 +261,21 @@ impl<L: CoordinatorEnd> Engine<L> {
         match appended {
             Appended::Stored(jobs) => self.handle(Input::Stored { jobs }),
             Appended::Paused(why) => {
-                self.paused = true;
                 self.handle(Input::Writable(false));
                 tracing::error!(
                     "the journal cannot be written ({why}): the run pauses, results wait, nothing \
-                     is lost; make room on the disk and it goes on by itself"
+                     is lost; make room on the disk and it goes on by itself. After {} s it ends with what it has",
+                    self.pause_limit.as_secs()
                 );
+                let ends = tokio::time::Instant::now() + self.pause_limit;
+                self.paused = Some(Pause { why, ends });
             }
             Appended::Deleted => {
                 self.handle(Input::Writable(false));
                 self.give(Err(self.journal.deleted().into()));
             }
             Appended::Resumed => {
-                self.paused = false;
+                (self.paused, self.given_up) = (None, false);
                 self.handle(Input::Writable(true));
                 tracing::warn!("the journal is written again: the run goes on");
             }
@@ -315,14 +350,14 @@ impl<L: CoordinatorEnd> Engine<L> {
         *self.shown.lock().unwrap_or_else(PoisonError::into_inner) = snapshot;
     }
 
-    /// Waits until the last results are in the journal: as long as it takes where the disk is full,
+    /// Waits until the last results are in the journal: up to the pause limit where the disk is full,
     /// since a worker that is told of the end forgets what it has.
     async fn write_last(&mut self) {
-        let mut until = tokio::time::Instant::now() + LAST_WRITE;
+        let mut ends = tokio::time::Instant::now() + LAST_WRITE;
         let mut ticks = interval(TICK);
         let mut told = false;
-        while self.core.unstored() > 0 {
-            if self.paused && !mem::replace(&mut told, true) {
+        while self.core.unstored() > 0 && !self.given_up {
+            if self.paused.is_some() && !mem::replace(&mut told, true) {
                 tracing::error!(
                     "the run ends once its last {} results are written: make room on the disk. It \
                      can be ended without them, by asking twice; then workers keep them for the \
@@ -330,11 +365,12 @@ impl<L: CoordinatorEnd> Engine<L> {
                     self.core.unstored()
                 );
             }
+            let pause_ends = self.pause_ends();
             tokio::select! {
                 appended = self.said.recv() => {
                     let Some(appended) = appended else { return };
                     self.appended(appended);
-                    until = tokio::time::Instant::now() + LAST_WRITE;
+                    ends = tokio::time::Instant::now() + LAST_WRITE;
                 }
                 // nobody may come to count as silent, or stand in a queue, meanwhile
                 Some(heard) = self.link.receive() => self.hear(heard),
@@ -342,7 +378,8 @@ impl<L: CoordinatorEnd> Engine<L> {
                     self.handle(Input::Tick);
                     self.show();
                 }
-                () = tokio::time::sleep_until(until), if !self.paused => {
+                () = until(pause_ends) => self.give_up(),
+                () = tokio::time::sleep_until(ends), if self.paused.is_none() => {
                     tracing::warn!(
                         "the last results did not reach the journal; they are computed again"
                     );

@@ -3,6 +3,7 @@ use super::locate::LocateError;
 use crate::{core::Stop, journal::JournalError};
 use link::LinkError;
 use protocol::{id::JobId, wire::WireError};
+use std::time::Duration;
 
 /// Why a run cannot be opened or go on.
 #[derive(Debug, thiserror::Error)]
@@ -41,6 +42,18 @@ pub enum DispatchError {
     JobDiffers {
         /// The job.
         job: JobId,
+    },
+    /// The journal could not be written for longer than the run was to wait.
+    #[error(
+        "the journal could not be written for {} s ({why}): the run ends with what it has; make room on the disk, \
+         then the same command goes on",
+        limit.as_secs()
+    )]
+    Paused {
+        /// What the system says.
+        why: String,
+        /// How long it waited.
+        limit: Duration,
     },
     /// The address to listen on is taken, or is none of this machine.
     #[error("cannot listen on {locator}: {source}")]

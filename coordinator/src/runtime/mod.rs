@@ -23,5 +23,5 @@ pub use bench::{
 pub use dispatch::Dispatch;
 pub use engine::Summary;
 pub use error::DispatchError;
-pub use options::DispatchOptions;
+pub use options::{DispatchOptions, PAUSE_LIMIT};
 pub use protocol::event::{RunHeader, Spent};

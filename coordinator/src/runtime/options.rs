@@ -1,6 +1,9 @@
 //! What a run is opened with.
 use protocol::{case::Case, event::RunHeader};
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
+
+/// The usual pause limit: long enough for a person who is told to make room.
+pub const PAUSE_LIMIT: Duration = Duration::from_secs(600);
 
 /// What a run is opened with.
 #[derive(Clone, Debug)]
@@ -15,6 +18,8 @@ pub struct DispatchOptions {
     pub tls: Option<PathBuf>,
     /// Worker processes to start on this machine, with one slot each.
     pub local_workers: usize,
+    /// Longest time for which the run waits while its journal cannot be written; then it ends with what it has.
+    pub pause_limit: Duration,
     /// What the jobs are about.
     pub case: Case,
     /// What decides the result of the run.

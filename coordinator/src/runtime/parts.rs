@@ -11,7 +11,7 @@ use protocol::{
 };
 use std::{
     collections::BTreeSet,
-    time::{SystemTime, UNIX_EPOCH},
+    time::{Duration, SystemTime, UNIX_EPOCH},
 };
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
@@ -22,6 +22,7 @@ pub(super) struct Parts {
     pub(super) journal: Journal,
     pub(super) said: UnboundedReceiver<Appended>,
     pub(super) blob: Blob,
+    pub(super) pause_limit: Duration,
 }
 
 impl Parts {
@@ -73,6 +74,7 @@ impl Parts {
             journal,
             said,
             blob,
+            pause_limit: options.pause_limit,
         })
     }
 }

@@ -13,7 +13,7 @@ mod twins;
 use coordinator::case::{self, Overrides};
 use coordinator::pumping_unit::case::load_head;
 use protocol::{case::Scale, pumping_unit::Machine};
-use spoilt::{Copy, MODES, RECORD, SHEET, TOML, assert_each_is_named, scaled};
+use spoilt::{CARD, Copy, MODES, RECORD, SHEET, TOML, assert_each_is_named, scaled};
 use std::fs;
 
 #[test]
@@ -238,6 +238,29 @@ fn an_objective_loses_a_gauge_only_where_the_case_says_so() {
         message.contains("`objective.gauges[0].gauge` = 1"),
         "{message}"
     );
+}
+
+/// Tables of spreadsheets: semicolons, decimal commas, UTF-16.
+#[test]
+fn files_of_other_programs_are_read() {
+    let copy = Copy::new();
+    let plain = case::load(copy.folder.path(), &Overrides::default()).unwrap();
+    copy.lines(RECORD, |_, line| {
+        Some(line.replace(',', ";").replace('.', ","))
+    });
+    copy.lines(CARD, |_, line| Some(line.replace(',', "\t")));
+    for (file, units) in [
+        (CARD, u16::to_le_bytes as fn(u16) -> [u8; 2]),
+        (TOML, u16::to_be_bytes),
+        (SHEET, u16::to_le_bytes),
+    ] {
+        let text = fs::read_to_string(copy.path(file)).unwrap();
+        let text = format!("\u{feff}{text}");
+        let bytes: Vec<u8> = text.encode_utf16().flat_map(units).collect();
+        fs::write(copy.path(file), bytes).unwrap();
+    }
+    let read = case::load(copy.folder.path(), &Overrides::default()).unwrap();
+    assert_eq!(read, plain);
 }
 
 #[test]

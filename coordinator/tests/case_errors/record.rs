@@ -163,6 +163,23 @@ pub(super) const FAULTS: &[Spoilt] = &[
         ],
     ),
     (
+        "decimal commas between commas",
+        |c| {
+            c.lines(RECORD, |at, line| {
+                Some(if at == 9 {
+                    line.replacen('.', ",", 2)
+                } else {
+                    line.into()
+                })
+            });
+        },
+        &[
+            "test_5rpm.csv.gz",
+            "row 9",
+            "a decimal comma cuts a cell in two",
+        ],
+    ),
+    (
         "text",
         |c| {
             c.lines(RECORD, |at, line| {

@@ -387,6 +387,7 @@ fn limits(library: &[EffectDescriptor]) -> Vec<Limit> {
         parameter: "size".to_owned(),
         unit: effect.parameters[0].unit.clone(),
         size,
+        largest: 1.0,
     });
     each.collect()
 }

@@ -119,6 +119,12 @@ fn named((at, column): (usize, &job::Column)) -> Result<(Column, Per), Failure> 
         Some((effect, found))
     });
     let Some((effect, parameter)) = known else {
+        let own = parts.and_then(|(effect, _)| catalogue().iter().find(|one| one.id == effect));
+        if let Some(own) = own {
+            let all: Vec<&str> = own.parameters.iter().map(|p| p.name).collect();
+            let problem = format!("there is no `{name}`; `{}` has {}", own.id, all.join(", "));
+            return Err(Failure::misconfigured(format!("columns[{at}]"), problem));
+        }
         let of_effects = catalogue().iter().flat_map(|one| {
             let each = one.parameters.iter();
             each.map(|parameter| format!("{}.{}", one.id, parameter.name))

@@ -19,7 +19,7 @@ pub struct Identified {
     pub bands: Vec<Band>,
     /// What further measurements would pin down, those that tell most first.
     pub further: Vec<Further>,
-    /// How many times the noise the fit leaves.
+    /// Mean square of what the fit leaves, in units of the noise and per degree of freedom.
     pub left: f64,
     /// Whether that may be noise alone.
     pub is_noise: bool,

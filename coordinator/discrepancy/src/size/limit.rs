@@ -18,6 +18,9 @@ pub struct Limit {
     pub unit: String,
     /// The size; infinite where recalibration absorbs the effect.
     pub size: f64,
+    /// The largest size within the parameter's bounds.
+    #[serde(skip)]
+    pub largest: f64,
 }
 
 /// Detection limits of all effects of a round, at a level of the family of their tests.
@@ -43,6 +46,9 @@ pub(crate) fn limits(round: &Round, fit: &Fit, alpha: f64) -> Vec<Limit> {
                 parameter: parameter.name.clone(),
                 unit: parameter.unit.clone(),
                 size: limit * parameter.scale,
+                largest: (parameter.upper - parameter.absent)
+                    .abs()
+                    .max((parameter.absent - parameter.lower).abs()),
             });
         }
     }

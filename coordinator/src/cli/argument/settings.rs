@@ -114,7 +114,7 @@ pub(crate) fn table() -> String {
         let allowed = one.setting.allowed();
         let _infallible = writeln!(
             text,
-            "  {}={allowed}\n      {} [{}]",
+            "  {}={allowed}\n      {}\n      [{}]",
             one.key,
             one.setting.meaning,
             usual(&one.key, &plan)

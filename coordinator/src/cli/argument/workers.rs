@@ -1,9 +1,11 @@
 //! Who works on a run: worker processes on this machine, and others through the door.
 use super::{door::Door, nodes::HostsChoice};
+use crate::runtime::PAUSE_LIMIT;
 use clap::{
     Args,
     builder::{RangedU64ValueParser, TypedValueParser},
 };
+use std::time::Duration;
 
 /// Who works on a run.
 #[derive(Clone, Debug, Args)]
@@ -19,12 +21,21 @@ pub(crate) struct WorkersChoice {
     /// of them says that we come].
     #[arg(long, value_name = "ADDRESS", env = "HORSEHEAD_ADVERTISE")]
     pub(crate) advertise: Option<String>,
+    /// How long the run waits where its disk is full before it ends with what it has, in minutes [default: 10].
+    #[arg(long, value_name = "MINUTES", env = "HORSEHEAD_PAUSE_LIMIT", value_parser = clap::value_parser!(u32).range(0..=100_000))]
+    pause_limit: Option<u32>,
 }
 
 impl WorkersChoice {
     /// Worker processes to start on this machine.
     pub(crate) fn local(&self) -> usize {
         self.workers.unwrap_or_else(cores)
+    }
+
+    /// How long the run waits where its disk is full.
+    pub(crate) fn pause_limit(&self) -> Duration {
+        let minutes = |minutes: u32| Duration::from_secs(60 * u64::from(minutes));
+        self.pause_limit.map_or(PAUSE_LIMIT, minutes)
     }
 
     /// Whether workers of other machines take part.

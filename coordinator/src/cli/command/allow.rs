@@ -27,9 +27,9 @@ Examples:
   horsehead allow my-model
   horsehead allow my-model --dry-run
 
-The list is $HORSEHEAD_ALLOW, else horsehead/allow.toml in $XDG_CONFIG_HOME or ~/.config. It may be
-edited: limits of time, memory and output, variables of the environment, runs at a time. Workers
-read it when they start; copy the entry to every machine that is to work on the case.
+The list is $HORSEHEAD_ALLOW, else horsehead/allow.toml in $XDG_CONFIG_HOME or ~/.config. It may
+be edited: limits of time, memory and output, variables of the environment, runs at a time.
+Workers read it when they start; copy the entry to every machine that is to work on the case.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {

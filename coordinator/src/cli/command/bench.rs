@@ -281,6 +281,7 @@ async fn measure(plan: BenchPlan, tls: Option<PathBuf>) -> anyhow::Result<BenchO
             ..Door::default()
         },
         local_workers: 0,
+        pause_limit: runtime::PAUSE_LIMIT,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };

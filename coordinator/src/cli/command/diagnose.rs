@@ -24,10 +24,10 @@ Examples:
   horsehead diagnose runs/cyjs10-5-37hb-quick-seed1
   horsehead diagnose cases/cyjs10-5-37hb --measured tests/of/march --output json
 
-A case is recalibrated from scratch; a finished run of `calibrate` gives its parameters as the start.
-What is found is written into effects.toml of the run folder, in the form that case.toml takes; --add
-appends it to the case itself, and from then on it is ordinary physics.
-Ctrl-C stops cleanly: results so far are kept, and the same command goes on.
+A case is recalibrated from scratch; a finished run of `calibrate` gives its parameters as the
+start. What is found is written into effects.toml of the run folder, in the form that case.toml
+takes; --add appends it to the case itself, and from then on it is ordinary physics. Ctrl-C
+stops cleanly: results so far are kept, and the same command goes on.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Case folder, or the folder of a finished calibration.

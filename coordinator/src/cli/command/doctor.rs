@@ -24,11 +24,11 @@ Examples:
   horsehead doctor --listen quic/0.0.0.0:7447 --tls keys
   horsehead doctor --listen quic/0.0.0.0:7447 --tls keys --case cases/cyjs10-5-37hb
 
-On a worker's machine, with the folder of a worker, --connect takes the steps that a worker takes, up
-to the first word of a coordinator that runs. On the coordinator's machine, before it runs, --listen
-looks whether it could listen there. Without either it looks whether this machine can run workers of
-its own. Layers: case, program, certificate, clock, name, route, port, firewall, version. Exit code 1
-where one fails.
+On a worker's machine, with the folder of a worker, --connect takes the steps that a worker
+takes, up to the first word of a coordinator that runs. On the coordinator's machine, before it
+runs, --listen looks whether it could listen there. Without either it looks whether this machine
+can run workers of its own. Layers: case, program, certificate, clock, name, route, port,
+firewall, version. Exit code 1 where one fails.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {

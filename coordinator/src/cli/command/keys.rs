@@ -57,8 +57,8 @@ Example:
   horsehead keys add keys rack2-node7
 
 Its name joins the file `workers`, which a running coordinator reads again every second; taking a
-line out of that file throws a worker out. While it runs, a coordinator has room for new names of the
-form worker-01, worker-02; others may join when it is started again.
+line out of that file throws a worker out. While it runs, a coordinator has room for new names
+of the form worker-01, worker-02; others may join when it is started again.
 
 {EXIT_CODES}"))]
     Add {

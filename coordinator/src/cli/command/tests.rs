@@ -162,6 +162,25 @@ fn every_option_has_a_twin_in_the_environment() {
     }
 }
 
+/// A line that is longer than the help is wide is broken where it should not be.
+#[test]
+fn every_line_of_a_help_fits() {
+    let mut all = Vec::new();
+    commands(&Cli::command(), "horsehead", &mut all);
+    let mut long = Vec::new();
+    for (path, command) in all {
+        let texts = [command.get_after_help(), command.get_after_long_help()];
+        for text in texts.into_iter().flatten() {
+            let text = text.to_string();
+            // a command is one line, however long
+            let lines = text.lines().filter(|line| !line.trim().starts_with("horsehead "));
+            let lines = lines.filter(|line| line.chars().count() > 98);
+            long.extend(lines.map(|line| format!("{path}: {line}")));
+        }
+    }
+    assert!(long.is_empty(), "{}", long.join("\n"));
+}
+
 #[test]
 fn completions_exist_for_every_shell() {
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {

@@ -78,6 +78,9 @@ pub(crate) fn show(run: &Run, found: &Found, wall_s: f64, output: Output) -> any
         folder.file("report.html").display(),
         folder.file(GENES).display()
     ));
+    if let Some(structure) = report::structure(&calibration) {
+        terminal::tell(&format!("note: {structure}"));
+    }
     let tables = || report::parameters(&calibration, terminal::styled());
     terminal::print(output, tables, &object)
 }

@@ -67,7 +67,11 @@ fn code(error: &anyhow::Error) -> u8 {
             code = BAD_INPUT;
         }
         match cause.downcast_ref::<StudyError>() {
-            Some(StudyError::Settings(_)) => code = BAD_INPUT,
+            Some(
+                StudyError::Settings(_)
+                | StudyError::Column { .. }
+                | StudyError::Misconfigured { .. },
+            ) => code = BAD_INPUT,
             Some(StudyError::Interrupted) => code = INTERRUPTED,
             _ => {}
         }

@@ -14,7 +14,7 @@ use protocol::{
     wire,
 };
 use serde::Serialize;
-use std::path::PathBuf;
+use std::{path::PathBuf, time::Duration};
 
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));
@@ -27,6 +27,8 @@ pub(crate) struct Options {
     pub(crate) door: Door,
     /// Worker processes to start here.
     pub(crate) local_workers: usize,
+    /// Longest time for which the run waits for a disk that is full.
+    pub(crate) pause_limit: Duration,
     /// Which command the run belongs to.
     pub(crate) kind: String,
     /// Canonical JSON of everything that decides the result.
@@ -42,6 +44,7 @@ impl Options {
             insecure: self.door.insecure,
             tls: self.door.tls,
             local_workers: self.local_workers,
+            pause_limit: self.pause_limit,
             case: case.clone(),
             header: RunHeader {
                 kind: self.kind,
@@ -154,6 +157,7 @@ fn refuse(error: &DispatchError) -> anyhow::Error {
         | DispatchError::Start(_)
         | DispatchError::LocalWorkers { .. }
         | DispatchError::JobDiffers { .. }
+        | DispatchError::Paused { .. }
         | DispatchError::Stopped(_)
         | DispatchError::Closed => return explain(error).into(),
     };

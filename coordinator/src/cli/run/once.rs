@@ -5,6 +5,7 @@ use super::{
 };
 use crate::{
     cli::argument::door::Door,
+    runtime::PAUSE_LIMIT,
     study::{self, Compared, Stop, StudyError, Wanted},
 };
 use anyhow::Context as _;
@@ -29,6 +30,7 @@ pub(crate) fn in_scratch<T>(
             run_dir: scratch.path().to_owned(),
             door: Door::default(),
             local_workers,
+            pause_limit: PAUSE_LIMIT,
             kind: kind.to_owned(),
             settings,
         };

@@ -226,6 +226,7 @@ impl Scale<'_> {
             run_dir: journal.clone(),
             door: Door::default(),
             local_workers: count,
+            pause_limit: runtime::PAUSE_LIMIT,
             kind: Scaling::KIND.to_owned(),
             settings: String::new(),
         };
@@ -343,6 +344,7 @@ fn empty_run(folder: &std::path::Path) -> anyhow::Result<runtime::DispatchOption
         run_dir: folder.to_owned(),
         door: Door::default(),
         local_workers: 0,
+        pause_limit: runtime::PAUSE_LIMIT,
         kind: "bench".to_owned(),
         settings: "{}".to_owned(),
     };

@@ -52,6 +52,7 @@ impl Session {
                 run_dir: run.folder.path().to_owned(),
                 door,
                 local_workers: self.workers.local(),
+                pause_limit: self.workers.pause_limit(),
                 kind: S::KIND.to_owned(),
                 settings: run.manifest.settings_json()?,
             };

@@ -75,7 +75,7 @@ fn fact_markup(fact: &Fact) -> Markup {
 fn figure_markup(figure: &Figure) -> Markup {
     html! {
         figure id=(format!("figure-{}", figure.name)) {
-            (PreEscaped(&figure.svg))
+            div.scroll { (PreEscaped(&figure.svg)) }
             figcaption { (figure.caption) }
         }
     }
@@ -85,16 +85,18 @@ fn table_markup(table: &Table) -> Markup {
     html! {
         figure.table {
             figcaption { (table.title) }
-            table {
-                thead {
-                    tr {
-                        @for (column, head) in table.head.iter().enumerate() {
-                            @let prose = column > 0 && table.is_prose(column - 1);
-                            th.prose[prose] scope="col" { (head) }
+            div.scroll {
+                table {
+                    thead {
+                        tr {
+                            @for (column, head) in table.head.iter().enumerate() {
+                                @let prose = column > 0 && table.is_prose(column - 1);
+                                th.prose[prose] scope="col" { (head) }
+                            }
                         }
                     }
+                    tbody { @for row in &table.rows { (row_markup(table, row)) } }
                 }
-                tbody { @for row in &table.rows { (row_markup(table, row)) } }
             }
             @for note in &table.notes { p.note { (note) } }
         }

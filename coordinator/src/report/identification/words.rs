@@ -42,7 +42,7 @@ pub(super) fn grounds(subject: &Subject<'_>) -> Vec<String> {
     let identified = subject.identified;
     let left = format!(
         "The fit leaves {} times the noise",
-        fixed(identified.left, 2)
+        fixed(identified.left.sqrt(), 2)
     );
     let mut all = vec![if identified.is_noise {
         format!("{left}: noise alone may leave that.")

@@ -6,6 +6,7 @@ use crate::report::words;
 
 pub(super) fn calibration(calibration: &Calibration) -> Section {
     let mut blocks = vec![Block::Lead(words::headline(calibration))];
+    blocks.extend(words::structure(calibration).map(|said| Block::Warning(vec![said])));
     if calibration.origin.synthetic {
         blocks.push(Block::Text(words::SYNTHETIC.to_owned()));
     }

@@ -1,16 +1,16 @@
 //! What the parameters leave unexplained, channel by channel.
-use crate::report::data::{ConditionResult, Run};
+use crate::report::data::ConditionResult;
 use crate::report::document::{Row, Table};
 use crate::report::number::{NONE, figure, fixed, percent, quantity};
 use crate::report::words::condition_name;
 use discrepancy::proof::gap::{Gap, SECTORS};
-use protocol::case::{Abscissa, Case, Channel, ChannelRecord};
+use protocol::case::{Abscissa, Case};
 
 /// The gap of both parameter sets under one condition, and where the optimised ones leave it;
 /// nothing without a record or without a complete run.
 pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Table> {
     let [before, after] =
-        [&result.recommended, &result.optimised].map(|run| gaps(case, result.condition, run));
+        [&result.recommended, &result.optimised].map(|run| run.gaps(case, result.condition));
     if after.is_empty() {
         return None;
     }
@@ -41,11 +41,12 @@ pub(in crate::report) fn gap(case: &Case, result: &ConditionResult) -> Option<Ta
             "",
             "gap, recommended",
             "gap, optimised",
-            "residual over noise",
+            "times the noise",
             "worst sector",
             "worst band of orders",
         ], rows).noted([
-            "Gap: mean squared residual above the noise of the averaged record, over the variance of \
+            "Times the noise: root mean square of the residual over that of the noise of the averaged record. \
+             Gap: mean squared residual above the noise of the averaged record, over the variance of \
              the measured curve; means removed. A gap that stays far above the noise after a fit is a \
              sign of something the model lacks; this table says where to look, not what it is.",
         ]))
@@ -75,14 +76,4 @@ fn band(along: &Abscissa, gap: &Gap) -> String {
         end => format!("{} to {end}", orders.start()),
     };
     format!("{orders}: {}", percent(share))
-}
-
-/// Gaps of the measured channels.
-fn gaps<'a>(case: &'a Case, condition: usize, run: &Run) -> Vec<(&'a Channel, Gap)> {
-    let shown = run.shown(case, condition);
-    let gap = |(_, channel, record): (usize, &'a Channel, &ChannelRecord)| {
-        let gap = Gap::between(record, shown.channel(channel), channel.is_absolute())?;
-        Some((channel, gap))
-    };
-    case.measured(condition).filter_map(gap).collect()
 }

@@ -9,7 +9,7 @@ mod gene;
 mod name;
 
 pub(super) use calibration::{
-    absolute_worse, channels, complete_objective, headline, square_after, warnings,
+    absolute_worse, channels, complete_objective, headline, square_after, structure, warnings,
 };
 pub use ending::{failure, verdict};
 pub(super) use gene::{at_bound, bound, seen};

@@ -19,19 +19,20 @@ One JSON object a line in, one out. First in:
   {{\"space\": [{{\"name\": \"k\", \"lower\": 1e3, \"upper\": 1e9, \"scale\": \"log\"}},
              {{\"name\": \"x0\", \"lower\": -1, \"upper\": 1, \"scale\": \"linear\", \"start\": 0.2}}],
    \"seed\": 1, \"budget\": 500, \"settings\": {{\"population\": 20}}}}   (on one line)
-The start is the middle, the seed 1, the budget what the strategy plans and the settings those of the
-preset where they are left out; `horsehead calibrate --help` lists settings. \"start\": [[1e5, 0.1], ..]
-are points to evaluate before the search, on top of what it plans, and to begin it with. Then out:
+The start is the middle, the seed 1, the budget what the strategy plans and the settings those
+of the preset where they are left out; `horsehead calibrate --help` lists settings. \"start\":
+[[1e5, 0.1], ..] are points to evaluate before the search, on top of what it plans, and to begin
+it with. Then out:
   {{\"ask\": [{{\"id\": 0, \"x\": [1e6, 0.2]}}]}}
 and in, in any order, one point or many to a line:
   {{\"tell\": [{{\"id\": 0, \"f\": 3.5}}, {{\"id\": 1, \"failed\": true}}]}}
-The smaller f is the better. A point with \"residual\": true may be told with \"residual\": [..] alone,
-for f is its squared length; quick, least-squares, descent and hybrid go nowhere without, memetic
-needs f alone. Every line is answered, by {{\"ask\": []}} while
-points are open. Last out:
+The smaller f is the better. A point with \"residual\": true may be told with \"residual\": [..]
+alone, for f is its squared length; quick, least-squares, descent and hybrid go nowhere without,
+memetic needs f alone. Every line is answered, by {{\"ask\": []}} while points are open. Last out:
   {{\"done\": \"planned\", \"evaluations\": 500, \"best\": {{\"id\": 7, \"x\": [..], \"f\": 0.1}}}}
-done: planned, threshold, budget, or input, as its end is the end. A line that cannot be taken ends the
-talk, too: {{\"error\": .., \"help\": .., \"evaluations\": .., \"best\": ..}}, and nothing of it was taken.
+done: planned, threshold, budget, or input, as its end is the end. A line that cannot be taken
+ends the talk, too: {{\"error\": .., \"help\": .., \"evaluations\": .., \"best\": ..}}, and nothing of it
+was taken.
 
 Example:
   horsehead ask-tell memetic

@@ -41,11 +41,12 @@ use words::{Line, Tag};
 One JSON object a line in, one out, in the order in which they are done:
   {{\"id\": 7, \"genes\": {{\"stiffness\": 7.8e8, ..}}}}          every unknown that the case searches
   {{\"id\": 7, \"objective\": 1.25, \"complete\": true, \"verdict\": \"complete\"}}
-With \"residual\": true a complete one comes with \"residual\": [..], whose squared length is the objective.
-A simulation that fails has a graded objective above every complete one's; what could not be computed at
-all has null. A line that cannot be taken is answered by {{\"id\", \"line\", \"error\", \"help\"}}, the others go
-on, and the program ends with exit code 2. Write many lines before reading: they are done side by side.
-The end of the input ends it. What is asked again is answered from the run's journal.
+With \"residual\": true a complete one comes with \"residual\": [..], whose squared length is the
+objective. A simulation that fails has a graded objective above every complete one's; what could
+not be computed at all has null. A line that cannot be taken is answered by {{\"id\", \"line\",
+\"error\", \"help\"}}, the others go on, and the program ends with exit code 2. Write many lines
+before reading: they are done side by side. The end of the input ends it. What is asked again is
+answered from the run's journal.
 
 Example:
   horsehead evaluate cases/cyjs10-5-37hb --workers 2

@@ -31,9 +31,9 @@ Examples:
 Works while the run goes on, and with a damaged journal, as far as that goes; the journal is not
 changed. The table `dictionary` says what every column means.
 
-With --failed, what somebody's own program left where it failed: a folder for each individual, with
-what was filled in, what the program wrote and said, and `why.txt`. Of long files the end travels;
-a worker sends the folders of the first failures of every slot.
+With --failed, what somebody's own program left where it failed: a folder for each individual,
+with what was filled in, what the program wrote and said, and `why.txt`. Of long files the end
+travels; a worker sends the folders of the first failures of every slot.
 {EXIT_CODES}"))]
 pub(super) struct Arguments {
     /// Run folder of a calibration or diagnosis.

@@ -23,8 +23,8 @@ A grid runs every combination of its values with every seed:
   [grid]
   population = [40, 80]
   mutation_probability = [0.02, 0.05]
-A table of individuals has a column for each unknown that the case searches; what comes out has its
-columns, the objective, the verdict and every channel's scores.
+A table of individuals has a column for each unknown that the case searches; what comes out has
+its columns, the objective, the verdict and every channel's scores.
 
 Examples:
   horsehead sweep grid.toml

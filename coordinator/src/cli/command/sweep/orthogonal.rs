@@ -49,9 +49,9 @@ Examples:
       --factor generations=30,60,90 --factor crossover_probability=0.7,0.8,0.9
 
 Without --factor: population, crossover_probability, mutation_probability and the climbing trials
-of both kinds. L9 holds up to 4 factors of 3 levels, L16 5 of 4, L25 6 of 5. The response is log10
-of the best objective at the budget. Seeds are blocks; the best levels are confirmed with as many
-other seeds.
+of both kinds. L9 holds up to 4 factors of 3 levels, L16 5 of 4, L25 6 of 5. The response is
+log10 of the best objective at the budget. Seeds are blocks; the best levels are confirmed with
+as many other seeds.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {

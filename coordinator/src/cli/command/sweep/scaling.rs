@@ -37,9 +37,10 @@ Examples:
   horsehead sweep scaling cases/cyjs10-5-37hb --presets paper,paper-batch,window --populations 40,80
   horsehead sweep scaling cases/cyjs10-5-37hb --sleeping 0 --projected 80 --output json
 
-Workers of this machine simulate the case; sessions of one other process sleep, over TCP; slots of
-which there are not so many are projected, by the coordinator's own state machine on a simulated
-clock, from what was measured. What the projection takes for granted stands in the result.
+Workers of this machine simulate the case; sessions of one other process sleep, over TCP; slots
+of which there are not so many are projected, by the coordinator's own state machine on a
+simulated clock, from what was measured. What the projection takes for granted stands in the
+result.
 
 {EXIT_CODES}"))]
 pub(super) struct Arguments {

@@ -26,8 +26,8 @@ Examples:
   horsehead workers up --connect quic/10.0.0.1:7447 --tls keys --k8s replicas=4
   horsehead workers up --connect quic/head:7447 --tls keys --systemd slots=2
 
---dry-run prints all of it as a script of the shell, contacts nobody and writes nothing. Keys are read
-from their folder and shown nowhere. A line of a file of hosts is `USER@HOST:PORT slots=N`.";
+--dry-run prints all of it as a script of the shell, contacts nobody and writes nothing. Keys are
+read from their folder and shown nowhere. A line of a file of hosts is `USER@HOST:PORT slots=N`.";
 
 pub(super) const LOGS: &str = "\
 Examples:

@@ -63,11 +63,11 @@ fn facts(subject: &Subject<'_>) -> Vec<Fact> {
             }),
     );
     facts.extend(diagnosis.rounds.first().map(|round| {
-        let dispersion = format!(
-            "χ² per degree of freedom of the record, best model: {}; variances are as many times those of the noise",
-            figure(round.dispersion)
+        let left = format!(
+            "{} by the best model, per degree of freedom; intervals are as many times as wide",
+            figure(round.dispersion.sqrt())
         );
-        Fact::new("dispersion", dispersion)
+        Fact::new("times the noise", left)
     }));
     facts
 }

@@ -33,10 +33,10 @@ pub(in crate::report::diagnosis) fn suspects(number: usize, round: &Round) -> Ta
     ).noted([
         format!(
             "p: probability of a test as clear as this one if the effect is not there, with the \
-             variances as many times those of the noise as the best model leaves ({}). Absorbed: share of the effect's \
+             noise as many times as large as the best model leaves ({}). Absorbed: share of the effect's \
              signature that recalibration takes up. Nats: gain of the log evidence over the model \
-             without it, with all genes free, over that dispersion.",
-            figure(round.dispersion)
+             without it, with all genes free, over the square of that.",
+            figure(round.dispersion.sqrt())
         ),
         format!(
             "Over the whole family of named effects, p {}.",
@@ -124,7 +124,7 @@ pub(in crate::report::diagnosis) fn look_alikes(subject: &Subject<'_>) -> Option
 
 /// From which size on each effect would have been seen.
 pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Table> {
-    let limits = &subject.diagnosis().limits;
+    let limits = subject.diagnosis().detection_limits();
     let rows: Vec<Row> = limits
         .iter()
         .map(|limit| {
@@ -134,7 +134,7 @@ pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Tabl
             let seen = if limit.size.is_finite() {
                 quantity(limit.size, &limit.unit)
             } else {
-                "never: absorbed".to_owned()
+                "at no size within its bounds".to_owned()
             };
             Row::new(
                 format!("{}, {}", limit.id, limit.parameter.replace('_', " ")),
@@ -154,7 +154,7 @@ pub(in crate::report::diagnosis) fn limits(subject: &Subject<'_>) -> Option<Tabl
             ["", "seen from", "usual size", "limit over usual size"],
             rows,
         ).noted([
-            "Before any verdict, at the recalibrated point, each effect alone, with the misfit of the \
+            "Of effects that are not named: at the recalibrated point, each alone, with the misfit of the \
              model without any: the size that the tests and the evidence asked for would not have \
              missed. A limit well below the usual size means: had it been there, it would have been \
              seen.",]).unless_empty()

@@ -123,7 +123,7 @@ pub(crate) fn object(subject: &Subject<'_>) -> DiagnoseOutput {
         rounds: rounds(diagnosis),
         whereabouts: whereabouts(subject),
         wander: wandered(subject),
-        detection_limits: diagnosis.limits.clone(),
+        detection_limits: diagnosis.detection_limits(),
         nuisances: diagnosis.nuisances.clone(),
         absorbed: diagnosis.absorbed.clone(),
         inseparable: diagnosis

@@ -128,7 +128,8 @@ fn full(verdict: Verdict) -> Diagnosis {
             id: "beam_inertia".to_owned(),
             parameter: "share".to_owned(),
             unit: "1".to_owned(),
-            size: f64::INFINITY,
+            size: 3.0,
+            largest: 0.5,
         }],
         look_alikes: vec![LookAlikes {
             effects: ["gauge_drift".to_owned(), "gauge_gain".to_owned()],

@@ -23,7 +23,7 @@ pub(crate) struct IdentifyOutput {
     nuisances: Vec<NeverExact>,
     /// What further measurements would pin down.
     further: Vec<Further>,
-    /// How many times the noise the fit leaves.
+    /// How many times the noise the fit leaves: root mean square over that of the noise.
     times_noise: f64,
     /// Whether that is more than noise: then intervals are widened, and a diagnosis comes first.
     diagnose_first: bool,
@@ -94,7 +94,7 @@ pub(crate) fn object(subject: &Subject<'_>, accounts: &[(Stage, StageCost)]) -> 
             .collect(),
         nuisances: identified.nuisances.clone(),
         further: identified.further.clone(),
-        times_noise: identified.left,
+        times_noise: identified.left.sqrt(),
         diagnose_first: !identified.is_noise,
         assumed_noise: !identified.noise.is_seen(),
         notes: notes.cloned().collect(),

@@ -127,7 +127,7 @@ fn fields_are_a_contract() {
         "at least",
         "at most",
         "not seen by this record",
-        "2.00 times the noise",
+        "1.41 times the noise",
         "4 times as many cycles",
     ] {
         assert!(page.contains(words), "{words}: {page}");
