@@ -3,6 +3,7 @@
 //! A line per unknown, `stiffness = { value = 6.2, unit = "N/mm" }`; a name with a point is quoted, as that
 //! of an effect's parameter: `"pin_clearance.force" = { value = 1500.0, unit = "N" }`.
 use super::{
+    conversion::convert,
     document::{Document, Step, nearest},
     error::CaseError,
 };
@@ -75,7 +76,7 @@ fn value(document: &Document, unknown: &Unknown, entry: &GeneValue) -> Result<f6
             &way("unit"),
             format!("\"{unit}\""),
             format!("\"{}\", as in the case", unknown.unit),
-            "state the value in the case's unit; only units of the same quantity that the program knows are converted",
+            &convert(unit, &unknown.unit),
         ));
     }
     let (sound, allowed) = match unknown.scale {

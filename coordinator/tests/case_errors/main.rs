@@ -144,6 +144,11 @@ fn a_case_may_have_load_cards_alone() {
             .unwrap()
             .text;
         assert_eq!(
+            summary.contains("no [objective]: the case is simulated only"),
+            !has_objective,
+            "{summary}"
+        );
+        assert_eq!(
             summary.matches("no record: simulated only").count(),
             2,
             "{summary}"

@@ -13,7 +13,7 @@ use crate::{
 use clap::Args;
 use exchange::allow::{self, Allowed};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Let this machine start the program of a case.
 ///
@@ -114,10 +114,13 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     let shown = allow::text(&alone);
     allowed.entry.insert(name.clone(), entry.clone());
     if !arguments.dry_run {
-        if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder)?;
-        }
-        draft::replace(&path, allow::text(&allowed).as_bytes())?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let written = std::fs::create_dir_all(folder)
+            .and_then(|()| draft::replace(&path, allow::text(&allowed).as_bytes()));
+        written.map_err(|error| Usage {
+            message: format!("cannot write {}: {error}", path.display()),
+            help: "name a list that can be written with HORSEHEAD_ALLOW".to_owned(),
+        })?;
     }
     let words = if arguments.dry_run {
         "would be written to"

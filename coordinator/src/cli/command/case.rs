@@ -9,6 +9,7 @@ use crate::cli::{
 };
 use crate::{
     case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document},
+    draft,
     external::{self, Proposal},
     kind,
     study::{self, StudyError},
@@ -215,8 +216,12 @@ fn begin(folder: &Path) -> anyhow::Result<()> {
         }
         .into());
     }
-    std::fs::create_dir_all(folder)?;
-    std::fs::write(&file, crate::pumping_unit::case::template())?;
+    let written = std::fs::create_dir_all(folder)
+        .and_then(|()| draft::replace(&file, crate::pumping_unit::case::template().as_bytes()));
+    written.map_err(|error| Usage {
+        message: format!("cannot write {}: {error}", file.display()),
+        help: "choose a folder that can be written".to_owned(),
+    })?;
     terminal::tell(&format!(
         "wrote {}\nput the files it names beside it, then run `horsehead case check {}`",
         file.display(),

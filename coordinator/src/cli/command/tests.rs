@@ -173,7 +173,9 @@ fn every_line_of_a_help_fits() {
         for text in texts.into_iter().flatten() {
             let text = text.to_string();
             // a command is one line, however long
-            let lines = text.lines().filter(|line| !line.trim().starts_with("horsehead "));
+            let lines = text
+                .lines()
+                .filter(|line| !line.trim().starts_with("horsehead "));
             let lines = lines.filter(|line| line.chars().count() > 98);
             long.extend(lines.map(|line| format!("{path}: {line}")));
         }

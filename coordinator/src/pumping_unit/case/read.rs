@@ -96,6 +96,14 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
+    notes.extend(file.objective.is_none().then(|| {
+        Note {
+            path: document.path.clone(),
+            text:
+                "no [objective]: the case is simulated only; a calibration needs one, and a record"
+                    .to_owned(),
+        }
+    }));
     let own = facts.get(objective.condition).and_then(Option::as_ref);
     let unused = own.map_or(&[][..], |facts| &facts.unused);
     let recorded = (&channels[..], unused);

@@ -126,12 +126,12 @@ fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
             fs::remove_dir_all(place)?;
         }
     }
-    Ok(fs::create_dir_all(place)?)
+    fs::create_dir_all(place).with_context(|| format!("cannot make {}", place.display()))
 }
 
 /// Writes what a run left, below its folder and nowhere else.
 fn unpack(folder: &Path, why: &str, left: &Left) -> io::Result<()> {
-    fs::create_dir_all(folder)?;
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     for file in &left.files {
         // a worker says what it likes
         if !is_below(Path::new(&file.path)) {
@@ -139,9 +139,9 @@ fn unpack(folder: &Path, why: &str, left: &Left) -> io::Result<()> {
         }
         let path: PathBuf = folder.join(&file.path);
         if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent)?;
+            fs::create_dir_all(parent).with_context(|| format!("cannot make {}", parent.display()))?;
         }
-        fs::write(&path, &file.content)?;
+        fs::write(&path, &file.content).with_context(|| format!("cannot write {}", path.display()))?;
         let mode = if file.executable { 0o700 } else { 0o600 };
         fs::set_permissions(&path, fs::Permissions::from_mode(mode))?;
     }
