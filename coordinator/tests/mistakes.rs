@@ -161,9 +161,9 @@ const MISTAKES: &[Mistake] = &[
         |d| {
             d.record(|row, cells| {
                 if row == 0 {
-                    cells.swap(2, 4)
+                    cells.swap(2, 4);
                 }
-            })
+            });
         },
         "case check case",
         0,
@@ -222,7 +222,7 @@ const MISTAKES: &[Mistake] = &[
                 "case/case.toml",
                 "back_cylinders = 72",
                 "back_cylinders = 72.5",
-            )
+            );
         },
         "case check case",
         2,
@@ -429,9 +429,9 @@ const MISTAKES: &[Mistake] = &[
         |d| {
             d.record(|row, cells| {
                 if row == 0 {
-                    cells[4] = cells[2].clone()
+                    cells[4] = cells[2].clone();
                 }
-            })
+            });
         },
         "case check case",
         2,

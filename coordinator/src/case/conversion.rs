@@ -30,24 +30,38 @@ const SYMBOLS: &[(&str, f64, [f64; 4])] = &[
     ("rad", 1.0, ANGLE),
     ("deg", std::f64::consts::PI / 180.0, ANGLE),
     ("n", 1.0, FORCE),
-    ("kn", 1e3, FORCE),
-    ("mn", 1e6, FORCE),
     ("lbf", 4.448_221_615_260_5, FORCE),
     ("pa", 1.0, STRESS),
-    ("kpa", 1e3, STRESS),
-    ("mpa", 1e6, STRESS),
-    ("gpa", 1e9, STRESS),
     ("psi", 6_894.757_293_168, STRESS),
     ("bar", 1e5, STRESS),
     ("hz", 1.0, FREQUENCY),
     ("rpm", 1.0 / 60.0, FREQUENCY),
 ];
 
+/// Multiples of newtons and pascals: of these no thousandths are written.
+const MULTIPLES: [(&str, f64); 3] = [("k", 1e3), ("m", 1e6), ("g", 1e9)];
+
+/// A symbol's size in SI, and what it measures.
+fn symbol(name: &str) -> Option<Size> {
+    let find = |name: &str| SYMBOLS.iter().find(|(own, ..)| *own == name);
+    if let Some((_, size, measure)) = find(name) {
+        return Some((*size, *measure));
+    }
+    MULTIPLES.iter().find_map(|(prefix, times)| {
+        let base = name
+            .strip_prefix(prefix)
+            .filter(|base| ["n", "pa"].contains(base))?;
+        find(base).map(|(_, size, measure)| (times * size, *measure))
+    })
+}
+
 /// What a value in one unit is multiplied by to be in another; none where one of them is not known or they measure
 /// different things. Written as `N/mm` and `kN.m/rad`, or as the end of a key: `n_per_mm`, `kg_m2`.
 pub(crate) fn factor(from: &str, to: &str) -> Option<f64> {
     let ((from, measure), (to, other)) = (size(from)?, size(to)?);
-    (measure == other && from.total_cmp(&to).is_ne()).then(|| from / to)
+    let mut powers = measure.iter().zip(other);
+    let alike = powers.all(|(a, b)| a.total_cmp(&b).is_eq());
+    (alike && from.total_cmp(&to).is_ne()).then(|| from / to)
 }
 
 /// What to do about a value in one unit where another one is wanted.
@@ -96,19 +110,19 @@ fn size(text: &str) -> Option<Size> {
         .replace(['_', '*', ' '], ".");
     let mut whole: Size = (1.0, [0.0; 4]);
     for (place, product) in text.split('/').enumerate() {
-        for symbol in product.split('.').filter(|part| !part.is_empty()) {
+        for part in product.split('.').filter(|part| !part.is_empty()) {
             // the 1.5 of `m^1.5` was cut in two
-            if place > 0 && symbol == "5" && product.contains("^1.5") {
+            if place > 0 && part == "5" && product.contains("^1.5") {
                 continue;
             }
-            let end = symbol.find(|c: char| c == '^' || c.is_ascii_digit());
-            let (name, power) = symbol.split_at(end.unwrap_or(symbol.len()));
+            let end = part.find(|c: char| c == '^' || c.is_ascii_digit());
+            let (name, power) = part.split_at(end.unwrap_or(part.len()));
             let power = match power.trim_start_matches('^') {
                 "" => 1.0,
                 "1" if product.contains("^1.5") => 1.5,
                 power => power.parse().ok()?,
             };
-            let (_, factor, measure) = SYMBOLS.iter().find(|(own, ..)| *own == name)?;
+            let (factor, measure) = symbol(name)?;
             let power = if place == 0 { power } else { -power };
             whole.0 *= factor.powf(power);
             for (all, own) in whole.1.iter_mut().zip(measure) {
@@ -161,12 +175,12 @@ mod tests {
         let said = convert("N/mm", "N/m");
         assert_eq!(said, "write `N/m`, and multiply the values by 1000");
         assert_eq!(convert("N/mn", "N/m"), "did you mean `N/m`?");
-        let known = ["center_x_m", "radius_m", "rope_anchor_deg"];
+        let known = ["center_x_m", "radius_m", "tilt_deg"];
         let said = convert_key("radius_mm", &known);
         let expected = "write `radius_m`, and multiply the value by 0.001";
         assert_eq!(said.as_deref(), Some(expected));
-        let said = convert_key("rope_anchor_rad", &known);
-        let expected = "write `rope_anchor_deg`, and multiply the value by 57.2957795131";
+        let said = convert_key("tilt_rad", &known);
+        let expected = "write `tilt_deg`, and multiply the value by 57.2957795131";
         assert_eq!(said.as_deref(), Some(expected));
         assert_eq!(convert_key("radius", &known), None);
         assert_eq!(convert_key("radius_kg", &known), None);

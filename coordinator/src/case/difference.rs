@@ -46,7 +46,7 @@ pub(crate) fn differences(earlier: &Case, now: &Case) -> String {
         }
     }
     if earlier.model != now.model {
-        all.push("the model (its tables, load cards or numbers)".to_owned());
+        all.push("the model (its tables or numbers)".to_owned());
     }
     if all.is_empty() && earlier != now {
         all.push("its name or its channels".to_owned());
@@ -91,15 +91,19 @@ mod tests {
         let record = other.channels[2].record.as_mut().unwrap();
         record.mean[7] += 1.0;
         other.model.settings[9] ^= 1;
+        let (first, third) = (&case.unknowns[0], &case.channels[2]);
         assert_eq!(
             differences(&case, &other),
-            "kb1 starts at 6.28e8, not 3.14e8, the record of gauge 3 at 5rpm, the model (its tables, load cards \
-             or numbers)"
+            format!(
+                "{} starts at 6.28e8, not 3.14e8, the record of {} at {}, the model (its tables or numbers)",
+                first.name, third.title, case.conditions[0].name
+            )
         );
         let mut other = case.clone();
         other.unknowns.truncate(4);
         let said = differences(&case, &other);
-        assert!(said.starts_with("the unknown cb1 is gone, "), "{said}");
+        let gone = format!("the unknown {} is gone, ", case.unknowns[4].name);
+        assert!(said.starts_with(&gone), "{said}");
         assert!(said.ends_with(", and 2 more"), "{said}");
         let mut other = case.clone();
         other.objective.terms.pop();

@@ -123,7 +123,8 @@ fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, Cas
 /// The bytes in UTF-8 where they are UTF-16, as spreadsheets write it: by the byte-order mark, or by the empty half of
 /// each of the first letters.
 pub(crate) fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let (rest, unit): (&[u8], fn([u8; 2]) -> u16) = match bytes {
+    type Unit = fn([u8; 2]) -> u16;
+    let (rest, unit): (&[u8], Unit) = match bytes {
         [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
         [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
         [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),

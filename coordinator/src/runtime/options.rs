@@ -3,7 +3,7 @@ use protocol::{case::Case, event::RunHeader};
 use std::{path::PathBuf, time::Duration};
 
 /// The usual pause limit: long enough for a person who is told to make room.
-pub const PAUSE_LIMIT: Duration = Duration::from_secs(600);
+pub const PAUSE_LIMIT: Duration = Duration::from_mins(10);
 
 /// What a run is opened with.
 #[derive(Clone, Debug)]

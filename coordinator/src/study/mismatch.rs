@@ -1,4 +1,4 @@
-//! Whether a record can be that of its channel: a gauge of reversed sign, or two columns that were exchanged, give a
+//! Whether a record can be that of its channel: a sensor of reversed sign, or two columns that were exchanged, give a
 //! fit that is no fit, and nothing in its numbers says why.
 use super::{
     compare::{Compared, Curves, Wanted, compare},
@@ -12,8 +12,8 @@ use protocol::{
 };
 
 /// By how much a record must correlate better with something else than with its own channel. Of 28 records of the
-/// shipped and the practice cases each correlates by 0.97 at least with its own gauge under the recommended values,
-/// and by 0.86 at most with any other, with either sign, but for gauges 1 and 2, which mirror each other.
+/// shipped and the practice cases each correlates by 0.97 at least with its own channel under the recommended values,
+/// and by 0.86 at most with any other, with either sign, but for two channels that mirror each other.
 const MARGIN: f64 = 0.2;
 
 /// The correlation from which that something else is what was recorded.

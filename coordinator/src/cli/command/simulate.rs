@@ -8,7 +8,7 @@ use crate::{
             output::{Output, OutputChoice},
         },
         output::{files::check_out, object::simulation::simulation, problem::EXIT_CODES, terminal},
-        run::{bus, calibration, command_line::command_line, once::compare_once},
+        run::{bus, command_line::command_line, once::compare_once},
     },
     kind,
     report::{self, Origin, SingleRun, table, words},
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     };
     let groups = compare_once("simulate", case, std::slice::from_ref(&wanted), 1)?;
     let mismatches = study::mismatches(case, &groups);
-    calibration::tell(&mismatches);
+    terminal::note(&mismatches);
     notes.extend(mismatches);
     let curves = first(groups).context("no result came back")?;
 
@@ -123,18 +123,21 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         texts.collect::<Vec<_>>().join("\n")
     };
     terminal::print(arguments.output.output, tables, &object)?;
-    match verdict {
-        Verdict::Complete => Ok(()),
-        Verdict::Failed { .. } => Err(EvaluatorError {
-            message: format!("the simulation {}", words::verdict(&verdict)),
-            help: Some(
-                "what it did until then is shown; other values of the unknowns, given with --genes FILE, may \
-                 complete it"
-                    .to_owned(),
-            ),
-        }
-        .into()),
+    ended(&verdict)
+}
+
+/// A simulation that did not complete is shown, and fails.
+fn ended(verdict: &Verdict) -> anyhow::Result<()> {
+    if *verdict == Verdict::Complete {
+        return Ok(());
     }
+    let help = "what it did until then is shown; other values of the unknowns, given with --genes FILE, may \
+                complete it";
+    Err(EvaluatorError {
+        message: format!("the simulation {}", words::verdict(verdict)),
+        help: Some(help.to_owned()),
+    }
+    .into())
 }
 
 /// Genes that a search of this case would never try, one sentence each.

@@ -241,7 +241,7 @@ fn a_run_folder_goes_on_with_the_same_run_and_refuses_another() {
     assert!(
         other
             .to_string()
-            .ends_with("was begun: the model (its tables, load cards or numbers)"),
+            .ends_with("was begun: the model (its tables or numbers)"),
         "{other}"
     );
     let help = other.downcast::<Usage>().unwrap().help;

@@ -23,6 +23,13 @@ pub(crate) fn tell(text: &str) {
     let _gone = writeln!(io::stderr().lock(), "{text}");
 }
 
+/// Prints notes for people on standard error, a line each.
+pub(crate) fn note(notes: &[String]) {
+    for note in notes {
+        tell(&format!("note: {note}"));
+    }
+}
+
 /// Prints a result: a table for people or one object for programs.
 pub(crate) fn print(
     output: Output,

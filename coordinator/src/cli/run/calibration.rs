@@ -22,13 +22,6 @@ pub(crate) struct Found {
     pub(crate) notes: Vec<String>,
 }
 
-/// Tells what there is to know of a run's records.
-pub(crate) fn tell(notes: &[String]) {
-    for note in notes {
-        terminal::tell(&format!("note: {note}"));
-    }
-}
-
 /// Looks at the recommended individual, searches, and compares on whatever evaluates: workers, or the recording of a journal, which gives
 /// the same again.
 ///
@@ -48,7 +41,7 @@ pub(crate) async fn calibrate<E: Evaluator>(
     let wanted = study::recommended(case, PICTURES);
     let recommended = study::compare(evaluator, case, &wanted, stop).await?;
     let notes = study::mismatches(case, &recommended);
-    tell(&notes);
+    terminal::note(&notes);
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
     let best = |one: Wanted| Wanted {
         first: 1,

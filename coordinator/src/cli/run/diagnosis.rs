@@ -1,13 +1,12 @@
 //! The work of a diagnosis: what decides it, the case with its cycles, the experiments.
 use super::{
     begun::Run,
-    calibration::tell,
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
 };
 use crate::{
     case::Loaded,
-    cli::output::problem::Usage,
+    cli::output::{problem::Usage, terminal},
     kind,
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
@@ -67,7 +66,7 @@ pub(crate) async fn diagnose<E: Evaluator>(
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, stop).await?;
-    tell(&notes);
+    terminal::note(&notes);
     let notes = [&manifest.notes[..], &notes].concat();
     let off = Off::of(&loaded.case.unknowns);
     for id in &manifest.settings.thresholds.without {

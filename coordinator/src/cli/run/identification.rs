@@ -1,13 +1,12 @@
 //! The work of an identification: what decides it, and what the record sees.
 use super::{
     begun::Run,
-    calibration::tell,
     diagnosis::{entrance, inputs},
     manifest::{self, IDENTIFY, Manifest},
 };
 use crate::{
     case::Loaded,
-    cli::output::problem::Usage,
+    cli::output::{problem::Usage, terminal},
     study::{self, Evaluator, StageCost, StageView, Stop, Watch},
 };
 use discrepancy::{
@@ -62,7 +61,7 @@ pub(crate) async fn identify<E: Evaluator>(
 ) -> anyhow::Result<Found> {
     let library = study::library(evaluator, stop).await?;
     let notes = study::check_records(evaluator, &loaded.case, stop).await?;
-    tell(&notes);
+    terminal::note(&notes);
     let notes = [&manifest.notes[..], &notes].concat();
     let own = &manifest.settings;
     let thresholds = Thresholds {

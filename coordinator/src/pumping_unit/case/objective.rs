@@ -1,8 +1,10 @@
 //! What a case asks a calibration to minimise: which condition, and which gauges.
+use super::record::RecordFacts;
 use super::schema::{ConditionEntry, GaugeWeight, ObjectiveEntry};
 use crate::case::{
     document::{Document, Step, nearest},
     error::CaseError,
+    note::Note,
     table::clip,
 };
 use protocol::case::{Channel, Objective, Term};
@@ -92,8 +94,19 @@ pub(super) fn over_recorded(
     document: &Document,
     entry: Option<&ObjectiveEntry>,
     objective: &mut Objective,
-    (channels, unused): (&[Channel], &[String]),
-) -> Result<Option<String>, CaseError> {
+    (channels, facts): (&[Channel], &[Option<RecordFacts>]),
+) -> Result<Option<Note>, CaseError> {
+    let note = |text: String| Note {
+        path: document.path.clone(),
+        text,
+    };
+    if entry.is_none() {
+        let text =
+            "no [objective]: the case is simulated only; a calibration needs one, and a record";
+        return Ok(Some(note(text.to_owned())));
+    }
+    let own = facts.get(objective.condition).and_then(Option::as_ref);
+    let unused = own.map_or(&[][..], |facts| &facts.unused);
     let own = channels
         .iter()
         .filter(|own| own.condition == objective.condition);
@@ -139,11 +152,11 @@ pub(super) fn over_recorded(
         .into_iter()
         .partition(there);
     objective.terms = kept;
-    Ok(Some(format!(
+    Ok(Some(note(format!(
         "the record lacks {}: the objective is taken over {}",
         names(&mut lost.iter().map(|term| &*term.channel)),
         names(&mut objective.terms.iter().map(|term| &*term.channel)),
-    )))
+    ))))
 }
 
 fn term(gauge: u8, weight: f64) -> Term {

@@ -13,12 +13,11 @@ use crate::case::{
     effect::{self, CaseEffect},
     error::{CaseError, Faults, damaged},
     loaded::{Loaded, Records},
-    note::Note,
     source::Source,
 };
 use discrepancy::record::Record;
 use protocol::{
-    case::Case,
+    case::{Case, Objective, Unknown},
     pumping_unit::{EFFECT_UNITS, Machine},
 };
 
@@ -55,35 +54,17 @@ pub(in crate::pumping_unit) struct Resolved {
 /// As [`read`], but for tables of another mesh.
 pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
     let Source {
-        folder,
-        measured,
-        document,
+        measured, document, ..
     } = *source;
     let file: CaseFile = document.parse()?;
-    let mut faults = Faults::default();
-    // geometry of numbers that cannot be right would be faults that are none
-    let ranged = faults.take(ranges::check(document, &file));
-    let envelope = ranged.and_then(|()| faults.take(machine::check(document, &file)));
-    let head = faults.take(flexible::read(folder, document, &file));
-    if let (Some(envelope), Some(head)) = (&envelope, &head) {
-        let arc = &head.head.arc_deg;
-        faults.take(machine::check_arc(document, &file, arc, envelope));
-    }
+    let Parts {
+        envelope,
+        head,
+        mut objective,
+        mut unknowns,
+        conditions: read,
+    } = parts(source, &file)?;
     let stated = file.objective.as_ref();
-    let objective = faults.take(objective::read(document, stated, &file.conditions));
-    faults.take(effect::check(document, &file.effects, &EFFECT_UNITS));
-    let unknowns = faults.take(genes::declared(document, &file.genes, &Bodies::of(&file)));
-    let read = faults.take(condition::read_all(source, &file));
-    faults.end()?;
-    let (Some(envelope), Some(head), Some(mut objective), Some(mut unknowns), Some(read)) =
-        (envelope, head, objective, unknowns, read)
-    else {
-        return Err(damaged(
-            &document.path,
-            "it cannot be read",
-            "copy it again",
-        ));
-    };
     unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
     let (mut notes, mut facts) = (Vec::new(), Vec::new());
     let (mut cycles, mut channels) = (Vec::new(), Vec::new());
@@ -96,22 +77,13 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
         cycles.extend(read.cycles.map(Record::held_out_last));
         notes.extend(read.notes);
     }
-    notes.extend(file.objective.is_none().then(|| {
-        Note {
-            path: document.path.clone(),
-            text:
-                "no [objective]: the case is simulated only; a calibration needs one, and a record"
-                    .to_owned(),
-        }
-    }));
-    let own = facts.get(objective.condition).and_then(Option::as_ref);
-    let unused = own.map_or(&[][..], |facts| &facts.unused);
-    let recorded = (&channels[..], unused);
-    let said = objective::over_recorded(document, stated, &mut objective, recorded)?;
-    notes.extend(said.map(|text| Note {
-        path: document.path.clone(),
-        text,
-    }));
+    let recorded = (&channels[..], &facts[..]);
+    notes.extend(objective::over_recorded(
+        document,
+        stated,
+        &mut objective,
+        recorded,
+    )?);
     let machine = Machine {
         gravity_m_s2: file.gravity_m_s2,
         beam: file.beam,
@@ -158,5 +130,55 @@ pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
         head,
         flexible: file.flexible_head,
         twins: file.twin_ropes,
+    })
+}
+
+/// What a case file and the files that it names say, part by part.
+struct Parts {
+    envelope: Envelope,
+    head: ReadHead,
+    objective: Objective,
+    unknowns: Vec<Unknown>,
+    conditions: Vec<condition::ReadCondition>,
+}
+
+/// Reads every part of a case.
+///
+/// # Errors
+/// What is wrong with any of them.
+fn parts(source: &Source<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
+    let Source {
+        folder, document, ..
+    } = *source;
+    let mut faults = Faults::default();
+    // geometry of numbers that cannot be right would be faults that are none
+    let ranged = faults.take(ranges::check(document, file));
+    let envelope = ranged.and_then(|()| faults.take(machine::check(document, file)));
+    let head = faults.take(flexible::read(folder, document, file));
+    if let (Some(envelope), Some(head)) = (&envelope, &head) {
+        let arc = &head.head.arc_deg;
+        faults.take(machine::check_arc(document, file, arc, envelope));
+    }
+    let stated = file.objective.as_ref();
+    let objective = faults.take(objective::read(document, stated, &file.conditions));
+    faults.take(effect::check(document, &file.effects, &EFFECT_UNITS));
+    let unknowns = faults.take(genes::declared(document, &file.genes, &Bodies::of(file)));
+    let read = faults.take(condition::read_all(source, file));
+    faults.end()?;
+    let (Some(envelope), Some(head), Some(objective), Some(unknowns), Some(conditions)) =
+        (envelope, head, objective, unknowns, read)
+    else {
+        return Err(damaged(
+            &document.path,
+            "it cannot be read",
+            "copy it again",
+        ));
+    };
+    Ok(Parts {
+        envelope,
+        head,
+        objective,
+        unknowns,
+        conditions,
     })
 }

@@ -173,7 +173,7 @@ pub(in crate::report) fn structure(calibration: &Calibration) -> Option<String> 
     let unknowns = case.unknowns.iter().zip(&calibration.optimised.genes);
     let far = unknowns.filter_map(|(unknown, value)| {
         let times = value / unknown.start;
-        let is_far = times > FAR || times < 1.0 / FAR;
+        let is_far = !(1.0 / FAR..=FAR).contains(&times);
         let logarithmic = unknown.scale == Scale::Logarithmic;
         (is_far && logarithmic && seen(&unknown.name))
             .then(|| format!("{} at {}", unknown.name, ratio(*value, unknown.start)))

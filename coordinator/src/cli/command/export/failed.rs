@@ -3,6 +3,7 @@ use crate::{
     cli::{output::problem::Usage, run::folder::RunFolder},
     journal::{self, Recording},
 };
+use anyhow::Context as _;
 use protocol::{
     event::{Event, Finished},
     file::is_below,
@@ -11,7 +12,7 @@ use protocol::{
 use serde::Serialize;
 use std::{
     fmt::Write as _,
-    fs, io,
+    fs,
     os::unix::fs::PermissionsExt,
     path::{Path, PathBuf},
 };
@@ -87,8 +88,7 @@ pub(super) fn fetch(run: &Path, to: Option<&Path>, force: bool) -> anyhow::Resul
         let folder = place.join(job.to_string());
         let why = failure.to_string();
         if let Some(left) = left {
-            unpack(&folder, &why, left)
-                .map_err(|error| anyhow::anyhow!("{}: {error}", folder.display()))?;
+            unpack(&folder, &why, left)?;
         }
         Ok(OneFailed {
             job,
@@ -130,7 +130,7 @@ fn prepare(place: &Path, is_own: bool, force: bool) -> anyhow::Result<()> {
 }
 
 /// Writes what a run left, below its folder and nowhere else.
-fn unpack(folder: &Path, why: &str, left: &Left) -> io::Result<()> {
+fn unpack(folder: &Path, why: &str, left: &Left) -> anyhow::Result<()> {
     fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     for file in &left.files {
         // a worker says what it likes
@@ -139,9 +139,11 @@ fn unpack(folder: &Path, why: &str, left: &Left) -> io::Result<()> {
         }
         let path: PathBuf = folder.join(&file.path);
         if let Some(parent) = path.parent() {
-            fs::create_dir_all(parent).with_context(|| format!("cannot make {}", parent.display()))?;
+            fs::create_dir_all(parent)
+                .with_context(|| format!("cannot make {}", parent.display()))?;
         }
-        fs::write(&path, &file.content).with_context(|| format!("cannot write {}", path.display()))?;
+        fs::write(&path, &file.content)
+            .with_context(|| format!("cannot write {}", path.display()))?;
         let mode = if file.executable { 0o700 } else { 0o600 };
         fs::set_permissions(&path, fs::Permissions::from_mode(mode))?;
     }
@@ -154,7 +156,8 @@ fn unpack(folder: &Path, why: &str, left: &Left) -> io::Result<()> {
         // writing to a string does not fail
         let _written = writeln!(text, "{}: of {} bytes {kept}", one.path, one.bytes);
     }
-    fs::write(folder.join(WHY), text)
+    let path = folder.join(WHY);
+    fs::write(&path, text).with_context(|| format!("cannot write {}", path.display()))
 }
 
 /// What people read.
