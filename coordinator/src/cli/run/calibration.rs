@@ -39,10 +39,16 @@ pub(crate) async fn calibrate<E: Evaluator>(
     let built = strategy::build_after(&manifest.settings, &space, manifest.seed, first);
     let mut strategy = built.map_err(StudyError::from)?;
     let wanted = study::recommended(case, PICTURES);
-    let recommended = study::compare(evaluator, case, &wanted, stop).await?;
-    let notes = study::mismatches(case, &recommended);
+    let recommended = match study::compare(evaluator, case, &wanted, stop).await {
+        // others may do better; without a comparison there is no report
+        Err(error @ StudyError::Unavailable { .. }) => Err(error),
+        other => Ok(other?),
+    };
+    let notes = recommended.as_ref().map(|all| study::mismatches(case, all));
+    let notes = notes.unwrap_or_default();
     terminal::note(&notes);
     let calibrated = study::calibrate(evaluator, case, strategy.as_mut(), watch, stop).await?;
+    let recommended = recommended?;
     let best = |one: Wanted| Wanted {
         first: 1,
         individuals: vec![("optimised".to_owned(), calibrated.best.genes.clone())],
