@@ -12,6 +12,10 @@ const ARROWS: &[(&str, &str)] = &[
     ("search", "protocol"),
     ("discrepancy", "search"),
     ("discrepancy", "protocol"),
+    // starting workers knows neither cases nor runs
+    ("launch", "link"),
+    ("launch", "protocol"),
+    ("coordinator", "launch"),
     ("coordinator", "protocol"),
     ("coordinator", "exchange"),
     ("coordinator", "link"),
@@ -38,7 +42,10 @@ const ARROWS: &[(&str, &str)] = &[
 /// Heavy or impure crates and who alone may name them.
 const GATED: &[(&str, &[&str])] = &[
     ("zenoh", &["link", "tests"]),
-    ("tokio", &["link", "worker", "coordinator", "tests"]),
+    (
+        "tokio",
+        &["link", "worker", "launch", "coordinator", "tests"],
+    ),
     (
         "anyhow",
         &["worker", "coordinator", "tests", "truth", "bench"],

@@ -21,6 +21,7 @@ const GENERAL: &[&str] = &[
     "worker/src",
     "coordinator/search/src",
     "coordinator/discrepancy/src",
+    "coordinator/launch/src",
     "coordinator/src",
 ];
 

@@ -1,7 +1,7 @@
 //! Plans as they are printed: complete, made without asking anybody, and right in the eyes of those who
 //! check such things, where they are installed.
 use super::*;
-use coordinator::nodes::Program;
+use launch::Program;
 use std::process::Stdio;
 
 /// All files of a folder, with their contents.

@@ -1,6 +1,6 @@
 //! Hosts that are reached by ssh, as they are typed.
-use crate::nodes::{Host, NodeError, read_hosts};
 use clap::Args;
+use launch::{Host, NodeError, read_hosts};
 use std::path::PathBuf;
 
 /// Hosts, one by one or from a file.

@@ -8,9 +8,10 @@ use crate::{
         output::{problem::EXIT_CODES, terminal},
         run::bus,
     },
-    doctor::{Check, Layer, dial, listen, program},
+    runtime::locate::worker_program,
 };
 use clap::Args;
+use launch::doctor::{Check, Layer, dial, listen, program};
 use link::locator::Locator;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -83,7 +84,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
         (None, None) => ("machine", &here),
     };
     if side == "machine" {
-        checks.push(program());
+        checks.push(program(worker_program()));
     }
     if checks.iter().all(|check| check.healthy) {
         checks.extend(match side {

@@ -8,12 +8,12 @@ use crate::{
         argument::{door::Door, workers::WorkersChoice},
         output::{problem::Usage, terminal},
     },
-    nodes::{
-        Host, NodeError, Order, Plan, Program,
-        launch::{LaunchError, carry_out},
-        ssh,
-    },
     runtime::locate::worker_program,
+};
+use launch::{
+    Host, NodeError, Plan, Program, WorkerOptions,
+    execute::{LaunchError, carry_out},
+    ssh,
 };
 use link::{
     keys::authority::{Authority, Validity},
@@ -42,7 +42,7 @@ const IDLE_S: u64 = 600;
 #[derive(Debug)]
 pub(crate) struct Launch {
     hosts: Vec<Host>,
-    order: Order,
+    order: WorkerOptions,
     /// How the run listens for them.
     pub(crate) door: Door,
     /// No further step of bringing them up begins.
@@ -72,7 +72,7 @@ impl Launch {
             authority.issue_coordinator(&own, Validity::days(DAYS))?;
             door.tls = Some(folder);
         }
-        let order = Order {
+        let order = WorkerOptions {
             tls: door.tls.as_deref().map(std::path::absolute).transpose()?,
             connect,
             idle_timeout: Some(IDLE_S),

@@ -5,7 +5,6 @@ use crate::{
         output::{problem::Usage, terminal},
         run::launch::{carry, refuse},
     },
-    nodes::ssh,
     report::table::{Row, Table, text},
     runtime::control::{
         self, SOCKET,
@@ -13,6 +12,7 @@ use crate::{
     },
 };
 use clap::Args;
+use launch::ssh;
 use serde::Serialize;
 use std::{
     fs,

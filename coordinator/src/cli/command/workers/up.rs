@@ -1,13 +1,11 @@
 //! `workers up` and `workers logs`: from what was typed to a plan, printed or carried out.
-use crate::{
-    cli::{
-        argument::nodes::HostsChoice,
-        output::terminal,
-        run::launch::{carry, programs, refuse},
-    },
-    nodes::{NodeError, Order, Plan, k8s, keys, slurm, ssh, systemd},
+use crate::cli::{
+    argument::nodes::HostsChoice,
+    output::terminal,
+    run::launch::{carry, programs, refuse},
 };
 use clap::{ArgGroup, Args};
+use launch::{NodeError, Plan, WorkerOptions, k8s, keys, slurm, ssh, systemd};
 use link::{
     keys::{Keys, Role},
     locator::{Locator, Protocol},
@@ -126,7 +124,7 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
             });
         }
     };
-    let order = Order {
+    let order = WorkerOptions {
         connect: arguments.connect.clone(),
         tls,
         idle_timeout: Some(arguments.idle_timeout).filter(|seconds| *seconds > 0),
@@ -163,7 +161,7 @@ fn plan(arguments: &Arguments) -> Result<Plan, NodeError> {
 }
 
 /// The folder of keys that all workers of a launch share, where they share a file system or a secret.
-fn one_for_all(order: &Order) -> Result<Option<String>, NodeError> {
+fn one_for_all(order: &WorkerOptions) -> Result<Option<String>, NodeError> {
     let Some(folder) = &order.tls else {
         return Ok(None);
     };

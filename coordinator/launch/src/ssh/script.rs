@@ -1,8 +1,8 @@
 //! What hosts are told: scripts of the POSIX shell, whole and literal.
 use super::super::{
-    order::Order,
     program::Program,
-    words::{line, lines},
+    shell::{line, lines},
+    worker_options::WorkerOptions,
 };
 use std::fmt::Write as _;
 
@@ -96,7 +96,7 @@ mv "$part" "$home/worker-{hash}"
 
 /// Starts the worker in a session of its own; one that runs with the same command line goes on, and so does one that
 /// a run finds and has not launched.
-pub(super) fn start(order: &Order, folder: &str, programs: &[Program]) -> String {
+pub(super) fn start(order: &WorkerOptions, folder: &str, programs: &[Program]) -> String {
     let mut choice = String::from("case \"$(uname -m)\" in\n");
     for Program { machine, hash, .. } in programs {
         let _written = writeln!(choice, "{machine}) worker=$home/worker-{hash} ;;");

@@ -7,13 +7,13 @@ mod script;
 
 use super::{
     error::NodeError,
+    execute::{self, LaunchError},
     host::Host,
     keys,
-    launch::{self, LaunchError},
-    order::Order,
     plan::{Input, Part, Plan, Step},
     program::Program,
-    words::line,
+    shell::line,
+    worker_options::WorkerOptions,
 };
 use link::keys::{CA, WORKER};
 use std::sync::atomic::AtomicBool;
@@ -33,7 +33,7 @@ const OPTIONS: [&str; 4] = [
 /// # Errors
 /// [`NodeError`] if there are no keys for a host, or a host is named twice.
 pub fn up(
-    order: &Order,
+    order: &WorkerOptions,
     hosts: &[Host],
     programs: &[Program],
     wait_s: u64,
@@ -57,7 +57,7 @@ pub fn up(
         (names.collect(), Vec::new())
     };
     let parts = hosts.iter().zip(names).map(|(host, name)| {
-        let order = Order {
+        let order = WorkerOptions {
             slots: host.slots.or(order.slots),
             ..order.clone()
         };
@@ -69,7 +69,7 @@ pub fn up(
     })
 }
 
-fn part(order: &Order, host: &Host, name: &str, programs: &[Program], wait_s: u64) -> Part {
+fn part(order: &WorkerOptions, host: &Host, name: &str, programs: &[Program], wait_s: u64) -> Part {
     let folder = &format!("{name}{}", mark(order));
     let mut steps = vec![Step::Run {
         what: "see whether a worker can run there".to_owned(),
@@ -142,7 +142,7 @@ fn part(order: &Order, host: &Host, name: &str, programs: &[Program], wait_s: u6
 
 /// What tells the folders on a host of one coordinator's workers from those of another: two runs may use
 /// the same names.
-fn mark(order: &Order) -> String {
+fn mark(order: &WorkerOptions) -> String {
     let authority = order.tls.as_ref().map(|keys| std::fs::read(keys.join(CA)));
     let whose = match authority {
         Some(Ok(certificate)) => certificate,
@@ -152,8 +152,8 @@ fn mark(order: &Order) -> String {
     format!("-{}", hash.chars().take(8).collect::<String>())
 }
 
-/// Ends the workers of hosts: those that an order's [`Order::owner`] has launched for its coordinator, or all.
-pub fn down(hosts: &[Host], order: Option<&Order>) -> Plan {
+/// Ends the workers of hosts: those that an order's [`WorkerOptions::owner`] has launched for its coordinator, or all.
+pub fn down(hosts: &[Host], order: Option<&WorkerOptions>) -> Plan {
     let owner = order.map_or("", |order| order.owner.as_str());
     let mark = order.map(mark).unwrap_or_default();
     let parts = hosts.iter().map(|host| Part {
@@ -187,7 +187,7 @@ pub fn our_address(host: &Host) -> Result<String, LaunchError> {
         asks: true,
         remedy: "name the address with --advertise".to_owned(),
     };
-    launch::run(&host.to_string(), &[step], &AtomicBool::new(false)).and_then(|address| {
+    execute::run(&host.to_string(), &[step], &AtomicBool::new(false)).and_then(|address| {
         if address.is_empty() {
             return Err(LaunchError {
                 place: host.to_string(),

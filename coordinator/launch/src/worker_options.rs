@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// What every worker is told, wherever it is started.
 #[derive(Clone, Debug)]
-pub struct Order {
+pub struct WorkerOptions {
     /// Where it dials.
     pub connect: Locator,
     /// The coordinator's folder of key material; none for `tcp/`.
@@ -19,7 +19,7 @@ pub struct Order {
     pub owner: String,
 }
 
-impl Order {
+impl WorkerOptions {
     /// The arguments of the worker, but for its program and its keys.
     pub(super) fn arguments(&self) -> Vec<String> {
         let mut all = vec!["--connect".to_owned(), self.connect.to_string()];

@@ -1,10 +1,10 @@
 //! A worker of this machine that comes back with it: a unit of the user's own systemd.
 use super::{
     error::NodeError,
-    order::Order,
     plan::{Input, Part, Plan, Step},
     program::Program,
-    words::{line, settings},
+    shell::{line, settings},
+    worker_options::WorkerOptions,
 };
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ const UNIT: &str = "horsehead-worker.service";
 /// # Errors
 /// If the options are not understood.
 pub fn up(
-    order: &Order,
+    order: &WorkerOptions,
     options: &str,
     program: &Program,
     name: Option<&str>,
@@ -68,7 +68,7 @@ pub fn up(
     })
 }
 
-fn unit(order: &Order, program: &Program, name: Option<&str>) -> String {
+fn unit(order: &WorkerOptions, program: &Program, name: Option<&str>) -> String {
     let mut words = vec![program.path.display().to_string()];
     words.extend(order.arguments());
     if let (Some(folder), Some(name)) = (&order.tls, name) {

@@ -1,10 +1,10 @@
 //! Workers by Slurm: one per node of an allocation, from one batch script that `sbatch` reads.
 use super::{
     error::NodeError,
-    order::Order,
     plan::{Input, Part, Plan, Step},
     program::Program,
-    words::{line, lines, settings},
+    shell::{line, lines, settings},
+    worker_options::WorkerOptions,
 };
 
 /// Options of sbatch that `--slurm` may set besides the number of nodes are all that it has.
@@ -15,7 +15,7 @@ use super::{
 /// # Errors
 /// If the options are not `KEY=VALUE`.
 pub fn up(
-    order: &Order,
+    order: &WorkerOptions,
     options: &str,
     arguments: &[String],
     program: &Program,
@@ -61,7 +61,7 @@ pub fn up(
 
 /// The batch script: it is given back to the queue where a node fails, and workers are told half a minute
 /// before the time is up.
-fn script(order: &Order, program: &Program, name: Option<&str>) -> String {
+fn script(order: &WorkerOptions, program: &Program, name: Option<&str>) -> String {
     let path = program.path.display().to_string();
     let mut worker = vec!["srun".to_owned(), path.clone()];
     worker.extend(order.arguments());

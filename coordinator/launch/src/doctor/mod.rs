@@ -1,8 +1,8 @@
 //! What keeps workers from a coordinator: from either side, the first layer that fails, and the remedy.
 //!
 //! Knows the link and one message; takes no part in a run, and a coordinator is told nothing of it.
-mod blame;
 mod check;
+mod classify;
 mod dial;
 mod listen;
 mod program;

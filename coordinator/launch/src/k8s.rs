@@ -2,9 +2,9 @@
 //! them reach nothing else and a Secret of keys that `kubectl` makes from the folder.
 use super::{
     error::NodeError,
-    order::Order,
     plan::{Input, Part, Plan, Step},
-    words::{line, settings},
+    shell::{line, settings},
+    worker_options::WorkerOptions,
 };
 use link::keys::{CA, WORKER};
 use serde_json::{Value, json};
@@ -20,7 +20,7 @@ const KEYS: &str = "/keys";
 ///
 /// # Errors
 /// If the options are not understood.
-pub fn up(order: &Order, options: &str, name: Option<&str>) -> Result<Plan, NodeError> {
+pub fn up(order: &WorkerOptions, options: &str, name: Option<&str>) -> Result<Plan, NodeError> {
     let known = ["replicas", "image", "namespace", "cpu", "memory"];
     let given = settings("--k8s", options, &known)?;
     let of = |key: &str, usual: &str| {
@@ -123,7 +123,7 @@ fn secret(folder: &Path) -> Vec<String> {
 }
 
 fn deployment(
-    order: &Order,
+    order: &WorkerOptions,
     replicas: u16,
     image: &str,
     cpu: u16,
@@ -131,7 +131,7 @@ fn deployment(
     has_keys: bool,
 ) -> Value {
     let slots = order.slots.unwrap_or(cpu);
-    let mut arguments = Order {
+    let mut arguments = WorkerOptions {
         slots: Some(slots),
         ..order.clone()
     }
@@ -172,7 +172,7 @@ fn deployment(
 }
 
 /// Nobody reaches a worker; it reaches names and its coordinator.
-fn network_policy(order: &Order) -> Value {
+fn network_policy(order: &WorkerOptions) -> Value {
     let protocol = match order.connect.protocol {
         link::locator::Protocol::Tcp => "TCP",
         link::locator::Protocol::Quic => "UDP",

@@ -3,7 +3,7 @@ use super::check::{Check, Layer};
 use link::{LinkError, Silence};
 
 /// The layer that fails, with what the link says and the remedy.
-pub(super) fn blame(error: &LinkError) -> Check {
+pub(super) fn classify(error: &LinkError) -> Check {
     let (layer, remedy) = match error {
         error if error.is_of_time() => (
             Layer::Clock,

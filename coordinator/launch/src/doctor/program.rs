@@ -1,11 +1,10 @@
 //! This machine alone: whether it has the program of workers.
 use super::check::{Check, Layer};
-use crate::runtime::locate::worker_program;
-use std::process::Command;
+use std::{fmt::Display, path::PathBuf, process::Command};
 
-/// What is found of the worker program: where it lies, and whether it starts and is of this version.
-pub fn program() -> Check {
-    let path = match worker_program() {
+/// What is found of the worker program, from where it was looked for: whether it starts and is of this version.
+pub fn program(located: Result<PathBuf, impl Display>) -> Check {
+    let path = match located {
         Ok(path) => path,
         Err(error) => {
             return Check::bad(

@@ -1,5 +1,5 @@
 //! What a launch does, as plain data, and the same as a shell script for people.
-use super::words::line;
+use super::shell::line;
 use std::{fmt, path::PathBuf};
 
 /// Ends a text that a command reads in a printed plan.

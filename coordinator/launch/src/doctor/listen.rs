@@ -1,7 +1,7 @@
 //! The coordinator's side: whether it could listen there.
 use super::{
-    blame::blame,
     check::{Check, Layer},
+    classify::classify,
 };
 use link::{
     LinkError,
@@ -21,7 +21,7 @@ pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
         (Protocol::Tcp, _) => {}
         (Protocol::Quic, None) => {
             let locator = at.to_string();
-            return vec![blame(&LinkError::NoKeys { locator })];
+            return vec![classify(&LinkError::NoKeys { locator })];
         }
         (Protocol::Quic, Some(folder)) => match Keys::read(folder, Role::Coordinator) {
             Ok(keys) => {
@@ -30,7 +30,7 @@ pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
                 checks.push(Check::good(Layer::Certificate, found));
                 checks.push(Check::good(Layer::Clock, "within the certificates' dates"));
             }
-            Err(error) => return vec![blame(&error.into())],
+            Err(error) => return vec![classify(&error.into())],
         },
     }
     let host = (at.bare_host(), at.port);
@@ -39,7 +39,7 @@ pub fn listen(at: &Locator, tls: Option<&Path>) -> Vec<Check> {
         Ok(found) => checks.push(Check::good(Layer::Name, format!("{found:?}"))),
         Err(reason) => {
             let locator = at.to_string();
-            checks.push(blame(&LinkError::UnknownHost { locator, reason }));
+            checks.push(classify(&LinkError::UnknownHost { locator, reason }));
             return checks;
         }
     }

@@ -1,8 +1,8 @@
 //! A worker's side: the same steps as a worker takes, with the same certificates, up to the first word of a
 //! coordinator.
 use super::{
-    blame::blame,
     check::{Check, Layer},
+    classify::classify,
 };
 use link::{
     LinkError, WorkerEnd as _,
@@ -30,7 +30,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
         .transpose()
     {
         Ok(keys) => keys,
-        Err(error) => return vec![blame(&error.into())],
+        Err(error) => return vec![classify(&error.into())],
     };
     if let Some(keys) = &keys {
         let found = format!("\"{}\" of {}", keys.owner(), keys.certificate().display());
@@ -42,7 +42,7 @@ pub async fn dial(to: &Locator, tls: Option<&Path>) -> Vec<Check> {
         Err(error) => {
             let found = "the error is of a later layer";
             checks.extend(passed(&error).map(|layer| Check::good(layer, found)));
-            checks.push(blame(&error));
+            checks.push(classify(&error));
             return checks;
         }
     };
@@ -64,7 +64,7 @@ fn passed(error: &LinkError) -> impl Iterator<Item = Layer> {
         error,
         LinkError::Distrusted { .. } | LinkError::Refused { .. }
     );
-    let count = match blame(error).layer {
+    let count = match classify(error).layer {
         Layer::Certificate | Layer::Clock if answered => 4,
         Layer::Case | Layer::Program | Layer::Certificate | Layer::Clock | Layer::Name => 0,
         Layer::Route => 1,
@@ -96,7 +96,7 @@ async fn version(link: &mut ZenohWorker, to: &Locator) -> Check {
 }
 
 fn nobody(to: &Locator) -> Check {
-    blame(&LinkError::Transport {
+    classify(&LinkError::Transport {
         doing: format!("hear a coordinator at {to}"),
         reason: "the address answers, but nothing that the bus carries comes back".to_owned(),
     })
