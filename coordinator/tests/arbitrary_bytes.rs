@@ -14,10 +14,8 @@
 #[path = "../../tests/fuzz/targets/property/mod.rs"]
 mod property;
 
-use coordinator::{
-    case::{Overrides, load},
-    journal::MARK,
-};
+use coordinator::case::{Overrides, load};
+use dispatch::journal::MARK;
 use property::{
     file::{
         are_genes_or_refused, are_samples_or_refused, is_a_card_or_refused, is_a_case_or_refused,

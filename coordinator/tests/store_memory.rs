@@ -5,9 +5,9 @@
 )]
 use coordinator::{
     case::{Overrides, load},
-    journal::{self, Journal},
     store::{Format, Label, Store, Target},
 };
+use dispatch::journal::{self, Journal};
 use protocol::{
     event::{Event, Finished, RunHeader},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},

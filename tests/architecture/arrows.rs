@@ -16,6 +16,13 @@ const ARROWS: &[(&str, &str)] = &[
     ("launch", "link"),
     ("launch", "protocol"),
     ("coordinator", "launch"),
+    // jobs and results, whatever they are about; strategies stand in for a study on a simulated clock
+    ("dispatch", "link"),
+    ("dispatch", "protocol"),
+    ("dispatch", "search"),
+    ("dispatch", "support"),
+    ("coordinator", "dispatch"),
+    ("coordinator", "support"),
     ("coordinator", "protocol"),
     ("coordinator", "exchange"),
     ("coordinator", "link"),
@@ -26,16 +33,19 @@ const ARROWS: &[(&str, &str)] = &[
     ("truth", "simulation"),
     ("truth", "worker"),
     ("truth", "coordinator"),
+    ("truth", "dispatch"),
     // a model of the suites, which no program knows
     ("oscillator", "protocol"),
     ("oscillator", "search"),
     ("oscillator", "worker"),
     ("oscillator", "coordinator"),
+    ("oscillator", "dispatch"),
     ("oscillator", "discrepancy"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),
     ("bench", "coordinator"),
+    ("bench", "dispatch"),
     ("bench", "search"),
 ];
 
@@ -44,7 +54,14 @@ const GATED: &[(&str, &[&str])] = &[
     ("zenoh", &["link", "tests"]),
     (
         "tokio",
-        &["link", "worker", "launch", "coordinator", "tests"],
+        &[
+            "link",
+            "worker",
+            "launch",
+            "dispatch",
+            "coordinator",
+            "tests",
+        ],
     ),
     (
         "anyhow",

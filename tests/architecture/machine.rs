@@ -3,13 +3,14 @@ use crate::words::sources;
 use std::{fs, path::Path};
 
 /// Sources of the product.
-const HOUSE: [&str; 8] = [
+const HOUSE: [&str; 9] = [
     "protocol/src",
     "protocol/link/src",
     "worker/src",
     "coordinator/src",
     "coordinator/search/src",
     "coordinator/discrepancy/src",
+    "coordinator/dispatch/src",
     "coordinator/launch/src",
     "tests/oscillator",
 ];

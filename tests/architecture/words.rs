@@ -21,6 +21,7 @@ const GENERAL: &[&str] = &[
     "worker/src",
     "coordinator/search/src",
     "coordinator/discrepancy/src",
+    "coordinator/dispatch/src",
     "coordinator/launch/src",
     "coordinator/src",
 ];
@@ -31,8 +32,7 @@ const RULES: &[Rule] = &[
         within: &[
             "coordinator/search/src",
             "coordinator/discrepancy/src",
-            "coordinator/src/core",
-            "coordinator/src/journal",
+            "coordinator/dispatch/src",
         ],
         words: &["kb1", "mpa", "mpa2", "Coefficient"],
         except: &[],

@@ -1,6 +1,6 @@
 //! Derivatives from several processes: the same bits as from one.
 use super::{LIMIT, collect};
-use coordinator::runtime::{Dispatch, DispatchOptions};
+use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::{
     case::Case,
     id::{ContentHash, JobId},
@@ -56,7 +56,7 @@ fn jobs(case: &Case) -> Vec<Job> {
 async fn outcomes(case: &Case, workers: usize) -> BTreeMap<JobId, Outcome> {
     let folder = tempfile::tempdir().unwrap();
     let mut options = DispatchOptions {
-        pause_limit: coordinator::runtime::PAUSE_LIMIT,
+        pause_limit: dispatch::runtime::PAUSE_LIMIT,
         case: case.clone(),
         ..tests::options(folder.path(), None, workers)
     };

@@ -2,7 +2,7 @@
 //!
 //! `test-coordinator RUN_DIR LOCATOR JOBS DELAY_MS LOCAL_WORKERS` does a number of jobs; each line
 //! is `id replayed`. With `search:SEED` for JOBS it searches, and leaves its log in `RUN_DIR/log`.
-use coordinator::runtime::Dispatch;
+use dispatch::runtime::Dispatch;
 use protocol::id::JobId;
 use std::{
     env,

@@ -4,7 +4,7 @@
 //! does not allow that, the test says so and proves nothing; the writer's own tests inject the same
 //! failures.
 use super::LIMIT;
-use coordinator::journal;
+use dispatch::journal;
 use protocol::event::Event;
 use std::{
     fs,

@@ -1,6 +1,6 @@
 //! Workers that are killed, frozen or told to end.
 use super::{LIMIT, collect, submit};
-use coordinator::runtime::{BenchPlan, BenchWorkers, Dispatch, bench};
+use dispatch::runtime::{BenchPlan, BenchWorkers, Dispatch, bench};
 use protocol::{id::JobId, job::Job};
 use rustix::process::Signal;
 use std::time::{Duration, Instant};

@@ -1,7 +1,8 @@
 //! A coordinator that is killed a hundred times, at random instants, and the same command again.
 //!
 //! `HORSEHEAD_TEST_KILLS` sets how many kills there are (default 100).
-use coordinator::{journal, runtime::Dispatch};
+use dispatch::journal;
+use dispatch::runtime::Dispatch;
 use protocol::{event::Event, id::draw};
 use rustix::process::Signal;
 use std::{

@@ -1,5 +1,5 @@
 //! A coordinator that reads late: whoever has spoken is not silent, though nobody listened yet.
-use coordinator::runtime::Dispatch;
+use dispatch::runtime::Dispatch;
 use link::{CoordinatorEnd, Heard};
 use protocol::{
     announce::{Announcement, ModelDescriptor},

@@ -18,7 +18,7 @@ mod sixty_four;
 mod slots;
 mod wall_clock;
 
-use coordinator::runtime::{Dispatch, DispatchError};
+use dispatch::runtime::{Dispatch, DispatchError};
 use protocol::{id::JobId, job::Outcome};
 use std::{collections::BTreeMap, time::Duration};
 

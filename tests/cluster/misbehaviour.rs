@@ -1,7 +1,7 @@
 //! Jobs that crash, allocate without bound, never return, leave processes behind or kill their
 //! worker: each is ended and named, and the others are done.
 use super::{OWN_SLOTS, collect};
-use coordinator::runtime::{Completed, Dispatch, Summary};
+use dispatch::runtime::{Completed, Dispatch, Summary};
 use protocol::{
     id::{AttemptId, JobId},
     job::{Answer, Failure, Outcome},

@@ -1,6 +1,6 @@
 //! A coordinator that is killed, and the same command again.
 use super::LIMIT;
-use coordinator::journal;
+use dispatch::journal;
 use protocol::{event::Event, id::JobId, job::Outcome};
 use rustix::process::Signal;
 use std::{

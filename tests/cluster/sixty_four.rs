@@ -4,7 +4,7 @@
 //! cargo test --workspace --test cluster -- --ignored --nocapture sixty_four
 //! ```
 use super::LIMIT;
-use coordinator::runtime::Dispatch;
+use dispatch::runtime::Dispatch;
 use protocol::{
     id::JobId,
     job::{Answer, Job, Outcome},

@@ -1,6 +1,6 @@
 //! Slots: jobs that never return, slots that crash, and a link that misbehaves.
 use super::{LIMIT, OWN_SLOTS};
-use coordinator::runtime::Dispatch;
+use dispatch::runtime::Dispatch;
 use link::memory::{Faults, Hub};
 use protocol::{
     id::{JobId, WorkerId},
@@ -118,7 +118,7 @@ fn a_job_that_never_returns_is_ended_and_a_crash_is_told() {
 }
 
 /// Runs a search over a link of this process; its log.
-async fn over_memory(faults: Faults) -> (String, coordinator::runtime::Summary) {
+async fn over_memory(faults: Faults) -> (String, dispatch::runtime::Summary) {
     let folder = tempfile::tempdir().unwrap();
     let mut hub = None;
     let made = Dispatch::over(&options(folder.path(), None, 0), |_, blob| {

@@ -1,5 +1,5 @@
 //! Real processes under test: found, started, disturbed, and gone at the end.
-use coordinator::runtime::locate;
+use dispatch::runtime::locate;
 use rustix::process::{Pid, Signal, kill_process};
 use std::{
     fs,

@@ -1,6 +1,6 @@
 //! A search without physics, for runs that are killed: its fitness is the length of what workers
 //! send back, so that it really depends on them, and its log has a digest.
-use coordinator::runtime::Dispatch;
+use dispatch::runtime::Dispatch;
 use protocol::{
     id::JobId,
     job::{Answer, Job, Outcome},

@@ -1,6 +1,6 @@
 //! Peers that connect and then say nothing, as many as the machine allows.
 use super::{LIMIT, MEASURING, processor_us, rate};
-use coordinator::runtime::{Dispatch, DispatchOptions};
+use dispatch::runtime::{Dispatch, DispatchOptions};
 use std::{
     collections::BTreeMap,
     io::{ErrorKind, Read},
@@ -63,7 +63,7 @@ async fn handshakes_that_are_never_finished_keep_nobody_out() {
     make(&keys, &[]);
     let locator = free_quic_locator();
     let dispatch = Dispatch::open(DispatchOptions {
-        pause_limit: coordinator::runtime::PAUSE_LIMIT,
+        pause_limit: dispatch::runtime::PAUSE_LIMIT,
         tls: Some(keys.clone()),
         ..options(&folder.path().join("run"), Some(&locator), 0)
     })

@@ -11,7 +11,7 @@ mod bytes;
 mod idle;
 mod words;
 
-use coordinator::runtime::Dispatch;
+use dispatch::runtime::Dispatch;
 use protocol::{id::JobId, job::Outcome};
 use rustix::process::Pid;
 use std::{

@@ -1,6 +1,6 @@
 //! Peers that speak: rubbish, old versions, wrong models, and results that are not theirs to give.
 use super::{LIMIT, MEASURING, rate};
-use coordinator::runtime::{Dispatch, Snapshot};
+use dispatch::runtime::{Dispatch, Snapshot};
 use protocol::pumping_unit::Machine;
 use protocol::{
     announce::{Announcement, ModelDescriptor},

@@ -4,7 +4,7 @@
 //! `test-network-coordinator RUN_DIR LOCATOR KEYS JOBS DELAY_MS`; each line is
 //! `MS workers N done N lost N repeated N duplicates N`, the last one begins with `end`. Exits with
 //! an error if a result is not the one that the job has anywhere else.
-use coordinator::runtime::{Dispatch, DispatchOptions, Snapshot};
+use dispatch::runtime::{Dispatch, DispatchOptions, Snapshot};
 use protocol::id::JobId;
 use std::{
     collections::BTreeMap,
@@ -27,7 +27,7 @@ async fn main() -> Result<(), Box<dyn Error>> {
     let (jobs, delay_ms): (u64, u32) = (jobs.parse()?, delay_ms.parse()?);
     let begun = Instant::now();
     let mut dispatch = Dispatch::open(DispatchOptions {
-        pause_limit: coordinator::runtime::PAUSE_LIMIT,
+        pause_limit: dispatch::runtime::PAUSE_LIMIT,
         tls: Some(PathBuf::from(keys)),
         ..tests::options(Path::new(run_dir), Some(locator), 0)
     })

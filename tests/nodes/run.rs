@@ -1,6 +1,6 @@
 //! The life of workers on a run that goes on.
 use super::*;
-use coordinator::runtime::{Dispatch, DispatchOptions};
+use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::id::JobId;
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ const LIMIT: Duration = Duration::from_secs(40);
 /// A run that listens, with jobs that take long enough to be seen.
 async fn open(site: &Site, jobs: u64, delay_ms: u32) -> Dispatch {
     let options = DispatchOptions {
-        pause_limit: coordinator::runtime::PAUSE_LIMIT,
+        pause_limit: dispatch::runtime::PAUSE_LIMIT,
         tls: Some(site.path("keys")),
         ..tests::options(&site.path("run"), Some(&site.locator), 0)
     };

@@ -1,6 +1,6 @@
 //! Who gets in: with the right certificate everybody, with a wrong one nobody, and both ends say why.
 use super::{LIMIT, compute, options, worker};
-use coordinator::runtime::{Dispatch, DispatchError};
+use dispatch::runtime::{Dispatch, DispatchError};
 use link::keys::authority::{Authority, Validity};
 use std::{
     fs,

@@ -6,7 +6,7 @@
 mod access;
 mod admission;
 
-use coordinator::runtime::{Dispatch, DispatchOptions};
+use dispatch::runtime::{Dispatch, DispatchOptions};
 use protocol::{id::JobId, job::Outcome};
 use std::{
     collections::BTreeMap,
@@ -21,7 +21,7 @@ const LIMIT: Duration = Duration::from_mins(1);
 /// Options of a run that listens with key material.
 fn options(run_dir: &Path, locator: &str, keys: &Path, local_workers: usize) -> DispatchOptions {
     DispatchOptions {
-        pause_limit: coordinator::runtime::PAUSE_LIMIT,
+        pause_limit: dispatch::runtime::PAUSE_LIMIT,
         tls: Some(keys.to_owned()),
         ..tests::options(run_dir, Some(locator), local_workers)
     }

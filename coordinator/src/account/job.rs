@@ -1,10 +1,10 @@
 //! What the jobs of a run were and how long they took, by kind; which were given up and why.
-use crate::quantile;
 use protocol::{
     event::Finished,
     job::{Outcome, Verdict},
 };
 use std::collections::BTreeMap;
+use support::quantile;
 
 /// The results of one kind.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

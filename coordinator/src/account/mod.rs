@@ -8,7 +8,7 @@ mod job;
 pub use cost::{Costs, JobCost};
 pub use job::JobUse;
 
-use crate::journal::{self, Damage, JournalError};
+use dispatch::journal::{self, Damage, JournalError};
 use protocol::{
     event::{Event, Spent, WorkerAccount},
     id::WorkerId,
@@ -215,12 +215,30 @@ pub fn reasons(spent: &Spent) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::journal::{Journal, sample::finished};
+    use dispatch::journal::Journal;
     use protocol::{
-        event::{Account, RunHeader},
-        id::{ContentHash, RunId},
+        event::{Account, Finished, RunHeader},
+        id::{AttemptId, ContentHash, JobId, RunId},
         job::{Answer, Failure, Outcome},
+        message::{Attempt, Cost},
     };
+
+    /// A result of a job.
+    fn finished(job: u64, wall_us: u64, outcome: Outcome) -> Event {
+        Event::Finished(Box::new(Finished {
+            attempt: Attempt {
+                job: JobId(job),
+                attempt: AttemptId(7),
+            },
+            work: ContentHash::of(&job.to_le_bytes()),
+            worker: None,
+            cost: Cost {
+                wall_us,
+                cpu_us: wall_us / 2,
+            },
+            outcome,
+        }))
+    }
 
     fn row(worker: u64, useful_us: u64, barrier_us: u64) -> WorkerAccount {
         WorkerAccount {

@@ -5,8 +5,8 @@ use super::{
     error::{CaseError, damaged},
     file,
 };
-use crate::draft;
 use std::path::Path;
+use support::atomic_file;
 use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value, value};
 
 /// `[[effects]]` tables as they stand in `case.toml`; nothing of none.
@@ -89,9 +89,11 @@ fn edit(
         )
     })?;
     change(&mut document)?;
-    draft::replace(path, document.to_string().as_bytes()).map_err(|source| CaseError::Unwritable {
-        path: path.into(),
-        source,
+    atomic_file::replace(path, document.to_string().as_bytes()).map_err(|source| {
+        CaseError::Unwritable {
+            path: path.into(),
+            source,
+        }
     })
 }
 

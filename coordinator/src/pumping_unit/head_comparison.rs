@@ -6,7 +6,7 @@
 use super::case::QuasiStatic;
 use crate::{
     line::held,
-    study::{Evaluator, Stop, StudyError, or_stop},
+    study::{self, Evaluator, Stop, StudyError, or_stop},
 };
 use protocol::{
     id::JobId,
@@ -38,7 +38,7 @@ pub async fn reduce_head(
     evaluator.submit(JobId(0), job)?;
     let completed = or_stop(evaluator.next(), stop).await??;
     let what = || "the reduction of the back head".to_owned();
-    let answer = completed.take(Answer::into_own, what)?;
+    let answer = study::answer(completed, Answer::into_own, what)?;
     wire::decode(&answer).map_err(damaged)
 }
 

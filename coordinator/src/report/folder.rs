@@ -1,9 +1,9 @@
 //! A report as a folder of files: `report.html`, `tables.txt`, `figures/*.svg`, and data as CSV.
 use super::document::{Report, page, text};
-use crate::draft::{Draft, replace};
 use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};
+use support::atomic_file::{Draft, replace};
 
 /// A report could not be written.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 //! A search on more slots than there are: the real core and the real strategy on a simulated clock.
 use super::row::{How, Overheads, Row, Shares};
-use crate::simulated::{Cluster, Search, Setting};
+use dispatch::simulated::{Cluster, Search, Setting};
 use protocol::event::Spent;
 use search::{
     space::Space,

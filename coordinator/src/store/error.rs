@@ -1,5 +1,5 @@
 //! Why a run cannot be exported.
-use crate::journal::JournalError;
+use dispatch::journal::JournalError;
 use std::{
     io,
     path::{Path, PathBuf},

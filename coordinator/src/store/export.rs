@@ -6,10 +6,8 @@ use super::{
     table::Tables,
     target::{Draft, Target},
 };
-use crate::{
-    account::Folding,
-    journal::{Damage, Entry, Recording},
-};
+use crate::account::Folding;
+use dispatch::journal::{Damage, Entry, Recording};
 use protocol::{
     case::Case,
     event::{Event, Finished},

@@ -1,5 +1,5 @@
 //! What the rows of the tables are made of.
-use crate::core;
+use dispatch::scheduler;
 use protocol::{
     event::Finished,
     id::{JobId, WorkerId},
@@ -32,7 +32,7 @@ impl Brief {
         Self {
             job: finished.job(),
             kind: finished.outcome.kind(),
-            offered: core::offered(finished.attempt.attempt),
+            offered: scheduler::offered(finished.attempt.attempt),
             worker: finished.worker,
             cost: finished.cost,
             simulated: finished.outcome.simulation(),

@@ -1,7 +1,7 @@
 //! What a study needs of whoever evaluates: take jobs, give results, say who is at work.
 use super::error::{EvaluatorError, StudyError};
 use super::job_number::JobNumbers;
-use crate::core::Completed;
+use dispatch::scheduler::Completed;
 use protocol::{
     event::Spent,
     id::JobId,
@@ -36,23 +36,21 @@ pub trait Evaluator {
     fn crew(&self) -> Crew;
 }
 
-impl Completed {
-    /// The answer of the kind that was asked for, as `take` takes it; `what` it was about.
-    ///
-    /// # Errors
-    /// If the job failed, or was answered as another kind of job.
-    pub(crate) fn take<T>(
-        self,
-        take: impl FnOnce(Answer) -> Result<T, WrongKind>,
-        what: impl FnOnce() -> String,
-    ) -> Result<T, StudyError> {
-        let id = self.id;
-        let answer = self
-            .outcome
-            .done()
-            .map_err(|failure| StudyError::of(failure, what))?;
-        take(answer).map_err(|_| StudyError::WrongKind { id })
-    }
+/// The answer to a job of the kind that was asked for, as `take` takes it; `what` it was about.
+///
+/// # Errors
+/// If the job failed, or was answered as another kind of job.
+pub(crate) fn answer<T>(
+    completed: Completed,
+    take: impl FnOnce(Answer) -> Result<T, WrongKind>,
+    what: impl FnOnce() -> String,
+) -> Result<T, StudyError> {
+    let id = completed.id;
+    let answer = completed
+        .outcome
+        .done()
+        .map_err(|failure| StudyError::of(failure, what))?;
+    take(answer).map_err(|_| StudyError::WrongKind { id })
 }
 
 /// Everyone who evaluates.

@@ -4,7 +4,7 @@
 //! alone: a run that is opened again finds every one of them in its journal.
 use super::{
     error::StudyError,
-    evaluator::Evaluator,
+    evaluator::{Evaluator, answer},
     stop::{Stop, or_stop},
     watch::{View, Watch},
 };
@@ -68,7 +68,9 @@ pub async fn library<E: Evaluator>(
 ) -> Result<Vec<EffectDescriptor>, StudyError> {
     evaluator.submit(JobId(LIBRARY), Job::Describe)?;
     let completed = or_stop(evaluator.next(), stop).await??;
-    completed.take(Answer::into_described, || "the list of effects".to_owned())
+    answer(completed, Answer::into_described, || {
+        "the list of effects".to_owned()
+    })
 }
 
 /// Experiments as jobs.

@@ -23,12 +23,13 @@ mod stop;
 mod sweep;
 mod watch;
 
-pub use crate::core::Completed;
 pub use calibrate::{Calibrated, calibrate};
 pub use compare::{Compared, Curves, PICTURES, Wanted, compare};
 pub use diagnose::{Diagnosed, diagnose_on};
+pub use dispatch::scheduler::Completed;
 pub use error::{EvaluatorError, StudyError};
 pub use evaluate::{Request, Scored, evaluate};
+pub(crate) use evaluator::answer;
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
 pub use identify::{IdentifiedOn, glance_on, identify_on};
 pub use job_number::JobNumbers;

@@ -6,7 +6,8 @@ use super::{
     error::EvaluatorError,
     evaluator::{Crew, Evaluator},
 };
-use crate::{core::Completed, journal::Recording};
+use dispatch::journal::Recording;
+use dispatch::scheduler::Completed;
 use protocol::{event::Finished, id::JobId, job::Job};
 use std::collections::VecDeque;
 

@@ -1,10 +1,10 @@
 //! Who works on a run: worker processes on this machine, and others through the door.
 use super::{door::Door, nodes::HostsChoice};
-use crate::runtime::PAUSE_LIMIT;
 use clap::{
     Args,
     builder::{RangedU64ValueParser, TypedValueParser},
 };
+use dispatch::runtime::PAUSE_LIMIT;
 use std::time::Duration;
 
 /// Who works on a run.

@@ -7,13 +7,13 @@ use crate::{
             terminal,
         },
     },
-    draft,
     external::{Proposal, proposed},
 };
 use clap::Args;
 use exchange::allow::{self, Allowed};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use support::atomic_file;
 
 /// Let this machine start the program of a case.
 ///
@@ -116,7 +116,7 @@ pub(super) fn run(arguments: &Arguments) -> anyhow::Result<()> {
     if !arguments.dry_run {
         let folder = path.parent().unwrap_or(Path::new(""));
         let written = std::fs::create_dir_all(folder)
-            .and_then(|()| draft::replace(&path, allow::text(&allowed).as_bytes()));
+            .and_then(|()| atomic_file::replace(&path, allow::text(&allowed).as_bytes()));
         written.map_err(|error| Usage {
             message: format!("cannot write {}: {error}", path.display()),
             help: "name a list that can be written with HORSEHEAD_ALLOW".to_owned(),

@@ -1,16 +1,14 @@
 //! `horsehead bench`: what the machinery costs without physics.
-use crate::{
-    cli::{
-        argument::{
-            door::Door,
-            output::{Output, OutputChoice},
-        },
-        output::{problem::EXIT_CODES, terminal},
-        run::bus,
+use crate::cli::{
+    argument::{
+        door::Door,
+        output::{Output, OutputChoice},
     },
-    runtime::{self, BenchPlan, BenchWorkers, Silence, SilentPlan, SilentResult},
+    output::{problem::EXIT_CODES, terminal},
+    run::bus,
 };
 use clap::{Args, Subcommand};
+use dispatch::runtime::{self, BenchPlan, BenchWorkers, Silence, SilentPlan, SilentResult};
 use link::locator::Locator;
 use protocol::case::Case;
 use serde::Serialize;

@@ -9,7 +9,6 @@ use crate::cli::{
 };
 use crate::{
     case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document},
-    draft,
     external::{self, Proposal},
     kind,
     study::{self, StudyError},
@@ -20,6 +19,7 @@ use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
+use support::atomic_file;
 
 /// Check a case folder, or begin a new one.
 #[derive(Debug, Args)]
@@ -216,8 +216,9 @@ fn begin(folder: &Path) -> anyhow::Result<()> {
         }
         .into());
     }
-    let written = std::fs::create_dir_all(folder)
-        .and_then(|()| draft::replace(&file, crate::pumping_unit::case::template().as_bytes()));
+    let written = std::fs::create_dir_all(folder).and_then(|()| {
+        atomic_file::replace(&file, crate::pumping_unit::case::template().as_bytes())
+    });
     written.map_err(|error| Usage {
         message: format!("cannot write {}: {error}", file.display()),
         help: "choose a folder that can be written".to_owned(),

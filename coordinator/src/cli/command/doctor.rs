@@ -1,16 +1,14 @@
 //! `horsehead doctor`: which layer between workers and a coordinator fails, and what to do.
-use crate::{
-    cli::{
-        argument::{
-            case::{case_folder, load_case},
-            output::OutputChoice,
-        },
-        output::{problem::EXIT_CODES, terminal},
-        run::bus,
+use crate::cli::{
+    argument::{
+        case::{case_folder, load_case},
+        output::OutputChoice,
     },
-    runtime::locate::worker_program,
+    output::{problem::EXIT_CODES, terminal},
+    run::bus,
 };
 use clap::Args;
+use dispatch::runtime::locate::worker_program;
 use launch::doctor::{Check, Layer, dial, listen, program};
 use link::locator::Locator;
 use serde::Serialize;

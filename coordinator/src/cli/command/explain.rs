@@ -6,10 +6,10 @@ use crate::{
         output::{problem::EXIT_CODES, terminal},
         run::folder::RunFolder,
     },
-    journal,
     report::table::{self, Table},
 };
 use clap::Args;
+use dispatch::journal;
 use protocol::event::Spent;
 use serde::Serialize;
 use std::{collections::BTreeMap, path::PathBuf};

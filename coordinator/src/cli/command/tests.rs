@@ -16,8 +16,8 @@ use crate::{
             manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
         },
     },
-    journal,
 };
+use dispatch::journal;
 use protocol::{
     case::Case,
     pumping_unit::{Machine, PumpingUnit},

@@ -16,10 +16,10 @@ use crate::{
             tables,
         },
     },
-    journal,
     report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse},
     study::{self, Calibrated, Compared, Curves},
 };
+use dispatch::journal;
 use protocol::{
     event::WorkerAccount,
     job::{Counters, Evaluation, Verdict},

@@ -1,11 +1,11 @@
 //! The dispatcher as an evaluator: opening it, and its refusals in words that help.
 use crate::{
     cli::{argument::door::Door, output::problem::Usage},
-    journal::{self, JournalError},
     kind,
-    runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot},
     study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus},
 };
+use dispatch::journal::{self, JournalError};
+use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
 use link::LinkError;
 use protocol::{
     case::Case,

@@ -11,17 +11,17 @@ use super::{
 use crate::{
     case::write_genes,
     cli::output::{problem::Usage, terminal},
-    draft,
-    journal::{self, Recording},
     kind,
 };
 use anyhow::Context as _;
+use dispatch::journal::{self, Recording};
 use protocol::{case::Case, event::Event};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
+use support::atomic_file;
 
 /// How a run was begun, and what decides its result.
 pub(crate) const MANIFEST: &str = "run.json";
@@ -213,7 +213,7 @@ impl RunFolder {
     /// Writes a file as a whole: whoever reads it finds the old one or the new one.
     pub(crate) fn write(&self, name: &str, text: &str) -> anyhow::Result<()> {
         let file = self.file(name);
-        let written = draft::replace(&file, text.as_bytes());
+        let written = atomic_file::replace(&file, text.as_bytes());
         written.with_context(|| format!("cannot write {}", file.display()))
     }
 

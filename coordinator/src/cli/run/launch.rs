@@ -3,13 +3,11 @@
 //! Where nothing else is said, the run listens on port 7447, for the address from which a host says that we
 //! come, with keys in the run folder: started again, it is the same to its workers.
 use super::folder::KEYS;
-use crate::{
-    cli::{
-        argument::{door::Door, workers::WorkersChoice},
-        output::{problem::Usage, terminal},
-    },
-    runtime::locate::worker_program,
+use crate::cli::{
+    argument::{door::Door, workers::WorkersChoice},
+    output::{problem::Usage, terminal},
 };
+use dispatch::runtime::locate::worker_program;
 use launch::{
     Host, NodeError, Plan, Program, WorkerOptions,
     execute::{LaunchError, carry_out},

@@ -5,10 +5,10 @@ use super::{
 };
 use crate::{
     cli::argument::door::Door,
-    runtime::PAUSE_LIMIT,
     study::{self, Compared, Stop, StudyError, Wanted},
 };
 use anyhow::Context as _;
+use dispatch::runtime::PAUSE_LIMIT;
 use protocol::case::Case;
 
 /// Works with so many local workers in a scratch folder.

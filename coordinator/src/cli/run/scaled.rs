@@ -11,13 +11,13 @@ use crate::{
         argument::{door::Door, settings},
         output::{problem::Usage, terminal},
     },
-    journal, quantile,
-    runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through},
     scaling::{How, Overheads, Row, Scaled, Shares, Stand, project},
-    simulated::Search as Source,
     study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all},
 };
 use anyhow::Context as _;
+use dispatch::journal;
+use dispatch::runtime::{self, BenchPlan, BenchWorkers, processor_time, sleep_through};
+use dispatch::simulated::Search as Source;
 use protocol::{case::Case, event::Spent};
 use search::{
     space::Space,
@@ -28,6 +28,7 @@ use std::{
     fs,
     time::{Duration, Instant},
 };
+use support::quantile;
 
 /// Sessions and jobs by which the coordinator's cost of a result is measured, and bytes of each: about a score.
 const MEASURED: (usize, u64, u32) = (16, 4000, 300);

@@ -9,11 +9,11 @@ use super::{
 };
 use crate::{
     cli::output::{problem::Usage, terminal},
-    journal,
     store::{Exported, Format, Label, Store, StoreError, Target},
     study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch},
 };
 use discrepancy::laboratory::Stage;
+use dispatch::journal;
 use protocol::{case::Case, event::Finished, job::Job};
 use search::strategy::Proposal;
 use serde::Serialize;

@@ -1,9 +1,9 @@
 //! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
+use crate::cli::run::bus::PROGRAM;
 use crate::pumping_unit::{
     case::{GaugePlace, HeadSource, TwinFile},
     report::vtu::{self, Field},
 };
-use crate::{cli::run::bus::PROGRAM, draft::Draft};
 use anyhow::Context as _;
 use protocol::pumping_unit::{HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};
 use serde::Serialize;
@@ -14,6 +14,7 @@ use std::{
     io::{BufWriter, Write as _},
     path::{Path, PathBuf},
 };
+use support::atomic_file::Draft;
 
 /// The modes file, as cases are delivered with it.
 #[derive(Debug, Serialize)]

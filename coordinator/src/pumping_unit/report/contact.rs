@@ -1,6 +1,5 @@
 //! Contact between back rope and head: force per length over crank angle and place on the arc.
 use super::revolution;
-use crate::quantile;
 use crate::report::chart::canvas::{Canvas, Lettering, WIDTH, render};
 use crate::report::chart::panel::Panel;
 use crate::report::chart::points::thinned;
@@ -8,6 +7,7 @@ use crate::report::chart::scale::Scale;
 use crate::report::color::{GREY, INK, STRENGTH};
 use crate::report::document::Figure;
 use protocol::pumping_unit::{Machine, Motion, Simulation};
+use support::quantile;
 
 const HEIGHT: f64 = 330.0;
 /// Snapshots drawn at most: more would make the file large, not the picture better.

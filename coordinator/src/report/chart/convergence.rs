@@ -2,12 +2,12 @@
 use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::{Panel, spread};
 use super::scale::Scale;
-use crate::quantile;
 use crate::report::color::{BAND, GREY, INK, VERMILLION};
 use crate::report::data::{Calibration, HistoryPoint};
 use crate::report::document::Figure;
 use crate::report::number::{count, figure, percent};
 use crate::report::words::objective_heading;
+use support::quantile;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 120.0;

@@ -1,8 +1,6 @@
 //! Tables of what happened: workers, events of the run, damage of its journal.
-use crate::{
-    journal::Damage,
-    store::{column::Columns, row::Happened},
-};
+use crate::store::{column::Columns, row::Happened};
+use dispatch::journal::Damage;
 use protocol::event::{Spent, WorkerAccount};
 
 pub(super) fn workers() -> Columns<WorkerAccount> {

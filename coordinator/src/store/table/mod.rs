@@ -14,7 +14,7 @@ use super::{
     error::StoreError,
     row::{Added, Brief, Evaluated, Fact, Happened, Scored},
 };
-use crate::journal::Damage;
+use dispatch::journal::Damage;
 use protocol::{
     case::{Case, Unknown},
     event::WorkerAccount,

@@ -3,9 +3,9 @@
 use super::wire::crc32;
 use coordinator::{
     case::{self, Overrides, read_genes, write_genes},
-    journal::{self, ReadReport},
     pumping_unit::case::{count_samples, mesh, read_card},
 };
+use dispatch::journal::{self, ReadReport};
 use protocol::{case::Case, pumping_unit::Smoothing, wire};
 use std::{
     fmt::Display,

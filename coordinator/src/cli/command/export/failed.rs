@@ -1,9 +1,7 @@
 //! `horsehead export --failed RUN`: what programs left where they failed, as folders to look into.
-use crate::{
-    cli::{output::problem::Usage, run::folder::RunFolder},
-    journal::{self, Recording},
-};
+use crate::cli::{output::problem::Usage, run::folder::RunFolder};
 use anyhow::Context as _;
+use dispatch::journal::{self, Recording};
 use protocol::{
     event::{Event, Finished},
     file::is_below,

@@ -11,13 +11,13 @@ use crate::{
             manifest::{CALIBRATE, FORMAT},
         },
     },
-    journal::{self, Entry, Journal},
     store::read_back::{self, Tables, Value},
     study::{
         Completed, Crew, EvaluationLog, Evaluator, EvaluatorError,
         tests::{Oracle, case, physics},
     },
 };
+use dispatch::journal::{self, Entry, Journal};
 use protocol::{
     event::{Event, Finished, RunHeader},
     id::{AttemptId, ContentHash, JobId, RunId, WorkerId},

@@ -6,12 +6,12 @@ use crate::{
         run::launch::{carry, refuse},
     },
     report::table::{Row, Table, text},
-    runtime::control::{
-        self, SOCKET,
-        words::{Question, State, Worker},
-    },
 };
 use clap::Args;
+use dispatch::runtime::control::{
+    self, SOCKET,
+    words::{Question, State, Worker},
+};
 use launch::ssh;
 use serde::Serialize;
 use std::{

@@ -1,7 +1,6 @@
 //! The snapshots of a simulation, thinned, rounded and packed for the player.
 //!
 //! Lengths are whole millimetres, forces tenths of kilonewtons: finer than a pixel, small in a file.
-use crate::quantile;
 use crate::report::color::{Color, Ramp};
 use crate::report::number::{NONE, fixed};
 use maud::{Markup, html};
@@ -10,6 +9,7 @@ use protocol::{
     pumping_unit::{Machine, Motion, Sensor, Simulation},
 };
 use serde::Serialize;
+use support::quantile;
 
 /// The scale of tension, low to high: deep blue over violet and rose to orange.
 pub(super) const TENSION: Ramp = Ramp([

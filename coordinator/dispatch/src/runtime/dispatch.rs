@@ -9,7 +9,7 @@ use super::{
     options::DispatchOptions,
     parts::Parts,
 };
-use crate::core::{Completed, Snapshot};
+use crate::scheduler::{Completed, Snapshot};
 use link::{
     Blob, CoordinatorEnd,
     locator::Locator,

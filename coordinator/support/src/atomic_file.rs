@@ -11,7 +11,7 @@ use tempfile::NamedTempFile;
 
 /// A file that is complete, on the disk, and not yet in its place; without [`Self::publish`] it goes away.
 #[derive(Debug)]
-pub(crate) struct Draft {
+pub struct Draft {
     file: NamedTempFile,
     place: PathBuf,
 }
@@ -22,7 +22,7 @@ impl Draft {
     ///
     /// # Errors
     /// What the system says; there is nothing left of the draft then.
-    pub(crate) fn new(place: &Path, content: &[u8]) -> io::Result<Self> {
+    pub fn new(place: &Path, content: &[u8]) -> io::Result<Self> {
         let place = fs::canonicalize(place).unwrap_or_else(|_| place.to_owned());
         let permissions = match fs::metadata(&place) {
             Ok(there) => there.permissions(),
@@ -46,7 +46,7 @@ impl Draft {
     ///
     /// # Errors
     /// What the system or `fill` says; there is nothing left of the draft then.
-    pub(crate) fn filled<E: From<io::Error>>(
+    pub fn filled<E: From<io::Error>>(
         place: &Path,
         fill: impl FnOnce(fs::File) -> Result<(), E>,
     ) -> Result<Self, E> {
@@ -60,7 +60,7 @@ impl Draft {
     ///
     /// # Errors
     /// What the system says; the old file is still there then.
-    pub(crate) fn publish(self) -> io::Result<()> {
+    pub fn publish(self) -> io::Result<()> {
         let persisted = self.file.persist(self.place);
         persisted.map(drop).map_err(|failed| failed.error)
     }
@@ -70,7 +70,7 @@ impl Draft {
 ///
 /// # Errors
 /// What the system says; the old file is still there then.
-pub(crate) fn replace(place: &Path, content: &[u8]) -> io::Result<()> {
+pub fn replace(place: &Path, content: &[u8]) -> io::Result<()> {
     Draft::new(place, content)?.publish()
 }
 

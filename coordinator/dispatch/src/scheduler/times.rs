@@ -1,11 +1,11 @@
 //! How long jobs of each kind take, and what follows from it: deadlines, orders ahead, copies.
 use super::policy::Policy;
-use crate::quantile;
 use protocol::job::kind::OWN;
 use std::{
     collections::{BTreeMap, VecDeque},
     time::Duration,
 };
+use support::quantile;
 
 /// Times of finished jobs by kind, for deadlines and copies: a reduction of a head takes minutes
 /// where a simulation takes tenths of a second.

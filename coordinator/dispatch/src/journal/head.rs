@@ -7,12 +7,12 @@ use super::{
     read::fold,
     record::{HEAD, record},
 };
-use crate::draft;
 use protocol::{
     event::{Event, RunHeader},
     id::RunId,
 };
 use std::path::Path;
+use support::atomic_file;
 
 /// The copy of a run folder; none if there is none that can be read.
 pub(super) fn read(folder: &Path) -> Result<Option<(RunId, RunHeader)>, JournalError> {
@@ -38,7 +38,7 @@ pub(super) fn write(folder: &Path, run: RunId, header: &RunHeader) -> Result<(),
     let header = header.clone();
     let bytes = record(&Event::Begun { run, header })?;
     let path = folder.join(HEAD);
-    let written = draft::replace(&path, &bytes);
+    let written = atomic_file::replace(&path, &bytes);
     written.map_err(|source| JournalError::Io {
         doing: "write",
         path,

@@ -6,11 +6,9 @@ use super::{
     sessions::{Connections, Sessions},
     silent,
 };
-use crate::{
-    quantile,
-    runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions},
-};
+use crate::runtime::{dispatch::Dispatch, error::DispatchError, options::DispatchOptions};
 use std::time::{Duration, Instant};
+use support::quantile;
 use tokio::time::sleep;
 
 /// Most jobs that are done one at a time, for the round trip.

@@ -1,13 +1,12 @@
 //! What can go wrong with a run, with the remedy where there is one.
 use super::locate::LocateError;
-use crate::{core::Stop, journal::JournalError};
+use crate::{journal::JournalError, scheduler::Stop};
 use link::LinkError;
 use protocol::{id::JobId, wire::WireError};
 use std::time::Duration;
 
 /// Why a run cannot be opened or go on.
 #[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
 pub enum DispatchError {
     /// The journal cannot be used.
     #[error(transparent)]

@@ -8,10 +8,7 @@ use super::{
     meter::cost,
     plan::{Silence, SilentPlan, SilentResult},
 };
-use crate::{
-    quantile,
-    runtime::{dispatch::Dispatch, error::DispatchError, listen::allow_connections},
-};
+use crate::runtime::{dispatch::Dispatch, error::DispatchError, listen::allow_connections};
 use link::{WorkerEnd as _, locator::Locator, zenoh::ZenohWorker};
 use std::{
     env, fs,
@@ -23,6 +20,7 @@ use std::{
     },
     time::{Duration, Instant},
 };
+use support::quantile;
 use tokio::{
     net::TcpStream,
     sync::{Notify, Semaphore},

@@ -11,8 +11,8 @@ use super::{
     sleep::Sleep,
 };
 use crate::{
-    core::{Command, Completed, Core, Input, Snapshot},
     journal::{Appended, Journal},
+    scheduler::{Command, Completed, Core, Input, Snapshot},
 };
 use link::{CoordinatorEnd, Heard};
 use protocol::{

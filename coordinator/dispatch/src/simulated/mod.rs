@@ -11,7 +11,7 @@ pub use happening::Fault;
 pub use source::{Generations, Search, Source, job};
 pub use worker::{Running, Worker, cost, outcome};
 
-use crate::core::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Stop};
+use crate::scheduler::{Command, Core, CoreOptions, Input, JobSet, Notice, Policy, Stop};
 use happening::What;
 use protocol::{
     announce::{Announcement, ModelDescriptor},

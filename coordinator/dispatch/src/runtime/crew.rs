@@ -1,6 +1,6 @@
 //! Answers to questions about the workers of a run.
 use super::control::words::{Job, Question, Reply, State, Worker};
-use crate::core::{Drain, Hand};
+use crate::scheduler::{Drain, Hand};
 use protocol::{id::WorkerId, name::ANYONE};
 
 /// What a question asks to be done to whom, and the answer to it.

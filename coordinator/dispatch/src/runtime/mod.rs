@@ -15,7 +15,7 @@ mod options;
 mod parts;
 mod sleep;
 
-pub use crate::core::{Completed, Policy, Snapshot, WorkerSnapshot};
+pub use crate::scheduler::{Completed, Policy, Snapshot, WorkerSnapshot};
 pub use bench::{
     BenchPlan, BenchResult, BenchWorkers, Silence, SilentPlan, SilentResult, Slept, bench, connect,
     keep_silent, processor_time, sleep_through,

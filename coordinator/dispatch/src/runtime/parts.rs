@@ -1,8 +1,8 @@
 //! What any run consists of, whatever its link: a core that knows the past, and the journal.
 use super::{error::DispatchError, options::DispatchOptions};
 use crate::{
-    core::{Core, CoreOptions, Policy},
     journal::{self, Appended, Journal},
+    scheduler::{Core, CoreOptions, Policy},
 };
 use link::Blob;
 use protocol::{

@@ -1,0 +1,3 @@
+//! Small tools that several crates of the coordinator share and that know nothing of it.
+pub mod atomic_file;
+pub mod quantile;
