@@ -1,17 +1,15 @@
 //! Decides what to evaluate and remembers everything.
 //!
-//! Data flows one way: a case folder is read and checked ([`case`]), a search strategy proposes
+//! Data flows one way: a case folder is read and checked (the crate `case`), a search strategy proposes
 //! individuals, the crate `dispatch` has them computed and records what came back, the [`account`] of
 //! slot time and the [`report`] show it, the [`store`] makes tables of it for queries. [`study`] is the
 //! loop from the first proposal to the comparison of the result, [`cli`] the commands around it, the
 //! crate `launch` what starts workers elsewhere. Nothing here links the dynamics.
 pub mod account;
-pub mod case;
 pub mod cli;
 mod digest;
 mod external;
 mod kind;
-mod line;
 pub mod orthogonal;
 pub mod pumping_unit;
 pub mod report;

@@ -14,7 +14,7 @@
 #[path = "../../tests/fuzz/targets/property/mod.rs"]
 mod property;
 
-use coordinator::case::{Overrides, load};
+use case::{Overrides, load};
 use dispatch::journal::MARK;
 use property::{
     file::{

@@ -3,10 +3,8 @@
     clippy::unwrap_used,
     reason = "helpers of a test: what cannot be written or read has failed"
 )]
-use coordinator::{
-    case::{Overrides, load},
-    store::{Format, Label, Store, Target},
-};
+use case::{Overrides, load};
+use coordinator::store::{Format, Label, Store, Target};
 use dispatch::journal::{self, Journal};
 use protocol::{
     event::{Event, Finished, RunHeader},

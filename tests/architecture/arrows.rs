@@ -15,6 +15,12 @@ const ARROWS: &[(&str, &str)] = &[
     // starting workers knows neither cases nor runs
     ("launch", "link"),
     ("launch", "protocol"),
+    // reading a case knows neither runs nor pictures
+    ("case", "protocol"),
+    ("case", "exchange"),
+    ("case", "discrepancy"),
+    ("case", "support"),
+    ("coordinator", "case"),
     ("coordinator", "launch"),
     // jobs and results, whatever they are about; strategies stand in for a study on a simulated clock
     ("dispatch", "link"),
@@ -32,18 +38,21 @@ const ARROWS: &[(&str, &str)] = &[
     ("truth", "protocol"),
     ("truth", "simulation"),
     ("truth", "worker"),
+    ("truth", "case"),
     ("truth", "coordinator"),
     ("truth", "dispatch"),
     // a model of the suites, which no program knows
     ("oscillator", "protocol"),
     ("oscillator", "search"),
     ("oscillator", "worker"),
+    ("oscillator", "case"),
     ("oscillator", "coordinator"),
     ("oscillator", "dispatch"),
     ("oscillator", "discrepancy"),
     // developers' measurements of the dynamics
     ("bench", "protocol"),
     ("bench", "worker"),
+    ("bench", "case"),
     ("bench", "coordinator"),
     ("bench", "dispatch"),
     ("bench", "search"),

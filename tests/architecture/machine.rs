@@ -3,29 +3,33 @@ use crate::words::sources;
 use std::{fs, path::Path};
 
 /// Sources of the product.
-const HOUSE: [&str; 9] = [
+const HOUSE: [&str; 10] = [
     "protocol/src",
     "protocol/link/src",
     "worker/src",
     "coordinator/src",
     "coordinator/search/src",
     "coordinator/discrepancy/src",
+    "coordinator/case/src",
     "coordinator/dispatch/src",
     "coordinator/launch/src",
     "tests/oscillator",
 ];
 
 /// Its own folders, and the lines that register it.
-const KNOW_IT: [&str; 9] = [
+const KNOW_IT: [&str; 12] = [
     "protocol/src/pumping_unit",
     "worker/src/pumping_unit",
     "coordinator/src/pumping_unit",
+    "coordinator/case/src/pumping_unit",
     // the folders' names
     "protocol/src/lib.rs",
     "worker/src/lib.rs",
     "coordinator/src/lib.rs",
+    "coordinator/case/src/lib.rs",
     // the list of kinds, the command that reduces its head, the template that `case new` writes
     "coordinator/src/kind",
+    "coordinator/case/src/kind.rs",
     "coordinator/src/cli/command/mod.rs",
     "coordinator/src/cli/command/case.rs",
 ];

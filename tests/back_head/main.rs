@@ -6,10 +6,8 @@
 )]
 mod tetrahedra;
 
-use coordinator::pumping_unit::{
-    self,
-    case::{QuasiStatic, load_head, mesh, quasi_static},
-};
+use case::pumping_unit::{QuasiStatic, load_head, mesh, quasi_static};
+use coordinator::pumping_unit::{self};
 use protocol::pumping_unit::{ElementKind as ReadKind, Influence};
 use simulation::flexible::{
     ElementKind, Family, Gauge, Mesh, Mode, Reduction, Request, Steel, reduce,

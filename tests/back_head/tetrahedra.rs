@@ -1,7 +1,7 @@
 //! The shipped head cut into 10-node tetrahedra, as a mesh file of Gmsh's kind, against the bricks and
 //! against `CalculiX`; a mesh by Gmsh itself against scikit-fem.
 use super::*;
-use coordinator::pumping_unit::case::mesh::Mesh as ReadMesh;
+use case::pumping_unit::mesh::Mesh as ReadMesh;
 use split::Split;
 use std::{collections::BTreeSet, fmt::Write as _};
 

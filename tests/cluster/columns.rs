@@ -13,7 +13,7 @@ use std::{collections::BTreeMap, path::Path};
 /// The shipped machine with long cylinders.
 fn coarse() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-    let case = coordinator::case::load(&folder, &coordinator::case::Overrides::default()).unwrap();
+    let case = case::load(&folder, &case::Overrides::default()).unwrap();
     let long = Discretisation {
         cylinder_length_m: Some(0.15),
         ..Discretisation::default()

@@ -23,7 +23,7 @@ fn folder() -> PathBuf {
 }
 
 fn case() -> Case {
-    coordinator::case::load(&folder(), &coordinator::case::Overrides::default()).unwrap()
+    case::load(&folder(), &case::Overrides::default()).unwrap()
 }
 
 /// The same with its machine.
@@ -36,10 +36,7 @@ fn individuals(case: &Case) -> [(&'static str, Vec<f64>); 2] {
     let optimised = folder().join("table3_optimised.toml");
     [
         ("recommended", case.start()),
-        (
-            "optimised",
-            coordinator::case::read_genes(&optimised, case).unwrap(),
-        ),
+        ("optimised", case::read_genes(&optimised, case).unwrap()),
     ]
 }
 

@@ -1,7 +1,7 @@
 //! What it means that a worker rounds the channels that a diagnosis works with: bytes saved, and by how
 //! much its numbers move, in units of the noise of the shipped records.
 use super::folder;
-use coordinator::case::{Overrides, load_with_notes};
+use case::{Overrides, load_with_notes};
 use discrepancy::laboratory::channels;
 use discrepancy::record::basis::Group;
 use discrepancy::record::metric::Metric;

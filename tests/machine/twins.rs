@@ -21,8 +21,7 @@ fn twins(back_mm: f64, front_mm: f64) -> PumpingUnit {
         1e-3 * front_mm
     );
     fs::write(scratch.path().join("case.toml"), text + &entry).unwrap();
-    let case =
-        coordinator::case::load(scratch.path(), &coordinator::case::Overrides::default()).unwrap();
+    let case = case::load(scratch.path(), &case::Overrides::default()).unwrap();
     PumpingUnit::of(case).unwrap()
 }
 

@@ -1,32 +1,9 @@
-//! Programs of somebody's own as the coordinator's general parts ask for them.
-use super::{
-    assemble::assemble,
-    file::{ModelEntry, OwnFile},
-    report::{Files, parameters},
-};
-use crate::{
-    case::{
-        CaseError, Loaded,
-        document::{Document, Step},
-        general,
-        source::Source,
-    },
-    kind::Kind,
-    report::Drawing,
-};
-use protocol::{
-    case::{Case, ModelSettings, Repeats},
-    external::{External, KIND, entry_of, kind_of},
-    wire,
-};
+//! Programs of the user's own as reports and objects ask for them.
+use super::report::Files;
+use crate::{kind::Kind, report::Drawing};
+use protocol::external::KIND;
 
-/// Longest deadline of one run (s): a week.
-const LONGEST_S: f64 = 604_800.0;
-
-/// Largest difference between machines that is one at all: a share of a channel's size.
-const MOST_TOLERANCE: f64 = 1.0;
-
-/// Models that are programs of somebody's own.
+/// Models that are programs of the user's own.
 pub(crate) struct Externals;
 
 impl Kind for Externals {
@@ -34,112 +11,7 @@ impl Kind for Externals {
         KIND
     }
 
-    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
-        let document = source.document;
-        let own: OwnFile = document.parse()?;
-        let way = |key| [Step::Key("model"), Step::Key(key)];
-        let entry = &own.model.entry;
-        let is_plain =
-            |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-' | '.');
-        if entry.is_empty() || entry.len() > 64 || !entry.chars().all(is_plain) {
-            return Err(document.field(
-                &way("entry"),
-                format!("\"{entry}\""),
-                "1 to 64 letters, digits, `_`, `-` and `.`",
-                "name the entry of the workers' lists that starts the program",
-            ));
-        }
-        document.within(
-            "model.deadline_s",
-            own.model.deadline_s,
-            1e-3..=LONGEST_S,
-            "s",
-        )?;
-        let repeats = repeats(document, &own.model)?;
-        let mut loaded = general::read(source)?;
-        let external = assemble(source, &own, &loaded.case)?;
-        let settings = wire::encode(&external).map_err(|error| {
-            document.field(
-                &way("files"),
-                error.to_string(),
-                "what fits into one message",
-                "leave large files on the workers",
-            )
-        })?;
-        loaded.case.model = ModelSettings {
-            kind: kind_of(entry),
-            settings,
-            repeats,
-            deadline_s: Some(own.model.deadline_s),
-        };
-        Ok(loaded)
-    }
-
     fn drawing(&self) -> &'static dyn Drawing {
         &Files
     }
-
-    fn gene_file(&self, case: &Case, genes: &[f64]) -> Option<(&'static str, String)> {
-        Some(("calibrated.par", parameters(case, genes)))
-    }
-
-    fn is_program(&self) -> bool {
-        true
-    }
-
-    fn unready(&self, case: &Case) -> Option<(String, String)> {
-        let name = entry_of(&case.model.kind)?;
-        let path = exchange::allow::path();
-        let remedy = "look at what it starts, and allow it on this machine: horsehead allow CASE";
-        let allowed = match exchange::allow::read(&path) {
-            Ok(allowed) => allowed,
-            Err(problem) => return Some((problem.to_string(), "correct the file".to_owned())),
-        };
-        let Some(entry) = allowed.entry.get(name) else {
-            let message = format!(
-                "this machine does not allow the case's program: {} has no entry `{name}`",
-                path.display()
-            );
-            return Some((message, remedy.to_owned()));
-        };
-        let external = External::of(&case.model).ok()?;
-        let other = entry
-            .files
-            .as_ref()
-            .is_some_and(|own| *own != external.digest());
-        other.then(|| {
-            let message = format!(
-                "the case's files are not those that entry `{name}` of {} was allowed for",
-                path.display()
-            );
-            (message, remedy.to_owned())
-        })
-    }
-}
-
-/// How equal results are, as the case says.
-fn repeats(document: &Document, model: &ModelEntry) -> Result<Repeats, CaseError> {
-    let Some(tolerance) = model.reference_tolerance else {
-        return Ok(if model.repeatable {
-            Repeats::Bits
-        } else {
-            Repeats::Unknown
-        });
-    };
-    let way = [Step::Key("model"), Step::Key("reference_tolerance")];
-    if model.repeatable {
-        return Err(document.field(
-            &way,
-            tolerance,
-            "absent beside `repeatable = true`",
-            "equal bits leave no tolerance: keep the one that is true",
-        ));
-    }
-    document.within(
-        "model.reference_tolerance",
-        tolerance,
-        f64::MIN_POSITIVE..=MOST_TOLERANCE,
-        "",
-    )?;
-    Ok(Repeats::Within(tolerance))
 }

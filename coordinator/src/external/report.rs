@@ -3,7 +3,7 @@
 use crate::report::{
     Drawing, Figure, General, ReportError, Section, Shown, SingleRun, Table, folder::stream,
 };
-use exchange::pest::{self, ParRow, ReiRow};
+use exchange::pest::{self, ReiRow};
 use protocol::{
     case::{Case, Unknown},
     external::{External, Source},
@@ -14,7 +14,7 @@ use std::{
 };
 
 /// Reports with PEST's files.
-pub(super) struct Files;
+pub(crate) struct Files;
 
 impl Drawing for Files {
     fn channels(&self, of: &Shown<'_>) -> Vec<Figure> {
@@ -89,24 +89,4 @@ fn residuals(shown: &Shown<'_>) -> Vec<ReiRow> {
         pairs.map(row).collect::<Vec<_>>()
     });
     rows.collect()
-}
-
-/// The unknowns of a case at values, as PEST leaves them.
-pub(super) fn parameters(case: &Case, genes: &[f64]) -> String {
-    let external = External::of(&case.model).ok();
-    let written = external.map(|own| own.parameters).unwrap_or_default();
-    let row = |(at, (unknown, value)): (usize, (&Unknown, &f64))| ParRow {
-        name: unknown.name.clone(),
-        value: *value,
-        scale: written.get(at).map_or(1.0, |own| own.factor),
-        offset: written.get(at).map_or(0.0, |own| own.offset),
-    };
-    let rows: Vec<ParRow> = case
-        .unknowns
-        .iter()
-        .zip(genes)
-        .enumerate()
-        .map(row)
-        .collect();
-    pest::par(&rows)
 }

@@ -1,6 +1,5 @@
 //! `horsehead head`: the flexible back head from its mesh.
 use super::{
-    case::{HeadSource, QuasiStatic, load_head, mesh, quasi_static},
     head_comparison::{compare_head, reduce_head, wrapped_turn},
     output::{self, files},
     report::{HeadPicture, head_mode_table, head_pair, head_statics, write_head_modes},
@@ -17,6 +16,7 @@ use crate::{
     report::table,
 };
 use anyhow::Context as _;
+use case::pumping_unit::{HeadSource, QuasiStatic, load_head, mesh, quasi_static};
 use clap::{Args, ValueEnum};
 use protocol::{
     pumping_unit::{

@@ -3,17 +3,15 @@
 //! Quasi-static stress needs no dynamics: a rope of tension T wrapped from its fixed end to where it
 //! leaves presses with T per radian and pulls its end with T. Exact statics are influence lines
 //! integrated over the wrap; mode displacement is `sum_k s_k f_k / w_k^2` of the same forces.
-use super::case::QuasiStatic;
-use crate::{
-    line::held,
-    study::{self, Evaluator, Stop, StudyError, or_stop},
-};
+use crate::study::{self, Evaluator, Stop, StudyError, or_stop};
+use case::pumping_unit::QuasiStatic;
 use protocol::{
     id::JobId,
     job::{Answer, Job},
     pumping_unit::{Influence, ModalHead, REDUCE_HEAD, ReduceHeadSpec, ReducedHead},
     wire::{self, WireError},
 };
+use support::interpolation::held;
 
 /// Shapes smaller than this share of the table's largest move nothing.
 const INERT: f64 = 1e-6;

@@ -1,11 +1,9 @@
 //! What the coordinator knows of the pumping unit, the model of the kind `dhh`. Everything else there
 //! asks for it by the kind that a case names.
-pub mod case;
 pub(crate) mod command;
 mod digest;
 mod head_comparison;
 pub(crate) mod kind;
-mod numerics;
 mod output;
 pub mod report;
 

@@ -131,7 +131,7 @@ impl Watch<ProgressView> for Quiet {
 
 pub(crate) fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-    crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
+    case::load(&folder, &case::Overrides::default()).unwrap()
 }
 
 fn curves(first_gene: f64) -> Simulation {

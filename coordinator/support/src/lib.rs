@@ -1,3 +1,4 @@
 //! Small tools that several crates of the coordinator share and that know nothing of it.
 pub mod atomic_file;
+pub mod interpolation;
 pub mod quantile;

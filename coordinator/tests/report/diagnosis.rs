@@ -1,7 +1,7 @@
 //! The report of a diagnosis, for every verdict: complete, well-formed, honest.
 use crate::suspicion::{self, Made};
 use crate::{check_page, names, words};
-use coordinator::case::CaseEffect;
+use case::CaseEffect;
 use coordinator::report::{self, diagnosis};
 use discrepancy::verdict::Verdict;
 use protocol::pumping_unit::EFFECT_UNITS;

@@ -56,7 +56,7 @@ fn load_n(turn_deg: f64) -> f64 {
 
 fn gene(name: Coefficient, unit: Unit, recommended: f64) -> Unknown {
     let bounds = [1e-4 * recommended, 1e4 * recommended];
-    coordinator::pumping_unit::case::unknown(name, unit, recommended, bounds)
+    case::pumping_unit::unknown(name, unit, recommended, bounds)
 }
 
 fn genes() -> Vec<Unknown> {

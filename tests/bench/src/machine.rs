@@ -1,7 +1,7 @@
 //! The machine of a case under one condition, and one simulation of it.
 use anyhow::{Context as _, anyhow, bail};
+use case::{Overrides, load};
 use clap::Args;
-use coordinator::case::{Overrides, load};
 use protocol::case::Case;
 use protocol::{
     job::{Individual, Job, Reply, SimulateSpec},

@@ -1,6 +1,6 @@
 //! Gene files as people write them.
 #![no_main]
-use coordinator::case::{Overrides, load};
+use case::{Overrides, load};
 use fuzz::{FOLDER, property::file::are_genes_or_refused};
 use libfuzzer_sys::fuzz_target;
 use protocol::case::Case;

@@ -190,7 +190,7 @@ fn main() -> anyhow::Result<()> {
 }
 
 fn make_sets(arguments: &Make) -> anyhow::Result<()> {
-    let case = coordinator::case::load(&arguments.case, &coordinator::case::Overrides::default())?;
+    let case = case::load(&arguments.case, &case::Overrides::default())?;
     let unit = PumpingUnit::of(case)?;
     ensure!(
         arguments.noise > 0.0 && arguments.noise < 1e3,
@@ -259,7 +259,7 @@ fn open(arguments: &Open) -> anyhow::Result<()> {
 }
 
 fn run_all(arguments: &Run) -> anyhow::Result<()> {
-    let case = coordinator::case::load(&arguments.case, &coordinator::case::Overrides::default())?;
+    let case = case::load(&arguments.case, &case::Overrides::default())?;
     let suite = Suite {
         unit: PumpingUnit::of(case)?,
         case: &arguments.case,

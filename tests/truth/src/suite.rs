@@ -198,8 +198,7 @@ mod tests {
 
     fn shipped() -> protocol::case::Case {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
-        coordinator::case::load(&folder, &coordinator::case::Overrides::default())
-            .expect("the case")
+        case::load(&folder, &case::Overrides::default()).expect("the case")
     }
 
     #[test]

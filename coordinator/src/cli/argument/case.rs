@@ -1,8 +1,6 @@
 //! Where a case comes from, and its reading.
-use crate::{
-    case::{Overrides, load_with_notes},
-    cli::output::terminal,
-};
+use crate::cli::output::terminal;
+use case::{Overrides, load_with_notes};
 use clap::Args;
 use protocol::case::Case;
 use std::{

@@ -1,5 +1,6 @@
 //! Which parameters are simulated, and under which working condition.
-use crate::{case::read_genes, cli::output::problem::Usage};
+use crate::cli::output::problem::Usage;
+use case::read_genes;
 use clap::Args;
 use protocol::case::Case;
 use std::path::Path;

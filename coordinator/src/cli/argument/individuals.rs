@@ -1,10 +1,8 @@
 //! A table of individuals: a CSV file with a column for each unknown that a case searches.
-use crate::{
-    case::{
-        CaseError, file,
-        table::{Table, columns},
-    },
-    store::gene_column,
+use crate::store::gene_column;
+use case::{
+    CaseError, file,
+    table::{Table, columns},
 };
 use search::space::{Axis, Space};
 use std::path::Path;

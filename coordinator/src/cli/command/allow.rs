@@ -1,14 +1,12 @@
 //! `horsehead allow`: what a case's own program may do on this machine.
-use crate::{
-    cli::{
-        argument::{case::case_folder, output::OutputChoice},
-        output::{
-            problem::{EXIT_CODES, Usage},
-            terminal,
-        },
+use crate::cli::{
+    argument::{case::case_folder, output::OutputChoice},
+    output::{
+        problem::{EXIT_CODES, Usage},
+        terminal,
     },
-    external::{Proposal, proposed},
 };
+use case::command::{Proposal, proposed};
 use clap::Args;
 use exchange::allow::{self, Allowed};
 use serde::Serialize;

@@ -22,8 +22,9 @@ use crate::cli::{
         session::Session,
     },
 };
-use crate::{case::require_record, study::Watch as _};
+use crate::study::Watch as _;
 use anyhow::Context as _;
+use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
 use protocol::case::Case;
 use search::{

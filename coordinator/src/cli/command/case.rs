@@ -7,12 +7,9 @@ use crate::cli::{
     },
     run::once::in_scratch,
 };
-use crate::{
-    case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document},
-    external::{self, Proposal},
-    kind,
-    study::{self, StudyError},
-};
+use crate::study::{self, StudyError};
+use case::command::{self, Proposal};
+use case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document};
 use clap::{Args, Subcommand};
 use serde::Serialize;
 use std::{
@@ -95,7 +92,7 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
     let overrides = Overrides {
         measured: choice.measured.clone(),
     };
-    let summary = crate::case::check(&choice.case, &overrides)?;
+    let summary = case::check(&choice.case, &overrides)?;
     let said = ask_worker(&choice.case, &overrides)?;
     let notes = summary.notes.iter().map(ToString::to_string);
     let object = CheckOutput {
@@ -116,7 +113,7 @@ fn check(choice: &CaseChoice, output: OutputChoice) -> anyhow::Result<()> {
 fn ask_worker(folder: &Path, overrides: &Overrides) -> anyhow::Result<Vec<String>> {
     let loaded = load_with_notes(folder, overrides)?;
     let case = &loaded.case;
-    if kind::of(case).is_program() {
+    if case::kind::of(case).is_program() {
         let note = "not simulated: `horsehead simulate CASE` starts the case's program once";
         return Ok(vec![note.to_owned()]);
     }
@@ -165,7 +162,7 @@ struct ImportOutput {
 }
 
 fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow::Result<()> {
-    let imported = external::import::import(control, folder).map_err(|error| Usage {
+    let imported = command::import::import(control, folder).map_err(|error| Usage {
         message: error.to_string(),
         help: "nothing was written".to_owned(),
     })?;
@@ -181,8 +178,8 @@ fn import(control: &Path, folder: Option<&Path>, output: OutputChoice) -> anyhow
     }
     // what was written is read as every command will read it; a folder that none can read would block the next try
     let read = |folder: &Path| -> anyhow::Result<Proposal> {
-        crate::case::check(folder, &Overrides::default())?;
-        Ok(external::proposed(folder)?)
+        case::check(folder, &Overrides::default())?;
+        Ok(command::proposed(folder)?)
     };
     let Proposal { name, entry, .. } = read(&imported.folder).inspect_err(|_| {
         drop(std::fs::remove_dir_all(&imported.folder));
@@ -216,9 +213,8 @@ fn begin(folder: &Path) -> anyhow::Result<()> {
         }
         .into());
     }
-    let written = std::fs::create_dir_all(folder).and_then(|()| {
-        atomic_file::replace(&file, crate::pumping_unit::case::template().as_bytes())
-    });
+    let written = std::fs::create_dir_all(folder)
+        .and_then(|()| atomic_file::replace(&file, case::pumping_unit::template().as_bytes()));
     written.map_err(|error| Usage {
         message: format!("cannot write {}: {error}", file.display()),
         help: "choose a folder that can be written".to_owned(),

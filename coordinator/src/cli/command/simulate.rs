@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn genes_outside_the_bounds_are_noted() {
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-        let case = crate::case::load(&shipped, &crate::case::Overrides::default()).unwrap();
+        let case = case::load(&shipped, &case::Overrides::default()).unwrap();
         let mut genes = case.start();
         assert_eq!(outside_bounds(&case, &genes), [""; 0]);
         genes[1] = 2.0 * case.unknowns[1].upper;

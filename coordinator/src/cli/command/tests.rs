@@ -1,22 +1,20 @@
 //! Habits of the command line: help, run folders, gene files.
 use super::*;
-use crate::{
-    case::{Overrides, load, read_genes, write_genes},
-    cli::{
-        argument::{
-            individual::condition,
-            settings::{Chosen, SettingsChoice},
-        },
-        output::problem::Usage,
-        run::{
-            begun::Run,
-            bus,
-            calibration::Calibration,
-            folder::RunFolder,
-            manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
-        },
+use crate::cli::{
+    argument::{
+        individual::condition,
+        settings::{Chosen, SettingsChoice},
+    },
+    output::problem::Usage,
+    run::{
+        begun::Run,
+        bus,
+        calibration::Calibration,
+        folder::RunFolder,
+        manifest::{CALIBRATE, DIAGNOSE, FORMAT, Manifest, Start},
     },
 };
+use ::case::{Overrides, load, read_genes, write_genes};
 use dispatch::journal;
 use protocol::{
     case::Case,

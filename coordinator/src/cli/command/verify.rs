@@ -1,6 +1,5 @@
 //! `horsehead verify`: the parameters of a run under a condition that took no part in the fit.
 use crate::{
-    case::{read_genes, require_record},
     cli::{
         argument::{
             case::load_case,
@@ -24,6 +23,7 @@ use crate::{
     study::Wanted,
 };
 use anyhow::Context as _;
+use case::{read_genes, require_record};
 use clap::Args;
 use std::{path::PathBuf, time::Instant};
 

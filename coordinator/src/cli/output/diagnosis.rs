@@ -4,7 +4,6 @@ use super::{
     terminal,
 };
 use crate::{
-    case::{Loaded, append_effects, write_starts},
     cli::{
         argument::output::Output,
         run::{
@@ -15,6 +14,7 @@ use crate::{
     },
     report::{diagnosis as report, text},
 };
+use case::{Loaded, append_effects, write_starts};
 use std::path::Path;
 
 /// A finished diagnosis with everything that its files name.

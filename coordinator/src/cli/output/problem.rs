@@ -1,9 +1,7 @@
 //! Errors as people see them: what happened, why, and what to do; and the exit code they mean.
 use super::terminal;
-use crate::{
-    case::CaseError,
-    study::{EvaluatorError, StudyError},
-};
+use crate::study::{EvaluatorError, StudyError};
+use case::CaseError;
 use std::{fmt, process::ExitCode};
 
 /// What the help of every command ends with.

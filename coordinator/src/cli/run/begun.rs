@@ -4,11 +4,8 @@ use super::{
     folder::{CASE, MANIFEST, RunFolder},
     manifest::{Decides, Manifest},
 };
-use crate::{
-    case::{Loaded, Overrides, difference::differences, load_with_notes},
-    cli::output::problem::Usage,
-    report::Origin,
-};
+use crate::{cli::output::problem::Usage, report::Origin};
+use case::{Loaded, Overrides, difference::differences, load_with_notes};
 use protocol::case::Case;
 use std::path::{Path, PathBuf};
 

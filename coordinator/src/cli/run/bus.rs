@@ -1,7 +1,6 @@
 //! The dispatcher as an evaluator: opening it, and its refusals in words that help.
 use crate::{
     cli::{argument::door::Door, output::problem::Usage},
-    kind,
     study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus},
 };
 use dispatch::journal::{self, JournalError};
@@ -64,7 +63,7 @@ pub(crate) struct Bus {
 impl Bus {
     /// Opens or resumes the journal and starts local workers.
     pub(crate) async fn open(options: Options, case: &Case) -> anyhow::Result<Self> {
-        let unready = (options.local_workers > 0).then(|| kind::of(case).unready(case));
+        let unready = (options.local_workers > 0).then(|| case::kind::of(case).unready(case));
         if let Some((message, help)) = unready.flatten() {
             return Err(Usage { message, help }.into());
         }

@@ -5,11 +5,10 @@ use super::{
     manifest::{self, DIAGNOSE, Manifest},
 };
 use crate::{
-    case::Loaded,
     cli::output::{problem::Usage, terminal},
-    kind,
     study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
 };
+use case::Loaded;
 use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
 use protocol::{announce::EffectDescriptor, case::Case};
 use search::space::Space;
@@ -129,7 +128,7 @@ pub(super) fn inputs<S>(
         .into_iter()
         .filter(|effect| case.effects.iter().all(|own| own.id != effect.id))
         .collect();
-    let (usual, finer) = kind::of(case).numerics(case, thresholds)?;
+    let (usual, finer) = case::kind::of(case).numerics(case, thresholds)?;
     Ok(Inputs {
         conditions: case.conditions.iter().map(|own| own.name.clone()).collect(),
         unknowns: case.unknowns.clone(),

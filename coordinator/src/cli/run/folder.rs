@@ -8,12 +8,9 @@ use super::{
     command_line::quote_path,
     manifest::{CALIBRATE, DIAGNOSE, FORMAT, calibrate},
 };
-use crate::{
-    case::write_genes,
-    cli::output::{problem::Usage, terminal},
-    kind,
-};
+use crate::cli::output::{problem::Usage, terminal};
 use anyhow::Context as _;
+use case::write_genes;
 use dispatch::journal::{self, Recording};
 use protocol::{case::Case, event::Event};
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
@@ -204,7 +201,7 @@ impl RunFolder {
         about: &str,
     ) -> anyhow::Result<()> {
         self.write(GENES, &write_genes(case, genes, about))?;
-        if let Some((name, text)) = kind::of(case).gene_file(case, genes) {
+        if let Some((name, text)) = case::kind::of(case).gene_file(case, genes) {
             self.write(name, &text)?;
         }
         Ok(())

@@ -5,10 +5,10 @@ use super::{
     manifest::{self, IDENTIFY, Manifest},
 };
 use crate::{
-    case::Loaded,
     cli::output::{problem::Usage, terminal},
     study::{self, Evaluator, StageCost, StageView, Stop, Watch},
 };
+use case::Loaded;
 use discrepancy::{
     diagnose::Inputs, identify::Identified, laboratory::Stage, thresholds::Thresholds,
 };

@@ -8,7 +8,6 @@ use super::{
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
 use crate::{
-    case::Loaded,
     cli::{
         argument::output::Output,
         output::{
@@ -18,6 +17,7 @@ use crate::{
     },
     study::{Evaluator, ProgressView, StageView, Stop, Watch},
 };
+use case::Loaded;
 use std::path::Path;
 
 /// A run that was begun, of either kind.

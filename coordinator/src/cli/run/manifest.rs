@@ -3,7 +3,7 @@ use super::{
     bus,
     command_line::{command_line, quote, quote_path},
 };
-use crate::case::read_genes;
+use case::read_genes;
 use protocol::case::Case;
 use search::{
     space::{Space, SpaceError},

@@ -5,10 +5,8 @@ use super::{
     folder::{GENES, RunFolder},
     manifest::{CALIBRATE, Decides, Manifest, Start},
 };
-use crate::{
-    case::{Loaded, Overrides, load_with_notes, require_record},
-    cli::output::problem::Usage,
-};
+use crate::cli::output::problem::Usage;
+use case::{Loaded, Overrides, load_with_notes, require_record};
 use std::path::{Path, PathBuf};
 
 /// A case with its records, and where it came from.

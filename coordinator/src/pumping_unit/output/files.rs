@@ -1,10 +1,8 @@
 //! The files that a reduced head becomes: the case's two tables, and a picture for `ParaView`.
 use crate::cli::run::bus::PROGRAM;
-use crate::pumping_unit::{
-    case::{GaugePlace, HeadSource, TwinFile},
-    report::vtu::{self, Field},
-};
+use crate::pumping_unit::report::vtu::{self, Field};
 use anyhow::Context as _;
+use case::pumping_unit::{GaugePlace, HeadSource, TwinFile};
 use protocol::pumping_unit::{HeadMesh, Machine, ModeFamily, ReducedHead, TwinHead};
 use serde::Serialize;
 use std::{

@@ -16,7 +16,7 @@ use std::{collections::BTreeMap, path::Path};
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-    crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
+    case::load(&folder, &case::Overrides::default()).unwrap()
 }
 
 fn curves(verdict: Verdict) -> Curves {

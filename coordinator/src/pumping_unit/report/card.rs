@@ -1,5 +1,4 @@
 //! The dynamometer card: load at the suspension over its simulated position.
-use crate::line::periodic;
 use crate::report::chart::canvas::{Lettering, Pen, render};
 use crate::report::chart::panel::Panel;
 use crate::report::chart::scale::Scale;
@@ -10,6 +9,7 @@ use protocol::{
     case::Case,
     pumping_unit::{LoadCard, Machine, Simulation},
 };
+use support::interpolation::periodic;
 
 const SIZE: (f64, f64) = (620.0, 330.0);
 

@@ -1,6 +1,6 @@
 //! What was found, as entries of a model file.
 use super::subject::Subject;
-use crate::case::{CaseEffect, CaseParameter, Provenance, write_effects};
+use case::{CaseEffect, CaseParameter, Provenance, write_effects};
 use discrepancy::diagnose::Estimate;
 use discrepancy::model::bounds;
 use protocol::announce::ParameterDescriptor;

@@ -1,9 +1,10 @@
 //! Properties of the readers of files: an answer, or an error in words. Each writes its bytes into a
 //! folder that is given to it.
 use super::wire::crc32;
-use coordinator::{
-    case::{self, Overrides, read_genes, write_genes},
-    pumping_unit::case::{count_samples, mesh, read_card},
+use case::{
+    Overrides,
+    pumping_unit::{count_samples, mesh, read_card},
+    read_genes, write_genes,
 };
 use dispatch::journal::{self, ReadReport};
 use protocol::{case::Case, pumping_unit::Smoothing, wire};

@@ -1,7 +1,7 @@
 //! How often a diagnosis of this model is wrong: records that hide nothing, and records that hide one thing, as repeated
 //! periods and as one log whose noise is stated; the model simulates here, without a program between.
 use crate::rig::{HIDDEN, Rig};
-use coordinator::case::{self, Overrides};
+use case::{self, Overrides};
 use discrepancy::diagnose::{Diagnosis, Inputs, diagnose};
 use discrepancy::laboratory::{Laboratory, Stage};
 use discrepancy::thresholds::Thresholds;

@@ -17,8 +17,7 @@ const FINENESS: Fineness = Fineness {
 
 fn unit() -> PumpingUnit {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb");
-    let case = coordinator::case::load(&folder, &coordinator::case::Overrides::default())
-        .expect("the case");
+    let case = case::load(&folder, &case::Overrides::default()).expect("the case");
     PumpingUnit::of(case).expect("the case")
 }
 

@@ -1,5 +1,5 @@
 //! The practice records are read as any other record of the case, and their answers belong to them.
-use coordinator::case::{Overrides, load};
+use case::{Overrides, load};
 use serde_json::Value;
 use std::{collections::BTreeSet, fs, path::Path};
 

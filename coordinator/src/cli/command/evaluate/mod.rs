@@ -2,7 +2,6 @@
 mod words;
 
 use crate::{
-    case::require_record,
     cli::{
         argument::{
             case::{CaseChoice, LoadedCase},
@@ -21,6 +20,7 @@ use crate::{
     },
     study::{Request, evaluate},
 };
+use case::require_record;
 use clap::Args;
 use search::space::Space;
 use serde::{Deserialize, Serialize};

@@ -1,10 +1,10 @@
 //! Lines of `horsehead evaluate`: what is asked for and what is said, as JSON. It knows a case's unknowns, not
 //! who scores.
 use crate::{
-    case::document::nearest,
     cli::output::object::scored::ScoredOutput,
     study::{Request, Scored},
 };
+use case::document::nearest;
 use protocol::job::Verdict;
 use search::space::Space;
 use serde::{Deserialize, Serialize};

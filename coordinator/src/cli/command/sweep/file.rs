@@ -1,7 +1,6 @@
 //! `horsehead sweep FILE`: every search of a grid, or every individual of a table.
 use super::grid::{Grid, rows};
 use crate::{
-    case::{document::Document, require_record},
     cli::{
         argument::{
             case::{LoadedCase, case_folder, load_case},
@@ -31,6 +30,7 @@ use crate::{
     report::{orthogonal::runs, table},
     study::{Sweep, Watch as _, score_all},
 };
+use case::{document::Document, require_record};
 use clap::Args;
 use search::space::Space;
 use std::path::{Path, PathBuf};

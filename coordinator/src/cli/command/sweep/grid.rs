@@ -1,6 +1,5 @@
 //! The file of a grid: which case, which preset, which settings take which values.
 use crate::{
-    case::document::{Document, Step},
     cli::{
         argument::settings::SettingsChoice,
         output::problem::Usage,
@@ -8,6 +7,7 @@ use crate::{
     },
     orthogonal::Factor,
 };
+use case::document::{Document, Step};
 use search::{
     space::Space,
     strategy::{CATALOGUE, preset},

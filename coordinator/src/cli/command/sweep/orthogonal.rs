@@ -1,6 +1,5 @@
 //! `horsehead sweep orthogonal`: which levels of a search's settings are best, by a few of all combinations.
 use crate::{
-    case::require_record,
     cli::{
         argument::{
             case::{CaseChoice, LoadedCase},
@@ -29,6 +28,7 @@ use crate::{
     study::Watch as _,
 };
 use anyhow::Context as _;
+use case::require_record;
 use clap::{
     Args,
     builder::{PossibleValuesParser, TypedValueParser as _},

@@ -1,6 +1,5 @@
 //! `horsehead sweep scaling`: how much faster searches are on more slots, and where slot time goes.
 use crate::{
-    case::require_record,
     cli::{
         argument::{
             case::{CaseChoice, LoadedCase},
@@ -25,6 +24,7 @@ use crate::{
     scaling::Scaled,
 };
 use anyhow::Context as _;
+use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
 use search::{space::Space, strategy::CATALOGUE};
 use std::{fs, path::PathBuf};

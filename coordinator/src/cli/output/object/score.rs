@@ -82,7 +82,7 @@ pub(crate) fn unknowns(case: &Case, values: &[f64]) -> Unknowns {
             (gene.name.clone(), output)
         })
         .collect();
-    Unknowns(BTreeMap::from([(kind::of(case).unknowns(), named)]))
+    Unknowns(BTreeMap::from([(case::kind::of(case).unknowns(), named)]))
 }
 
 /// Agreement of one channel, in its unit.

@@ -289,7 +289,7 @@ fn readouts(case: &Case, simulation: &Simulation, frames: &[&Motion]) -> Vec<Rea
             .iter()
             .map(|frame| {
                 let turn = &simulation.turn_deg;
-                let value = crate::line::interpolated(turn, values, frame.turn_deg)?;
+                let value = support::interpolation::interpolated(turn, values, frame.turn_deg)?;
                 rounded(factor * value, decimals)
             })
             .collect(),

@@ -31,7 +31,7 @@ use std::{path::Path, time::Duration};
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");
-    crate::case::load(&folder, &crate::case::Overrides::default()).unwrap()
+    case::load(&folder, &case::Overrides::default()).unwrap()
 }
 
 fn row(part: Portion, closed: f64) -> Row {

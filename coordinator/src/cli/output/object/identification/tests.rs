@@ -1,9 +1,7 @@
 //! The contract of `horsehead identify CASE --output json`: fields by name.
 use super::*;
-use crate::{
-    case::{Overrides, load},
-    report::{Origin, identification::report},
-};
+use crate::report::{Origin, identification::report};
+use case::{Overrides, load};
 use discrepancy::{
     identify::{Band, Curve, End, Identified, Part, Pin},
     record::noise::Known,

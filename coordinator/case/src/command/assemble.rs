@@ -1,0 +1,438 @@
+//! From what a case says of a program to what travels: every name is held against every other, so that what is
+//! wrong is said here and not by a worker.
+use super::{
+    file::{ChannelEntry, InputEntry, ModelEntry, OutputEntry, OwnFile, SourceEntry},
+    files,
+};
+use crate::{
+    document::{Document, Step, nearest},
+    error::CaseError,
+    file,
+    source::Source,
+};
+use exchange::{Problem, dakota, object, pest, table};
+use protocol::{
+    case::Case,
+    external::{
+        Equation, EquationTerm, External, Fill, FillForm, Parameter, Reading, ReadingForm,
+        Source as From,
+    },
+};
+use std::{collections::BTreeSet, path::Path};
+
+/// Everything that a case says of its program.
+///
+/// # Errors
+/// A file that cannot be read, a name that nothing has, a channel that comes from nowhere.
+pub(super) fn assemble(
+    source: &Source<'_>,
+    own: &OwnFile,
+    case: &Case,
+) -> Result<External, CaseError> {
+    let assembly = Assembly {
+        document: source.document,
+        folder: source.folder,
+        model: &own.model,
+    };
+    let parameters = assembly.parameters(case)?;
+    let conditions: Vec<Vec<(String, f64)>> = own
+        .conditions
+        .iter()
+        .map(|entry| entry.values.clone().into_iter().collect())
+        .collect();
+    let mut known: BTreeSet<String> = parameters.iter().map(|p| p.name.clone()).collect();
+    for (index, values) in conditions.iter().enumerate() {
+        assembly.alike(index, values, &conditions[0])?;
+        known.extend(values.iter().map(|(name, _)| name.clone()));
+    }
+    let fills = assembly.fills(&known)?;
+    let (readings, mut named) = assembly.readings()?;
+    let mut plain: BTreeSet<String> = case.unknowns.iter().map(|own| own.name.clone()).collect();
+    plain.extend(conditions.iter().flatten().map(|(name, _)| name.clone()));
+    let equations = assembly.equations(&plain)?;
+    named.extend(equations.iter().map(|equation| equation.name.clone()));
+    let curves = own.channels.iter().enumerate();
+    let curve = |(index, channel): (usize, &ChannelEntry)| {
+        let curve = assembly.curve(index, channel, &readings, &named)?;
+        assembly.reach(index, &curve, &readings, case)?;
+        Ok(curve)
+    };
+    Ok(External {
+        files: files::read(source.document, source.folder, &own.model.files)?,
+        fills,
+        curves: curves.map(curve).collect::<Result<_, CaseError>>()?,
+        readings,
+        equations,
+        parameters,
+        conditions,
+        verdicts: assembly.verdicts()?,
+    })
+}
+
+struct Assembly<'a> {
+    document: &'a Document,
+    folder: &'a Path,
+    model: &'a ModelEntry,
+}
+
+impl Assembly<'_> {
+    fn refused(
+        &self,
+        way: &[Step<'_>],
+        value: impl std::fmt::Display,
+        allowed: &str,
+        help: &str,
+    ) -> CaseError {
+        self.document.field(way, value, allowed, help)
+    }
+
+    /// A name that is none of those that there are.
+    fn unknown(&self, way: &[Step<'_>], name: &str, allowed: &str, names: &[&str]) -> CaseError {
+        let near = nearest(name, names.iter().copied());
+        let help = near.map_or("correct the name".to_owned(), |near| {
+            format!("did you mean `{near}`?")
+        });
+        self.refused(way, format!("\"{name}\""), allowed, &help)
+    }
+
+    /// How the case's unknowns are written.
+    fn parameters(&self, case: &Case) -> Result<Vec<Parameter>, CaseError> {
+        let names = || case.unknowns.iter().map(|unknown| unknown.name.as_str());
+        let stated = self.model.parameters.keys();
+        if let Some(strange) = stated
+            .into_iter()
+            .find(|key| names().all(|name| name != *key))
+        {
+            let way = ["model", "parameters", strange].map(Step::Key);
+            return Err(self.unknown(
+                &way,
+                strange,
+                "the name of an unknown of the case",
+                &names().collect::<Vec<_>>(),
+            ));
+        }
+        let written = names().map(|name| {
+            let entry = self.model.parameters.get(name);
+            let other = entry.and_then(|entry| entry.name.clone());
+            Parameter {
+                name: other.unwrap_or_else(|| name.to_owned()),
+                factor: entry.map_or(1.0, |entry| entry.factor),
+                offset: entry.map_or(0.0, |entry| entry.offset),
+            }
+        });
+        Ok(written.collect())
+    }
+
+    /// Every condition sets the same values, for templates are the same for all.
+    fn alike(
+        &self,
+        index: usize,
+        values: &[(String, f64)],
+        first: &[(String, f64)],
+    ) -> Result<(), CaseError> {
+        let names = |all: &[(String, f64)]| -> Vec<String> {
+            all.iter().map(|(name, _)| name.clone()).collect()
+        };
+        if names(values) == names(first) {
+            return Ok(());
+        }
+        let way = [
+            Step::Key("conditions"),
+            Step::Index(index),
+            Step::Key("values"),
+        ];
+        Err(self.refused(
+            &way,
+            names(values).join(", "),
+            &format!(
+                "the names that the first condition sets: {}",
+                names(first).join(", ")
+            ),
+            "set the same names under every condition",
+        ))
+    }
+
+    /// A file beside the case, as text.
+    fn text(&self, path: &Path, role: &str) -> Result<String, CaseError> {
+        let path = self.folder.join(path);
+        file::text(&path, file::read(&path, role)?)
+    }
+
+    fn fills(&self, known: &BTreeSet<String>) -> Result<Vec<Fill>, CaseError> {
+        let inputs = self.model.inputs.iter().enumerate();
+        let fill = |(index, input): (usize, &InputEntry)| {
+            let way = |key| {
+                let list = [Step::Key("model"), Step::Key("inputs")];
+                [list[0], list[1], Step::Index(index), Step::Key(key)]
+            };
+            let (form, names) = match (&input.template, &input.braces, &input.dakota) {
+                (Some(path), None, None) => {
+                    let text = self.text(path, "a template that `inputs` names")?;
+                    let template = pest::Template::parse(&path.to_string_lossy(), &text);
+                    let template =
+                        template.map_err(|problem| self.problem(&way("template"), &problem))?;
+                    (
+                        FillForm::Pest(text),
+                        template.fields().into_keys().collect(),
+                    )
+                }
+                (None, Some(path), None) => {
+                    let text = self.text(path, "a text that `inputs` names")?;
+                    let template = dakota::Template::parse(&path.to_string_lossy(), &text);
+                    let template =
+                        template.map_err(|problem| self.problem(&way("braces"), &problem))?;
+                    (
+                        FillForm::Braces(text),
+                        template.fields().into_iter().collect(),
+                    )
+                }
+                (None, None, Some(form)) if dakota::Form::named(form).is_some() => {
+                    (FillForm::Dakota(form.clone()), Vec::new())
+                }
+                (None, None, Some(form)) => {
+                    let allowed = "standard, aprepro or json";
+                    return Err(self.refused(&way("dakota"), form, allowed, "correct it"));
+                }
+                _ => {
+                    let allowed = "exactly one of template, braces and dakota";
+                    let help = "say how the file is filled in";
+                    return Err(self.refused(&way("file"), &input.file, allowed, help));
+                }
+            };
+            for name in &names {
+                let is_known = known.iter().any(|own| own.eq_ignore_ascii_case(name));
+                if !is_known {
+                    let allowed =
+                        "a field with the name of an unknown, or of a value of the conditions";
+                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                    return Err(self.unknown(&way("file"), name, allowed, &known));
+                }
+            }
+            Ok(Fill {
+                file: input.file.clone(),
+                form,
+            })
+        };
+        inputs.map(fill).collect()
+    }
+
+    /// The outputs, and the names of single values in them.
+    fn readings(&self) -> Result<(Vec<Reading>, BTreeSet<String>), CaseError> {
+        let mut named = BTreeSet::new();
+        let outputs = self.model.outputs.iter().enumerate();
+        let reading = |(index, output): (usize, &OutputEntry)| {
+            let way = |key| {
+                let list = [Step::Key("model"), Step::Key("outputs")];
+                [list[0], list[1], Step::Index(index), Step::Key(key)]
+            };
+            let form = match (&output.instructions, &output.dakota) {
+                (Some(path), None) => {
+                    let text = self.text(path, "instructions that `outputs` names")?;
+                    let read = pest::Instructions::parse(&path.to_string_lossy(), &text);
+                    let read =
+                        read.map_err(|problem| self.problem(&way("instructions"), &problem))?;
+                    named.extend(read.observations());
+                    ReadingForm::Pest(text)
+                }
+                (None, Some(functions)) => {
+                    named.extend(functions.iter().cloned());
+                    ReadingForm::Dakota(functions.clone())
+                }
+                (None, None)
+                    if Path::new(&output.file)
+                        .extension()
+                        .is_some_and(|end| end == "json") =>
+                {
+                    ReadingForm::Object
+                }
+                (None, None) => ReadingForm::Table,
+                (Some(_), Some(_)) => {
+                    let allowed = "no more than one of instructions and dakota";
+                    let help = "say once how the file is read";
+                    return Err(self.refused(&way("file"), &output.file, allowed, help));
+                }
+            };
+            Ok(Reading {
+                file: output.file.clone(),
+                form,
+            })
+        };
+        let readings = outputs.map(reading).collect::<Result<_, _>>()?;
+        Ok((readings, named))
+    }
+
+    fn equations(&self, known: &BTreeSet<String>) -> Result<Vec<Equation>, CaseError> {
+        let equations = self.model.equations.iter().enumerate();
+        let equation = |(index, entry): (usize, &super::file::EquationEntry)| {
+            let term = |term: &super::file::TermEntry| {
+                if !known.contains(&term.parameter) {
+                    let way = [
+                        Step::Key("model"),
+                        Step::Key("equations"),
+                        Step::Index(index),
+                    ];
+                    let allowed = "the name of an unknown, or of a value of the conditions";
+                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                    return Err(self.unknown(&way, &term.parameter, allowed, &known));
+                }
+                Ok(EquationTerm {
+                    parameter: term.parameter.clone(),
+                    factor: term.factor,
+                    log: term.log,
+                })
+            };
+            Ok(Equation {
+                name: entry.name.clone(),
+                terms: entry.terms.iter().map(term).collect::<Result<_, _>>()?,
+            })
+        };
+        equations.map(equation).collect()
+    }
+
+    /// Compares the channel's places with those of the curve that the program left in the case's folder, where it has
+    /// been run there: a place beyond the curve would fail every run.
+    ///
+    /// # Errors
+    /// A channel that reaches beyond that curve.
+    fn reach(
+        &self,
+        index: usize,
+        curve: &From,
+        readings: &[Reading],
+        case: &Case,
+    ) -> Result<(), CaseError> {
+        let (reading, at) = match curve {
+            From::Named(_) => return Ok(()),
+            From::Column { reading, at, .. } | From::Pointer { reading, at, .. } => (*reading, at),
+        };
+        let (Some(at), Some(channel)) = (at, case.channels.get(index)) else {
+            return Ok(());
+        };
+        let left = &readings[reading].file;
+        // what cannot be read there is no part of the case: the program writes it anew in its own folder
+        let Ok(text) = std::fs::read_to_string(self.folder.join(left)) else {
+            return Ok(());
+        };
+        let along = match curve {
+            From::Pointer { .. } => object::values(left, &text, at),
+            From::Named(_) | From::Column { .. } => table::column(left, &text, at),
+        };
+        let Ok(along) = along else {
+            return Ok(());
+        };
+        let places = &channel.abscissa.points;
+        let (Some(first), Some(last)) = (along.first(), along.last()) else {
+            return Ok(());
+        };
+        let (Some(&from), Some(&to)) = (places.first(), places.last()) else {
+            return Ok(());
+        };
+        let slack = 1e-9 * (last - first).abs();
+        if from >= first - slack && to <= last + slack {
+            return Ok(());
+        }
+        let way = [Step::Key("channels"), Step::Index(index)];
+        let unit = &channel.abscissa.unit;
+        Err(self.refused(
+            &way,
+            format!("channel `{}` from {from} to {to} {unit}", channel.name),
+            &format!("places from {first} to {last} {unit}, as the program's curve in {left} goes"),
+            &format!(
+                "cut the record, or let the program run further; remove {left} from the case's folder if it is an old one"
+            ),
+        ))
+    }
+
+    /// Where a channel comes from.
+    fn curve(
+        &self,
+        index: usize,
+        channel: &ChannelEntry,
+        readings: &[Reading],
+        named: &BTreeSet<String>,
+    ) -> Result<From, CaseError> {
+        let way = [
+            Step::Key("channels"),
+            Step::Index(index),
+            Step::Key("source"),
+        ];
+        let allowed =
+            "{ named = [..] }, { file, column } of a table or { file, values } of an object";
+        let help = "say which values of which output the channel is";
+        let Some(entry) = &channel.source else {
+            let value = format!("absent of channel `{}`", channel.name);
+            return Err(self.refused(&way, value, allowed, help));
+        };
+        let SourceEntry {
+            named: names,
+            file,
+            column,
+            values,
+            at,
+        } = entry;
+        if let (Some(names), None, None, None, None) = (names, file, column, values, at) {
+            if let Some(strange) = names.iter().find(|name| !named.contains(*name)) {
+                let allowed = "a value that instructions, functions or equations name";
+                let named: Vec<&str> = named.iter().map(String::as_str).collect();
+                return Err(self.unknown(&way, strange, allowed, &named));
+            }
+            return Ok(From::Named(names.clone()));
+        }
+        let (Some(file), None) = (file, names) else {
+            return Err(self.refused(&way, "something else", allowed, help));
+        };
+        let Some(reading) = readings.iter().position(|reading| reading.file == *file) else {
+            let files: Vec<&str> = readings
+                .iter()
+                .map(|reading| reading.file.as_str())
+                .collect();
+            return Err(self.unknown(&way, file, "the file of one of the outputs", &files));
+        };
+        match (&readings[reading].form, column, values) {
+            (ReadingForm::Table, Some(column), None) => Ok(From::Column {
+                reading,
+                at: at.clone(),
+                column: column.clone(),
+            }),
+            (ReadingForm::Object, None, Some(values)) => Ok(From::Pointer {
+                reading,
+                values: values.clone(),
+                at: at.clone(),
+            }),
+            _ => Err(self.refused(&way, format!("file = \"{file}\""), allowed, help)),
+        }
+    }
+
+    fn verdicts(&self) -> Result<Vec<(i32, String)>, CaseError> {
+        let verdict = |(status, word): (&String, &String)| {
+            let number = status
+                .parse::<i32>()
+                .ok()
+                .filter(|number| (1..=255).contains(number));
+            let is_word = protocol::job::Word::of(word).is_some_and(|_| !word.is_empty());
+            number
+                .filter(|_| is_word)
+                .map(|number| (number, word.clone()))
+                .ok_or_else(|| {
+                    let way = ["model", "verdicts", status].map(Step::Key);
+                    let allowed =
+                        "a status from 1 to 255 with a word of small letters, digits and `_`";
+                    self.refused(&way, word, allowed, "as in verdicts = { 3 = \"diverged\" }")
+                })
+        };
+        self.model.verdicts.iter().map(verdict).collect()
+    }
+
+    /// What a template or a list of instructions has wrong.
+    fn problem(&self, way: &[Step<'_>], problem: &Problem) -> CaseError {
+        let place = problem
+            .line
+            .map_or_else(String::new, |line| format!(", line {line}"));
+        self.document.field(
+            way,
+            format!("{}{place}: {}", problem.file, problem.found),
+            problem.allowed.clone(),
+            &problem.remedy,
+        )
+    }
+}

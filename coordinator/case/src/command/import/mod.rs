@@ -1,0 +1,198 @@
+//! A case made of a control file of PEST: `case.toml`, the observations beside it, and the control file's whole
+//! folder, whose files travel with the case.
+mod channels;
+mod copy;
+mod unknowns;
+
+use channels::{Group, OBSERVATIONS};
+use exchange::{Problem, pest::Control};
+use std::{
+    fs, io,
+    path::{Path, PathBuf},
+};
+use toml_edit::{Array, ArrayOfTables, DocumentMut, InlineTable, Item, Table, Value, value};
+
+/// Name of the one condition of such a case.
+const CONDITION: &str = "model";
+/// How long one run may take where nobody has said so (s).
+const DEADLINE_S: f64 = 3600.0;
+
+/// What was made.
+#[derive(Debug)]
+pub struct Imported {
+    /// The case folder.
+    pub folder: PathBuf,
+    /// What was taken otherwise than it stands, or not at all.
+    pub notes: Vec<String>,
+    /// Parameters that are estimated, and observations that count.
+    pub counts: [usize; 2],
+}
+
+/// Why nothing was made.
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// The control file, or one that it names.
+    #[error(transparent)]
+    File(#[from] Problem),
+    /// A folder that is there already.
+    #[error("{} exists already, and nothing was written", .0.display())]
+    Exists(PathBuf),
+    /// What the system says.
+    #[error("{}: {source}", .path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+}
+
+/// Makes the case folder of a control file: `to`, or the control file's name beside it.
+///
+/// # Errors
+/// A control file that cannot be used, a folder that is there; then nothing is left of it.
+pub fn import(control: &Path, to: Option<&Path>) -> Result<Imported, ImportError> {
+    let io = |path: &Path, source| ImportError::Io {
+        path: path.to_owned(),
+        source,
+    };
+    let text = fs::read(control).map_err(|source| io(control, source))?;
+    let text = String::from_utf8_lossy(&text);
+    let beside = match control.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        Some(_) | None => Path::new("."),
+    };
+    let open =
+        |name: &str| fs::read_to_string(beside.join(name)).map_err(|error| error.to_string());
+    let mut read = Control::parse(&control.display().to_string(), &text, &open)?;
+    let folder = to.map_or_else(|| control.with_extension(""), Path::to_owned);
+    if folder.exists() {
+        return Err(ImportError::Exists(folder));
+    }
+    let name = named(control);
+    let groups = channels::groups(&read);
+    fs::create_dir_all(&folder).map_err(|source| io(&folder, source))?;
+    let written = copy::all(beside, &folder).and_then(|(files, notes)| {
+        read.notes.extend(notes);
+        let file = control.file_name().unwrap_or_default().to_string_lossy();
+        let case = text_of(&read, &groups, (&name, &file), &files);
+        fs::write(folder.join("case.toml"), case)?;
+        fs::write(folder.join(OBSERVATIONS), channels::table(&groups))
+    });
+    if let Err(source) = written {
+        drop(fs::remove_dir_all(&folder));
+        return Err(io(&folder, source));
+    }
+    let estimated = read.parameters.iter();
+    let estimated = estimated
+        .filter(|own| unknowns::is_searched(&own.transform))
+        .count();
+    let counted = groups.iter().filter(|group| group.is_measured);
+    Ok(Imported {
+        folder,
+        counts: [estimated, counted.map(|group| group.rows.len()).sum()],
+        notes: read.notes,
+    })
+}
+
+/// A name for the case and its entry: many a control file is called like all others, so the folder's goes before.
+fn named(control: &Path) -> String {
+    let full = std::path::absolute(control).unwrap_or_else(|_| control.to_owned());
+    let folder = full.parent().and_then(Path::file_name);
+    let parts = folder.into_iter().chain(control.file_stem());
+    let parts: Vec<_> = parts.map(std::ffi::OsStr::to_string_lossy).collect();
+    parts.join("-")
+}
+
+/// The text of the case file.
+fn text_of(
+    control: &Control,
+    groups: &[Group],
+    (name, file): (&str, &str),
+    files: &[String],
+) -> String {
+    let mut document = DocumentMut::new();
+    document.insert("name", value(name));
+    document.insert("model", Item::Table(model(control, name, files)));
+    document.insert("unknowns", Item::ArrayOfTables(unknowns::tables(control)));
+    let mut condition = Table::new();
+    condition.insert("name", value(CONDITION));
+    let conditions: ArrayOfTables = [condition].into_iter().collect();
+    document.insert("conditions", Item::ArrayOfTables(conditions));
+    document.insert(
+        "channels",
+        Item::ArrayOfTables(channels::tables(groups, CONDITION)),
+    );
+    document.insert(
+        "objective",
+        Item::Table(channels::objective(groups, CONDITION)),
+    );
+    format!("# Made from {file}, a control file of PEST.\n{document}")
+}
+
+/// `[model]`.
+fn model(control: &Control, name: &str, files: &[String]) -> Table {
+    let mut model = Table::new();
+    model.insert("kind", value("command"));
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || matches!(letter, '_' | '-' | '.');
+    let entry: String = name
+        .chars()
+        .map(|letter| if plain(letter) { letter } else { '_' })
+        .take(64)
+        .collect();
+    model.insert("entry", value(entry));
+    model.insert("command", list(&command(&control.commands)));
+    model.insert("files", list(files));
+    model.insert("deadline_s", value(DEADLINE_S));
+    let pair = |own: &'static str, pair: &exchange::pest::Pair| {
+        let parts = [
+            ("file", plain_path(&pair.program)),
+            (own, plain_path(&pair.own)),
+        ];
+        parts.into_iter().collect::<InlineTable>()
+    };
+    let inputs: Array = control
+        .inputs
+        .iter()
+        .map(|it| pair("template", it))
+        .collect();
+    let outputs: Array = control
+        .outputs
+        .iter()
+        .map(|it| pair("instructions", it))
+        .collect();
+    model.insert("inputs", value(inputs));
+    model.insert("outputs", value(outputs));
+    if !control.prior.is_empty() {
+        let equations: Array = control.prior.iter().map(unknowns::equation).collect();
+        model.insert("equations", value(equations));
+    }
+    let written: InlineTable = control
+        .parameters
+        .iter()
+        .filter_map(unknowns::written)
+        .collect();
+    if !written.is_empty() {
+        model.insert("parameters", value(written));
+    }
+    model
+}
+
+/// A file's path without `./` before it, and with `/` between folders.
+fn plain_path(path: &str) -> String {
+    let path = path.replace('\\', "/");
+    path.trim_start_matches("./").to_owned()
+}
+
+/// The words of the command line; several lines, or one for a shell, become a shell's.
+fn command(lines: &[String]) -> Vec<String> {
+    let shell = |text: &str| text.contains(['|', '>', '<', '&', ';', '$', '`']);
+    match lines {
+        [one] if !shell(one) => shlex::split(one).unwrap_or_else(|| vec![one.clone()]),
+        more => vec!["/bin/sh".to_owned(), "-c".to_owned(), more.join(" && ")],
+    }
+}
+
+fn list(words: &[String]) -> Item {
+    value(words.iter().map(Value::from).collect::<Array>())
+}

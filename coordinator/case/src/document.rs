@@ -1,0 +1,357 @@
+//! TOML files: parsed into typed data, with errors that show the line and the nearest known key.
+use super::{
+    conversion::{convert, convert_key, factor},
+    error::{CaseError, damaged},
+    file,
+};
+use serde::de::DeserializeOwned;
+use std::{
+    fmt::Display,
+    ops::{Range, RangeInclusive},
+    path::{Path, PathBuf},
+};
+use toml::de::{DeTable, DeValue};
+
+/// A TOML file that was read: its text is kept for the excerpts of later errors.
+#[derive(Debug)]
+pub struct Document {
+    /// The file.
+    pub path: PathBuf,
+    text: String,
+}
+
+/// One step of the way to a field.
+#[derive(Debug, Clone, Copy)]
+pub enum Step<'a> {
+    /// A key of a table.
+    Key(&'a str),
+    /// An entry of an array.
+    Index(usize),
+}
+
+impl Document {
+    /// Reads a TOML file.
+    ///
+    /// # Errors
+    /// Missing, unreadable, empty or not text.
+    pub fn read(path: &Path, role: &str) -> Result<Self, CaseError> {
+        let bytes = file::read(path, role)?;
+        let text = file::text(path, file::decoded(&bytes).into_owned())?;
+        Ok(Self {
+            path: path.to_owned(),
+            text,
+        })
+    }
+
+    /// Parses the text.
+    ///
+    /// # Errors
+    /// Syntax, unknown keys (with the nearest known one), missing keys, values of another type.
+    pub fn parse<T: DeserializeOwned>(&self) -> Result<T, CaseError> {
+        toml::from_str(&self.text).map_err(|error| {
+            let message = error.message();
+            CaseError::Toml {
+                path: self.path.as_path().into(),
+                problem: first_line(message).into(),
+                excerpt: error
+                    .span()
+                    .map(|span| self.excerpt(span))
+                    .unwrap_or_default()
+                    .into(),
+                help: advice(message).into(),
+            }
+        })
+    }
+
+    /// An error about a field, with its source line.
+    pub fn field(
+        &self,
+        way: &[Step<'_>],
+        value: impl Display,
+        allowed: impl Into<String>,
+        help: &str,
+    ) -> CaseError {
+        CaseError::Field {
+            path: self.path.as_path().into(),
+            field: dotted(way).into(),
+            value: value.to_string().into(),
+            allowed: allowed.into().into(),
+            excerpt: self
+                .span(way)
+                .map(|span| self.excerpt(span))
+                .unwrap_or_default()
+                .into(),
+            help: help.into(),
+        }
+    }
+
+    /// Checks that a number of the file lies in an interval; NaN never does.
+    ///
+    /// # Errors
+    /// Names the field, its value and the interval with its unit.
+    pub fn within(
+        &self,
+        dotted: &str,
+        value: f64,
+        range: RangeInclusive<f64>,
+        unit: &str,
+    ) -> Result<(), CaseError> {
+        if range.contains(&value) {
+            return Ok(());
+        }
+        let way: Vec<Step<'_>> = dotted.split('.').map(Step::Key).collect();
+        Err(self.field(
+            &way,
+            value,
+            format!(
+                "{} to {} {unit}",
+                short(*range.start()),
+                short(*range.end())
+            ),
+            "correct the value; the unit is the end of the key's name",
+        ))
+    }
+
+    /// Where a field stands in the text.
+    fn span(&self, way: &[Step<'_>]) -> Option<Range<usize>> {
+        let root = DeTable::parse(&self.text).ok()?;
+        let (first, rest) = way.split_first()?;
+        let Step::Key(key) = first else { return None };
+        let mut at = root.get_ref().get(*key)?;
+        for step in rest {
+            at = match (step, at.get_ref()) {
+                (Step::Key(key), DeValue::Table(table)) => table.get(*key)?,
+                (Step::Index(index), DeValue::Array(array)) => array.get(*index)?,
+                _ => return Some(at.span()),
+            };
+        }
+        Some(at.span())
+    }
+
+    /// The line of a span with a marker below it.
+    fn excerpt(&self, span: Range<usize>) -> String {
+        let before = self.text.get(..span.start).unwrap_or_default();
+        let line = before.matches('\n').count();
+        let column = before.chars().rev().take_while(|c| *c != '\n').count();
+        let Some(source) = self.text.lines().nth(line) else {
+            return String::new();
+        };
+        let (source, column) = around(source, column);
+        let room = source.chars().count().saturating_sub(column).max(1);
+        let width = span.end.saturating_sub(span.start).clamp(1, room);
+        let number = (line + 1).to_string();
+        let gutter = " ".repeat(number.len());
+        format!(
+            "\n{gutter} |\n{number} | {source}\n{gutter} | {}{}",
+            " ".repeat(column),
+            "^".repeat(width)
+        )
+    }
+}
+
+/// A line as far as a terminal shows it, with the column moved accordingly.
+fn around(line: &str, column: usize) -> (String, usize) {
+    const WIDEST: usize = 120;
+    const BEFORE: usize = 60;
+    if line.chars().count() <= WIDEST {
+        return (line.to_owned(), column);
+    }
+    let from = column.saturating_sub(BEFORE);
+    let part: String = line.chars().skip(from).take(WIDEST).collect();
+    if from == 0 {
+        return (part + " ...", column);
+    }
+    (format!("... {part}"), column - from + 4)
+}
+
+/// The way to a field as it is written in messages: `conditions[0].speed_rpm`.
+fn dotted(way: &[Step<'_>]) -> String {
+    let mut text = String::new();
+    for step in way {
+        match step {
+            Step::Key(key) if text.is_empty() => text.push_str(key),
+            Step::Key(key) => {
+                text.push('.');
+                text.push_str(key);
+            }
+            Step::Index(index) => {
+                text.push('[');
+                text.push_str(&index.to_string());
+                text.push(']');
+            }
+        }
+    }
+    text
+}
+
+/// A number without needless digits.
+pub fn short(value: f64) -> String {
+    if value != 0.0 && !(1e-3..1e5).contains(&value.abs()) {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// Stands in the `expecting` text of a type of case files, between what is expected and an example of it.
+const WRITE: &str = "; write ";
+
+/// What counts are, in words.
+const WHOLE: &str = "expected a whole number, 0 or greater";
+
+/// The first line of a library's message, without its list of alternatives.
+fn first_line(message: &str) -> String {
+    let line = message.lines().next().unwrap_or_default();
+    let line = line.split_once(WRITE).map_or(line, |(line, _)| line);
+    match line.split_once(", expected ") {
+        Some((head, _)) if line.starts_with("unknown ") => head.to_owned(),
+        // types of the source are nothing to people who write files
+        Some((head, kind)) if kind.starts_with("struct ") => format!("{head}, expected a table"),
+        _ => line
+            .replace("expected f64", "expected a number")
+            .replace("expected u8", "expected a whole number from 0 to 255")
+            .replace("expected usize", WHOLE)
+            .replace("expected u32", WHOLE)
+            .replace("expected u64", WHOLE)
+            .replace("expected i64", "expected a whole number"),
+    }
+}
+
+/// What to do about a message of the TOML library.
+fn advice(message: &str) -> String {
+    let mut quoted = message.split('`').skip(1).step_by(2);
+    if message.starts_with("unknown field") || message.starts_with("unknown variant") {
+        let what = quoted.next().unwrap_or_default();
+        let known: Vec<&str> = quoted.collect();
+        let list = known.join(", ");
+        let choice = message.starts_with("unknown variant");
+        if !choice && let Some(conversion) = convert_key(what, &known) {
+            return conversion;
+        }
+        if choice && let Some(unit) = known.iter().find(|unit| factor(what, unit).is_some()) {
+            return format!("{}; known here: {list}", convert(what, unit));
+        }
+        return match nearest(what, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`? known here: {list}"),
+            None if choice => format!("choose one of: {list}"),
+            None => format!("remove it; known here: {list}"),
+        };
+    }
+    if message.starts_with("missing field") {
+        let what = quoted.next().unwrap_or_default();
+        return match what {
+            "unit" => format!("add `unit = \"...\"`: one of {}", units()),
+            _ => format!("add `{what}`; `horsehead case new` prints a commented template"),
+        };
+    }
+    if let Some((_, example)) = message.split_once(WRITE) {
+        let example = example.lines().next().unwrap_or_default();
+        return format!("write {example}; units: {}", units());
+    }
+    if message.starts_with("invalid type") {
+        return "correct the value's type: numbers without quotes, names with quotes".to_owned();
+    }
+    "correct the marked place; the file must be TOML 1.0".to_owned()
+}
+
+/// Every unit a gene may have, for messages.
+pub fn units() -> String {
+    protocol::unit::Unit::ALL
+        .map(protocol::unit::Unit::symbol)
+        .join(", ")
+}
+
+/// Prefixes that turn a word into its opposite.
+const OPPOSITE: [&str; 4] = ["anti", "counter", "un", "non"];
+
+/// The candidate that is most like a word, if any is much like it; never its opposite.
+pub fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    let lower = word.to_lowercase().replace(['-', ' '], "_");
+    let word = lower.strip_prefix("anti").map_or(lower.clone(), |rest| {
+        format!("counter_{}", rest.trim_start_matches('_'))
+    });
+    let word = word.as_str();
+    let opposite = |candidate: &str| {
+        let before = word.strip_suffix(candidate).unwrap_or_default();
+        OPPOSITE.contains(&before.trim_end_matches('_'))
+    };
+    candidates
+        .filter(|candidate| !opposite(candidate))
+        .map(|candidate| {
+            let alike = strsim::normalized_damerau_levenshtein(word, &candidate.to_lowercase());
+            // a key that lacks its unit is the commonest slip: `mass` for `mass_kg`
+            let prefix = candidate.starts_with(word) && word.len() >= 3;
+            (candidate, if prefix { alike.max(0.9) } else { alike })
+        })
+        .filter(|(_, alike)| *alike >= 0.5)
+        .max_by(|a, b| a.1.total_cmp(&b.1))
+        .map(|(candidate, _)| candidate)
+}
+
+/// Parses JSON with the file's name in the error.
+///
+/// # Errors
+/// Names the line and column of the first problem.
+pub fn json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, CaseError> {
+    serde_json::from_slice(bytes).map_err(|error| {
+        damaged(
+            path,
+            format!("the JSON cannot be used: {error}"),
+            "copy the file again from its source; keys and lengths are described in the case's README",
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{advice, around, first_line, nearest};
+
+    /// A line of a hundred thousand brackets filled the terminal.
+    #[test]
+    fn of_a_long_line_only_what_is_around_the_place_is_shown() {
+        assert_eq!(around("a = 1", 4), ("a = 1".to_owned(), 4));
+        let long: String = "0123456789".repeat(100);
+        for column in [0, 5, 61, 500, 999] {
+            let (shown, at) = around(&long, column);
+            assert!(shown.chars().count() <= 124, "{column}");
+            assert_eq!(shown.chars().nth(at), long.chars().nth(column), "{column}");
+        }
+    }
+
+    /// `anticlockwise` was taken for `clockwise`.
+    #[test]
+    fn the_nearest_word_is_never_the_opposite() {
+        let senses = ["clockwise", "counter_clockwise"];
+        for (word, meant) in [
+            ("anticlockwise", "counter_clockwise"),
+            ("anti-clockwise", "counter_clockwise"),
+            ("counterclockwise", "counter_clockwise"),
+            ("Counter Clockwise", "counter_clockwise"),
+            ("clockwize", "clockwise"),
+            ("Clockwise", "clockwise"),
+        ] {
+            assert_eq!(nearest(word, senses.into_iter()), Some(meant), "{word}");
+        }
+        assert_eq!(nearest("unmeasured", ["measured"].into_iter()), None);
+        let units = ["N/m", "N.m"];
+        assert_eq!(nearest("N/M", units.into_iter()), Some("N/m"));
+    }
+
+    #[test]
+    fn the_words_of_the_library_become_what_to_write() {
+        let table = "invalid type: floating point `3.14e8`, expected struct Beam with 2 elements";
+        assert!(first_line(table).ends_with("`3.14e8`, expected a table"));
+        let gene =
+            "invalid type: floating point `3.14e8`, expected a value; write `{ value = 1.0 }`";
+        assert!(first_line(gene).ends_with("expected a value"));
+        assert!(advice(gene).starts_with("write `{ value = 1.0 }`; units: "));
+        let number = "invalid type: string \"4\", expected f64";
+        assert!(first_line(number).ends_with("expected a number"));
+        let count = "invalid type: floating point `2.5`, expected usize";
+        assert!(first_line(count).ends_with("expected a whole number, 0 or greater"));
+        let choice = "unknown variant `sideways`, expected `free` or `fixed`";
+        assert_eq!(advice(choice), "choose one of: free, fixed");
+        let field = "unknown field `zzzzzz`, expected `name` or `run`";
+        assert!(advice(field).starts_with("remove it"));
+    }
+}

@@ -1,0 +1,280 @@
+//! Effects of a case file: numbers with their units and intervals, and where they come from.
+//!
+//! What effects there are is the model's business and not known here: shape, units and numbers are
+//! checked, and names where workers say which they know.
+use super::{
+    conversion::{convert, factor},
+    document::{Document, Step, nearest, short},
+    error::{CaseError, Faults},
+    prior::interval,
+};
+use protocol::announce::EffectDescriptor;
+use protocol::case::{EffectSetting, Scale, Unknown};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// One `[[effects]]` table.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseEffect {
+    /// Fixed identifier, as `pivot_friction`.
+    pub id: String,
+    /// Its numbers by name; what is not named stays as the model has it.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, CaseParameter>,
+    /// Where it comes from; absent where somebody wrote it by hand.
+    pub provenance: Option<Provenance>,
+}
+
+/// One number of an effect.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseParameter {
+    /// Value, in `unit`.
+    pub value: f64,
+    /// Unit of all numbers here; it must be the one that the effect declares.
+    pub unit: String,
+    /// Interval that holds the value with 95 % confidence, if it was estimated.
+    pub ci95: Option<[f64; 2]>,
+    /// Interval that a calibration searches; without one the parameter is no gene.
+    pub search: Option<[f64; 2]>,
+}
+
+/// Where an effect comes from: the diagnosis that named it.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// Content hash of the case, with the records that it was found in.
+    pub dataset: Option<String>,
+    /// Name of the run that found it.
+    pub run: Option<String>,
+    /// What that run concluded, as `named`.
+    pub verdict: Option<String>,
+    /// Identifiers that the records cannot tell from it, itself among them.
+    #[serde(default)]
+    pub set: Vec<String>,
+    /// Gain of log evidence over the model without it \[1\].
+    pub ln_evidence_gain: Option<f64>,
+    /// Round of the diagnosis, from 1.
+    pub round: Option<u32>,
+}
+
+impl CaseEffect {
+    /// As it travels.
+    pub fn setting(&self) -> EffectSetting {
+        let parameters = self.parameters.iter();
+        EffectSetting {
+            id: self.id.clone(),
+            parameters: parameters
+                .map(|(name, p)| (name.clone(), p.value))
+                .collect(),
+        }
+    }
+
+    /// Units of its parameters, in the order of [`Self::setting`].
+    pub fn units(&self) -> Vec<String> {
+        self.parameters.values().map(|p| p.unit.clone()).collect()
+    }
+
+    /// Its parameters that are searched, in the order of [`Self::setting`].
+    pub fn genes(&self) -> impl Iterator<Item = Unknown> {
+        self.parameters.iter().filter_map(|(name, p)| {
+            let label = format!("{}.{name}", self.id);
+            let unknown = Unknown::new(label, &p.unit, Scale::Linear, p.value, p.search?);
+            // what it was found with is known of it
+            let found = p.ci95.filter(|[low, high]| low < high);
+            Some(Unknown {
+                title: format!("{name} of {}", self.id.replace('_', " ")),
+                prior: found.map(|ci95| interval(&unknown, ci95)),
+                ..unknown
+            })
+        })
+    }
+}
+
+/// Checks shape, units and numbers; `units` are those that effects of this kind of model may have, none
+/// where nobody here knows them: then a unit is a word, and a worker refuses what is not its own.
+///
+/// # Errors
+/// Every identifier, unit or number that cannot be right.
+pub fn check(document: &Document, effects: &[CaseEffect], units: &[&str]) -> Result<(), CaseError> {
+    let mut faults = Faults::default();
+    for (index, effect) in effects.iter().enumerate() {
+        let way = |key| [Step::Key("effects"), Step::Index(index), Step::Key(key)];
+        let quoted = format!("\"{}\"", effect.id);
+        if !is_name(&effect.id) {
+            faults.take::<()>(Err(document.field(
+                &way("id"),
+                quoted,
+                "an identifier of small letters, digits, `_` and `.`",
+                "write the identifier of an effect, as `pivot_friction`",
+            )));
+        } else if effects[..index].iter().any(|other| other.id == effect.id) {
+            faults.take::<()>(Err(document.field(
+                &way("id"),
+                quoted,
+                "an effect that no other table has",
+                "duplicate effect: put all its parameters into one table",
+            )));
+        }
+        for (name, parameter) in &effect.parameters {
+            faults.take(check_unit(document, (index, name), parameter, units));
+            faults.take(check_parameter(document, index, name, parameter));
+        }
+    }
+    faults.end()
+}
+
+/// Checks effects against those that workers know.
+///
+/// # Errors
+/// Every effect and parameter that they do not know, has another unit there, or lies outside its range.
+pub fn check_known(
+    document: &Document,
+    effects: &[CaseEffect],
+    known: &[EffectDescriptor],
+) -> Result<(), CaseError> {
+    let mut faults = Faults::default();
+    for (index, effect) in effects.iter().enumerate() {
+        let table = [Step::Key("effects"), Step::Index(index)];
+        let Some(own) = known.iter().find(|own| own.id == effect.id) else {
+            let ids = known.iter().filter(|own| !own.generic);
+            let ids: Vec<&str> = ids.map(|own| own.id.as_str()).collect();
+            faults.take::<()>(Err(document.field(
+                &[table[0], table[1], Step::Key("id")],
+                format!("\"{}\"", effect.id),
+                format!("an effect that the workers know: {}", ids.join(", ")),
+                &meant(&effect.id, &ids),
+            )));
+            continue;
+        };
+        let names: Vec<&str> = own.parameters.iter().map(|p| p.name.as_str()).collect();
+        for (name, parameter) in &effect.parameters {
+            let way = [table[0], table[1], Step::Key("parameters"), Step::Key(name)];
+            let Some(known) = own.parameters.iter().find(|known| known.name == *name) else {
+                faults.take::<()>(Err(document.field(
+                    &way,
+                    parameter.value,
+                    format!("a parameter of {}: {}", own.id, names.join(", ")),
+                    &meant(name, &names),
+                )));
+                continue;
+            };
+            let to = |key| [way[0], way[1], way[2], way[3], Step::Key(key)];
+            if parameter.unit != known.unit {
+                faults.take::<()>(Err(document.field(
+                    &to("unit"),
+                    format!("\"{}\"", parameter.unit),
+                    format!("\"{}\"", known.unit),
+                    &convert(&parameter.unit, &known.unit),
+                )));
+            } else if !(known.lower..=known.upper).contains(&parameter.value) {
+                faults.take::<()>(Err(document.field(
+                    &to("value"),
+                    parameter.value,
+                    format!(
+                        "{} to {} {}",
+                        short(known.lower),
+                        short(known.upper),
+                        known.unit
+                    ),
+                    "correct the value, or its unit",
+                )));
+            }
+        }
+    }
+    faults.end()
+}
+
+/// Names the candidate that a word was probably meant for.
+fn meant(word: &str, candidates: &[&str]) -> String {
+    let near = nearest(word, candidates.iter().copied());
+    near.map_or("name one of them".to_owned(), |near| {
+        format!("did you mean `{near}`?")
+    })
+}
+
+fn is_name(text: &str) -> bool {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '_' | '.');
+    !text.is_empty() && text.chars().all(plain)
+}
+
+fn check_unit(
+    document: &Document,
+    (index, name): (usize, &str),
+    parameter: &CaseParameter,
+    units: &[&str],
+) -> Result<(), CaseError> {
+    let unit = parameter.unit.as_str();
+    if units.is_empty() || units.contains(&unit) {
+        return Ok(());
+    }
+    let near = units.iter().find(|known| factor(unit, known).is_some());
+    let near = near
+        .copied()
+        .or_else(|| nearest(unit, units.iter().copied()));
+    Err(document.field(
+        &[
+            Step::Key("effects"),
+            Step::Index(index),
+            Step::Key("parameters"),
+            Step::Key(name),
+            Step::Key("unit"),
+        ],
+        format!("\"{unit}\""),
+        format!("one of {}", units.join(", ")),
+        &near.map_or(
+            "state the value in the unit of the effect".to_owned(),
+            |near| convert(unit, near),
+        ),
+    ))
+}
+
+fn check_parameter(
+    document: &Document,
+    index: usize,
+    name: &str,
+    parameter: &CaseParameter,
+) -> Result<(), CaseError> {
+    let way = |key| {
+        [
+            Step::Key("effects"),
+            Step::Index(index),
+            Step::Key("parameters"),
+            Step::Key(name),
+            Step::Key(key),
+        ]
+    };
+    let unit = parameter.unit.as_str();
+    if !parameter.value.is_finite() {
+        return Err(document.field(
+            &way("value"),
+            parameter.value,
+            format!("a finite number of {unit}"),
+            "correct the value; a worker knows its bounds",
+        ));
+    }
+    for (key, interval, is_search) in [
+        ("ci95", parameter.ci95, false),
+        ("search", parameter.search, true),
+    ] {
+        let Some([low, high]) = interval else {
+            continue;
+        };
+        let around = (low..=high).contains(&parameter.value) && (high - low).is_finite();
+        if around && (low < high || !is_search) {
+            continue;
+        }
+        let apart = if is_search { "different " } else { "" };
+        return Err(document.field(
+            &way(key),
+            format!("[{low}, {high}]"),
+            format!(
+                "two {apart}finite numbers around the value, {}",
+                parameter.value
+            ),
+            &format!("write the lower bound first, or leave {key} out"),
+        ));
+    }
+    Ok(())
+}

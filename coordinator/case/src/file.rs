@@ -1,0 +1,159 @@
+//! Reading the bytes of a case's files; knows nothing of what they mean.
+use super::error::{CaseError, damaged};
+use std::{borrow::Cow, fs, io, io::Read, path::Path};
+
+/// Largest file, unpacked (bytes): 40 hours of a 100 Hz record; a larger one is a mistake or a
+/// compression bomb.
+const LIMIT: u64 = 1 << 30;
+
+/// Makes sure that there is a file.
+///
+/// # Errors
+/// Missing, with `role`: what it is needed for.
+pub fn there(path: &Path, role: &str) -> Result<(), CaseError> {
+    if path.exists() {
+        return Ok(());
+    }
+    Err(CaseError::Missing {
+        path: path.into(),
+        role: role.into(),
+        help: MISSING.into(),
+    })
+}
+
+/// What to do about a file that is missing.
+const MISSING: &str = "put the file there, or correct the name where it is stated";
+
+/// Reads a file whole.
+///
+/// # Errors
+/// Missing (with `role`: what it is needed for), unreadable, empty or larger than 1 GiB.
+pub fn read(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+    // opening a pipe would wait for somebody to write into it
+    let opened = fs::metadata(path).and_then(|there| {
+        if there.is_file() {
+            fs::File::open(path)
+        } else {
+            let what = if there.is_dir() {
+                "a folder"
+            } else {
+                "a device or a pipe"
+            };
+            Err(io::Error::other(format!("it is {what}, not a file")))
+        }
+    });
+    let file = opened.map_err(|source| {
+        if source.kind() == io::ErrorKind::NotFound {
+            CaseError::Missing {
+                path: path.into(),
+                role: role.into(),
+                help: MISSING.into(),
+            }
+        } else {
+            CaseError::Unreadable {
+                path: path.into(),
+                source,
+            }
+        }
+    })?;
+    let bytes = read_limited(file, path)?.map_err(|source| CaseError::Unreadable {
+        path: path.into(),
+        source,
+    })?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(damaged(
+            path,
+            "the file is empty",
+            "copy it again from its source",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// Reads a gzip file whole and unpacks it.
+///
+/// # Errors
+/// As [`read`], and where the file is not gzip, is cut off or fails its checksum.
+pub fn read_gzip(path: &Path, role: &str) -> Result<Vec<u8>, CaseError> {
+    let packed = read(path, role)?;
+    if !packed.starts_with(&[0x1f, 0x8b]) {
+        return Err(damaged(
+            path,
+            "the file is not gzip data",
+            "compress the table with gzip, or name it .csv",
+        ));
+    }
+    let decoder = flate2::read::MultiGzDecoder::new(packed.as_slice());
+    let bytes = read_limited(decoder, path)?.map_err(|source| {
+        let problem = if source.kind() == io::ErrorKind::UnexpectedEof {
+            "the gzip data ends too early: the file is truncated".to_owned()
+        } else {
+            format!("the gzip data is damaged: {source}")
+        };
+        damaged(
+            path,
+            problem,
+            "copy the file again from its source; `gzip -t` tests it",
+        )
+    })?;
+    if bytes.iter().all(u8::is_ascii_whitespace) {
+        return Err(damaged(
+            path,
+            "the file is empty after unpacking",
+            "copy it again from its source",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// Reads to the end, or refuses what is larger than [`LIMIT`].
+fn read_limited(from: impl Read, path: &Path) -> Result<io::Result<Vec<u8>>, CaseError> {
+    let mut bytes = Vec::new();
+    let outcome = from.take(LIMIT + 1).read_to_end(&mut bytes);
+    if bytes.len() as u64 > LIMIT {
+        return Err(damaged(
+            path,
+            "the file is larger than 1 GiB",
+            "split the record: a few dozen revolutions are enough",
+        ));
+    }
+    Ok(outcome.map(|_| bytes))
+}
+
+/// The bytes in UTF-8 where they are UTF-16, as spreadsheets write it: by the byte-order mark, or by the empty half of
+/// each of the first letters.
+pub fn decoded(bytes: &[u8]) -> Cow<'_, [u8]> {
+    type Unit = fn([u8; 2]) -> u16;
+    let (rest, unit): (&[u8], Unit) = match bytes {
+        [0xff, 0xfe, rest @ ..] => (rest, u16::from_le_bytes),
+        [0xfe, 0xff, rest @ ..] => (rest, u16::from_be_bytes),
+        [1..=255, 0, 1..=255, 0, ..] => (bytes, u16::from_le_bytes),
+        [0, 1..=255, 0, 1..=255, ..] => (bytes, u16::from_be_bytes),
+        _ => return Cow::Borrowed(bytes),
+    };
+    let units = rest.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    let letters =
+        char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER));
+    Cow::Owned(letters.collect::<String>().into_bytes())
+}
+
+/// The bytes as text, without a byte-order mark.
+///
+/// # Errors
+/// Names the first line that is not UTF-8.
+pub fn text(path: &Path, bytes: Vec<u8>) -> Result<String, CaseError> {
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let start = error.as_bytes().get(..valid).unwrap_or_default();
+        let line = start.split(|byte| *byte == b'\n').count();
+        damaged(
+            path,
+            format!("line {line} is not UTF-8 text"),
+            "save the file as UTF-8",
+        )
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
+}

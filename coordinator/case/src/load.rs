@@ -1,0 +1,36 @@
+//! From a folder to a [`Case`]: reads `case.toml` as the kind of model that it names wants it read.
+use super::{
+    error::CaseError,
+    kind,
+    loaded::Loaded,
+    source::{Overrides, Source, document},
+    summary::Summary,
+};
+use protocol::case::Case;
+use std::path::Path;
+
+/// Loads a case folder.
+///
+/// # Errors
+/// The first thing that is wrong; see [`CaseError`].
+pub fn load(folder: &Path, overrides: &Overrides) -> Result<Case, CaseError> {
+    load_with_notes(folder, overrides).map(|loaded| loaded.case)
+}
+
+/// Loads a case folder, with remarks and facts.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with_notes(folder: &Path, overrides: &Overrides) -> Result<Loaded, CaseError> {
+    let document = document(folder, overrides)?;
+    kind::named(&kind::stated(&document)?).read(&Source::new(folder, overrides, &document))
+}
+
+/// Loads a case folder and says what is in it, for `horsehead case check`.
+///
+/// # Errors
+/// As [`load`].
+pub fn check(folder: &Path, overrides: &Overrides) -> Result<Summary, CaseError> {
+    let document = document(folder, overrides)?;
+    kind::named(&kind::stated(&document)?).check(&Source::new(folder, overrides, &document))
+}

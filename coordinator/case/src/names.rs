@@ -1,0 +1,58 @@
+//! Names in a list of tables: short, plain, each once.
+use super::{
+    document::{Document, Step},
+    error::CaseError,
+};
+
+/// Checks the names of the tables `list`, each of which is one `what`.
+///
+/// # Errors
+/// Names the first that is empty, has other characters than command lines and file names bear, or is
+/// there twice; or the list, where it is empty.
+pub fn check(document: &Document, list: &str, what: &str, names: &[&str]) -> Result<(), CaseError> {
+    if names.is_empty() {
+        return Err(document.field(
+            &[Step::Key(list)],
+            "[]",
+            format!("at least one {what}"),
+            &format!("add a [[{list}]] table"),
+        ));
+    }
+    for (index, name) in names.iter().enumerate() {
+        let way = [Step::Key(list), Step::Index(index), Step::Key("name")];
+        check_one(document, &way, what, name, names[..index].contains(name))?;
+    }
+    Ok(())
+}
+
+/// Checks one name, which may be there already among those that it must differ from.
+///
+/// # Errors
+/// As [`check`].
+pub fn check_one(
+    document: &Document,
+    way: &[Step<'_>],
+    what: &str,
+    name: &str,
+    is_there: bool,
+) -> Result<(), CaseError> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let quoted = format!("\"{name}\"");
+    if name.is_empty() || !name.chars().all(plain) {
+        return Err(document.field(
+            way,
+            quoted,
+            "a short name of letters, digits, `-`, `_` and `.`",
+            "the name is typed on command lines and becomes part of file names, as `5rpm`",
+        ));
+    }
+    if is_there {
+        return Err(document.field(
+            way,
+            quoted,
+            format!("a name that no other {what} has"),
+            &format!("duplicate {what}: rename or remove one of the two"),
+        ));
+    }
+    Ok(())
+}

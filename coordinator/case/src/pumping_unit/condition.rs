@@ -1,0 +1,203 @@
+//! The working conditions of a case: their numbers, load cards and gauge records.
+use super::{
+    card,
+    record::{self, Expected, RecordFacts},
+    schema::{CaseFile, ConditionEntry},
+};
+use crate::{
+    document::{Document, Step},
+    error::{CaseError, Faults, damaged},
+    names,
+    note::Note,
+    source::Source,
+};
+use discrepancy::record::Record;
+use protocol::{
+    case::{Channel, Condition},
+    pumping_unit::{Smoothing, WorkingCondition},
+};
+use std::path::{Path, PathBuf};
+
+/// Where the conditions of a case come from.
+#[derive(Debug, Clone, Copy)]
+struct Conditions<'a> {
+    /// Its folder, and that whose cards and records, of the same names, replace those of the case.
+    source: Source<'a>,
+    file: &'a CaseFile,
+}
+
+/// A condition with what its record gave.
+#[derive(Debug)]
+pub(super) struct ReadCondition {
+    pub(super) condition: Condition,
+    pub(super) working: WorkingCondition,
+    pub(super) channels: Vec<Channel>,
+    pub(super) facts: Option<RecordFacts>,
+    pub(super) cycles: Option<Record>,
+    pub(super) notes: Vec<Note>,
+}
+
+/// Reads every condition, in the order of the file.
+///
+/// # Errors
+/// Names that cannot tell conditions apart, and everything that is wrong with one.
+pub(super) fn read_all(
+    source: &Source<'_>,
+    file: &CaseFile,
+) -> Result<Vec<ReadCondition>, CaseError> {
+    let list = file.conditions.iter();
+    let list: Vec<&str> = list.map(|entry| entry.name.as_str()).collect();
+    names::check(source.document, "conditions", "condition", &list)?;
+    let all = Conditions {
+        source: *source,
+        file,
+    };
+    let mut faults = Faults::default();
+    let indices = 0..file.conditions.len();
+    let read = indices.filter_map(|index| faults.take(all.condition(index)));
+    let read = read.collect();
+    faults.end()?;
+    Ok(read)
+}
+
+impl Conditions<'_> {
+    /// Reads one condition with its card and record.
+    fn condition(&self, index: usize) -> Result<ReadCondition, CaseError> {
+        let Some(entry) = self.file.conditions.get(index) else {
+            return Err(damaged(
+                &self.source.document.path,
+                "no such condition",
+                "add it",
+            ));
+        };
+        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
+        check_condition(self.source.document, entry, way)?;
+        let role = format!(
+            "the load card of condition `{}` in {}",
+            entry.name,
+            self.source.document.path.display()
+        );
+        let not_repeated = self.not_repeated(entry);
+        let card_file = if not_repeated.is_some() && !self.place(&entry.card_file).exists() {
+            self.source.folder.join(&entry.card_file)
+        } else {
+            self.place(&entry.card_file)
+        };
+        let record_file = entry.record_file.as_ref();
+        let record_file = record_file.filter(|_| not_repeated.is_none());
+        let record_file = record_file.map(|name| self.place(name));
+        let mut faults = Faults::default();
+        let card = faults.take(card::read(&card_file, entry.smoothing, &role));
+        if let (None, Some(file)) = (&card, &record_file) {
+            faults.take(record::read(file, &self.expected(index, entry)));
+        }
+        faults.end()?;
+        let Some(card) = card else {
+            return Err(damaged(&card_file, "it cannot be read", "copy it again"));
+        };
+        let highest = card.load_n.len() / 2;
+        if let Smoothing::Harmonics(kept) = entry.smoothing
+            && kept as usize > highest
+        {
+            return Err(self.source.document.field(
+                &way("smoothing"),
+                format!("{{ harmonics = {kept} }}"),
+                format!(
+                    "1 to {highest}: a card of {} points has no more",
+                    card.load_n.len()
+                ),
+                "keep fewer harmonics, or use smoothing = \"none\"",
+            ));
+        }
+        let read = record_file.map(|file| record::read(&file, &self.expected(index, entry)));
+        let read = read.transpose()?;
+        let condition = Condition {
+            name: entry.name.clone(),
+        };
+        let working = WorkingCondition {
+            speed_rpm: entry.speed_rpm,
+            counterweight_moment_n_m: entry.counterweight_moment_n_m,
+            card,
+        };
+        Ok(match read {
+            Some(read) => ReadCondition {
+                condition,
+                working,
+                channels: read.channels,
+                facts: Some(read.facts),
+                cycles: Some(read.cycles),
+                notes: read.notes,
+            },
+            None => ReadCondition {
+                condition,
+                working,
+                channels: record::channels(index, self.file.run.output_step_deg),
+                facts: None,
+                cycles: None,
+                notes: not_repeated.into_iter().collect(),
+            },
+        })
+    }
+
+    /// What the record of a condition is asked to agree with.
+    fn expected<'b>(&'b self, index: usize, entry: &'b ConditionEntry) -> Expected<'b> {
+        Expected {
+            index,
+            condition: &entry.name,
+            speed_rpm: entry.speed_rpm,
+            case_file: &self.source.document.path,
+            step_deg: self.file.run.output_step_deg,
+            sense: self.file.crank.sense,
+        }
+    }
+
+    /// A remark if the test in `--measured DIR` did not repeat a condition: it has no record then, and
+    /// the case's card. That of the objective must be there.
+    fn not_repeated(&self, entry: &ConditionEntry) -> Option<Note> {
+        let measured = self.source.measured?;
+        let record = self.place(entry.record_file.as_ref()?);
+        let objective = self.file.objective.as_ref();
+        let needed = objective.is_some_and(|objective| objective.condition == entry.name);
+        (!needed && !record.exists()).then(|| Note {
+            path: measured.to_owned(),
+            text: format!(
+                "{} is not there: condition `{}` was not measured, and nothing is compared with it",
+                record.file_name().unwrap_or_default().display(),
+                entry.name
+            ),
+        })
+    }
+
+    /// Where a card or record is read from: `--measured DIR` replaces the folder, not the name.
+    fn place(&self, named: &Path) -> PathBuf {
+        match (self.source.measured, named.file_name()) {
+            (Some(measured), Some(name)) => measured.join(name),
+            _ => self.source.folder.join(named),
+        }
+    }
+}
+
+/// Ranges of a condition's own numbers.
+fn check_condition<'a>(
+    document: &Document,
+    entry: &ConditionEntry,
+    way: impl Fn(&'static str) -> [Step<'a>; 3],
+) -> Result<(), CaseError> {
+    if !(0.1..=60.0).contains(&entry.speed_rpm) {
+        return Err(document.field(
+            &way("speed_rpm"),
+            entry.speed_rpm,
+            "0.1 to 60 revolutions per minute",
+            "give the crank speed, not the motor's",
+        ));
+    }
+    if !(0.0..=1.0e7).contains(&entry.counterweight_moment_n_m) {
+        return Err(document.field(
+            &way("counterweight_moment_n_m"),
+            entry.counterweight_moment_n_m,
+            "0 to 1e7 N m",
+            "give weight times radius of the counterweights in N m",
+        ));
+    }
+    Ok(())
+}

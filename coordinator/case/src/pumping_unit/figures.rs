@@ -1,0 +1,316 @@
+//! A pumping unit's case in figures: what `horsehead case check` tells of it.
+use super::{
+    geometry::Envelope,
+    read::{Resolved, read},
+    record::RecordFacts,
+};
+use crate::{
+    effect::CaseEffect,
+    error::CaseError,
+    note::Note,
+    source::{Overrides, Source, document},
+    summary::Summary,
+};
+use protocol::{
+    case::{Case, Term, Unknown},
+    pumping_unit::Machine,
+};
+use std::{fmt, path::Path};
+
+/// A case in figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figures {
+    /// Name of the machine.
+    pub name: String,
+    /// Where beam and ropes move, by rigid kinematics.
+    pub envelope: Envelope,
+    /// Length of the back rope \[m\] and its number of cylinders.
+    pub back_rope: (f64, usize),
+    /// Length of the front rope \[m\] and its number of cylinders.
+    pub front_rope: (f64, usize),
+    /// Frequencies of the head modes that are simulated \[Hz\].
+    pub modes_hz: Vec<f64>,
+    /// Two ropes on each head, where there are: distance from the plane \[m\], by how much the back and
+    /// the front rope at -z are longer \[m\], frequencies of the modes out of the plane \[Hz\].
+    pub twin_ropes: Option<(f64, [f64; 2], Vec<f64>)>,
+    /// Mass of the meshed head \[kg\].
+    pub head_mass_kg: f64,
+    /// The unknown numbers.
+    pub genes: Vec<Unknown>,
+    /// Effects beside the machine that is drawn.
+    pub effects: Vec<CaseEffect>,
+    /// One entry per condition.
+    pub conditions: Vec<ConditionFigures>,
+    /// Name of the calibrated condition, and what is summed under it.
+    pub objective: (String, Vec<Term>),
+    /// Remarks.
+    pub notes: Vec<Note>,
+}
+
+/// A working condition in figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConditionFigures {
+    /// Name.
+    pub name: String,
+    /// Crank speed [1/min].
+    pub speed_rpm: f64,
+    /// Smallest and largest load of the card \[N\].
+    pub load_n: [f64; 2],
+    /// The record, where there is one.
+    pub record: Option<RecordFigures>,
+}
+
+/// A record in figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordFigures {
+    /// File, samples, losses, speed.
+    pub facts: RecordFacts,
+    /// Whole cycles that were averaged.
+    pub cycles: usize,
+    /// Per channel: its title and unit, half of the measured range, noise of the mean curve (root
+    /// mean square of spread / sqrt(cycles)).
+    pub channels: Vec<(String, String, f64, f64)>,
+}
+
+/// Loads a case and tells what is in it.
+///
+/// # Errors
+/// As [`crate::load`].
+pub fn figures(folder: &Path) -> Result<Figures, CaseError> {
+    let overrides = Overrides::default();
+    of(&Source::new(
+        folder,
+        &overrides,
+        &document(folder, &overrides)?,
+    ))
+}
+
+/// The same in short.
+///
+/// # Errors
+/// As [`crate::load`].
+pub(super) fn summary(source: &Source<'_>) -> Result<Summary, CaseError> {
+    let figures = of(source)?;
+    let (text, conditions) = (figures.to_string(), figures.conditions.iter());
+    Ok(Summary {
+        key: "genes",
+        text,
+        conditions: conditions.map(|one| one.name.clone()).collect(),
+        unknowns: figures.genes.iter().map(|one| one.name.clone()).collect(),
+        name: figures.name,
+        notes: figures.notes,
+    })
+}
+
+/// What is in a case of which the file was read.
+fn of(source: &Source<'_>) -> Result<Figures, CaseError> {
+    let Resolved {
+        loaded,
+        facts,
+        envelope,
+        machine,
+        ..
+    } = read(source)?;
+    let case = loaded.case;
+    let rope = |count: usize| (count as f64 * machine.ropes.cylinder_length_m, count);
+    let calibrated = case.conditions.get(case.objective.condition);
+    Ok(Figures {
+        envelope,
+        back_rope: rope(machine.ropes.back_cylinders),
+        front_rope: rope(machine.ropes.front_cylinders),
+        modes_hz: machine
+            .modal_head
+            .frequencies_hz
+            .iter()
+            .take(machine.run.modes)
+            .copied()
+            .collect(),
+        twin_ropes: machine.twin_ropes.as_ref().map(|twins| {
+            let longer = [
+                twins.back_length_difference_m,
+                twins.front_length_difference_m,
+            ];
+            let modes = twins.head.frequencies_hz.iter().take(twins.modes);
+            (twins.offset_m, longer, modes.copied().collect())
+        }),
+        head_mass_kg: machine.modal_head.mass_kg,
+        conditions: conditions(&case, &machine, facts),
+        objective: (
+            calibrated
+                .map(|condition| condition.name.clone())
+                .unwrap_or_default(),
+            case.objective.terms.clone(),
+        ),
+        notes: loaded.notes,
+        effects: loaded.effects,
+        genes: case.unknowns,
+        name: case.name,
+    })
+}
+
+/// One summary per condition.
+fn conditions(
+    case: &Case,
+    machine: &Machine,
+    facts: Vec<Option<RecordFacts>>,
+) -> Vec<ConditionFigures> {
+    let all = case.conditions.iter().zip(&machine.conditions).zip(facts);
+    let summaries = all
+        .enumerate()
+        .map(|(index, ((condition, working), facts))| {
+            let record = facts.map(|facts| {
+                let channels = case.measured(index).map(|(_, channel, record)| {
+                    let [low, high] = range(&record.mean);
+                    let count = record.spread.len().max(1) as f64;
+                    let square: f64 = record.spread.iter().map(|s| s * s).sum::<f64>() / count;
+                    let noise = (square / record.cycles.max(1) as f64).sqrt();
+                    let (title, unit) = (channel.title.clone(), channel.unit.clone());
+                    (title, unit, (high - low) / 2.0, noise)
+                });
+                let cycles = case.measured(index).map(|(_, _, record)| record.cycles);
+                RecordFigures {
+                    facts,
+                    cycles: cycles.max().unwrap_or_default(),
+                    channels: channels.collect(),
+                }
+            });
+            ConditionFigures {
+                name: condition.name.clone(),
+                speed_rpm: working.speed_rpm,
+                load_n: range(&working.card.load_n),
+                record,
+            }
+        });
+    summaries.collect()
+}
+
+/// Smallest and largest value.
+fn range(values: &[f64]) -> [f64; 2] {
+    [
+        values.iter().copied().fold(f64::INFINITY, f64::min),
+        values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    ]
+}
+
+impl fmt::Display for Figures {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.write_machine(to)?;
+        for condition in &self.conditions {
+            write!(to, "{condition}")?;
+        }
+        let (condition, terms) = &self.objective;
+        let terms = terms.iter();
+        let terms = terms.map(|term| format!("{} (weight {})", term.channel, term.weight));
+        let terms: Vec<String> = terms.collect();
+        write!(to, "objective   {condition}: {}", terms.join(", "))?;
+        for note in &self.notes {
+            write!(to, "\nnote: {note}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Figures {
+    /// Machine, ropes, head and genes.
+    fn write_machine(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Envelope {
+            beam_deg: [low, high],
+            contact_deg: [from, until],
+            free_rope_m: [shortest, longest],
+            hang_m: [top, bottom],
+            stroke_m,
+        } = self.envelope;
+        writeln!(to, "machine     {}", self.name)?;
+        writeln!(
+            to,
+            "stroke      {stroke_m:.3} m, beam {low:.2} to {high:.2} deg"
+        )?;
+        let (length, count) = self.back_rope;
+        writeln!(
+            to,
+            "back rope   {length:.3} m in {count} cylinders, {shortest:.3} to {longest:.3} m free, \
+             leaves the head at {from:.1} to {until:.1} deg"
+        )?;
+        let (length, count) = self.front_rope;
+        writeln!(
+            to,
+            "front rope  {length:.3} m in {count} cylinders, {top:.3} to {bottom:.3} m hanging"
+        )?;
+        let modes: Vec<String> = self.modes_hz.iter().map(|f| format!("{f:.1}")).collect();
+        writeln!(
+            to,
+            "back head   {:.1} kg, modes at {} Hz",
+            self.head_mass_kg,
+            modes.join(", ")
+        )?;
+        if let Some((offset, [back, front], modes)) = &self.twin_ropes {
+            let modes: Vec<String> = modes.iter().map(|f| format!("{f:.1}")).collect();
+            writeln!(
+                to,
+                "twin ropes  at z = +-{offset:.3} m, those at -z longer by {:.2} mm (back) and {:.2} mm \
+                 (front), modes out of the plane at {} Hz",
+                1e3 * back,
+                1e3 * front,
+                modes.join(", ")
+            )?;
+        }
+        let whose = if self.twin_ropes.is_some() {
+            "; of both ropes of a head together"
+        } else {
+            ""
+        };
+        writeln!(to, "genes       recommended (lower .. upper){whose}")?;
+        let labels = self.genes.iter().map(|gene| gene.name.len());
+        let width = labels.fold(6, usize::max);
+        for gene in &self.genes {
+            writeln!(
+                to,
+                "  {:<width$} {:>10.3e} ({:.2e} .. {:.2e}) {}",
+                gene.name, gene.start, gene.lower, gene.upper, gene.unit
+            )?;
+        }
+        if self.twin_ropes.is_none() {
+            writeln!(
+                to,
+                "  kb4 and cb4 change nothing: one rope in the middle is not twisted, see twin_ropes"
+            )?;
+        }
+        for effect in &self.effects {
+            let numbers = effect.parameters.iter();
+            let numbers = numbers.map(|(name, p)| format!("{name} {} {}", p.value, p.unit));
+            let numbers: Vec<String> = numbers.collect();
+            writeln!(to, "effect      {}: {}", effect.id, numbers.join(", "))?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for ConditionFigures {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [least, greatest] = self.load_n.map(|load| load / 1000.0);
+        writeln!(
+            to,
+            "condition   {}: {} /min, load {least:.1} to {greatest:.1} kN",
+            self.name, self.speed_rpm
+        )?;
+        let Some(record) = &self.record else {
+            return writeln!(to, "  no record: simulated only");
+        };
+        writeln!(
+            to,
+            "  record {} cycles, {} samples at {:.0} Hz, {} lost, measured speed {:.3} /min",
+            record.cycles,
+            record.facts.samples,
+            record.facts.rate_hz,
+            record.facts.lost,
+            record.facts.speed_rpm
+        )?;
+        for (title, unit, half_range, noise) in &record.channels {
+            writeln!(
+                to,
+                "  {title}: half-range {half_range:.2} {unit}, noise of the mean {noise:.3} {unit}"
+            )?;
+        }
+        Ok(())
+    }
+}

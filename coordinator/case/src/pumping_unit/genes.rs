@@ -1,0 +1,198 @@
+//! The coefficients of rope and contact that a case declares as genes, and what is known of each as an
+//! unknown of a search.
+use super::{coefficient::Bodies, recommended::Recommended, schema::GeneEntry};
+use crate::{
+    document::{Document, Step, units},
+    error::{CaseError, Faults},
+};
+use protocol::{
+    case::{Scale, Shares, Shift, Unknown, Valley},
+    pumping_unit::Coefficient,
+    unit::Unit,
+};
+use std::collections::BTreeMap;
+
+/// Largest value of any coefficient, in SI units.
+const LARGEST: f64 = 1.0e30;
+
+/// The coefficients of a case, checked.
+///
+/// # Errors
+/// A unit that does not fit, values that are not positive, bounds that exclude the recommended
+/// value, a formula that does not give this coefficient.
+pub(super) fn declared(
+    document: &Document,
+    table: &BTreeMap<Coefficient, GeneEntry>,
+    bodies: &Bodies,
+) -> Result<Vec<Unknown>, CaseError> {
+    let mut faults = Faults::default();
+    let all = Coefficient::ALL.into_iter();
+    let genes = all.filter_map(|name| faults.take(gene(document, table, bodies, name)));
+    let genes = genes.collect();
+    faults.end()?;
+    Ok(genes)
+}
+
+/// One coefficient of a case, checked.
+fn gene(
+    document: &Document,
+    table: &BTreeMap<Coefficient, GeneEntry>,
+    bodies: &Bodies,
+    name: Coefficient,
+) -> Result<Unknown, CaseError> {
+    let Some(entry) = table.get(&name) else {
+        return Err(document.field(
+            &[Step::Key("genes")],
+            format!("a table without `{}`", name.as_str()),
+            "all ten coefficients: kb1, kb23, kb4, kb56, cb1, cb23, cb4, cb56, kc, cc",
+            &format!(
+                "add `{} = {{ recommended = .., lower = .., upper = .., unit = \"..\" }}`",
+                name.as_str()
+            ),
+        ));
+    };
+    let way = |key| [Step::Key("genes"), Step::Key(name.as_str()), Step::Key(key)];
+    check_unit(document, &way("unit"), name, entry.unit)?;
+    let recommended = match entry.recommended {
+        Recommended::Value(value) => value,
+        Recommended::By(formula) => match bodies.give(formula, name) {
+            Some(si) => si / entry.unit.si_factor(),
+            None => {
+                return Err(document.field(
+                    &way("recommended"),
+                    format!("\"{}\"", formula.word()),
+                    "a number; \"eq3\" for kb1, kb23, kb4 and kb56; \"hertz\" for kc where \
+                     contact.exponent = 1.5",
+                    "the formula does not give this coefficient: state a value",
+                ));
+            }
+        },
+    };
+    let values = [
+        ("recommended", recommended),
+        ("lower", entry.lower),
+        ("upper", entry.upper),
+    ];
+    for (key, value) in values {
+        check_value(document, &way(key), value, entry.unit)?;
+    }
+    if entry.lower >= entry.upper {
+        return Err(document.field(
+            &way("lower"),
+            entry.lower,
+            format!("below upper = {} {}", entry.upper, entry.unit.symbol()),
+            "exchange or widen the bounds",
+        ));
+    }
+    if !(entry.lower..=entry.upper).contains(&recommended) {
+        return Err(document.field(
+            &way("recommended"),
+            recommended,
+            format!("{} to {} {}", entry.lower, entry.upper, entry.unit.symbol()),
+            "the bounds exclude the recommended value: widen them, or correct it",
+        ));
+    }
+    let bounds = [entry.lower, entry.upper];
+    let mut gene = unknown(name, entry.unit, recommended, bounds);
+    if let Some(prior) = entry.prior {
+        gene.prior = Some(prior.of(&gene, document, &way("prior"))?);
+    }
+    Ok(gene)
+}
+
+/// A coefficient as an unknown of a search.
+pub fn unknown(name: Coefficient, unit: Unit, start: f64, bounds: [f64; 2]) -> Unknown {
+    let (letter, index) = name.as_str().split_at(1);
+    Unknown {
+        title: name.title().to_owned(),
+        symbol: format!("{}_{index}", letter.to_uppercase()),
+        trust: Some(trust(unit)),
+        valley: (name == Coefficient::Kb1).then(valley),
+        ..Unknown::new(
+            name.as_str(),
+            unit.symbol(),
+            Scale::Logarithmic,
+            start,
+            bounds,
+        )
+    }
+}
+
+/// Stiffness of a rope is known to a decade or so, its damping to several: a bushing's dashpot
+/// stands for every loss of the machine. Contact numbers are conventions of a simulation program
+/// rather than properties of the machine, and recommendations for them are mostly too soft.
+const fn trust(unit: Unit) -> [f64; 2] {
+    match unit {
+        Unit::NewtonPerMetre | Unit::NewtonMetrePerRadian | Unit::NewtonMetrePerDegree => {
+            [-1.0, 1.5]
+        }
+        Unit::NewtonSecondPerMetre
+        | Unit::NewtonMetreSecondPerRadian
+        | Unit::NewtonMetreSecondPerDegree => [-1.0, 4.0],
+        Unit::NewtonPerMetreToThreeHalves => [-0.5, 3.5],
+    }
+}
+
+/// The valley of the axial stiffness. The load excites two modes of the rope, some sixty and eighty
+/// times a turn, and a stiffness a few hundredths of a decade off gives their waves the wrong phase.
+/// Much damping hides the modes; a soft contact can stand in for a soft rope, and of a very hard one no
+/// small change shows. Damping over stiffness is 1 and 4 % of critical at the modes' 6 Hz, between
+/// which wire ropes lie.
+fn valley() -> Valley {
+    let shift = |name: Coefficient, by| Shift {
+        unknown: name.as_str().to_owned(),
+        by,
+    };
+    Valley {
+        from: -0.3,
+        to: 1.1,
+        step: 0.02,
+        uncovered_by: vec![shift(Coefficient::Cb1, -0.8), shift(Coefficient::Kc, 1.5)],
+        shares: Some(Shares {
+            unknown: Coefficient::Cb1.as_str().to_owned(),
+            of_scanned: vec![6e-4, 2e-3],
+        }),
+        stand_ins: vec![shift(Coefficient::Kc, 1.5), shift(Coefficient::Kc, -1.5)],
+    }
+}
+
+/// A coefficient's unit measures that kind of coefficient.
+pub(super) fn check_unit(
+    document: &Document,
+    way: &[Step<'_>],
+    name: Coefficient,
+    unit: Unit,
+) -> Result<(), CaseError> {
+    if unit.si() == name.si_unit() {
+        return Ok(());
+    }
+    let fitting: Vec<&str> = Unit::ALL
+        .into_iter()
+        .filter(|unit| unit.si() == name.si_unit())
+        .map(Unit::symbol)
+        .collect();
+    Err(document.field(
+        way,
+        format!("\"{}\"", unit.symbol()),
+        format!("{} for {}", fitting.join(" or "), name.as_str()),
+        &format!("state the value in a unit that fits; there are {}", units()),
+    ))
+}
+
+/// Coefficients are searched on a logarithmic scale: positive and finite.
+pub(super) fn check_value(
+    document: &Document,
+    way: &[Step<'_>],
+    value: f64,
+    unit: Unit,
+) -> Result<(), CaseError> {
+    if value > 0.0 && unit.to_si(value) <= LARGEST {
+        return Ok(());
+    }
+    Err(document.field(
+        way,
+        value,
+        format!("above 0, at most {LARGEST:e} in SI [{}]", unit.symbol()),
+        "stiffness and damping are positive and searched on a logarithmic scale",
+    ))
+}

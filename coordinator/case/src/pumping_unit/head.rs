@@ -1,0 +1,305 @@
+//! The reduced back head of a case: modes (JSON) and influence lines (CSV), checked for shape.
+//!
+//! It does not judge the numbers against the mesh: see [`super::mesh`].
+use crate::{
+    document,
+    error::{CaseError, damaged},
+    file,
+    table::Table,
+};
+use protocol::pumping_unit::HeadGauge;
+use protocol::pumping_unit::{Influence, ModalHead, StressRecovery};
+use serde::{Deserialize, Serialize};
+use std::{collections::BTreeMap, path::Path};
+
+/// The modes file: the keys that are used; centre and inertia are for the reader.
+#[derive(Debug, Deserialize)]
+struct ModesFile {
+    frequencies_hz: Vec<f64>,
+    damping_ratio: f64,
+    arc_deg: Vec<f64>,
+    radial: Vec<Vec<f64>>,
+    tangential: Vec<Vec<f64>>,
+    gauge_stress_mpa: Vec<[f64; 4]>,
+    participation: Vec<[f64; 3]>,
+    inertia_stress_mpa: [[f64; 4]; 3],
+    mass_kg: f64,
+    /// Where stress is read; needed only to reduce the head again.
+    gauges: Option<BTreeMap<String, GaugePlace>>,
+    /// Content of the mesh file that the tables were computed from; absent where they were not.
+    mesh_blake3: Option<String>,
+    /// Content of all that the reduction depends on; absent where the tables were not reduced here.
+    source_blake3: Option<String>,
+}
+
+/// Place of a gauge in the modes file.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[expect(
+    clippy::struct_field_names,
+    reason = "keys of the file, with their unit"
+)]
+pub struct GaugePlace {
+    /// Along the machine, from the beam pivot towards the well \[m\].
+    pub x_m: f64,
+    /// Upwards \[m\].
+    pub y_m: f64,
+    /// Out of the plane \[m\].
+    pub z_m: f64,
+    /// Length of its grid \[m\].
+    pub length_m: f64,
+}
+
+/// What the tables say of themselves.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Provenance {
+    /// The four gauges, where the file places them.
+    pub(super) gauges: Option<[HeadGauge; 4]>,
+    /// Content hash of the mesh they were computed from.
+    pub(super) mesh_blake3: Option<String>,
+    /// Content hash of all that they were computed from.
+    pub(super) source_blake3: Option<String>,
+}
+
+impl Provenance {
+    fn new(file: &ModesFile) -> Self {
+        let place = |name: &str| {
+            let place = file.gauges.as_ref()?.get(name)?;
+            Some(HeadGauge {
+                position_m: [place.x_m, place.y_m, place.z_m],
+                length_m: place.length_m,
+            })
+        };
+        let four = || Some([place("1")?, place("2")?, place("3")?, place("4")?]);
+        Self {
+            gauges: four(),
+            mesh_blake3: file.mesh_blake3.clone(),
+            source_blake3: file.source_blake3.clone(),
+        }
+    }
+}
+
+/// Reads modes and influence lines.
+///
+/// # Errors
+/// Ragged tables, frequencies or stations that do not ascend, values out of range, an influence
+/// table that does not cover the modes' arc.
+pub(super) fn read(modes: &Path, influence: &Path) -> Result<(ModalHead, Provenance), CaseError> {
+    let bytes = file::read(
+        modes,
+        "the modes of the back head, `flexible_head.modes_file`",
+    )?;
+    let read: ModesFile = document::json(modes, &bytes)?;
+    check_modes(modes, &read)?;
+    let influence = read_influence(influence, &read.arc_deg)?;
+    let provenance = Provenance::new(&read);
+    let head = ModalHead {
+        frequencies_hz: read.frequencies_hz,
+        damping_ratio: read.damping_ratio,
+        arc_deg: read.arc_deg,
+        radial: read.radial,
+        tangential: read.tangential,
+        gauge_stress_mpa: read.gauge_stress_mpa,
+        participation: read.participation,
+        inertia_stress_mpa: read.inertia_stress_mpa,
+        stress: StressRecovery::default(),
+        mass_kg: read.mass_kg,
+        influence,
+    };
+    Ok((head, provenance))
+}
+
+/// Order and ranges of the modes.
+fn check_modes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
+    ascending(&modes.frequencies_hz).map_err(|at| {
+        field(
+            path,
+            &format!("frequencies_hz[{at}]"),
+            number(&modes.frequencies_hz, at),
+            "positive frequencies in ascending order [Hz]",
+            "sort the modes, with all their tables, by frequency",
+        )
+    })?;
+    if !modes
+        .frequencies_hz
+        .first()
+        .is_some_and(|first| *first > 0.0)
+    {
+        return Err(field(
+            path,
+            "frequencies_hz[0]",
+            number(&modes.frequencies_hz, 0),
+            "at least one mode, all above 0 Hz",
+            "use modes with both pins held: they have no rigid-body motion",
+        ));
+    }
+    ascending(&modes.arc_deg).map_err(|at| {
+        field(
+            path,
+            &format!("arc_deg[{at}]"),
+            number(&modes.arc_deg, at),
+            "stations in ascending order [deg]",
+            "sort the stations, with the shapes",
+        )
+    })?;
+    if !(0.0..1.0).contains(&modes.damping_ratio) {
+        return Err(field(
+            path,
+            "damping_ratio",
+            modes.damping_ratio.to_string(),
+            "0 to below 1",
+            "give the modal damping ratio; 0.01 is usual for welded steel",
+        ));
+    }
+    if !(modes.mass_kg > 0.0 && modes.mass_kg <= 1.0e5) {
+        return Err(field(
+            path,
+            "mass_kg",
+            modes.mass_kg.to_string(),
+            "above 0, at most 1e5 kg",
+            "give the mass of the meshed steel",
+        ));
+    }
+    check_shapes(path, modes)
+}
+
+/// Every mode has its rows, every station its values.
+fn check_shapes(path: &Path, modes: &ModesFile) -> Result<(), CaseError> {
+    let count = modes.frequencies_hz.len();
+    let stations = modes.arc_deg.len();
+    if stations < 2 {
+        return Err(field(
+            path,
+            "arc_deg",
+            format!("{stations} stations"),
+            "at least 2 stations [deg]",
+            "give the shapes along the rope arc",
+        ));
+    }
+    let lengths = [
+        ("radial", modes.radial.len()),
+        ("tangential", modes.tangential.len()),
+        ("gauge_stress_mpa", modes.gauge_stress_mpa.len()),
+        ("participation", modes.participation.len()),
+    ];
+    for (name, length) in lengths {
+        if length != count {
+            return Err(field(
+                path,
+                name,
+                format!("{length} rows"),
+                &format!("{count} rows: one per frequency"),
+                "the table is ragged: give every mode its row",
+            ));
+        }
+    }
+    for (name, shapes) in [("radial", &modes.radial), ("tangential", &modes.tangential)] {
+        if let Some(at) = shapes.iter().position(|shape| shape.len() != stations) {
+            return Err(field(
+                path,
+                &format!("{name}[{at}]"),
+                format!("{} values", shapes.get(at).map_or(0, Vec::len)),
+                &format!("{stations} values: one per station of arc_deg"),
+                "the table is ragged: give every station its value",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// An error about a field of the modes file.
+fn field(path: &Path, field: &str, value: String, allowed: &str, help: &str) -> CaseError {
+    CaseError::Field {
+        path: path.into(),
+        field: field.into(),
+        value: value.into(),
+        allowed: allowed.into(),
+        excerpt: "".into(),
+        help: help.into(),
+    }
+}
+
+/// Reads the influence lines: `psi_deg`, four normal and four tangential columns.
+fn read_influence(path: &Path, arc_deg: &[f64]) -> Result<Influence, CaseError> {
+    let bytes = file::read(path, "the influence lines, `flexible_head.influence_file`")?;
+    let table = Table::read(
+        path,
+        &bytes,
+        &[
+            "psi_deg",
+            "normal_1_mpa_per_n",
+            "normal_2_mpa_per_n",
+            "normal_3_mpa_per_n",
+            "normal_4_mpa_per_n",
+            "tangential_1_mpa_per_n",
+            "tangential_2_mpa_per_n",
+            "tangential_3_mpa_per_n",
+            "tangential_4_mpa_per_n",
+        ],
+    )?;
+    let Some([psi, n1, n2, n3, n4, t1, t2, t3, t4]) = table.columns.first_chunk::<9>() else {
+        return Err(damaged(path, "the table has no columns", "copy it again"));
+    };
+    ascending(psi).map_err(|at| {
+        table.cell(
+            path,
+            (at, 0),
+            number(psi, at),
+            "stations in ascending order [deg]",
+            "sort the rows by psi_deg",
+        )
+    })?;
+    for (column, values) in table.columns.iter().enumerate().skip(1) {
+        // 1 MPa/N would be 100 GPa under the ropes' load
+        if let Some(row) = values.iter().position(|value| value.abs() > 0.1) {
+            return Err(table.cell(
+                path,
+                (row, column),
+                number(values, row),
+                "-0.1 to 0.1 MPa per newton",
+                "the lines are stress in MPa per newton of force: check the unit",
+            ));
+        }
+    }
+    let ends = |values: &[f64]| Some((*values.first()?, *values.last()?));
+    if let (Some((from, to)), Some((first, last))) = (ends(arc_deg), ends(psi))
+        && (first > from + 1e-9 || last < to - 1e-9)
+    {
+        let (row, value, bound) = if first > from + 1e-9 {
+            (0, first, format!("at most {from} deg"))
+        } else {
+            (psi.len() - 1, last, format!("at least {to} deg"))
+        };
+        return Err(table.cell(
+            path,
+            (row, 0),
+            value.to_string(),
+            format!("{bound}: the influence lines must cover the modes' arc, {from} to {to} deg"),
+            "compute the missing stations",
+        ));
+    }
+    let rows = |[a, b, c, d]: [&Vec<f64>; 4]| {
+        let pairs = a.iter().zip(b).zip(c.iter().zip(d));
+        pairs.map(|((a, b), (c, d))| [*a, *b, *c, *d]).collect()
+    };
+    Ok(Influence {
+        psi_deg: psi.clone(),
+        normal_mpa_per_n: rows([n1, n2, n3, n4]),
+        tangential_mpa_per_n: rows([t1, t2, t3, t4]),
+    })
+}
+
+/// Whether numbers ascend strictly; else the index of the first that does not.
+fn ascending(values: &[f64]) -> Result<(), usize> {
+    let broken = values
+        .iter()
+        .zip(values.iter().skip(1))
+        .position(|(a, b)| b <= a);
+    broken.map_or(Ok(()), |at| Err(at + 1))
+}
+
+/// An entry for a message.
+fn number(values: &[f64], at: usize) -> String {
+    values
+        .get(at)
+        .map_or_else(|| "absent".to_owned(), ToString::to_string)
+}

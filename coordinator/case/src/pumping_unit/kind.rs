@@ -1,0 +1,44 @@
+//! The pumping unit as its cases are read.
+use super::{figures, numerics::numerics, read};
+use crate::{
+    case_kind::CaseKind, error::CaseError, loaded::Loaded, source::Source, summary::Summary,
+};
+use discrepancy::thresholds::Thresholds;
+use protocol::{case::Case, job::Numerics, pumping_unit::Machine, wire::WireError};
+
+/// Pumping units with double horse heads.
+pub(crate) struct PumpingUnits;
+
+impl CaseKind for PumpingUnits {
+    fn name(&self) -> &'static str {
+        Machine::KIND
+    }
+
+    fn read(&self, source: &Source<'_>) -> Result<Loaded, CaseError> {
+        read::read(source).map(|resolved| resolved.loaded)
+    }
+
+    fn check(&self, source: &Source<'_>) -> Result<Summary, CaseError> {
+        figures::summary(source)
+    }
+
+    fn missing_record(&self, condition: usize, name: &str) -> (String, String) {
+        let remedy = format!(
+            "add record_file = \"measured/test_{name}.csv.gz\" to the condition (time_s, crank_deg, \
+             stress_1_mpa .. stress_4_mpa; its data sheet is test_{name}.toml beside it)"
+        );
+        (format!("conditions[{condition}].record_file"), remedy)
+    }
+
+    fn numerics(
+        &self,
+        case: &Case,
+        thresholds: &Thresholds,
+    ) -> Result<(Numerics, Vec<Numerics>), WireError> {
+        numerics(case, thresholds)
+    }
+
+    fn unknowns(&self) -> &'static str {
+        "genes"
+    }
+}

@@ -1,0 +1,213 @@
+//! Whether the numbers of a `case.toml` fit each other: the step divides a turn, the ropes reach over the
+//! whole turn and stay on their arcs. Each by itself has been checked.
+use super::{
+    geometry::{self, Envelope},
+    schema::{CaseFile, ConditionEntry},
+};
+use crate::{
+    document::{Document, Step},
+    error::{CaseError, contradiction},
+};
+use protocol::pumping_unit::Smoothing;
+
+/// Checks a case file alone.
+///
+/// # Errors
+/// The first number that contradicts others.
+pub(super) fn check(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
+    if case.name.trim().is_empty() {
+        return Err(document.field(
+            &[Step::Key("name")],
+            "\"\"",
+            "a name of the machine",
+            "give the machine a name; it heads every report",
+        ));
+    }
+    check_output_step(document, case.run.output_step_deg)?;
+    check_smoothing(document, &case.conditions)?;
+    check_ropes(document, case)
+}
+
+/// The grid of the output has whole steps.
+fn check_output_step(document: &Document, step: f64) -> Result<(), CaseError> {
+    let count = 360.0 / step;
+    if (count - count.round()).abs() > 1e-9 * count {
+        return Err(document.field(
+            &[Step::Key("run"), Step::Key("output_step_deg")],
+            step,
+            "a step that divides 360 deg",
+            &format!("take {} deg, for example", plain_step(step)),
+        ));
+    }
+    Ok(())
+}
+
+/// What is done to the load cards can be done.
+fn check_smoothing(document: &Document, conditions: &[ConditionEntry]) -> Result<(), CaseError> {
+    for (index, condition) in conditions.iter().enumerate() {
+        let way = |key| [Step::Key("conditions"), Step::Index(index), Step::Key(key)];
+        let bad = match condition.smoothing {
+            Smoothing::Harmonics(0) => Some("at least 1 harmonic"),
+            Smoothing::MovingAverageDeg(width) if !(width > 0.0 && width < 360.0) => {
+                Some("a width above 0 and below 360 deg")
+            }
+            Smoothing::None | Smoothing::Harmonics(_) | Smoothing::MovingAverageDeg(_) => None,
+        };
+        if let Some(allowed) = bad {
+            return Err(document.field(
+                &way("smoothing"),
+                format!("{:?}", condition.smoothing),
+                allowed,
+                "use smoothing = \"none\", { harmonics = 14 } or { moving_average_deg = 5.0 }",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The divisor of 360 with few decimals that is nearest to a step \[deg\].
+fn plain_step(step: f64) -> f64 {
+    let plain = [
+        0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9, 1.0, 1.2, 1.5, 2.0, 2.5, 3.0,
+    ];
+    let more = [
+        4.0, 5.0, 6.0, 7.5, 8.0, 9.0, 10.0, 12.0, 15.0, 18.0, 20.0, 24.0, 30.0,
+    ];
+    let all = plain.into_iter().chain(more);
+    all.min_by(|a, b| (a - step).abs().total_cmp(&(b - step).abs()))
+        .unwrap_or(0.5)
+}
+
+/// The ropes reach over the whole turn and stay on their arcs.
+fn check_ropes(document: &Document, case: &CaseFile) -> Result<Envelope, CaseError> {
+    let ropes = &case.ropes;
+    let back = ropes.back_cylinders as f64 * ropes.cylinder_length_m;
+    let front = ropes.front_cylinders as f64 * ropes.cylinder_length_m;
+    let cylinders = |key| [Step::Key("ropes"), Step::Key(key)];
+    let envelope = geometry::envelope(case).map_err(|pin| open_loop(document, case, pin))?;
+    let pitch = ropes.cylinder_length_m;
+    let [lowest, highest] = envelope.beam_deg;
+    // the path that a rope has to cover grows with the swing, and that with the crank
+    let crank = format!(
+        "; or correct crank.radius_m = {}, if a swing of {:.1} deg is not this machine's",
+        case.crank.radius_m,
+        highest - lowest
+    );
+    let [free, _] = envelope.free_rope_m;
+    if free < pitch {
+        return Err(document.field(
+            &cylinders("back_cylinders"),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
+            format!(
+                "at least {:.3} m: at one end of the stroke all of it lies on the head",
+                back - free + pitch
+            ),
+            &format!(
+                "the rope is shorter than the path it has to cover: add cylinders and shorten the rod, \
+                 or move rope_anchor_deg{crank}"
+            ),
+        ));
+    }
+    let [contact, _] = envelope.contact_deg;
+    if contact <= case.back_head.rope_anchor_deg {
+        return Err(document.field(
+            &cylinders("back_cylinders"),
+            format!("{} ({back:.3} m of rope)", ropes.back_cylinders),
+            format!(
+                "more: at one end of the stroke the rope would leave the head at {contact:.1} deg, \
+                 beyond its anchor at {} deg",
+                case.back_head.rope_anchor_deg
+            ),
+            &format!(
+                "rope and rod are shorter than the path they have to cover: add cylinders, lengthen \
+                 rod.length_m, or move back_head.rope_anchor_deg{crank}"
+            ),
+        ));
+    }
+    if case.front_head.rope_anchor_deg <= -lowest {
+        return Err(document.field(
+            &[Step::Key("front_head"), Step::Key("rope_anchor_deg")],
+            case.front_head.rope_anchor_deg,
+            format!(
+                "above {:.1} deg, where the rope leaves the head with the front down",
+                -lowest
+            ),
+            "move the anchor up along the arc",
+        ));
+    }
+    let [hang, _] = envelope.hang_m;
+    if hang < pitch {
+        return Err(document.field(
+            &cylinders("front_cylinders"),
+            format!("{} ({front:.3} m of rope)", ropes.front_cylinders),
+            format!(
+                "at least {:.3} m: at the top of the stroke all of it lies on the head",
+                front - hang + pitch
+            ),
+            &format!("the rope is shorter than the path it has to cover: add cylinders{crank}"),
+        ));
+    }
+    Ok(envelope)
+}
+
+/// The crank cannot turn through: no beam angle closes the loop at a pin angle \[deg\].
+fn open_loop(document: &Document, case: &CaseFile, pin: f64) -> CaseError {
+    let back = case.ropes.back_cylinders as f64 * case.ropes.cylinder_length_m;
+    contradiction(
+        &document.path,
+        "the loop of crank, rod, back rope and back head",
+        format!("open at a pin angle of {pin:.0} deg"),
+        format!(
+            "the crank has to turn through: crank.radius_m = {}, its centre ({}, {}) m, rod.length_m = {}, \
+             ropes.back_cylinders = {} ({back:.3} m of rope), back_head.radius_m = {}, its centre \
+             ({}, {}) m",
+            case.crank.radius_m,
+            case.crank.center_x_m,
+            case.crank.center_y_m,
+            case.rod.length_m,
+            case.ropes.back_cylinders,
+            case.back_head.radius_m,
+            case.back_head.center_x_m,
+            case.back_head.center_y_m
+        ),
+        "one of these is wrong, or in another unit: rod and rope must reach from the crank pin to \
+         the head at every crank angle",
+    )
+}
+
+/// The anchor and the contact's whole travel lie on the arc of the reduced head.
+pub(super) fn check_arc(
+    document: &Document,
+    case: &CaseFile,
+    arc_deg: &[f64],
+    envelope: &Envelope,
+) -> Result<(), CaseError> {
+    let (Some(from), Some(to)) = (arc_deg.first(), arc_deg.last()) else {
+        return Ok(());
+    };
+    let anchor = case.back_head.rope_anchor_deg;
+    if !(from..=to).contains(&&anchor) {
+        return Err(document.field(
+            &[Step::Key("back_head"), Step::Key("rope_anchor_deg")],
+            anchor,
+            format!(
+                "{from} to {to} deg: the rope arc of {}",
+                case.flexible_head.modes_file.display()
+            ),
+            "fix the rope on the arc, or reduce the head with a longer arc",
+        ));
+    }
+    let [_, contact] = envelope.contact_deg;
+    if contact > *to {
+        return Err(document.field(
+            &[Step::Key("back_head"), Step::Key("radius_m")],
+            case.back_head.radius_m,
+            format!(
+                "a head whose contact stays on the arc of {} ({from} to {to} deg); it reaches {contact:.1} deg",
+                case.flexible_head.modes_file.display()
+            ),
+            "check back_head, crank and rod against each other, or reduce the head with a longer arc",
+        ));
+    }
+    Ok(())
+}

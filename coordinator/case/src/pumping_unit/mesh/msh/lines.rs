@@ -1,0 +1,82 @@
+//! The lines of a mesh file, counted: numbers come out, errors name the line.
+use crate::error::{CaseError, damaged};
+use std::path::Path;
+
+/// What to do about a mesh that cannot be read.
+pub(super) const SAVE_AGAIN: &str = "save the mesh again as MSH 4.1 ASCII (gmsh -format msh41), \
+                          8-node hexahedra of order 1 or 10-node tetrahedra";
+
+/// Lines of the file, counted.
+pub(super) struct Lines<'a> {
+    path: &'a Path,
+    rest: std::str::Lines<'a>,
+    number: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(path: &'a Path, text: &'a str) -> Self {
+        Self {
+            path,
+            rest: text.lines(),
+            number: 0,
+        }
+    }
+
+    pub(super) fn next(&mut self) -> Option<&'a str> {
+        self.number += 1;
+        self.rest.next()
+    }
+
+    /// The number of the line that was read last, from 1.
+    pub(super) const fn number(&self) -> usize {
+        self.number
+    }
+
+    /// An error at the line that was read last.
+    pub(super) fn wrong(&self, problem: &str) -> CaseError {
+        self.wrong_with(problem, SAVE_AGAIN)
+    }
+
+    /// The same with a remedy of its own.
+    pub(super) fn wrong_with(&self, problem: &str, help: &str) -> CaseError {
+        damaged(self.path, format!("line {}: {problem}", self.number), help)
+    }
+
+    /// The next line, which must be there.
+    pub(super) fn line(&mut self) -> Result<&'a str, CaseError> {
+        self.next()
+            .ok_or_else(|| self.wrong("the file ends inside a section"))
+    }
+
+    /// The numbers of the next line; at least `least` of them.
+    pub(super) fn numbers<T: std::str::FromStr>(
+        &mut self,
+        least: usize,
+    ) -> Result<Vec<T>, CaseError> {
+        let line = self.line()?;
+        let words = line.split_ascii_whitespace();
+        let numbers: Result<Vec<T>, _> = words.map(str::parse).collect();
+        match numbers {
+            Ok(numbers) if numbers.len() >= least => Ok(numbers),
+            _ => Err(self.wrong(&format!("at least {least} numbers are expected here"))),
+        }
+    }
+
+    /// Exactly `N` integers; further numbers of the line are ignored.
+    pub(super) fn integers<const N: usize>(&mut self) -> Result<[i64; N], CaseError> {
+        let numbers = self.numbers::<i64>(N)?;
+        numbers
+            .first_chunk::<N>()
+            .copied()
+            .ok_or_else(|| self.wrong("numbers are missing"))
+    }
+
+    /// The end of a section.
+    pub(super) fn end(&mut self, tag: &str) -> Result<(), CaseError> {
+        if self.line()?.trim() == tag {
+            Ok(())
+        } else {
+            Err(self.wrong(&format!("`{tag}` is expected here")))
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! From a case file of a pumping unit to a [`Case`]: the file, then every file that it names.
+use super::{
+    coefficient::Bodies,
+    condition,
+    flexible::{self, ReadHead},
+    genes,
+    geometry::Envelope,
+    machine, objective, ranges,
+    record::RecordFacts,
+    schema::{CaseFile, FlexibleHead, TwinRopesEntry},
+};
+use crate::{
+    effect::{self, CaseEffect},
+    error::{CaseError, Faults, damaged},
+    loaded::{Loaded, Records},
+    source::Source,
+};
+use discrepancy::record::Record;
+use protocol::{
+    case::{Case, Objective, Unknown},
+    pumping_unit::{EFFECT_UNITS, Machine},
+};
+
+/// Reads a case with its machine.
+///
+/// # Errors
+/// Everything that is wrong; see [`CaseError`].
+pub(super) fn read(source: &Source<'_>) -> Result<Resolved, CaseError> {
+    let mut resolved = resolve(source)?;
+    match resolved.head.stale.take() {
+        Some(stale) => Err(stale),
+        None => Ok(resolved),
+    }
+}
+
+/// A case with what its file and the head's files say of the flexible head.
+pub(super) struct Resolved {
+    pub loaded: Loaded,
+    /// Facts about each condition's record, in the order of the conditions.
+    pub(super) facts: Vec<Option<RecordFacts>>,
+    /// Where beam and ropes move.
+    pub(super) envelope: Envelope,
+    /// That of the case.
+    pub(super) machine: Machine,
+    /// Tables of another mesh are no error yet.
+    pub(super) head: ReadHead,
+    pub(super) flexible: FlexibleHead,
+    pub(super) twins: Option<TwinRopesEntry>,
+}
+
+/// Reads a case and all its files.
+///
+/// # Errors
+/// As [`read`], but for tables of another mesh.
+pub(super) fn resolve(source: &Source<'_>) -> Result<Resolved, CaseError> {
+    let Source {
+        measured, document, ..
+    } = *source;
+    let file: CaseFile = document.parse()?;
+    let Parts {
+        envelope,
+        head,
+        mut objective,
+        mut unknowns,
+        conditions: read,
+    } = parts(source, &file)?;
+    let stated = file.objective.as_ref();
+    unknowns.extend(file.effects.iter().flat_map(CaseEffect::genes));
+    let (mut notes, mut facts) = (Vec::new(), Vec::new());
+    let (mut cycles, mut channels) = (Vec::new(), Vec::new());
+    let (mut conditions, mut working) = (Vec::new(), Vec::new());
+    for read in read {
+        conditions.push(read.condition);
+        working.push(read.working);
+        channels.extend(objective::with_offset(stated, read.channels));
+        facts.push(read.facts);
+        cycles.extend(read.cycles.map(Record::held_out_last));
+        notes.extend(read.notes);
+    }
+    let recorded = (&channels[..], &facts[..]);
+    notes.extend(objective::over_recorded(
+        document,
+        stated,
+        &mut objective,
+        recorded,
+    )?);
+    let machine = Machine {
+        gravity_m_s2: file.gravity_m_s2,
+        beam: file.beam,
+        crank: file.crank,
+        rod: file.rod,
+        suspension: file.suspension,
+        ropes: file.ropes,
+        contact: file.contact,
+        front_head: file.front_head,
+        back_head: file.back_head,
+        modal_head: head.head.clone(),
+        twin_ropes: head.twins.clone(),
+        conditions: working,
+        run: file.run,
+    };
+    let case = Case {
+        name: file.name,
+        model: machine.settings().map_err(|error| {
+            damaged(
+                &document.path,
+                format!("the machine does not fit into a message: {error}"),
+                "reduce the head with fewer modes or stations",
+            )
+        })?,
+        effects: file.effects.iter().map(CaseEffect::setting).collect(),
+        effect_units: file.effects.iter().map(CaseEffect::units).collect(),
+        unknowns,
+        conditions,
+        channels,
+        objective,
+    };
+    let loaded = Loaded {
+        synthetic: file.records == Records::Synthetic && measured.is_none(),
+        case,
+        notes,
+        cycles,
+        effects: file.effects,
+    };
+    Ok(Resolved {
+        loaded,
+        facts,
+        envelope,
+        machine,
+        head,
+        flexible: file.flexible_head,
+        twins: file.twin_ropes,
+    })
+}
+
+/// What a case file and the files that it names say, part by part.
+struct Parts {
+    envelope: Envelope,
+    head: ReadHead,
+    objective: Objective,
+    unknowns: Vec<Unknown>,
+    conditions: Vec<condition::ReadCondition>,
+}
+
+/// Reads every part of a case.
+///
+/// # Errors
+/// What is wrong with any of them.
+fn parts(source: &Source<'_>, file: &CaseFile) -> Result<Parts, CaseError> {
+    let Source {
+        folder, document, ..
+    } = *source;
+    let mut faults = Faults::default();
+    // geometry of numbers that cannot be right would be faults that are none
+    let ranged = faults.take(ranges::check(document, file));
+    let envelope = ranged.and_then(|()| faults.take(machine::check(document, file)));
+    let head = faults.take(flexible::read(folder, document, file));
+    if let (Some(envelope), Some(head)) = (&envelope, &head) {
+        let arc = &head.head.arc_deg;
+        faults.take(machine::check_arc(document, file, arc, envelope));
+    }
+    let stated = file.objective.as_ref();
+    let objective = faults.take(objective::read(document, stated, &file.conditions));
+    faults.take(effect::check(document, &file.effects, &EFFECT_UNITS));
+    let unknowns = faults.take(genes::declared(document, &file.genes, &Bodies::of(file)));
+    let read = faults.take(condition::read_all(source, file));
+    faults.end()?;
+    let (Some(envelope), Some(head), Some(objective), Some(unknowns), Some(conditions)) =
+        (envelope, head, objective, unknowns, read)
+    else {
+        return Err(damaged(
+            &document.path,
+            "it cannot be read",
+            "copy it again",
+        ));
+    };
+    Ok(Parts {
+        envelope,
+        head,
+        objective,
+        unknowns,
+        conditions,
+    })
+}

@@ -1,0 +1,233 @@
+//! Whether a record, its data sheet and the case agree, and what is worth knowing of them.
+use super::{resample, samples::Samples, sheet::Sheet};
+use crate::{
+    document::Document,
+    error::{CaseError, contradiction},
+    note::Note,
+};
+use protocol::pumping_unit::TurnSense;
+use std::path::{Path, PathBuf};
+
+/// What a record is asked to agree with.
+#[derive(Debug, Clone, Copy)]
+pub(in super::super) struct Expected<'a> {
+    /// Position of the condition in the case.
+    pub(in super::super) index: usize,
+    /// Name of the condition, for messages.
+    pub(in super::super) condition: &'a str,
+    /// Speed of the condition [1/min].
+    pub(in super::super) speed_rpm: f64,
+    /// The case file, for messages.
+    pub(in super::super) case_file: &'a Path,
+    /// Output grid \[deg\].
+    pub(in super::super) step_deg: f64,
+    /// Sense in which the case's crank turns.
+    pub(in super::super) sense: TurnSense,
+}
+
+/// What was found in a record beside its curves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordFacts {
+    /// The file.
+    pub path: PathBuf,
+    /// Samples in the file.
+    pub samples: usize,
+    /// Samples that are missing in the time column.
+    pub lost: u64,
+    /// Samples per second \[Hz\].
+    pub rate_hz: f64,
+    /// Mean speed between the first and the last index pulse [1/min].
+    pub speed_rpm: f64,
+    /// Noise that the data sheet states, per sample \[MPa\].
+    pub stated_noise_mpa: Option<f64>,
+    /// Columns that are not used.
+    pub unused: Vec<String>,
+}
+
+/// Largest difference of speeds that is no contradiction \[1\]: belt creep and slip reach 3 %.
+const SPEED_TOLERANCE: f64 = 0.05;
+
+/// The sheet is one of this condition.
+///
+/// # Errors
+/// Another speed, or a crank that turns the other way.
+pub(super) fn check_stated(
+    sheet: &Sheet,
+    document: &Document,
+    expected: &Expected<'_>,
+) -> Result<(), CaseError> {
+    let stated = sheet.strokes_per_minute;
+    if (stated / expected.speed_rpm - 1.0).abs() > SPEED_TOLERANCE {
+        return Err(contradiction(
+            &document.path,
+            "`strokes_per_minute`",
+            format!("{stated} /min"),
+            speed_of(expected),
+            "take the record of this condition, or correct the speed that is wrong",
+        ));
+    }
+    if let Some(stated) = sheet.sense(document)?
+        && stated != expected.sense
+    {
+        return Err(contradiction(
+            &document.path,
+            "`crank.sense`",
+            stated.to_string(),
+            format!(
+                "{} has crank.sense = \"{}\"",
+                expected.case_file.display(),
+                expected.sense
+            ),
+            "both are seen with the well on the right: correct the one that is wrong",
+        ));
+    }
+    Ok(())
+}
+
+/// The case's speed, for messages.
+pub(super) fn speed_of(expected: &Expected<'_>) -> String {
+    format!(
+        "condition `{}` of {} has speed_rpm = {}",
+        expected.condition,
+        expected.case_file.display(),
+        expected.speed_rpm
+    )
+}
+
+/// What is told about a record; the speed is that between index pulses where there are two.
+pub(super) fn facts(path: &Path, samples: &Samples, sheet: &Sheet) -> RecordFacts {
+    let speed_rpm = match samples.pulses_s.as_slice() {
+        [first, .., last] => 60.0 * (samples.pulses_s.len() - 1) as f64 / (last - first),
+        _ => samples.step_deg / samples.step_s / 6.0,
+    };
+    RecordFacts {
+        path: path.to_owned(),
+        samples: samples.angle_deg.len(),
+        lost: samples.lost,
+        rate_hz: 1.0 / samples.step_s,
+        speed_rpm,
+        stated_noise_mpa: sheet.gauges.noise_rms_mpa,
+        unused: samples
+            .unused
+            .iter()
+            .map(|(name, _)| name.clone())
+            .collect(),
+    }
+}
+
+/// The measured speed is that of the condition.
+pub(super) fn check_speed(
+    path: &Path,
+    samples: &Samples,
+    facts: &RecordFacts,
+    expected: &Expected<'_>,
+) -> Result<(), CaseError> {
+    if (facts.speed_rpm / expected.speed_rpm - 1.0).abs() <= SPEED_TOLERANCE {
+        return Ok(());
+    }
+    Err(contradiction(
+        path,
+        format!(
+            "the speed by {} index pulses (`crank_deg`, `time_s`)",
+            samples.pulses_s.len()
+        ),
+        format!("{:.3} /min", facts.speed_rpm),
+        speed_of(expected),
+        "take the record of this condition, or correct the speed that is wrong",
+    ))
+}
+
+/// Sampling and counts are those of the data sheet.
+pub(super) fn check_sheet(
+    path: &Path,
+    samples: &Samples,
+    sheet: &Sheet,
+    sheet_path: &Path,
+    facts: &RecordFacts,
+    notes: &mut Vec<Note>,
+) -> Result<(), CaseError> {
+    if (facts.rate_hz / sheet.sample_rate_hz - 1.0).abs() > 0.02 {
+        return Err(contradiction(
+            path,
+            "the sampling by `time_s`",
+            format!("{:.2} Hz (every {:.5} s)", facts.rate_hz, samples.step_s),
+            format!(
+                "{}: sample_rate_hz = {}",
+                sheet_path.display(),
+                sheet.sample_rate_hz
+            ),
+            "time_s must be in seconds; correct the sheet if the record was sampled at another rate",
+        ));
+    }
+    if let Some(stated) = sheet.samples_recorded
+        && stated != facts.samples as u64
+    {
+        return Err(contradiction(
+            path,
+            "the number of rows",
+            facts.samples.to_string(),
+            format!("{}: samples_recorded = {stated}", sheet_path.display()),
+            "the record is cut off or belongs to another sheet: copy both again",
+        ));
+    }
+    if let Some(stated) = sheet.samples_lost
+        && stated != samples.lost
+    {
+        notes.push(Note {
+            path: path.to_owned(),
+            text: format!(
+                "the time column lacks {} samples, the data sheet says {stated}",
+                samples.lost
+            ),
+        });
+    }
+    Ok(())
+}
+
+/// What the user should know.
+pub(super) fn remark(
+    path: &Path,
+    cycles: &resample::Cycles,
+    samples: &Samples,
+    facts: &RecordFacts,
+    expected: &Expected<'_>,
+    notes: &mut Vec<Note>,
+) {
+    let mut note = |text: String| {
+        notes.push(Note {
+            path: path.to_owned(),
+            text,
+        });
+    };
+    for (column, near) in &samples.unused {
+        let near = near.map(|near| format!(": did you mean `{near}`?"));
+        let near = near.unwrap_or_default();
+        note(format!("column `{column}` is not used{near}"));
+    }
+    match cycles.whole.len() {
+        1 => note(
+            "one whole cycle only: there is no spread between cycles, so no noise model".to_owned(),
+        ),
+        few @ 2..=4 => note(format!(
+            "{few} whole cycles: the noise model is rough, ten are better"
+        )),
+        _ => {}
+    }
+    if samples.lost > 0 {
+        let total = samples.lost as f64 + facts.samples as f64;
+        note(format!(
+            "{} of {total:.0} samples are lost ({:.1} %); {} grid angles lack a cycle",
+            samples.lost,
+            100.0 * samples.lost as f64 / total,
+            cycles.gaps
+        ));
+    }
+    let off = facts.speed_rpm / expected.speed_rpm - 1.0;
+    if off.abs() > 0.01 {
+        note(format!(
+            "the measured speed is {:.3} /min, {:+.1} % off the condition's",
+            facts.speed_rpm,
+            100.0 * off
+        ));
+    }
+}

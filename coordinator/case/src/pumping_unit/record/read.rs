@@ -1,0 +1,163 @@
+//! One record from its files to the averaged turn.
+use super::{
+    agreement::{Expected, RecordFacts, check_sheet, check_speed, check_stated, facts, remark},
+    resample,
+    samples::Samples,
+    sheet::Sheet,
+};
+use crate::{
+    error::{CaseError, Faults, damaged},
+    file,
+    note::Note,
+};
+use discrepancy::record::{Record, Recorded};
+use protocol::case::{Channel, ChannelRecord};
+use protocol::pumping_unit::Sensor;
+use std::path::{Path, PathBuf};
+
+/// Reads the samples of a record alone, without its sheet and without a case; how many there are.
+///
+/// # Errors
+/// Everything that makes the samples unusable, with row and column; `path` is only named.
+pub fn count_samples(path: &Path, csv: &[u8]) -> Result<usize, CaseError> {
+    Samples::read(path, csv).map(|samples| samples.angle_deg.len())
+}
+
+/// A record that was read.
+#[derive(Debug)]
+pub(in super::super) struct Read {
+    /// What every sensor of the condition shows, with what was measured of the gauges.
+    pub(in super::super) channels: Vec<Channel>,
+    /// Every cycle by itself, with what was recorded beside the gauges.
+    pub(in super::super) cycles: Record,
+    pub(in super::super) facts: RecordFacts,
+    pub(in super::super) notes: Vec<Note>,
+}
+
+/// Reads a record and the data sheet beside it.
+///
+/// # Errors
+/// Anything that makes the record unusable or contradicts its sheet or the case.
+pub(in super::super) fn read(path: &Path, expected: &Expected<'_>) -> Result<Read, CaseError> {
+    let role = format!(
+        "the gauge record of condition `{}` in {}",
+        expected.condition,
+        expected.case_file.display()
+    );
+    let packed = path
+        .extension()
+        .is_some_and(|end| end.eq_ignore_ascii_case("gz"));
+    let mut faults = Faults::default();
+    let bytes = faults.take(if packed {
+        file::read_gzip(path, &role)
+    } else {
+        file::read(path, &role)
+    });
+    let role = format!("the data sheet of the record {}", path.display());
+    let sheet = faults.take(Sheet::read(&sheet_path(path), &role));
+    faults.end()?;
+    let (Some(bytes), Some((sheet, document, mut notes))) = (bytes, sheet) else {
+        return Err(damaged(path, "it cannot be read", "copy it again"));
+    };
+    check_stated(&sheet, &document, expected)?;
+    let samples = Samples::read(path, &bytes)?;
+    let facts = facts(path, &samples, &sheet);
+    check_speed(path, &samples, &facts, expected)?;
+    check_sheet(path, &samples, &sheet, &document.path, &facts, &mut notes)?;
+    let cycles = resample::cycles(&samples, expected.step_deg);
+    if cycles.whole.is_empty() {
+        return Err(damaged(
+            path,
+            format!(
+                "the record has no whole revolution: {} index pulses, {:.0} deg of crank angle",
+                samples.pulses_s.len(),
+                span(&samples.angle_deg)
+            ),
+            "record at least one revolution from index pulse to index pulse, better five or more",
+        ));
+    }
+    let mut channels = channels(expected.index, expected.step_deg);
+    for (channel, sensor) in channels.iter_mut().zip(Sensor::ALL) {
+        channel.noise = sheet.noise(sensor);
+    }
+    average(path, &cycles, &mut channels, expected.step_deg)?;
+    remark(path, &cycles, &samples, &facts, expected, &mut notes);
+    let places = Sensor::ALL.iter().zip(&channels).enumerate();
+    let recorded = places
+        .filter(|(_, (sensor, _))| cycles.channels.contains(sensor))
+        .map(|(curve, (_, channel))| Recorded {
+            correlation: sheet.correlation(samples.step_deg / expected.step_deg),
+            ..Recorded::new(curve, channel)
+        });
+    Ok(Read {
+        cycles: Record {
+            condition: expected.index,
+            channels: recorded.collect(),
+            cycles: cycles.single,
+            held_out: false,
+            stated: sheet.stated(&cycles.channels),
+        },
+        channels,
+        facts,
+        notes,
+    })
+}
+
+/// What every sensor shows under a condition on the output grid; nothing of it measured.
+pub(in super::super) fn channels(condition: usize, step_deg: f64) -> Vec<Channel> {
+    let turn_deg = resample::grid(step_deg);
+    let channel = |sensor: Sensor| sensor.channel(condition, turn_deg.clone());
+    Sensor::ALL.map(channel).into()
+}
+
+/// The data sheet of a record: the same name with the ending `.toml`.
+fn sheet_path(record: &Path) -> PathBuf {
+    let name = record.file_name().unwrap_or_default().to_string_lossy();
+    let stem = name.trim_end_matches(".gz").trim_end_matches(".csv");
+    record.with_file_name(format!("{stem}.toml"))
+}
+
+/// Gives the gauges that were recorded their averaged records; every grid angle must have a value.
+fn average(
+    path: &Path,
+    cycles: &resample::Cycles,
+    channels: &mut [Channel],
+    step_deg: f64,
+) -> Result<(), CaseError> {
+    let averaged = cycles.mean.iter().zip(&cycles.spread);
+    for (sensor, (mean, spread)) in cycles.channels.iter().zip(averaged) {
+        let place = Sensor::ALL.iter().position(|own| own == sensor);
+        let Some(channel) = place.and_then(|at| channels.get_mut(at)) else {
+            continue;
+        };
+        if let Some(first) = mean.iter().position(Option::is_none) {
+            let gap = mean.iter().skip(first);
+            let length = gap.take_while(|value| value.is_none()).count();
+            let from = channel.abscissa.points.get(first).copied();
+            return Err(damaged(
+                path,
+                format!(
+                    "no cycle has samples of `crank_deg` near {} deg: a gap of about {:.1} deg on \
+                     every cycle; allowed: no angle that is missing in all cycles",
+                    from.unwrap_or_default(),
+                    length as f64 * step_deg
+                ),
+                "repeat the measurement, or add a cycle that covers the gap",
+            ));
+        }
+        channel.record = Some(ChannelRecord {
+            cycles: cycles.whole.len(),
+            mean: mean.iter().map(|value| value.unwrap_or_default()).collect(),
+            spread: spread.clone(),
+        });
+    }
+    Ok(())
+}
+
+/// From the first to the last angle.
+fn span(angles: &[f64]) -> f64 {
+    match (angles.first(), angles.last()) {
+        (Some(first), Some(last)) => last - first,
+        _ => 0.0,
+    }
+}

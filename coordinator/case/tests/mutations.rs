@@ -1,0 +1,187 @@
+//! Whatever bytes stand in the files of a case: loading ends in a case or in an error, never in a
+//! panic, and an error always names a file of the case and a remedy.
+#![expect(
+    clippy::unwrap_used,
+    reason = "the helpers prepare folders; a test that cannot has failed"
+)]
+use case::{self, Overrides};
+use flate2::{Compression, read::GzDecoder, write::GzEncoder};
+use proptest::{prelude::*, test_runner::TestRunner};
+use std::{
+    fs,
+    io::{Read, Write},
+    path::{Path, PathBuf},
+};
+use tempfile::TempDir;
+
+fn shipped() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../cases/cyjs10-5-37hb")
+}
+
+/// The one that is compressed.
+const PACKED: &str = "measured/test_5rpm.csv.gz";
+const FILES: [&str; 7] = [
+    "case.toml",
+    "measured/card_5rpm.csv",
+    "measured/test_5rpm.toml",
+    PACKED,
+    "back_head/back_head_modes.json",
+    "back_head/back_head_influence.csv",
+    "back_head/back_head.msh",
+];
+
+/// One way to change a run of bytes.
+#[derive(Clone, Debug)]
+enum Mutation {
+    Flip { at: usize, mask: u8 },
+    Cut { at: usize },
+    Remove { at: usize, length: usize },
+    Repeat { at: usize, length: usize },
+    Insert { at: usize, text: &'static str },
+}
+
+fn mutation() -> impl Strategy<Value = Mutation> {
+    let words = prop::sample::select(vec![
+        "-",
+        "9",
+        "e",
+        "e99",
+        ".",
+        ",",
+        "\n",
+        "\"",
+        "0",
+        "nan",
+        "inf",
+        "-1",
+        "99999999999999999999",
+        "\u{0}",
+        "µ",
+        "[",
+        "=",
+        "#",
+        "18446744073709551615 ",
+    ]);
+    prop_oneof![
+        (0..1_000_000_usize, 1..=255_u8).prop_map(|(at, mask)| Mutation::Flip { at, mask }),
+        (0..1_000_000_usize).prop_map(|at| Mutation::Cut { at }),
+        (0..1_000_000_usize, 1..60_usize).prop_map(|(at, length)| Mutation::Remove { at, length }),
+        (0..1_000_000_usize, 1..60_usize).prop_map(|(at, length)| Mutation::Repeat { at, length }),
+        (0..1_000_000_usize, words).prop_map(|(at, text)| Mutation::Insert { at, text }),
+    ]
+}
+
+fn apply(bytes: &mut Vec<u8>, mutation: &Mutation) {
+    // places are given per million of the file
+    let place = |at: usize, length: usize| at * length / 1_000_000;
+    if bytes.is_empty() {
+        return;
+    }
+    let size = bytes.len();
+    match mutation {
+        Mutation::Flip { at, mask } => bytes[place(*at, size)] ^= mask,
+        Mutation::Cut { at } => bytes.truncate(place(*at, size)),
+        Mutation::Remove { at, length } => {
+            let from = place(*at, size);
+            bytes.drain(from..(from + length).min(size));
+        }
+        Mutation::Repeat { at, length } => {
+            let from = place(*at, size);
+            let copy = bytes[from..(from + length).min(size)].to_vec();
+            bytes.splice(from..from, copy);
+        }
+        Mutation::Insert { at, text } => {
+            let from = place(*at, size);
+            bytes.splice(from..from, text.bytes());
+        }
+    }
+}
+
+/// The shipped case with one condition, which suffices and is quicker.
+fn lean_copy() -> TempDir {
+    let scratch = tempfile::tempdir().unwrap();
+    for folder in ["measured", "back_head"] {
+        fs::create_dir(scratch.path().join(folder)).unwrap();
+    }
+    for name in FILES {
+        fs::copy(shipped().join(name), scratch.path().join(name)).unwrap();
+    }
+    let text = fs::read_to_string(scratch.path().join(FILES[0])).unwrap();
+    let (first, rest) = text.split_once("[[conditions]]\nname = \"4rpm\"").unwrap();
+    let (_, objective) = rest.split_once("[objective]").unwrap();
+    let text = format!("{first}[objective]{objective}");
+    fs::write(scratch.path().join(FILES[0]), text).unwrap();
+    scratch
+}
+
+fn unpacked(bytes: &[u8]) -> Vec<u8> {
+    let mut plain = Vec::new();
+    GzDecoder::new(bytes).read_to_end(&mut plain).unwrap();
+    plain
+}
+
+fn packed(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes).unwrap();
+    encoder.finish().unwrap()
+}
+
+/// A file that is whole again afterwards, whatever happens: so the next mutation finds it, or a smaller
+/// one of the same.
+struct Mutated {
+    path: PathBuf,
+    whole: Vec<u8>,
+}
+
+impl Drop for Mutated {
+    fn drop(&mut self) {
+        fs::write(&self.path, &self.whole).unwrap();
+    }
+}
+
+#[test]
+fn mutated_files_never_panic() {
+    let config = ProptestConfig {
+        cases: 250,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    };
+    let strategy = (
+        0..FILES.len(),
+        // near the head of a file is where its structure is decided
+        any::<bool>(),
+        any::<bool>(),
+        prop::collection::vec(mutation(), 1..4),
+    );
+    let copy = lean_copy();
+    let folder = copy.path().display().to_string();
+    let ran = TestRunner::new(config).run(&strategy, |(file, head, unpack, mutations)| {
+        let path = copy.path().join(FILES[file]);
+        let whole = fs::read(&path).unwrap();
+        let mutated = Mutated { path, whole };
+        let unpack = FILES[file] == PACKED && unpack;
+        let mut bytes = if unpack {
+            unpacked(&mutated.whole)
+        } else {
+            mutated.whole.clone()
+        };
+        let tail = if head {
+            bytes.split_off(bytes.len().min(1500))
+        } else {
+            Vec::new()
+        };
+        for mutation in &mutations {
+            apply(&mut bytes, mutation);
+        }
+        bytes.extend(tail);
+        let bytes = if unpack { packed(&bytes) } else { bytes };
+        fs::write(&mutated.path, bytes).unwrap();
+        if let Err(error) = case::load(copy.path(), &Overrides::default()) {
+            let message = error.to_string();
+            prop_assert!(message.starts_with(&folder), "{message}");
+            prop_assert!(message.contains("\nhelp: "), "{message}");
+        }
+        Ok(())
+    });
+    ran.unwrap();
+}

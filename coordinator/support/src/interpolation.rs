@@ -1,0 +1,60 @@
+//! Tables of points that are joined by straight lines: the value between two of them. It does not know
+//! what is tabulated.
+
+/// The value at a place of an ascending table; none outside it or without a finite neighbour.
+pub fn interpolated(xs: &[f64], ys: &[f64], x: f64) -> Option<f64> {
+    let above = xs.partition_point(|&known| known < x);
+    let right = (*xs.get(above)?, *ys.get(above)?);
+    if (right.0 - x).abs() < 1e-9 {
+        return right.1.is_finite().then_some(right.1);
+    }
+    let below = above.checked_sub(1)?;
+    between((*xs.get(below)?, *ys.get(below)?), right, x)
+}
+
+/// The value at any place, that of the nearest end outside the table; 0 of an empty table.
+pub fn held(xs: &[f64], ys: &[f64], x: f64) -> f64 {
+    let end = match xs.first() {
+        Some(first) if x < *first => ys.first(),
+        Some(_) | None => ys.last(),
+    };
+    let end = || end.copied().unwrap_or_default();
+    interpolated(xs, ys, x).unwrap_or_else(end)
+}
+
+/// The value at any place of a table that covers one period from 0 without repeating its first point.
+pub fn periodic(xs: &[f64], ys: &[f64], x: f64, period: f64) -> Option<f64> {
+    let place = x.rem_euclid(period);
+    interpolated(xs, ys, place).or_else(|| {
+        let (last, first) = ((*xs.last()?, *ys.last()?), (period, *ys.first()?));
+        between(last, first, place)
+    })
+}
+
+/// The value on the line through two points, if it is finite.
+fn between((x0, y0): (f64, f64), (x1, y1): (f64, f64), x: f64) -> Option<f64> {
+    let y = y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+    y.is_finite().then_some(y)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{held, interpolated, periodic};
+
+    #[test]
+    fn a_table_is_not_continued_unless_it_is_held_or_repeats() {
+        let (xs, ys) = ([0.0, 1.0, 3.0], [10.0, 20.0, 40.0]);
+        assert_eq!(interpolated(&xs, &ys, 2.0), Some(30.0));
+        assert_eq!(interpolated(&xs, &ys, 0.0), Some(10.0));
+        assert_eq!(interpolated(&xs, &ys, 3.1), None);
+        assert_eq!(interpolated(&xs, &ys, -0.1), None);
+        assert_eq!(interpolated(&[], &[], 0.0), None);
+        for (x, y) in [(-1.0, 10.0), (2.0, 30.0), (9.0, 40.0)] {
+            assert!((held(&xs, &ys, x) - y).abs() < 1e-12, "{x}");
+        }
+        assert!(held(&[], &[], 1.0).abs() < 1e-300);
+        assert_eq!(periodic(&xs, &ys, 3.5, 4.0), Some(25.0));
+        assert_eq!(periodic(&xs, &ys, -2.0, 4.0), Some(30.0));
+        assert_eq!(periodic(&[], &[], 1.0, 4.0), None);
+    }
+}
