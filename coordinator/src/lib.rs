@@ -10,9 +10,9 @@ pub mod cli;
 mod digest;
 mod external;
 mod kind;
-pub mod orthogonal;
+#[cfg(test)]
+#[path = "../study/src/oracle.rs"]
+mod oracle;
 pub mod pumping_unit;
 pub mod report;
-pub mod scaling;
 pub mod store;
-pub mod study;

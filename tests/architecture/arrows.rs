@@ -20,6 +20,14 @@ const ARROWS: &[(&str, &str)] = &[
     ("case", "exchange"),
     ("case", "discrepancy"),
     ("case", "support"),
+    // loops over whoever evaluates
+    ("study", "protocol"),
+    ("study", "dispatch"),
+    ("study", "search"),
+    ("study", "discrepancy"),
+    // its tests take the shipped case for an example
+    ("study", "case"),
+    ("coordinator", "study"),
     ("coordinator", "case"),
     ("coordinator", "launch"),
     // jobs and results, whatever they are about; strategies stand in for a study on a simulated clock
@@ -68,13 +76,14 @@ const GATED: &[(&str, &[&str])] = &[
             "worker",
             "launch",
             "dispatch",
+            "study",
             "coordinator",
             "tests",
         ],
     ),
     (
         "anyhow",
-        &["worker", "coordinator", "tests", "truth", "bench"],
+        &["worker", "study", "coordinator", "tests", "truth", "bench"],
     ),
     ("clap", &["worker", "coordinator", "truth", "bench"]),
     (

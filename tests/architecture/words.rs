@@ -24,6 +24,7 @@ const GENERAL: &[&str] = &[
     "coordinator/case/src",
     "coordinator/dispatch/src",
     "coordinator/launch/src",
+    "coordinator/study/src",
     "coordinator/src",
 ];
 
@@ -56,7 +57,8 @@ const RULES: &[Rule] = &[
             "coordinator/src/cli/command/tests.rs",
             "coordinator/src/cli/output/object/diagnosis/tests.rs",
             "coordinator/src/cli/output/object/identification/tests.rs",
-            "coordinator/src/study/tests.rs",
+            "coordinator/study/src/tests.rs",
+            "coordinator/study/src/oracle.rs",
         ],
     },
 ];

@@ -5,9 +5,6 @@
     reason = "whatever else comes back is a failed test"
 )]
 use super::unit;
-use coordinator::study::{
-    Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
-};
 use protocol::{
     case::{Case, ChannelRecord, EffectSetting, Scale, Unknown},
     id::JobId,
@@ -23,6 +20,9 @@ use search::strategy::{
     quick::{Part, QuickSettings},
 };
 use std::collections::VecDeque;
+use study::{
+    Calibrated, Completed, Crew, Evaluator, EvaluatorError, ProgressView, Watch, calibrate,
+};
 use worker::handler::Prepared;
 
 fn gene((id, parameter): (&str, &str), unit: &str, bounds: [f64; 2], value: f64) -> Unknown {

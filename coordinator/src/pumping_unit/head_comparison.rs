@@ -3,7 +3,6 @@
 //! Quasi-static stress needs no dynamics: a rope of tension T wrapped from its fixed end to where it
 //! leaves presses with T per radian and pulls its end with T. Exact statics are influence lines
 //! integrated over the wrap; mode displacement is `sum_k s_k f_k / w_k^2` of the same forces.
-use crate::study::{self, Evaluator, Stop, StudyError, or_stop};
 use case::pumping_unit::QuasiStatic;
 use protocol::{
     id::JobId,
@@ -11,6 +10,7 @@ use protocol::{
     pumping_unit::{Influence, ModalHead, REDUCE_HEAD, ReduceHeadSpec, ReducedHead},
     wire::{self, WireError},
 };
+use study::{self, Evaluator, Stop, StudyError, or_stop};
 use support::interpolation::held;
 
 /// Shapes smaller than this share of the table's largest move nothing.

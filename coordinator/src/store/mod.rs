@@ -1,7 +1,7 @@
 //! A run as tables for queries, built from its journal: SQLite, CSV or Parquet.
 //!
 //! [`Store`] folds the journal into rows; what was *asked* stands in no journal, so whoever repeats
-//! the run's study on the recording ([`crate::study::Recorded`]) hands in the simulations one by
+//! the run's study on the recording ([`study::Recorded`]) hands in the simulations one by
 //! one. Rows stream: neither curves nor residuals nor tables are held in memory. The journal is the
 //! truth and is never changed; an export can always be made again, with the same content.
 mod book;

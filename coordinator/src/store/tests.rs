@@ -1,6 +1,6 @@
 //! Where an export may go, and that nobody finds half of one.
 use super::{Exported, Format, Store, StoreError, Target, read_back, table::NAMES};
-use crate::study::tests::case;
+use crate::oracle::case;
 use std::{fs, path::Path};
 
 fn target(path: &Path, format: Format, force: bool) -> Target {

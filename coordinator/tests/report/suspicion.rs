@@ -2,7 +2,6 @@
 use crate::sample;
 use coordinator::report::Origin;
 use coordinator::report::diagnosis::Subject;
-use coordinator::study::{Diagnosed, StageCost};
 use discrepancy::cause::refit::Refitted;
 use discrepancy::cause::suspect::Suspect;
 use discrepancy::diagnose::{
@@ -29,6 +28,7 @@ use protocol::pumping_unit::Sensor;
 use search::least_squares::{LeastSquares, Settings};
 use search::space::Space;
 use std::time::Duration;
+use study::{Diagnosed, StageCost};
 
 /// Whitened entries of the made-up residual.
 const ENTRIES: usize = 40;

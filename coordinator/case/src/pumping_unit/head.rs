@@ -34,10 +34,6 @@ struct ModesFile {
 
 /// Place of a gauge in the modes file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[expect(
-    clippy::struct_field_names,
-    reason = "keys of the file, with their unit"
-)]
 pub struct GaugePlace {
     /// Along the machine, from the beam pivot towards the well \[m\].
     pub x_m: f64,

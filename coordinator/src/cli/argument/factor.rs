@@ -1,7 +1,8 @@
 //! Factors of a sweep: settings of a search with the values that they take, `--factor KEY=A,B,C`.
 use super::settings::refuse;
-use crate::{cli::output::problem::Usage, orthogonal::Factor};
+use crate::cli::output::problem::Usage;
 use search::strategy::{Preset, Settings};
+use study::orthogonal::Factor;
 
 /// What stands between the names of settings that take their values together.
 const JOINT: char = '+';

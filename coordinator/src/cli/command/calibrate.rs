@@ -22,7 +22,6 @@ use crate::cli::{
         session::Session,
     },
 };
-use crate::study::Watch as _;
 use anyhow::Context as _;
 use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
@@ -32,6 +31,7 @@ use search::{
     strategy::{CATALOGUE, Plan, Preset, Settings, build_after, preset},
 };
 use std::path::{Path, PathBuf};
+use study::Watch as _;
 
 /// Identify the unknowns of a case from its records; the same command resumes.
 #[derive(Debug, Args)]

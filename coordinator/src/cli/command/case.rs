@@ -7,7 +7,6 @@ use crate::cli::{
     },
     run::once::in_scratch,
 };
-use crate::study::{self, StudyError};
 use case::command::{self, Proposal};
 use case::{CaseError, Overrides, effect::check_known, load_with_notes, source::document};
 use clap::{Args, Subcommand};
@@ -16,6 +15,7 @@ use std::{
     collections::BTreeMap,
     path::{Path, PathBuf},
 };
+use study::{self, StudyError};
 use support::atomic_file;
 
 /// Check a case folder, or begin a new one.

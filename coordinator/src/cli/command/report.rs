@@ -1,15 +1,13 @@
 //! `horsehead report`: the files of a finished run again, from its journal.
-use crate::{
-    cli::{
-        argument::output::OutputChoice,
-        output::{problem::EXIT_CODES, progress::Silent},
-        run::{bus, folder::RunFolder, interrupt, kind::AnyRun},
-    },
-    study::Recorded,
+use crate::cli::{
+    argument::output::OutputChoice,
+    output::{problem::EXIT_CODES, progress::Silent},
+    run::{bus, folder::RunFolder, interrupt, kind::AnyRun},
 };
 use clap::Args;
 use protocol::{event::Finished, job::Job};
 use std::path::PathBuf;
+use study::Recorded;
 
 /// Write tables, figures and report of a finished run again, from its journal.
 #[derive(Debug, Args)]

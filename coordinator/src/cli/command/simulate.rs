@@ -12,12 +12,12 @@ use crate::{
     },
     kind,
     report::{self, Origin, SingleRun, table, words},
-    study::{self, Compared, Curves, EvaluatorError, PICTURES, Wanted},
 };
 use anyhow::Context as _;
 use clap::Args;
 use protocol::{case::Case, job::Verdict};
 use std::path::PathBuf;
+use study::{self, Compared, Curves, EvaluatorError, PICTURES, Wanted};
 
 /// Simulate once: curves, verdict, counters.
 #[derive(Debug, Args)]

@@ -20,12 +20,12 @@ use crate::{
         },
     },
     report::table,
-    study::Wanted,
 };
 use anyhow::Context as _;
 use case::{read_genes, require_record};
 use clap::Args;
 use std::{path::PathBuf, time::Instant};
+use study::Wanted;
 
 /// Score a run's parameters under another working condition (the paper's Table 4).
 #[derive(Debug, Args)]

@@ -17,7 +17,6 @@ use crate::{
         },
     },
     report::{self, Calibration, ConditionResult, HistoryPoint, Individual, WorkerUse},
-    study::{self, Calibrated, Compared, Curves},
 };
 use dispatch::journal;
 use protocol::{
@@ -26,6 +25,7 @@ use protocol::{
 };
 use search::strategy::Finish;
 use std::collections::BTreeMap;
+use study::{self, Calibrated, Compared, Curves};
 
 /// The report's form of one comparison of recommended and optimised.
 pub(crate) fn condition_result(compared: &Compared) -> Option<ConditionResult> {

@@ -1,8 +1,8 @@
 //! Errors as people see them: what happened, why, and what to do; and the exit code they mean.
 use super::terminal;
-use crate::study::{EvaluatorError, StudyError};
 use case::CaseError;
 use std::{fmt, process::ExitCode};
+use study::{EvaluatorError, StudyError};
 
 /// What the help of every command ends with.
 pub(crate) const EXIT_CODES: &str =

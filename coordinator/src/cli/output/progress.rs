@@ -1,6 +1,5 @@
 //! Progress on standard error: a bar on a terminal, else a line per generation or ten seconds.
 use super::terminal;
-use crate::study::{Crew, ProgressView, StageView, View, Watch};
 use discrepancy::laboratory::Stage;
 use indicatif::{ProgressBar, ProgressStyle};
 use protocol::event::Spent;
@@ -9,6 +8,7 @@ use std::{
     io::{self, IsTerminal as _},
     time::{Duration, Instant},
 };
+use study::{Crew, ProgressView, StageView, View, Watch};
 
 /// Longest silence where there is no terminal.
 const SILENCE: Duration = Duration::from_secs(10);
@@ -274,7 +274,7 @@ fn clock(time: Duration) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::WorkerStatus;
+    use study::WorkerStatus;
 
     #[test]
     fn a_line_says_everything_that_is_known() {

@@ -1,8 +1,5 @@
 //! The dispatcher as an evaluator: opening it, and its refusals in words that help.
-use crate::{
-    cli::{argument::door::Door, output::problem::Usage},
-    study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus},
-};
+use crate::cli::{argument::door::Door, output::problem::Usage};
 use dispatch::journal::{self, JournalError};
 use dispatch::runtime::{Dispatch, DispatchError, DispatchOptions, RunHeader, Snapshot};
 use link::LinkError;
@@ -14,6 +11,7 @@ use protocol::{
 };
 use serde::Serialize;
 use std::{path::PathBuf, time::Duration};
+use study::{Completed, Crew, Evaluator, EvaluatorError, JobNumbers, WorkerStatus};
 
 /// Name and version of this program.
 pub(crate) const PROGRAM: &str = concat!("horsehead ", env!("CARGO_PKG_VERSION"));

@@ -1,13 +1,13 @@
 //! The work of a calibration: the search, then recommended and best individual side by side.
 use super::{begun::Run, diagnosis::inputs};
 use crate::cli::output::terminal;
-use crate::study::{
-    self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, StageView, Stop, StudyError,
-    Wanted, Watch,
-};
 use discrepancy::{diagnose::Inputs, identify::UnknownEstimate, thresholds::Thresholds};
 use protocol::case::Case;
 use search::strategy::{self, Settings};
+use study::{
+    self, Calibrated, Compared, Evaluator, PICTURES, ProgressView, StageView, Stop, StudyError,
+    Wanted, Watch,
+};
 
 /// A calibration that was begun.
 pub(crate) type Calibration = Run<Settings>;

@@ -4,15 +4,13 @@ use super::{
     command_line::quote,
     manifest::{self, DIAGNOSE, Manifest},
 };
-use crate::{
-    cli::output::{problem::Usage, terminal},
-    study::{self, Diagnosed, Evaluator, StageView, Stop, Watch},
-};
+use crate::cli::output::{problem::Usage, terminal};
 use case::Loaded;
 use discrepancy::{diagnose::Inputs, model::Off, thresholds::Thresholds};
 use protocol::{announce::EffectDescriptor, case::Case};
 use search::space::Space;
 use serde::{Deserialize, Serialize};
+use study::{self, Diagnosed, Evaluator, StageView, Stop, Watch};
 
 /// A diagnosis that was begun.
 pub(crate) type Diagnosis = Run<Decides>;

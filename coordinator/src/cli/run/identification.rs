@@ -4,15 +4,13 @@ use super::{
     diagnosis::{entrance, inputs},
     manifest::{self, IDENTIFY, Manifest},
 };
-use crate::{
-    cli::output::{problem::Usage, terminal},
-    study::{self, Evaluator, StageCost, StageView, Stop, Watch},
-};
+use crate::cli::output::{problem::Usage, terminal};
 use case::Loaded;
 use discrepancy::{
     diagnose::Inputs, identify::Identified, laboratory::Stage, thresholds::Thresholds,
 };
 use serde::{Deserialize, Serialize};
+use study::{self, Evaluator, StageCost, StageView, Stop, Watch};
 
 /// An identification that was begun.
 pub(crate) type Identification = Run<Decides>;

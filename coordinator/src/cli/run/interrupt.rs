@@ -1,8 +1,6 @@
 //! Ctrl-C: the first stops cleanly, the second at once.
-use crate::{
-    cli::output::{problem::INTERRUPTED, terminal},
-    study::Stop,
-};
+use crate::cli::output::{problem::INTERRUPTED, terminal};
+use study::Stop;
 use tokio::sync::watch;
 
 /// Listens for Ctrl-C and SIGTERM from now on; needs a running asynchronous runtime. What is

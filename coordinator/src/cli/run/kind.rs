@@ -7,18 +7,16 @@ use super::{
     identification::{self, Identification, identify},
     manifest::{CALIBRATE, DIAGNOSE, IDENTIFY},
 };
-use crate::{
-    cli::{
-        argument::output::Output,
-        output::{
-            calibration::show, diagnosis::Answer, identification::show as identified,
-            object::diagnosis::times::Times, problem::Usage,
-        },
+use crate::cli::{
+    argument::output::Output,
+    output::{
+        calibration::show, diagnosis::Answer, identification::show as identified,
+        object::diagnosis::times::Times, problem::Usage,
     },
-    study::{Evaluator, ProgressView, StageView, Stop, Watch},
 };
 use case::Loaded;
 use std::path::Path;
+use study::{Evaluator, ProgressView, StageView, Stop, Watch};
 
 /// A run that was begun, of either kind.
 pub(crate) enum AnyRun {

@@ -3,13 +3,11 @@ use super::{
     bus::{self, Bus},
     interrupt,
 };
-use crate::{
-    cli::argument::door::Door,
-    study::{self, Compared, Stop, StudyError, Wanted},
-};
+use crate::cli::argument::door::Door;
 use anyhow::Context as _;
 use dispatch::runtime::PAUSE_LIMIT;
 use protocol::case::Case;
+use study::{self, Compared, Stop, StudyError, Wanted};
 
 /// Works with so many local workers in a scratch folder.
 ///

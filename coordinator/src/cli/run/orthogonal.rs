@@ -1,10 +1,8 @@
 //! The work of an orthogonal test: the rows of the array with every seed, then the best levels with other seeds.
 use super::{begun::Run, manifest::Decides, searches::Searches};
-use crate::{
-    orthogonal::{Analysis, Array, Confirmation, Tested},
-    study::{Evaluator, ProgressView, Stop, Sweep, Watch},
-};
 use serde::{Deserialize, Serialize};
+use study::orthogonal::{Analysis, Array, Confirmation, Tested};
+use study::{Evaluator, ProgressView, Stop, Sweep, Watch};
 
 /// What decides a test.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

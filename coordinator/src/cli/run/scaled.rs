@@ -11,8 +11,6 @@ use crate::{
         argument::{door::Door, settings},
         output::{problem::Usage, terminal},
     },
-    scaling::{How, Overheads, Row, Scaled, Shares, Stand, project},
-    study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all},
 };
 use anyhow::Context as _;
 use dispatch::journal;
@@ -28,6 +26,8 @@ use std::{
     fs,
     time::{Duration, Instant},
 };
+use study::scaling::{How, Overheads, Row, Scaled, Shares, Stand, project};
+use study::{Evaluator as _, ProgressView, Search, Stop, Sweep, Watch, score_all};
 use support::quantile;
 
 /// Sessions and jobs by which the coordinator's cost of a result is measured, and bytes of each: about a score.

@@ -1,15 +1,11 @@
 //! Searches of a sweep: one choice of settings, varied by factors and seeds, each within one budget.
 use super::command_line::quote;
-use crate::{
-    cli::{
-        argument::{
-            factor::{self, check},
-            settings::SettingsChoice,
-        },
-        output::problem::Usage,
+use crate::cli::{
+    argument::{
+        factor::{self, check},
+        settings::SettingsChoice,
     },
-    orthogonal::{Factor, Tried},
-    study::{Search, Searched},
+    output::problem::Usage,
 };
 use anyhow::Context as _;
 use search::{
@@ -17,6 +13,8 @@ use search::{
     strategy::{Plan, Preset, Settings, build, preset},
 };
 use serde::{Deserialize, Serialize};
+use study::orthogonal::{Factor, Tried};
+use study::{Search, Searched};
 
 /// Settings that say how long a search goes on, each of some presets.
 const LENGTHS: [&str; 3] = ["generations", "evaluations", "points"];

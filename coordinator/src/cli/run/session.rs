@@ -6,11 +6,9 @@ use super::{
     launch::Launch,
     manifest::Decides,
 };
-use crate::{
-    cli::{argument::workers::WorkersChoice, output::terminal},
-    study::{Stop, StudyError},
-};
+use crate::cli::{argument::workers::WorkersChoice, output::terminal};
 use std::time::Instant;
+use study::{Stop, StudyError};
 
 /// Who works on a run, and since when.
 pub(crate) struct Session {

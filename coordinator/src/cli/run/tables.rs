@@ -10,7 +10,6 @@ use super::{
 use crate::{
     cli::output::{problem::Usage, terminal},
     store::{Exported, Format, Label, Store, StoreError, Target},
-    study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch},
 };
 use discrepancy::laboratory::Stage;
 use dispatch::journal;
@@ -18,6 +17,7 @@ use protocol::{case::Case, event::Finished, job::Job};
 use search::strategy::Proposal;
 use serde::Serialize;
 use std::{cell::RefCell, collections::BTreeMap, path::PathBuf};
+use study::{Crew, EvaluatorError, ProgressView, Recorded, StageView, Stop, StudyError, Watch};
 
 /// What is known of the run as a whole, beside its journal.
 pub(crate) fn facts<S: Serialize>(

@@ -4,7 +4,7 @@ use crate::cli::output::object::{
     score::{condition, unknowns},
     simulation::{VerdictOutput, simulation},
 };
-use crate::{pumping_unit::simulation_digest, study::Curves};
+use crate::pumping_unit::simulation_digest;
 use protocol::pumping_unit::failure;
 use protocol::{
     case::Case,
@@ -13,6 +13,7 @@ use protocol::{
 };
 use serde_json::Value;
 use std::{collections::BTreeMap, path::Path};
+use study::Curves;
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");

@@ -2,9 +2,9 @@
 use super::canvas::{Canvas, Lettering, Pen, WIDTH, render};
 use super::panel::Panel;
 use super::scale::Scale;
-use crate::orthogonal::{Analysis, Factor, Range, Tested};
 use crate::report::color::{BLUE, GREY, INK};
 use crate::report::document::Figure;
+use study::orthogonal::{Analysis, Factor, Range, Tested};
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 20.0;

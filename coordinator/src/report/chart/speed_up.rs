@@ -4,8 +4,8 @@ use super::panel::Panel;
 use super::scale::Scale;
 use crate::report::color::{BLUE, Color, GREEN, GREY, PURPLE, VERMILLION};
 use crate::report::document::Figure;
-use crate::scaling::Row;
 use std::collections::BTreeMap;
+use study::scaling::Row;
 
 const LEFT: f64 = 62.0;
 const RIGHT: f64 = 210.0;

@@ -1,10 +1,10 @@
 //! What the report of a diagnosis is about.
 use crate::report::data::Origin;
-use crate::study::Diagnosed;
 use discrepancy::diagnose::{Diagnosis, Estimate};
 use discrepancy::record::Record;
 use protocol::announce::{EffectDescriptor, ParameterDescriptor};
 use protocol::case::Case;
+use study::Diagnosed;
 
 /// A finished diagnosis with everything that its report names.
 #[derive(Clone, Debug)]

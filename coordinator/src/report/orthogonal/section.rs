@@ -1,12 +1,12 @@
 //! Sections of the report of an orthogonal test.
 use super::subject::Subject;
-use crate::orthogonal::{Analysis, Factor, Source, Tested, Tried};
 use crate::report::chart::main_effects;
 use crate::report::document::{Block, Row, Section, Table};
 use crate::report::number::{NONE, count, figure, fixed};
 use crate::report::section::origin;
 use crate::report::words::{listed, objective_heading};
 use protocol::case::Case;
+use study::orthogonal::{Analysis, Factor, Source, Tested, Tried};
 
 /// Above this probability chance is as good a reason as the factor.
 const LIKELY: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! What a report of a test is about.
-use crate::orthogonal::Tested;
 use crate::report::data::Origin;
 use protocol::case::Case;
+use study::orthogonal::Tested;
 
 /// What a report of a test is about.
 pub(crate) struct Subject<'a> {

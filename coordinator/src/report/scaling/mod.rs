@@ -7,9 +7,9 @@ use super::document::{Block, Fact, Report, Row as Cells, Section, Table};
 use super::folder::{ReportError, write_report};
 use super::number::{count, duration, figure, fixed, percent};
 use super::section::origin;
-use crate::scaling::{How, Row, Scaled};
 use protocol::case::Case;
 use std::path::{Path, PathBuf};
+use study::scaling::{How, Row, Scaled};
 
 /// What a report is about.
 pub(crate) struct Subject<'a> {

@@ -1,24 +1,21 @@
 //! `horsehead evaluate`: any program's individuals are scored on workers, line by line.
 mod words;
 
-use crate::{
-    cli::{
-        argument::{
-            case::{CaseChoice, LoadedCase},
-            workers::WorkersChoice,
-        },
-        output::{
-            problem::{EXIT_CODES, Usage},
-            terminal,
-        },
-        run::{
-            begun::Run,
-            folder::RunFolder,
-            manifest::{Decides, EVALUATE, Manifest},
-            session::Session,
-        },
+use crate::cli::{
+    argument::{
+        case::{CaseChoice, LoadedCase},
+        workers::WorkersChoice,
     },
-    study::{Request, evaluate},
+    output::{
+        problem::{EXIT_CODES, Usage},
+        terminal,
+    },
+    run::{
+        begun::Run,
+        folder::RunFolder,
+        manifest::{Decides, EVALUATE, Manifest},
+        session::Session,
+    },
 };
 use case::require_record;
 use clap::Args;
@@ -32,6 +29,7 @@ use std::{
         atomic::{AtomicUsize, Ordering},
     },
 };
+use study::{Request, evaluate};
 use tokio::sync::mpsc;
 use words::{Line, Tag};
 

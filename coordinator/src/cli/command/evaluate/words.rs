@@ -1,15 +1,13 @@
 //! Lines of `horsehead evaluate`: what is asked for and what is said, as JSON. It knows a case's unknowns, not
 //! who scores.
-use crate::{
-    cli::output::object::scored::ScoredOutput,
-    study::{Request, Scored},
-};
+use crate::cli::output::object::scored::ScoredOutput;
 use case::document::nearest;
 use protocol::job::Verdict;
 use search::space::Space;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use study::{Request, Scored};
 
 /// A line in.
 #[derive(Debug, Deserialize)]

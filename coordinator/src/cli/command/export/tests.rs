@@ -1,5 +1,6 @@
 //! Exports of whole runs: what the tables say is what the search saw and the journal holds.
 use super::*;
+use crate::oracle::{Oracle, case, physics};
 use crate::{
     cli::{
         argument::output::Output,
@@ -12,10 +13,6 @@ use crate::{
         },
     },
     store::read_back::{self, Tables, Value},
-    study::{
-        Completed, Crew, EvaluationLog, Evaluator, EvaluatorError,
-        tests::{Oracle, case, physics},
-    },
 };
 use dispatch::journal::{self, Entry, Journal};
 use protocol::{
@@ -33,6 +30,7 @@ use std::{
     io::{Read as _, Seek as _, SeekFrom, Write as _},
     path::Path,
 };
+use study::{Completed, Crew, EvaluationLog, Evaluator, EvaluatorError};
 
 /// Evaluates as the study's own tests do and writes the journal as a run does; after so many
 /// results it has had enough.
@@ -269,7 +267,7 @@ fn the_query_of_the_readme_finds_the_best_individuals() {
     let log = log.unwrap();
     let complete = log
         .entries()
-        .filter(|entry| entry.ending == crate::study::Ending::Complete);
+        .filter(|entry| entry.ending == study::Ending::Complete);
     let mut expected: Vec<f64> = complete.map(|entry| entry.fitness).collect();
     expected.sort_by(f64::total_cmp);
     expected.truncate(best.len());

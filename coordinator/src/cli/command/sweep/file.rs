@@ -28,12 +28,12 @@ use crate::{
         },
     },
     report::{orthogonal::runs, table},
-    study::{Sweep, Watch as _, score_all},
 };
 use case::{document::Document, require_record};
 use clap::Args;
 use search::space::Space;
 use std::path::{Path, PathBuf};
+use study::{Sweep, Watch as _, score_all};
 
 /// The table that a sweep leaves in its run folder.
 const TABLE: &str = "sweep.csv";

@@ -1,11 +1,8 @@
 //! The file of a grid: which case, which preset, which settings take which values.
-use crate::{
-    cli::{
-        argument::settings::SettingsChoice,
-        output::problem::Usage,
-        run::{searches::Searches, swept::combinations},
-    },
-    orthogonal::Factor,
+use crate::cli::{
+    argument::settings::SettingsChoice,
+    output::problem::Usage,
+    run::{searches::Searches, swept::combinations},
 };
 use case::document::{Document, Step};
 use search::{
@@ -14,6 +11,7 @@ use search::{
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::PathBuf};
+use study::orthogonal::Factor;
 
 /// Most searches of one sweep.
 const MOST: usize = 100_000;

@@ -23,9 +23,7 @@ use crate::{
             session::Session,
         },
     },
-    orthogonal::{Array, Factor, Tested},
     report::{orthogonal as report, text},
-    study::Watch as _,
 };
 use anyhow::Context as _;
 use case::require_record;
@@ -38,6 +36,8 @@ use search::{
     strategy::{CATALOGUE, preset},
 };
 use std::path::PathBuf;
+use study::Watch as _;
+use study::orthogonal::{Array, Factor, Tested};
 
 /// Test settings of a search by an orthogonal array; the same command resumes.
 #[derive(Debug, Args)]

@@ -21,13 +21,13 @@ use crate::{
         },
     },
     report::{scaling as report, text},
-    scaling::Scaled,
 };
 use anyhow::Context as _;
 use case::require_record;
 use clap::{Args, builder::PossibleValuesParser};
 use search::{space::Space, strategy::CATALOGUE};
 use std::{fs, path::PathBuf};
+use study::scaling::Scaled;
 
 /// Measure how searches scale with slots, and project it to more; the same command resumes.
 #[derive(Debug, Args)]

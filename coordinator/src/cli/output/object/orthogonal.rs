@@ -1,7 +1,7 @@
 //! The objects of `horsehead sweep orthogonal` and of a sweep of a grid.
-use crate::orthogonal::{Anova, Confirmation, Factor, Source, Tested, Tried};
 use serde::Serialize;
 use serde_json::{Map, Value};
+use study::orthogonal::{Anova, Confirmation, Factor, Source, Tested, Tried};
 
 /// Of `horsehead sweep orthogonal`, and kept as `result.json` in the run folder. Responses are log10 of the best
 /// objective, in the objective's unit.
@@ -141,7 +141,7 @@ fn listed(factors: &[Factor]) -> Vec<FactorOutput> {
 }
 
 fn terms(factors: &[Factor], anova: &Anova) -> Vec<TermOutput> {
-    let one = |term: &crate::orthogonal::Term| TermOutput {
+    let one = |term: &study::orthogonal::Term| TermOutput {
         source: match term.source {
             Source::Factor(number) => factors[number].name.clone(),
             Source::Block => "seed".to_owned(),

@@ -1,5 +1,5 @@
 //! Unknowns and agreement with the record, alike in all objects.
-use crate::{kind, study::Curves};
+use crate::kind;
 use discrepancy::identify::{Seen, UnknownEstimate};
 use protocol::{
     case::Case,
@@ -8,6 +8,7 @@ use protocol::{
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::{BTreeMap, BTreeSet};
+use study::Curves;
 
 /// An unknown with its interval, in its declared unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]

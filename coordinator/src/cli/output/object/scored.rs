@@ -3,7 +3,6 @@ use super::{
     score::{ScoreOutput, channels},
     simulation::VerdictOutput,
 };
-use crate::study::Scored;
 use protocol::{
     case::Case,
     job::{Evaluation, Verdict},
@@ -11,6 +10,7 @@ use protocol::{
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
+use study::Scored;
 
 /// What came of an individual.
 #[derive(Debug, Serialize)]

@@ -1,6 +1,6 @@
 //! The object of `horsehead simulate`.
 use super::score::{ScoreOutput, Unknowns, channels, objective, unknowns};
-use crate::{kind, study::Curves};
+use crate::kind;
 use protocol::{
     case::Case,
     job::{Counters, Derivative, Reached, Verdict},
@@ -9,6 +9,7 @@ use protocol::{
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
+use study::Curves;
 
 /// Of `horsehead simulate`.
 #[derive(Debug, Serialize)]

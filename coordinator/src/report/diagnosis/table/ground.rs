@@ -87,7 +87,7 @@ pub(in crate::report::diagnosis) fn stages(subject: &Subject<'_>) -> Option<Tabl
             )
         })
         .collect();
-    let total = |of: fn(&crate::study::StageCost) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
+    let total = |of: fn(&study::StageCost) -> u64| accounts.iter().map(|(_, a)| of(a)).sum();
     rows.push(Row::new(
         "all",
         [

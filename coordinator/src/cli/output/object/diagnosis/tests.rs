@@ -1,9 +1,6 @@
 //! The contract of `horsehead diagnose CASE --output json`: fields by name, for every verdict.
 use super::{answer::object, times::Times};
-use crate::{
-    report::{Origin, diagnosis::Subject},
-    study::{Diagnosed, StageCost},
-};
+use crate::report::{Origin, diagnosis::Subject};
 use discrepancy::{
     diagnose::{Diagnosis, Estimate, Force, Limit, LookAlikes, ParameterEstimate, Round},
     laboratory::Stage,
@@ -28,6 +25,7 @@ use search::{
 };
 use serde_json::Value;
 use std::{path::Path, time::Duration};
+use study::{Diagnosed, StageCost};
 
 fn case() -> Case {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/cyjs10-5-37hb");

@@ -1,8 +1,8 @@
 //! The times of the stages in an object that was written earlier.
-use crate::study::StageCost;
 use discrepancy::laboratory::Stage;
 use serde::Deserialize;
 use std::time::Duration;
+use study::StageCost;
 
 /// The times in an object that was written earlier.
 #[derive(Debug, Deserialize)]

@@ -1,5 +1,5 @@
 //! Of `horsehead identify`.
-use crate::{kind, report::identification::Subject, study::StageCost};
+use crate::{kind, report::identification::Subject};
 use discrepancy::{
     diagnose::NeverExact,
     identify::{Direction, Further, Seen, UnknownEstimate},
@@ -8,6 +8,7 @@ use discrepancy::{
 use serde::Serialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+use study::StageCost;
 
 /// What a record sees.
 #[derive(Debug, Serialize)]

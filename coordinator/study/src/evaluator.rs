@@ -40,7 +40,7 @@ pub trait Evaluator {
 ///
 /// # Errors
 /// If the job failed, or was answered as another kind of job.
-pub(crate) fn answer<T>(
+pub fn answer<T>(
     completed: Completed,
     take: impl FnOnce(Answer) -> Result<T, WrongKind>,
     what: impl FnOnce() -> String,

@@ -1,8 +1,9 @@
 //! Searches side by side against an evaluator that answers in any order.
 use super::*;
-use crate::study::{
+use crate::JobNumbers;
+use crate::{
     Crew, calibrate,
-    tests::{Oracle, case, physics},
+    oracle::{Oracle, case, physics},
 };
 use search::strategy::memetic::MemeticSettings;
 
@@ -35,7 +36,7 @@ async fn swept(case: &Case, order: u64, lists: &[&[Search]]) -> (Vec<Searched>, 
         let more = sweep.run(&mut oracle, list, &mut Unseen, &mut stop).await;
         found.extend(more.unwrap());
     }
-    (found, oracle.computed())
+    (found, oracle.computed)
 }
 
 /// However results arrive and whatever runs beside it, a search finds what it finds alone.
@@ -70,7 +71,8 @@ async fn searches_find_the_same_where_numbers_of_jobs_are_few() {
     let space = Space::new(&case.unknowns).unwrap();
     let all = [search(20, 1, Some(60)), search(20, 2, Some(60))];
     let (expected, _) = swept(&case, 1, &[&all]).await;
-    let mut oracle = Oracle::new(&case, 3, physics).with_number_bits(7);
+    let mut oracle = Oracle::new(&case, 3, physics);
+    oracle.numbers = JobNumbers::with_bits(7);
     let (_sender, mut stop) = tokio::sync::watch::channel(false);
     let mut sweep = Sweep::new(&case, &space);
     let found = sweep.run(&mut oracle, &all, &mut Unseen, &mut stop).await;

@@ -29,7 +29,7 @@ impl Default for JobNumbers {
 
 impl JobNumbers {
     /// Numbers of so many bits (1 to 63), none of them taken.
-    pub(crate) const fn with_bits(bits: u32) -> Self {
+    pub const fn with_bits(bits: u32) -> Self {
         Self {
             by_content: BTreeMap::new(),
             by_number: BTreeMap::new(),

@@ -17,8 +17,12 @@ mod laboratory;
 mod listed;
 mod log;
 mod mismatch;
+#[cfg(test)]
+mod oracle;
+pub mod orthogonal;
 mod progress;
 mod recorded;
+pub mod scaling;
 mod stop;
 mod sweep;
 mod watch;
@@ -29,7 +33,7 @@ pub use diagnose::{Diagnosed, diagnose_on};
 pub use dispatch::scheduler::Completed;
 pub use error::{EvaluatorError, StudyError};
 pub use evaluate::{Request, Scored, evaluate};
-pub(crate) use evaluator::answer;
+pub use evaluator::answer;
 pub use evaluator::{Crew, Evaluator, WorkerStatus};
 pub use identify::{IdentifiedOn, glance_on, identify_on};
 pub use job_number::JobNumbers;
@@ -40,9 +44,13 @@ pub use mismatch::{check_records, mismatches, recommended};
 pub use progress::ProgressView;
 pub use recorded::Recorded;
 pub use stop::Stop;
-pub(crate) use stop::or_stop;
+pub use stop::or_stop;
 pub use sweep::{Search, Searched, Sweep};
 pub use watch::{View, Watch};
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;
+
+// tests of other crates include the oracle
+#[cfg(test)]
+extern crate self as study;

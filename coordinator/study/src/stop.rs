@@ -6,10 +6,7 @@ use tokio::sync::watch;
 pub type Stop = watch::Receiver<bool>;
 
 /// A future's result, unless the user stops first.
-pub(crate) async fn or_stop<T>(
-    future: impl Future<Output = T>,
-    stop: &mut Stop,
-) -> Result<T, StudyError> {
+pub async fn or_stop<T>(future: impl Future<Output = T>, stop: &mut Stop) -> Result<T, StudyError> {
     let stopped = async {
         // a sender that is gone can no longer stop anything
         if stop.wait_for(|stopped| *stopped).await.is_err() {
